@@ -1,0 +1,1 @@
+//! Exact mesh collision detection with oriented bounding box trees.

@@ -1,0 +1,112 @@
+//! Local planners: how one configuration reaches for another.
+
+use crate::{MotionValidity, Space};
+use std::fmt::Debug;
+
+/// Which end of an edge is the parent. Edges are always stored in forward time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// The tree grows from the start: parent first.
+    Forward,
+    /// The tree grows from the goal: child first.
+    Backward,
+}
+
+/// How far an extension may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reach {
+    /// At most this distance, in the metric of the space.
+    Step(f64),
+    /// All the way or not at all.
+    Full,
+}
+
+/// An accepted motion: where it ends, how it gets there, what it costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion<S, E> {
+    /// Where the motion ends (in a backward extension: where it starts in time).
+    pub end: S,
+    /// How it gets there; `()` for the space's own interpolation.
+    pub edge: E,
+    /// Cost, the distance of the space unless the local planner says otherwise.
+    pub cost: f64,
+}
+
+/// The outcome of one extension.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Extension<S, E> {
+    /// Nothing gained.
+    Trapped,
+    /// Moved toward the target without reaching it.
+    Advanced(Motion<S, E>),
+    /// Reached the target; `end` equals it exactly.
+    Reached(Motion<S, E>),
+}
+
+/// Extends from one state toward another: the trait that carries the straight line, certified
+/// edges, rotate-at-s, kinodynamic input sets and the snake.
+pub trait LocalPlanner<S> {
+    /// What an edge remembers, enough to replay it exactly.
+    type Edge: Clone + Debug;
+    /// Tries to move from `from` toward `toward`, at most as far as `reach` allows.
+    fn extend(
+        &mut self,
+        from: &S,
+        toward: &S,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<S, Self::Edge>;
+}
+
+impl<S, L: LocalPlanner<S> + ?Sized> LocalPlanner<S> for &mut L {
+    type Edge = L::Edge;
+    fn extend(&mut self, from: &S, toward: &S, direction: Direction, reach: Reach) -> Extension<S, L::Edge> {
+        (**self).extend(from, toward, direction, reach)
+    }
+}
+
+/// The straight local planner: the space's own interpolation, accepted when `check` finds the
+/// whole motion free.
+#[derive(Clone, Debug)]
+pub struct Straight<'c, C, M> {
+    /// The space to interpolate in.
+    pub space: &'c C,
+    /// The motion check: discrete, certified or a user's own.
+    pub check: M,
+}
+
+impl<'c, C: Space, M: MotionValidity<C::State>> Straight<'c, C, M> {
+    /// Straight motions in `space`, checked by `check`.
+    pub fn new(space: &'c C, check: M) -> Self {
+        Self { space, check }
+    }
+}
+
+impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for Straight<'_, C, M> {
+    type Edge = ();
+    fn extend(
+        &mut self,
+        from: &C::State,
+        toward: &C::State,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<C::State, ()> {
+        let distance = self.space.distance(from, toward);
+        let (end, cost, reached) = match reach {
+            Reach::Step(step) if step < distance => {
+                (self.space.interpolate(from, toward, step / distance), step, false)
+            }
+            _ => (toward.clone(), distance, true),
+        };
+        let check = match direction {
+            Direction::Forward => self.check.check_motion(from, &end),
+            Direction::Backward => self.check.check_motion(&end, from),
+        };
+        let motion = Motion { end, edge: (), cost };
+        match (check.is_free(), reached) {
+            (false, _) => Extension::Trapped,
+            (true, true) => Extension::Reached(motion),
+            (true, false) => Extension::Advanced(motion),
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! The two motion checks of the straight local planner: discrete and certified.

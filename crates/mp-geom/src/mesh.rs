@@ -1,0 +1,120 @@
+//! The indexed triangle mesh.
+
+use nalgebra::{Isometry3, Point3};
+use thiserror::Error;
+
+/// Why a mesh could not be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// No triangles.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// A coordinate is NaN or infinite.
+    #[error("vertex {vertex} has a coordinate that is not finite: ({x}, {y}, {z})")]
+    NotFinite {
+        /// Which vertex, counted from 0.
+        vertex: usize,
+        /// Its x.
+        x: f64,
+        /// Its y.
+        y: f64,
+        /// Its z.
+        z: f64,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} refers to vertex {index}, but there are only {vertices} vertices")]
+    IndexOutOfRange {
+        /// Which triangle, counted from 0.
+        triangle: usize,
+        /// The index it names.
+        index: u32,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// More than `u32::MAX` vertices or triangles.
+    #[error("the mesh has {count} {what}, more than a 32-bit index can name")]
+    TooLarge {
+        /// "vertices" or "triangles".
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
+}
+
+/// An indexed triangle mesh (boundary representation): a soup, with no promise of being closed,
+/// manifold, oriented or free of degenerate triangles.
+///
+/// Never empty, every coordinate finite, every index in range: checked once, here.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TriMesh {
+    vertices: Vec<Point3<f64>>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl TriMesh {
+    /// A mesh of `vertices` (metres) and `triangles` (vertex indices, counter-clockwise seen from outside
+    /// by convention).
+    ///
+    /// # Errors
+    /// [`MeshError`] when there are no triangles, a coordinate is not finite or an index is out of range.
+    pub fn new(vertices: Vec<Point3<f64>>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        if triangles.is_empty() {
+            return Err(MeshError::Empty);
+        }
+        for (what, count) in [("vertices", vertices.len()), ("triangles", triangles.len())] {
+            if u32::try_from(count).is_err() {
+                return Err(MeshError::TooLarge { what, count });
+            }
+        }
+        if let Some((vertex, p)) = vertices.iter().enumerate().find(|(_, p)| p.iter().any(|c| !c.is_finite()))
+        {
+            return Err(MeshError::NotFinite { vertex, x: p.x, y: p.y, z: p.z });
+        }
+        for (triangle, t) in triangles.iter().enumerate() {
+            if let Some(&index) = t.iter().find(|&&i| i as usize >= vertices.len()) {
+                return Err(MeshError::IndexOutOfRange { triangle, index, vertices: vertices.len() });
+            }
+        }
+        Ok(Self { vertices, triangles })
+    }
+
+    /// The vertices.
+    #[must_use]
+    pub fn vertices(&self) -> &[Point3<f64>] {
+        &self.vertices
+    }
+
+    /// The triangles, as vertex indices.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The corners of triangle `i`.
+    ///
+    /// # Panics
+    /// When `i` is out of range.
+    #[must_use]
+    pub fn triangle(&self, i: usize) -> [Point3<f64>; 3] {
+        self.triangles[i].map(|v| self.vertices[v as usize])
+    }
+
+    /// The mesh moved by `pose`.
+    #[must_use]
+    pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
+        Self { vertices: self.vertices.iter().map(|p| pose * p).collect(), triangles: self.triangles.clone() }
+    }
+
+    /// All of `meshes` in one. `None` when there are none.
+    #[must_use]
+    pub fn merged<'a>(meshes: impl IntoIterator<Item = &'a TriMesh>) -> Option<Self> {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for m in meshes {
+            let base = u32::try_from(vertices.len()).ok()?;
+            vertices.extend_from_slice(&m.vertices);
+            triangles.extend(m.triangles.iter().map(|t| t.map(|i| i + base)));
+        }
+        Self::new(vertices, triangles).ok()
+    }
+}

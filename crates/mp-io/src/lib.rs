@@ -1,0 +1,1 @@
+//! File formats of motion planning: meshes, scenes, problems, paths.

@@ -1,0 +1,1 @@
+//! Robots: what a configuration places where, and when it is free.

@@ -1,0 +1,1 @@
+//! The rapidly-exploring random tree family.
