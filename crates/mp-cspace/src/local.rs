@@ -56,12 +56,20 @@ pub trait LocalPlanner<S> {
         direction: Direction,
         reach: Reach,
     ) -> Extension<S, Self::Edge>;
+    /// Whether a motion may begin or end at `q` at all, so that a start nothing can leave is bad
+    /// input and not a search without end. The default knows of no objection.
+    fn admits(&mut self, _q: &S) -> bool {
+        true
+    }
 }
 
 impl<S, L: LocalPlanner<S> + ?Sized> LocalPlanner<S> for &mut L {
     type Edge = L::Edge;
     fn extend(&mut self, from: &S, toward: &S, direction: Direction, reach: Reach) -> Extension<S, L::Edge> {
         (**self).extend(from, toward, direction, reach)
+    }
+    fn admits(&mut self, q: &S) -> bool {
+        (**self).admits(q)
     }
 }
 
@@ -108,5 +116,8 @@ impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for Straight<
             (true, true) => Extension::Reached(motion),
             (true, false) => Extension::Advanced(motion),
         }
+    }
+    fn admits(&mut self, q: &C::State) -> bool {
+        self.check.check_motion(q, q).is_free()
     }
 }

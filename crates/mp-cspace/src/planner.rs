@@ -12,13 +12,15 @@ pub struct Progress {
     pub nodes: usize,
     /// Motion checks asked of the local planner.
     pub motions: u64,
+    /// Candidate paths that failed independent verification.
+    pub rejected: u64,
 }
 
 impl Progress {
-    /// Progress with the given counts.
+    /// Progress with the given counts, nothing rejected.
     #[must_use]
     pub fn new(iterations: u64, nodes: usize, motions: u64) -> Self {
-        Self { iterations, nodes, motions }
+        Self { iterations, nodes, motions, rejected: 0 }
     }
 }
 
@@ -67,6 +69,15 @@ impl<A: Stop, B: Stop> Stop for Or<A, B> {
 pub enum Event<'a, S> {
     /// A state was sampled.
     Sampled(&'a S),
+    /// A root was added to tree `tree`.
+    Rooted {
+        /// Which tree (0 from the start, 1 from the goal).
+        tree: usize,
+        /// The new node.
+        id: NodeId,
+        /// Its state.
+        state: &'a S,
+    },
     /// A node was added to tree `tree` under `parent`.
     Added {
         /// Which tree (0 from the start, 1 from the goal).
@@ -83,8 +94,15 @@ pub enum Event<'a, S> {
         /// Which tree.
         tree: usize,
     },
-    /// A candidate path failed independent verification; its bad edge was pruned.
+    /// A candidate path failed independent verification; its bad edge is pruned.
     Rejected,
+    /// Nodes of `tree` were removed and the others renumbered, in unchanged order.
+    Pruned {
+        /// Which tree.
+        tree: usize,
+        /// The former ids of the nodes that remain: node `i` was `survivors[i]`.
+        survivors: &'a [NodeId],
+    },
     /// A verified path was found.
     Solved,
 }
