@@ -1,5 +1,28 @@
 //! Triangle meshes, primitives, poses and bounding volumes for motion planning.
+//!
+//! - [`TriMesh`]: the indexed mesh, from a soup, strips, fans or polygons; [`TriMesh::topology`] tells
+//!   what is wrong with it.
+//! - [`Aabb`], [`Sphere`]: bounding volumes.
+//! - [`primitives`]: closed solids.
+//! - [`pose_from_six`] and its kin: poses to and from numbers.
+//!
+//! Lengths are metres, angles radians.
 
+mod aabb;
+mod build;
 mod mesh;
+mod pose;
+pub mod primitives;
+mod sphere;
+mod topology;
+mod triangulate;
 
+pub use aabb::Aabb;
 pub use mesh::{MeshError, TriMesh};
+pub use pose::{
+    PoseError, ROTATION_TOLERANCE, matrix_from_pose, pose_from_matrix, pose_from_quaternion, pose_from_six,
+    rotation_from_matrix, six_from_pose,
+};
+pub use primitives::PrimitiveError;
+pub use sphere::{Sphere, minimal_sphere};
+pub use topology::{NO_COMPONENT, Topology};

@@ -32,10 +32,20 @@ pub enum MeshError {
         /// How many vertices there are.
         vertices: usize,
     },
+    /// A strip, fan or polygon has fewer than three corners.
+    #[error("{what} {index} has {corners} corners, at least 3 are needed")]
+    TooFewCorners {
+        /// "strip", "fan" or "polygon".
+        what: &'static str,
+        /// Which one, counted from 0.
+        index: usize,
+        /// How many corners it has.
+        corners: usize,
+    },
     /// More than `u32::MAX` vertices or triangles.
     #[error("the mesh has {count} {what}, more than a 32-bit index can name")]
     TooLarge {
-        /// "vertices" or "triangles".
+        /// "vertices", "triangles" or "triangle corners".
         what: &'static str,
         /// How many.
         count: usize,
@@ -100,6 +110,11 @@ impl TriMesh {
         self.triangles[i].map(|v| self.vertices[v as usize])
     }
 
+    /// The same vertices with other triangles over them, which the caller knows to be in range.
+    pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Self {
+        Self { vertices: self.vertices.clone(), triangles }
+    }
+
     /// The mesh moved by `pose`.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
@@ -113,7 +128,7 @@ impl TriMesh {
         for m in meshes {
             let base = u32::try_from(vertices.len()).ok()?;
             vertices.extend_from_slice(&m.vertices);
-            triangles.extend(m.triangles.iter().map(|t| t.map(|i| i + base)));
+            triangles.extend(m.triangles.iter().map(|t| t.map(|i| i.wrapping_add(base))));
         }
         Self::new(vertices, triangles).ok()
     }

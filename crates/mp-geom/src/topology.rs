@@ -1,0 +1,308 @@
+//! Which triangles meet where, and what is wrong with a mesh.
+
+use crate::{TriMesh, build::Welder};
+use std::collections::BTreeMap;
+
+/// Adjacency of a mesh and a report on its defects.
+///
+/// Vertices at identical coordinates count as one, named by the first of them, so a mesh whose file
+/// repeats points is judged by its shape. Triangles with two corners in one place have no part in edges.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Topology {
+    /// Per triangle, the triangle across each of its edges (corner 0–1, 1–2, 2–0); `None` at a boundary or
+    /// where more than two triangles meet.
+    pub neighbours: Vec<[Option<u32>; 3]>,
+    /// Per triangle, which connected component (through shared edges) it is in, counted from 0.
+    pub component: Vec<u32>,
+    /// Number of connected components.
+    pub components: usize,
+    /// Edges of exactly one triangle.
+    pub boundary_edges: Vec<[u32; 2]>,
+    /// Edges of more than two triangles.
+    pub crowded_edges: Vec<[u32; 2]>,
+    /// Edges along which neighbours are turned against each other.
+    pub misoriented_edges: Vec<[u32; 2]>,
+    /// Vertices whose triangles do not form one fan (surfaces touching in a point).
+    pub pinched_vertices: Vec<u32>,
+    /// Triangles without area: repeated or collinear corners.
+    pub degenerate: Vec<u32>,
+    /// Triangles with the same three corners as an earlier one, in any order: (earlier, this).
+    pub duplicates: Vec<(u32, u32)>,
+    /// Number of distinct vertices used by triangles.
+    pub vertices: usize,
+    /// Number of distinct edges.
+    pub edges: usize,
+    /// Every edge has an even number of triangles.
+    pub closed: bool,
+    /// No crowded edge and no pinched vertex: the surface is locally a disc or half disc.
+    pub manifold: bool,
+    /// Every edge shared by triangles is passed as often one way as the other.
+    pub oriented: bool,
+}
+
+impl Topology {
+    /// Closed, manifold and consistently oriented: bounds a solid, if it does not cross itself.
+    #[must_use]
+    pub fn is_solid(&self) -> bool {
+        self.closed && self.manifold && self.oriented
+    }
+
+    /// V − E + F, counting triangles with three distinct corners: 2 per component for spheres, 0 for a torus.
+    #[must_use]
+    pub fn euler_characteristic(&self) -> i64 {
+        let faces = self.component.iter().filter(|&&c| c != NO_COMPONENT).count();
+        self.vertices as i64 - self.edges as i64 + faces as i64
+    }
+}
+
+/// In [`Topology::component`]: a triangle with two corners in one place.
+pub const NO_COMPONENT: u32 = u32::MAX;
+
+/// A corner of a triangle with this height or less, relative to the longest edge, has no area.
+const FLAT: f64 = 1e-14;
+
+/// One use of an edge: the triangle, which of its edges, and whether from the lower to the higher vertex.
+type Use = (u32, usize, bool);
+
+impl TriMesh {
+    /// Adjacency and defects. O(n log n) in the number of triangles.
+    #[must_use]
+    pub fn topology(&self) -> Topology {
+        let triangles = self.by_position();
+        let whole = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
+        let mut uses: Vec<([u32; 2], Use)> = Vec::with_capacity(3 * triangles.len());
+        for (i, t) in triangles.iter().enumerate().filter(|(_, t)| whole(t)) {
+            for k in 0..3 {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                uses.push(([a.min(b), a.max(b)], (i as u32, k, a < b)));
+            }
+        }
+        uses.sort_unstable();
+
+        let mut out = Topology {
+            neighbours: vec![[None; 3]; triangles.len()],
+            component: vec![NO_COMPONENT; triangles.len()],
+            components: 0,
+            boundary_edges: Vec::new(),
+            crowded_edges: Vec::new(),
+            misoriented_edges: Vec::new(),
+            pinched_vertices: Vec::new(),
+            degenerate: Vec::new(),
+            duplicates: Vec::new(),
+            vertices: 0,
+            edges: 0,
+            closed: true,
+            manifold: true,
+            oriented: true,
+        };
+        // Triangles linked through edges, crowded ones included.
+        let mut linked = DisjointSets::new(triangles.len());
+        // Corners (3·triangle + k) linked around vertices.
+        let mut fans = DisjointSets::new(3 * triangles.len());
+        for group in uses.chunk_by(|a, b| a.0 == b.0) {
+            let edge = group[0].0;
+            out.edges += 1;
+            out.closed &= group.len() % 2 == 0;
+            let forward = group.iter().filter(|(_, u)| u.2).count();
+            if group.len() > 1 && 2 * forward != group.len() {
+                out.misoriented_edges.push(edge);
+            }
+            match group {
+                [_] => out.boundary_edges.push(edge),
+                [(_, a), (_, b)] => {
+                    out.neighbours[a.0 as usize][a.1] = Some(b.0);
+                    out.neighbours[b.0 as usize][b.1] = Some(a.0);
+                }
+                _ => out.crowded_edges.push(edge),
+            }
+            for pair in group.windows(2) {
+                let (a, b) = (pair[0].1, pair[1].1);
+                linked.join(a.0 as usize, b.0 as usize);
+                for v in edge {
+                    let corner = |t: u32| 3 * t as usize + position(&triangles[t as usize], v);
+                    fans.join(corner(a.0), corner(b.0));
+                }
+            }
+        }
+        out.oriented = out.misoriented_edges.is_empty();
+
+        let mut numbers = BTreeMap::new();
+        let mut fan_of_vertex = BTreeMap::new();
+        let mut seen = BTreeMap::new();
+        for (i, t) in triangles.iter().enumerate() {
+            if !whole(t) || self.is_flat(i) {
+                out.degenerate.push(i as u32);
+            }
+            let mut sorted = *t;
+            sorted.sort_unstable();
+            if let Some(&earlier) = seen.get(&sorted) {
+                out.duplicates.push((earlier, i as u32));
+            } else {
+                seen.insert(sorted, i as u32);
+            }
+            if whole(t) {
+                let next = numbers.len() as u32;
+                out.component[i] = *numbers.entry(linked.root(i)).or_insert(next);
+                for (k, v) in t.iter().enumerate() {
+                    let fan = fans.root(3 * i + k);
+                    if *fan_of_vertex.entry(*v).or_insert(fan) != fan {
+                        out.pinched_vertices.push(*v);
+                    }
+                }
+            }
+        }
+        out.components = numbers.len();
+        out.vertices = fan_of_vertex.len();
+        out.pinched_vertices.sort_unstable();
+        out.pinched_vertices.dedup();
+        out.manifold = out.crowded_edges.is_empty() && out.pinched_vertices.is_empty();
+        out
+    }
+
+    /// The triangles with every vertex named by the first one at its position.
+    fn by_position(&self) -> Vec<[u32; 3]> {
+        let mut welder = Welder::default();
+        let mut first = Vec::new();
+        let name: Vec<u32> = self
+            .vertices()
+            .iter()
+            .enumerate()
+            .map(|(i, p)| {
+                let number = welder.number(p) as usize;
+                if number == first.len() {
+                    first.push(i as u32);
+                }
+                first[number]
+            })
+            .collect();
+        self.triangles().iter().map(|t| t.map(|v| name[v as usize])).collect()
+    }
+
+    fn is_flat(&self, i: usize) -> bool {
+        let [a, b, c] = self.triangle(i);
+        let (u, v, w) = (b - a, c - b, a - c);
+        let longest = u.norm_squared().max(v.norm_squared()).max(w.norm_squared());
+        u.cross(&v).norm() <= FLAT * longest
+    }
+}
+
+fn position(t: &[u32; 3], v: u32) -> usize {
+    if t[0] == v { 0 } else { 1 + usize::from(t[1] != v) }
+}
+
+/// Union–find with path halving; the smallest member is the root.
+struct DisjointSets(Vec<usize>);
+
+impl DisjointSets {
+    fn new(n: usize) -> Self {
+        Self((0..n).collect())
+    }
+    fn root(&mut self, mut i: usize) -> usize {
+        while self.0[i] != i {
+            self.0[i] = self.0[self.0[i]];
+            i = self.0[i];
+        }
+        i
+    }
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::primitives::{cuboid, torus};
+    use nalgebra::Isometry3;
+    use proptest::prelude::*;
+
+    fn cube() -> TriMesh {
+        cuboid(1.0, 1.0, 1.0).unwrap()
+    }
+
+    fn edited(mesh: &TriMesh, edit: impl FnOnce(&mut Vec<[u32; 3]>)) -> Topology {
+        let mut triangles = mesh.triangles().to_vec();
+        edit(&mut triangles);
+        TriMesh::new(mesh.vertices().to_vec(), triangles).unwrap().topology()
+    }
+
+    #[test]
+    fn a_cube() {
+        let t = cube().topology();
+        assert!(t.is_solid() && t.degenerate.is_empty() && t.duplicates.is_empty());
+        assert_eq!((t.vertices, t.edges, t.components, t.euler_characteristic()), (8, 18, 1, 2));
+        let back = |i: u32, j: u32| t.neighbours[j as usize].contains(&Some(i));
+        for (i, n) in t.neighbours.iter().enumerate() {
+            assert!(n.iter().all(|j| back(i as u32, j.unwrap())));
+        }
+    }
+
+    #[test]
+    fn a_missing_triangle_opens_three_edges() {
+        let t = edited(&cube(), |t| t.truncate(11));
+        assert!(!t.closed && t.manifold && t.oriented && !t.is_solid());
+        assert_eq!(t.boundary_edges, [[1, 5], [1, 7], [5, 7]]);
+        assert_eq!(t.neighbours.iter().flatten().filter(|n| n.is_none()).count(), 3);
+    }
+
+    #[test]
+    fn a_turned_triangle_is_against_its_neighbours() {
+        let t = edited(&cube(), |t| t[0].swap(0, 1));
+        assert!(t.closed && t.manifold && !t.oriented);
+        assert_eq!(t.misoriented_edges.len(), 3);
+    }
+
+    #[test]
+    fn degenerate_and_duplicate_triangles() {
+        let t = edited(&cube(), |t| {
+            let [a, b, c] = t[3];
+            t.push([b, c, a]);
+            t.push([a, a, b]);
+        });
+        assert_eq!(t.duplicates, [(3, 12)]);
+        assert_eq!(t.degenerate, [13]);
+        assert_eq!((t.component[13], t.crowded_edges.len()), (NO_COMPONENT, 3));
+        assert!(!t.manifold && !t.closed);
+        let line = [0.0, 1.0, 2.0].map(|x| nalgebra::Point3::new(x, 2.0 * x, -x));
+        assert_eq!(TriMesh::from_soup(&[line]).unwrap().topology().degenerate, [0]);
+    }
+
+    #[test]
+    fn solids_touching_in_a_vertex_or_an_edge() {
+        let at = |x, y, z| cube().transformed(&Isometry3::translation(x, y, z));
+        let in_vertex = TriMesh::merged([&cube(), &at(1.0, 1.0, 1.0)]).unwrap().topology();
+        assert!(in_vertex.closed && in_vertex.oriented && !in_vertex.manifold);
+        assert_eq!((in_vertex.components, in_vertex.pinched_vertices.len()), (2, 1));
+        let in_edge = TriMesh::merged([&cube(), &at(1.0, 1.0, 0.0)]).unwrap().topology();
+        assert!(in_edge.closed && in_edge.oriented && !in_edge.manifold);
+        assert_eq!((in_edge.components, in_edge.crowded_edges.len()), (1, 1));
+        let apart = TriMesh::merged([&cube(), &at(5.0, 0.0, 0.0)]).unwrap().topology();
+        assert!(apart.is_solid());
+        assert_eq!(apart.components, 2);
+    }
+
+    proptest! {
+        #[test]
+        fn a_soup_in_any_order_is_judged_the_same(shuffle in Just((0..96_usize).collect::<Vec<_>>()).prop_shuffle(), gone in 0_usize..4) {
+            let torus = torus(2.0, 0.5, 8, 6).unwrap();
+            // Unwelded: every triangle with vertices of its own, turned to start at another corner.
+            let soup: Vec<_> = shuffle.iter().skip(gone).map(|&i| {
+                let mut t = torus.triangle(i);
+                t.rotate_left(i % 3);
+                t
+            }).collect();
+            let unwelded = TriMesh::new(soup.concat(), (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect()).unwrap();
+            let (a, b) = (unwelded.topology(), unwelded.welded().topology());
+            prop_assert_eq!(a.is_solid(), gone == 0);
+            prop_assert_eq!((a.edges, a.components, a.boundary_edges.len(), a.closed), (b.edges, b.components, b.boundary_edges.len(), b.closed));
+            prop_assert_eq!(a.neighbours, b.neighbours);
+            // An edge of a missing triangle is a boundary unless both of its triangles are missing.
+            let missing = &shuffle[..gone];
+            let full = torus.topology();
+            let expected = missing.iter().flat_map(|&i| full.neighbours[i]).filter(|n| !missing.contains(&(n.unwrap() as usize))).count();
+            prop_assert_eq!(a.boundary_edges.len(), expected);
+        }
+    }
+}
