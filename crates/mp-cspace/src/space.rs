@@ -32,8 +32,8 @@ impl<S, M: TrueMetric<S> + ?Sized> TrueMetric<S> for &M {}
 /// `distance(a, interpolate(a, b, t)) = t · distance(a, b)` (constant speed along a shortest
 /// curve), and every sample is contained.
 pub trait Space: Metric<Self::State> {
-    /// A configuration.
-    type State: Clone + Debug;
+    /// A configuration. Equality is exact: planners use it to tell a state they already have.
+    type State: Clone + Debug + PartialEq;
 
     /// Number of degrees of freedom.
     fn dim(&self) -> usize;
