@@ -14,7 +14,7 @@ mod space;
 mod validity;
 
 pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Straight};
-pub use nn::{Hit, NearestNeighbors, NodeId};
+pub use nn::{DefaultNn, Hit, Linear, NearestNeighbors, NodeId};
 pub use path::Path;
 pub use planner::{Event, Goal, Observer, Or, Outcome, Planner, Progress, Stop, StopReason};
 pub use rng::Rng;

@@ -1,0 +1,154 @@
+//! What the searches of all indexes collect into.
+
+use super::{Hit, NodeId};
+
+/// Receives states in the order a search meets them, and says how far the search must look.
+pub(super) trait Collector {
+    /// States farther than this are of no interest; at this distance they may be.
+    fn limit(&self) -> f64;
+    /// Takes one state into account; `false` when it was of no interest.
+    fn offer(&mut self, hit: Hit) -> bool;
+}
+
+/// The one nearest state.
+#[derive(Debug)]
+pub(super) struct One(Hit);
+
+impl One {
+    pub(super) fn new() -> Self {
+        Self(Hit { id: NodeId::MAX, distance: f64::INFINITY })
+    }
+
+    pub(super) fn get(self) -> Option<Hit> {
+        (self.0.id != NodeId::MAX).then_some(self.0)
+    }
+}
+
+impl Collector for One {
+    #[inline]
+    fn limit(&self) -> f64 {
+        self.0.distance
+    }
+
+    #[inline]
+    fn offer(&mut self, hit: Hit) -> bool {
+        let better = hit.precedes(&self.0);
+        if better {
+            self.0 = hit;
+        }
+        better
+    }
+}
+
+/// The `k` nearest states: a heap in `out`, the worst on top.
+#[derive(Debug)]
+pub(super) struct Nearest<'a> {
+    k: usize,
+    out: &'a mut Vec<Hit>,
+}
+
+impl<'a> Nearest<'a> {
+    /// Clears `out`.
+    pub(super) fn new(k: usize, out: &'a mut Vec<Hit>) -> Self {
+        out.clear();
+        Self { k, out }
+    }
+
+    /// Sorts the answer.
+    pub(super) fn finish(self) {
+        self.out.sort_unstable_by(Hit::order);
+    }
+
+    /// Moves the hit at `i` up to where its parent is no better.
+    fn sift_up(&mut self, mut i: usize) {
+        while i > 0 && self.out[(i - 1) / 2].precedes(&self.out[i]) {
+            self.out.swap(i, (i - 1) / 2);
+            i = (i - 1) / 2;
+        }
+    }
+
+    /// Moves the hit on top down to where no child is worse.
+    fn sift_down(&mut self) {
+        let mut i = 0;
+        loop {
+            let (left, right) = (2 * i + 1, 2 * i + 2);
+            let mut worst = i;
+            for child in [left, right] {
+                if child < self.out.len() && self.out[worst].precedes(&self.out[child]) {
+                    worst = child;
+                }
+            }
+            if worst == i {
+                return;
+            }
+            self.out.swap(i, worst);
+            i = worst;
+        }
+    }
+}
+
+impl Collector for Nearest<'_> {
+    #[inline]
+    fn limit(&self) -> f64 {
+        if self.out.len() < self.k {
+            f64::INFINITY
+        } else {
+            self.out.first().map_or(f64::NEG_INFINITY, |worst| worst.distance)
+        }
+    }
+
+    fn offer(&mut self, hit: Hit) -> bool {
+        if hit.distance.is_nan() {
+            return false;
+        }
+        if self.out.len() < self.k {
+            self.out.push(hit);
+            self.sift_up(self.out.len() - 1);
+            return true;
+        }
+        match self.out.first_mut() {
+            Some(worst) if hit.precedes(worst) => {
+                *worst = hit;
+                self.sift_down();
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+/// All states within a radius.
+#[derive(Debug)]
+pub(super) struct Within<'a> {
+    radius: f64,
+    out: &'a mut Vec<Hit>,
+}
+
+impl<'a> Within<'a> {
+    /// Clears `out`.
+    pub(super) fn new(radius: f64, out: &'a mut Vec<Hit>) -> Self {
+        out.clear();
+        Self { radius, out }
+    }
+
+    /// Sorts the answer.
+    pub(super) fn finish(self) {
+        self.out.sort_unstable_by(Hit::order);
+    }
+}
+
+impl Collector for Within<'_> {
+    #[inline]
+    fn limit(&self) -> f64 {
+        self.radius
+    }
+
+    #[inline]
+    fn offer(&mut self, hit: Hit) -> bool {
+        let inside = hit.distance <= self.radius;
+        if inside {
+            self.out.push(hit);
+        }
+        inside
+    }
+}

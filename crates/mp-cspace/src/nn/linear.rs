@@ -1,0 +1,83 @@
+//! The linear scan.
+
+use super::collect::{Collector, Nearest, One, Within};
+use super::{Hit, NearestNeighbors, NodeId};
+use crate::Space;
+
+/// Looks at every state: right for any metric, symmetric or not, and the fastest index below a
+/// few dozen states. `nearest` and `within` take time linear in the number of states.
+#[derive(Clone, Debug, Default)]
+pub struct Linear {
+    ids: Ids,
+}
+
+/// Which states were inserted: nearly always the first so many, which need no list.
+#[derive(Clone, Debug)]
+enum Ids {
+    First(usize),
+    Listed(Vec<NodeId>),
+}
+
+impl Default for Ids {
+    fn default() -> Self {
+        Self::First(0)
+    }
+}
+
+impl Linear {
+    /// An empty index.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Offers every state to `collector`.
+    #[inline]
+    fn scan<C: Space>(&self, space: &C, points: &[C::State], q: &C::State, collector: &mut impl Collector) {
+        match &self.ids {
+            Ids::First(n) => {
+                for (id, p) in points[..*n].iter().enumerate() {
+                    collector.offer(Hit { id: id as NodeId, distance: space.distance(p, q) });
+                }
+            }
+            Ids::Listed(ids) => {
+                for &id in ids {
+                    collector.offer(Hit { id, distance: space.distance(&points[id as usize], q) });
+                }
+            }
+        }
+    }
+}
+
+impl<C: Space> NearestNeighbors<C> for Linear {
+    fn inserted(&mut self, _space: &C, points: &[C::State], id: NodeId) {
+        assert!((id as usize) < points.len(), "no state has id {id}");
+        match &mut self.ids {
+            Ids::First(n) if *n == id as usize => *n += 1,
+            Ids::First(n) => self.ids = Ids::Listed((0..*n as NodeId).chain([id]).collect()),
+            Ids::Listed(ids) => ids.push(id),
+        }
+    }
+
+    fn clear(&mut self) {
+        self.ids = Ids::default();
+    }
+
+    fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
+        let mut one = One::new();
+        self.scan(space, points, q, &mut one);
+        one.get()
+    }
+
+    fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
+        let mut nearest = Nearest::new(k, out);
+        self.scan(space, points, q, &mut nearest);
+        nearest.finish();
+    }
+
+    fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
+        let mut within = Within::new(radius, out);
+        self.scan(space, points, q, &mut within);
+        within.finish();
+    }
+}

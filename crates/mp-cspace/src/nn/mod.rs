@@ -1,0 +1,70 @@
+//! Nearest neighbours: one trait, several indexes with identical answers.
+//!
+//! | index | for | how |
+//! |---|---|---|
+//! | [`Linear`] | any space | looks at every state; the oracle of the others |
+//!
+//! A planner that leaves the choice to the space asks for `C::Nn` of [`DefaultNn`].
+
+mod collect;
+mod linear;
+
+pub use linear::Linear;
+
+use crate::Space;
+
+/// Identifies a state of a tree or roadmap: its index in insertion order.
+pub type NodeId = u32;
+
+/// A neighbour and its distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Which node.
+    pub id: NodeId,
+    /// Its distance to the query in the metric of the space.
+    pub distance: f64,
+}
+
+impl Hit {
+    /// The order of answers: by distance, ties by id.
+    #[inline]
+    fn precedes(&self, other: &Hit) -> bool {
+        self.distance < other.distance || (self.distance == other.distance && self.id < other.id)
+    }
+
+    /// As [`precedes`](Self::precedes), for sorting.
+    #[inline]
+    fn order(&self, other: &Hit) -> std::cmp::Ordering {
+        self.distance.total_cmp(&other.distance).then(self.id.cmp(&other.id))
+    }
+}
+
+/// An index over states owned by somebody else.
+///
+/// `points` is always the same growing slice, and `space` the same space; the index is told of
+/// each new point by [`inserted`](NearestNeighbors::inserted), each once, in any order. Distances
+/// are *from* the point *to* the query. Ties go to the smallest id, so every implementation gives
+/// identical answers, to the bit. States at a distance that is not a number are never found.
+pub trait NearestNeighbors<C: Space> {
+    /// Tells the index that `points[id]` is new.
+    ///
+    /// # Panics
+    /// When `points` has no `id`.
+    fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId);
+    /// Forgets everything; the caller inserts again.
+    fn clear(&mut self);
+    /// The nearest point, `None` when there is none.
+    fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit>;
+    /// The `k` nearest points in order of distance, into `out` (cleared first).
+    fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>);
+    /// All points within `radius` (inclusive), in order of distance, into `out` (cleared first).
+    fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>);
+}
+
+/// A space that names the index which serves it best, so that planners need not be told.
+///
+/// A space of your own without a better idea says `type Nn = Linear;`.
+pub trait DefaultNn: Space + Sized {
+    /// The index.
+    type Nn: NearestNeighbors<Self> + Default + Clone + std::fmt::Debug;
+}
