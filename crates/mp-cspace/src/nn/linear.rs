@@ -34,17 +34,15 @@ impl Linear {
     /// Offers every state to `collector`.
     #[inline]
     fn scan<C: Space>(&self, space: &C, points: &[C::State], q: &C::State, collector: &mut impl Collector) {
+        let mut look = |id: NodeId, p: &C::State| {
+            let distance = space.distance(p, q);
+            if distance <= collector.limit() {
+                collector.offer(Hit { id, distance });
+            }
+        };
         match &self.ids {
-            Ids::First(n) => {
-                for (id, p) in points[..*n].iter().enumerate() {
-                    collector.offer(Hit { id: id as NodeId, distance: space.distance(p, q) });
-                }
-            }
-            Ids::Listed(ids) => {
-                for &id in ids {
-                    collector.offer(Hit { id, distance: space.distance(&points[id as usize], q) });
-                }
-            }
+            Ids::First(n) => points[..*n].iter().zip(0..).for_each(|(p, id)| look(id, p)),
+            Ids::Listed(ids) => ids.iter().for_each(|&id| look(id, &points[id as usize])),
         }
     }
 }
