@@ -1,6 +1,8 @@
 //! The one error of this crate: what is wrong, where, what was expected and what to do about it.
 
-use miette::{Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
+use miette::{
+    Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents,
+};
 use std::fmt::{self, Display};
 use std::path::Path;
 

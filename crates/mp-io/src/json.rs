@@ -33,7 +33,9 @@ impl PathFile {
         })?;
         match read.path {
             Some(configurations) if !configurations.is_empty() => Ok(Self { configurations }),
-            Some(_) => Err(Error::new(ErrorKind::Content, file, "the path has no configurations").expected(what)),
+            Some(_) => {
+                Err(Error::new(ErrorKind::Content, file, "the path has no configurations").expected(what))
+            }
             None => Err(Error::new(ErrorKind::Content, file, "there is no path in this file")
                 .expected(what)
                 .help("a result that is not solved has no path")),

@@ -22,7 +22,7 @@ mod text;
 
 pub use error::{Error, ErrorKind};
 pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use mesh::read_mesh;
+pub use mesh::{MAX_CORNERS, read_mesh};
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
 pub use source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, write_atomic};

@@ -3,6 +3,8 @@
 mod read;
 mod write;
 
+pub use write::{off_text, write_off};
+
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind};
 use crate::gempa::environment::{self, Environment};
 use crate::mesh::read_mesh;
 use crate::source::{MAX_TEXT_BYTES, read_file};
-use crate::text::{Text, Token, clipped};
+use crate::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -195,4 +195,70 @@ fn check_inside(
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{PathFile, write_gempa_mesh, write_off};
+    use mp_geom::primitives;
+
+    const ENV: &str = "Robot\nrobot.txt\n0 0 0 0 0 0\n5 0 0 1 0 0\nObstacle #1\nwall.off\n2 0 0 0 0 0\n\
+                       Obstacle #4\nwall.off\n3 0 0 0 0.5 0\nEnd\nSpace SE3\nBounds -1 -1 -1 6 1 1\n";
+
+    fn folder() -> tempfile::TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        write_gempa_mesh(dir.path().join("robot.txt"), &primitives::cuboid(0.1, 0.1, 0.1).unwrap()).unwrap();
+        write_off(dir.path().join("wall.off"), &primitives::cuboid(0.1, 1.0, 1.0).unwrap()).unwrap();
+        dir
+    }
+
+    #[test]
+    fn loads_an_environment_and_its_meshes() {
+        let dir = folder();
+        let path = dir.path().join("scene.env");
+        std::fs::write(&path, ENV).unwrap();
+        let p = Problem::load(&path).unwrap();
+        assert_eq!((p.name.as_str(), p.space), ("scene", SpaceKind::Se3));
+        assert_eq!(p.robot.mesh.triangles().len(), 12);
+        assert_eq!(
+            p.obstacles.iter().map(|o| o.name.as_str()).collect::<Vec<_>>(),
+            ["Obstacle #1", "Obstacle #4"]
+        );
+        assert_eq!(p.obstacles[1].pose, pose_from_six([3.0, 0.0, 0.0, 0.0, 0.5, 0.0]));
+        assert_eq!(p.bounds.unwrap().max, Point3::new(6.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn faults_of_meshes_name_the_mesh_and_the_line_that_names_it() {
+        let dir = folder();
+        let path = dir.path().join("scene.env");
+        std::fs::write(&path, ENV.replacen("wall.off", "wal.off", 1)).unwrap();
+        let e = Problem::load(&path).unwrap_err();
+        assert_eq!((e.kind(), e.line(), e.column()), (ErrorKind::Io, Some(6), Some(1)));
+        assert!(e.message().contains("no such file"), "{e}");
+        std::fs::write(&path, ENV).unwrap();
+        std::fs::write(dir.path().join("wall.off"), "OFF 1 1 0\n0 0 0\n3 0 0 1\n").unwrap();
+        let e = Problem::load(&path).unwrap_err();
+        assert_eq!((e.line(), e.column()), (Some(3), Some(7)));
+        assert!(e.file().ends_with("wall.off") && e.to_string().ends_with("scene.env:6:1)"), "{e}");
+    }
+
+    #[test]
+    fn paths_round_trip_as_text_and_json() {
+        let dir = folder();
+        let path = PathFile { configurations: vec![[0.1, 2.0, -0.0, 1e-9, 0.25, 3.0], [1.0; 6]] };
+        for name in ["p.txt", "p.json"] {
+            let file = dir.path().join(name);
+            path.write(&file).unwrap();
+            assert_eq!(PathFile::read(&file).unwrap(), path);
+        }
+        assert_eq!(path.to_text(), "2\n0.1 2 -0 1e-9 0.25 3\n1 1 1 1 1 1\n");
+        assert_eq!(
+            path.to_json(),
+            "{\"path\":[\n[0.1,2.0,-0.0,1e-9,0.25,3.0],\n[1.0,1.0,1.0,1.0,1.0,1.0]\n]}\n"
+        );
+        let e = PathFile::parse_json("r.json", b"{\"solved\": true,\n \"path\": [[1,2,3]]}").unwrap_err();
+        assert_eq!(e.line(), Some(2), "{e}");
+    }
 }

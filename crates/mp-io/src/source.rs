@@ -133,13 +133,17 @@ mod tests {
     fn what_is_not_a_small_regular_file_is_refused() {
         let dir = tempfile::tempdir().unwrap();
         let path = dir.path().join("a.off");
-        assert!(read_file(&path, 10).unwrap_err().to_string().ends_with("cannot read the file: no such file"));
+        assert!(
+            read_file(&path, 10).unwrap_err().to_string().ends_with("cannot read the file: no such file")
+        );
         assert!(read_file(dir.path(), 10).unwrap_err().to_string().contains("this is a folder"));
         std::fs::write(&path, [b' '; 11]).unwrap();
         assert_eq!(read_file(&path, 10).unwrap_err().kind(), ErrorKind::TooLarge);
         assert_eq!(read_file(&path, 11).unwrap().len(), 11);
         #[cfg(target_os = "linux")]
-        assert!(read_file(Path::new("/dev/zero"), 10).unwrap_err().to_string().contains("not a regular file"));
+        assert!(
+            read_file(Path::new("/dev/zero"), 10).unwrap_err().to_string().contains("not a regular file")
+        );
     }
 
     #[test]

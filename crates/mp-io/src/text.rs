@@ -74,7 +74,8 @@ impl<'a> Text<'a> {
 
 /// At most 40 characters of `text`, with control characters replaced.
 pub(crate) fn clipped(text: &str) -> String {
-    let mut out: String = text.chars().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    let mut out: String =
+        text.chars().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     if text.chars().nth(40).is_some() {
         out.push('…');
     }

@@ -110,8 +110,7 @@ pub(crate) fn parse<'a>(text: &Text<'a>) -> Result<(Environment, Places<'a>), Er
     mesh_name(text, robot)?;
     let start = next("the initial configuration, six numbers: x y z α β γ")?;
     let goal = next("the goal configuration, six numbers: x y z α β γ")?;
-    let mut places =
-        Places { robot, start, goal, meshes: Vec::new(), poses: Vec::new(), bounds: None };
+    let mut places = Places { robot, start, goal, meshes: Vec::new(), poses: Vec::new(), bounds: None };
     let mut env = Environment {
         robot: robot.text.to_owned(),
         start: six(text, start, "the initial configuration", SIX)?,
@@ -177,7 +176,9 @@ fn extension<'a>(
         env.space = Some(match (kind.text.to_ascii_uppercase().as_str(), words.next()) {
             ("SE2", None) => SpaceKind::Se2,
             ("SE3", None) => SpaceKind::Se3,
-            (_, Some(extra)) => return Err(text.error(extra, "one word too many").expected("`Space SE2` or `Space SE3`")),
+            (_, Some(extra)) => {
+                return Err(text.error(extra, "one word too many").expected("`Space SE2` or `Space SE3`"));
+            }
             _ => {
                 let message = format!("`{}` is not a space", clipped(kind.text));
                 return Err(text.error(kind, message).expected("`Space SE2` or `Space SE3`"));
@@ -232,7 +233,12 @@ fn mesh_name(text: &Text<'_>, line: Token<'_>) -> Result<(), Error> {
 }
 
 /// The six numbers of a line.
-pub(crate) fn six(text: &Text<'_>, line: Token<'_>, subject: &str, expected: &str) -> Result<[f64; 6], Error> {
+pub(crate) fn six(
+    text: &Text<'_>,
+    line: Token<'_>,
+    subject: &str,
+    expected: &str,
+) -> Result<[f64; 6], Error> {
     let mut out = [0.0; 6];
     let mut found = 0;
     for word in line.words() {

@@ -130,10 +130,6 @@ impl<'a> Reader<'a> {
                 _ => return Ok(None),
             },
         };
-        if let Some(extra) = ahead.next_on_line() {
-            let message = format!("`{}` follows the counts", clipped(extra.text));
-            return Err(self.text.error(extra, message).expected("three counts"));
-        }
         self.lexer = ahead;
         self.text.count(token, what).map(|n| Some(n as u64))
     }
@@ -147,14 +143,14 @@ impl<'a> Reader<'a> {
         if header.colors || header.normals || header.texture || nv < 2 || !matches!(columns, 6 | 7 | 9 | 10) {
             return Ok(());
         }
-        let mut lines = 0;
+        // Several vertices on a line are allowed: breaks mean nothing. But not so if all lines have the same
+        // number of words and there is one for each vertex and face.
         let mut count = self.lexer.clone();
-        while lines < nv.saturating_add(nf) {
-            if count.next().is_none() {
-                return Ok(()); // several vertices on a line: breaks mean nothing
+        for line in 0..nv.saturating_add(nf) {
+            if count.next().is_none() || (line < nv && count.left_on_line() + 1 != columns) {
+                return Ok(());
             }
             while count.next_on_line().is_some() {}
-            lines += 1;
         }
         let line = Token { text: &self.text.text[first.at..ahead.position()], at: first.at };
         let message = format!("the vertices have {columns} numbers each");
@@ -286,4 +282,123 @@ fn comments(text: &Text<'_>) -> Vec<String> {
         out.extend(lexer.next_line().map(str::to_owned));
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> OffDocument {
+        OffDocument::parse("t.off", text.as_bytes()).unwrap()
+    }
+
+    fn fails(text: &str) -> String {
+        OffDocument::parse("t.off", text.as_bytes()).unwrap_err().to_string()
+    }
+
+    const TETRA: &str = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+
+    #[test]
+    fn headers_and_counts() {
+        let plain = parse(&format!("OFF\n4 4 6\n{TETRA}"));
+        assert_eq!((plain.vertices.len(), plain.faces.len(), plain.edges), (4, 4, Some(6)));
+        for head in [
+            "OFF 4 4 6\n",
+            "# c\n\nOFF # d\n#e\n4 4\n6\n",
+            "4 4 6\n",
+            "OFF\r\n4\r\n4\r\n6\r\n",
+            "\u{feff}OFF 4 4 6 #x\n",
+        ] {
+            let doc = parse(&format!("{head}{TETRA}"));
+            assert_eq!(
+                (&doc.vertices, &doc.faces, doc.edges),
+                (&plain.vertices, &plain.faces, Some(6)),
+                "{head}"
+            );
+        }
+        assert_eq!(parse(&format!("OFF 4 4\n{TETRA}")).edges, None);
+        assert_eq!(parse(&format!("OFF\n4 4\n{TETRA}")).edges, None);
+        assert_eq!(parse(&format!("# a\nOFF#b\n4 4 6\n{TETRA}#c\n")).comments, [" a", "b", "c"]);
+    }
+
+    #[test]
+    fn line_breaks_among_vertices_mean_nothing() {
+        let doc = parse("OFF 4 1 0\n0 0 0 1 0 0\n0 1\n0 0 0 1\n3\n0 1 2\n");
+        assert_eq!(doc.vertices[3], Point3::new(0.0, 0.0, 1.0));
+        assert_eq!(doc.faces[0].corners, [0, 1, 2]);
+    }
+
+    #[test]
+    fn colours_of_faces() {
+        let doc = parse(
+            "OFF 3 7 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2 7\n3 0 1 2 255 0 1\n3 0 1 2 255 0 1 9\n\
+             3 0 1 2 0.5 0 1\n3 0 1 2 1.0 0 0 .25 # x\n3 0 1 2\n",
+        );
+        let colors: Vec<_> = doc.faces.iter().map(|f| f.color).collect();
+        assert_eq!(
+            colors,
+            [
+                None,
+                Some(OffColor::Map(7)),
+                Some(OffColor::Rgb([255, 0, 1])),
+                Some(OffColor::Rgba([255, 0, 1, 9])),
+                Some(OffColor::RgbF([0.5, 0.0, 1.0])),
+                Some(OffColor::RgbaF([1.0, 0.0, 0.0, 0.25])),
+                None,
+            ]
+        );
+        assert_eq!(OffColor::Rgb([255, 0, 51]).rgba(), Some([1.0, 0.0, 0.2, 1.0]));
+    }
+
+    #[test]
+    fn vertices_with_more() {
+        let doc = parse("COFF 3 1 0\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n");
+        assert_eq!(doc.colors[2], OffColor::Rgb([0, 0, 255]));
+        let doc = parse("COFF 3 1 0\n0 0 0 1 0 0 .5\n1 0 0 0 1 0 .5\n0 1 0 0 0 1 .5\n3 0 1 2\n");
+        assert_eq!(doc.colors[1], OffColor::RgbaF([0.0, 1.0, 0.0, 0.5]));
+        let doc = parse("COFF 3 1 0  0 0 0 1 2 3 4  1 0 0 1 2 3 4  0 1 0 1 2 3 5\n3 0 1 2\n");
+        assert_eq!(doc.colors[2], OffColor::Rgba([1, 2, 3, 5]));
+        let doc = parse("STCNOFF 1 1 0\n1 2 3 0 0 1 9 8 7 .25 .75\n3 0 0 0\n");
+        assert_eq!(doc.normals, [Vector3::z()]);
+        assert_eq!(doc.colors, [OffColor::Rgb([9, 8, 7])]);
+        assert_eq!(doc.texture, [[0.25, 0.75]]);
+        assert_eq!(parse(&doc.to_text()), doc);
+    }
+
+    #[test]
+    fn concave_polygons_keep_their_area() {
+        let doc = parse("OFF 5 1 0\n0 0 0\n4 0 0\n4 4 0\n2 1 0\n0 4 0\n5 0 1 2 3 4\n");
+        let mesh = doc.to_mesh("t.off").unwrap();
+        assert_eq!(mesh.triangles().len(), 3);
+        let area = |i| {
+            let [a, b, c] = mesh.triangle(i);
+            0.5 * (b - a).cross(&(c - a)).norm()
+        };
+        assert!(((0..3).map(area).sum::<f64>() - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn points_and_segments_are_no_surface() {
+        let doc = parse("OFF 3 3 0\n0 0 0\n1 0 0\n0 1 0\n1 0\n2 0 1\n3 0 1 2\n");
+        assert_eq!(doc.faces.len(), 3);
+        assert_eq!(doc.to_mesh("t.off").unwrap().triangles().len(), 1);
+    }
+
+    #[test]
+    fn bad_files() {
+        assert_eq!(
+            fails("PLY\n"),
+            "t.off:1:1: the file begins with `PLY`; expected the keyword OFF, COFF, NOFF or STOFF"
+        );
+        assert!(fails("4OFF 1 1 0\n").contains("`4OFF` is not read"));
+        assert!(fails("nOFF 3\n").contains("`nOFF` is not read"));
+        assert_eq!(fails("OFF BINARY\n\0\0\u{1}"), "t.off:1:1: binary OFF is not read; expected text OFF");
+        assert!(
+            fails("OFF 2 2 0\n0 0 0 1 1 1\n0 0 0 1 1 1\n3 0 1 0\n3 0 1 0\n").contains("have 6 numbers each")
+        );
+        assert_eq!(
+            fails("OFF 99999999999 4 0\n0 0 0\n"),
+            "t.off:2:6: the file ends too early; expected x y z of vertex 1 of 99999999999"
+        );
+    }
 }
