@@ -2,7 +2,8 @@
 //!
 //! - [`TriMesh`]: the indexed mesh, from a soup, strips, fans or polygons; [`TriMesh::topology`] tells
 //!   what is wrong with it.
-//! - [`Aabb`], [`Sphere`]: bounding volumes.
+//! - [`Aabb`], [`Obb`], [`Sphere`]: bounding volumes.
+//! - [`MassProperties`]: volume, centroid, inertia, principal axes.
 //! - [`primitives`]: closed solids.
 //! - [`pose_from_six`] and its kin: poses to and from numbers.
 //!
@@ -10,7 +11,9 @@
 
 mod aabb;
 mod build;
+mod mass;
 mod mesh;
+mod obb;
 mod pose;
 pub mod primitives;
 mod sphere;
@@ -18,7 +21,9 @@ mod topology;
 mod triangulate;
 
 pub use aabb::Aabb;
+pub use mass::{MassError, MassProperties, PrincipalAxes};
 pub use mesh::{MeshError, TriMesh};
+pub use obb::Obb;
 pub use pose::{
     PoseError, ROTATION_TOLERANCE, matrix_from_pose, pose_from_matrix, pose_from_quaternion, pose_from_six,
     rotation_from_matrix, six_from_pose,
