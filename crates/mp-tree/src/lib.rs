@@ -1,1 +1,67 @@
-//! The rapidly-exploring random tree family.
+//! The rapidly-exploring random tree family: one engine, and one file per named algorithm.
+//!
+//! | algorithm | | trees | per iteration |
+//! |---|---|---|---|
+//! | [`Rrt`] | [`algo::rrt`] | from the start | one step toward a sample |
+//! | [`RrtConnect`] | [`algo::rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
+//!
+//! A planner is made from a checked [`Problem`] and works through the trait
+//! [`Planner`](mp_cspace::Planner): one step at a time, or until a stop says so. [`build`] makes
+//! one by name.
+//!
+//! # The engine
+//! A [`Branch`] is a [`Tree`] with its policies. Every iteration of every variant is: propose a
+//! target, select nodes, grow from them, attach what came of it. Each verb is a slot:
+//!
+//! | slot | trait | here |
+//! |---|---|---|
+//! | what to grow toward | [`Propose`] | [`Samples`] |
+//! | which nodes to grow from | [`Selector`] | [`Nearest`] |
+//! | how far | [`Growth`] | [`Extend`], [`Connect`] |
+//! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`] |
+//! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
+//!
+//! A variant is a [`Recipe`] for one of two loops, [`SingleTree`] and [`TwoTrees`].
+//!
+//! # What is promised
+//! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that
+//!   fails is removed from the tree with all that hangs on it, and planning goes on.
+//! - Bad input is a [`BuildError`] before planning begins.
+//! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping
+//!   and going on changes nothing.
+//! - No tree has two nodes with the same state.
+
+pub mod algo;
+mod attach;
+mod branch;
+mod error;
+mod goals;
+mod grow;
+mod problem;
+mod propose;
+mod recipe;
+mod registry;
+mod select;
+mod settings;
+mod single;
+mod tree;
+mod two;
+mod verify;
+
+pub use algo::rrt::Rrt;
+pub use algo::rrt_connect::RrtConnect;
+pub use attach::{Append, AppendDistinct, Attach, Attached};
+pub use branch::{Branch, Growing, Steer};
+pub use error::{BuildError, Endpoint};
+pub use goals::Goals;
+pub use grow::{Connect, Extend, Grown, Growth};
+pub use problem::Problem;
+pub use propose::{Propose, Samples};
+pub use recipe::{Recipe, Step, Tuning};
+pub use registry::{AnyPlanner, build, build_with, planner, planners};
+pub use select::{Nearest, Purpose, Selector};
+pub use settings::{GOAL_BIAS, PATIENCE, Parameter, PlannerInfo, STEP, Settings, closest};
+pub use single::SingleTree;
+pub use tree::Tree;
+pub use two::TwoTrees;
+pub use verify::Verify;

@@ -1,0 +1,62 @@
+//! RRT, the rapidly-exploring random tree.
+//!
+//! S. M. LaValle, *Rapidly-exploring random trees: a new tool for path planning*, TR 98-11, Iowa
+//! State University, 1998. As ALG. 1 of N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental
+//! motion planning with Las Vegas algorithms*, 2008, which continues the same tree when asked for
+//! more iterations and never stacks a node on another (§2.2, 2.3, 2.5).
+//!
+//! From a tree that holds the start, repeat:
+//! 1. draw a sample, uniform in the space, or with a small probability a goal state;
+//! 2. find the node nearest to it;
+//! 3. move from that node toward the sample, one step at most;
+//! 4. where the motion is free, add its end as a child of the node;
+//! 5. where that is in the goal, verify the path: return it, or prune from the edge that failed.
+//!
+//! **When to use it.** Goals that are only a test (a region), local planners that cannot run
+//! backward, and problems where the goal is easy to get out of but hard to get into. When both
+//! ends are known states, [RRT-Connect](super::rrt_connect) is usually much faster.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+
+use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::{Append, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, SingleTree, Tuning};
+use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "rrt",
+    summary: "one tree from the start, one step per iteration; for goal regions and one-way motions",
+    citation: "LaValle 1998",
+    parameters: &[STEP, GOAL_BIAS, PATIENCE],
+};
+
+/// RRT: see the [module](self).
+pub type Rrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Append>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> Rrt<'c, C, L, N> {
+    /// RRT with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning)
+    }
+
+    /// RRT with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+        let propose = Samples(Uniform(problem.space));
+        let recipe = Recipe { propose, select: Nearest(index), grow: Extend, attach: Append, tuning };
+        Self::assemble(problem, recipe)
+    }
+}

@@ -1,0 +1,65 @@
+//! RRT-Connect: two trees that reach for each other.
+//!
+//! J. J. Kuffner and S. M. LaValle, *RRT-Connect: an efficient approach to single-query path
+//! planning*, ICRA 2000. As ALG. 2 and 3 of N. Jouandeau, Y. Touati and A. Ali Cherif,
+//! *Incremental motion planning with Las Vegas algorithms*, 2008.
+//!
+//! From one tree that holds the start and one that holds the goal, repeat:
+//! 1. draw a sample, uniform in the space;
+//! 2. extend the tree whose turn it is from its nearest node, one step at most, toward it;
+//! 3. if that added a node, connect the other tree to it: from its nearest node step after step,
+//!    each a new node, until it is reached or a step fails;
+//! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
+//! 5. the other tree has the next turn.
+//!
+//! **When to use it.** First. Both ends must be known states (or the goal a sampler), and motions
+//! must run backward as well as forward.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+
+use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::{
+    Append, BuildError, Connect, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, Tuning, TwoTrees,
+};
+use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "rrt-connect",
+    summary: "trees from start and goal that reach for each other; the first to try",
+    citation: "Kuffner and LaValle 2000",
+    parameters: &[STEP, GOAL_BIAS, PATIENCE],
+};
+
+/// RRT-Connect: see the [module](self).
+pub type RrtConnect<'c, C, L, N> =
+    TwoTrees<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Connect, Append>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> RrtConnect<'c, C, L, N> {
+    /// RRT-Connect with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning)
+    }
+
+    /// RRT-Connect with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+        let propose = Samples(Uniform(problem.space));
+        let grow = (Extend, Connect::default());
+        let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };
+        Self::assemble(INFO.name, problem, recipe)
+    }
+}

@@ -1,0 +1,122 @@
+//! Bad input, refused before planning begins.
+
+use mp_cspace::MotionCheck;
+use std::fmt;
+
+/// Which end of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Endpoint {
+    /// Where it begins.
+    Start,
+    /// Where it ends.
+    Goal,
+}
+
+impl fmt::Display for Endpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        })
+    }
+}
+
+/// Why a problem or a planner could not be set up.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// An end of the path is not a state of the space.
+    #[error("the {endpoint} is outside the space (out of bounds or not finite): {state}")]
+    Outside {
+        /// Which end.
+        endpoint: Endpoint,
+        /// The state, as `Debug` prints it.
+        state: String,
+    },
+    /// The verifier does not find an end of the path free.
+    #[error("the {endpoint} is not free ({}): {state}", describe(check))]
+    NotFree {
+        /// Which end.
+        endpoint: Endpoint,
+        /// The state, as `Debug` prints it.
+        state: String,
+        /// What the verifier found.
+        check: MotionCheck,
+    },
+    /// The local planner lets no motion begin or end there, though the verifier finds it free:
+    /// its own check is stricter, for instance by its tolerance.
+    #[error("the local planner refuses the {endpoint}, which is free but too close for its check: {state}")]
+    Refused {
+        /// Which end.
+        endpoint: Endpoint,
+        /// The state, as `Debug` prints it.
+        state: String,
+    },
+    /// The metric gives no finite distance between start and goal.
+    #[error("the distance from the start to the goal is {distance}, not a finite number")]
+    Distance {
+        /// What the metric says.
+        distance: f64,
+    },
+    /// The goal is an empty set.
+    #[error("no goal is given: list goal states, or give a region or a sampler")]
+    NoGoal,
+    /// The planner needs goal states and has only a region.
+    #[error("{planner} also grows from the goal: a region alone does not do, give goal states or a sampler")]
+    NoGoalState {
+        /// Which planner.
+        planner: &'static str,
+    },
+    /// A parameter is out of its range.
+    #[error("parameter {name} is {value}, but must be {range}")]
+    OutOfRange {
+        /// Which parameter.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// The values allowed.
+        range: String,
+    },
+    /// A setting is not of the form `key=value`, or its value cannot be read.
+    #[error("cannot read the setting `{setting}`: expected {expected}")]
+    Malformed {
+        /// The setting.
+        setting: String,
+        /// What would do.
+        expected: &'static str,
+    },
+    /// The planner has no such parameter.
+    #[error("{planner} has no parameter `{name}`{}; it has: {}", hint(suggestion), known.join(", "))]
+    UnknownParameter {
+        /// Which planner.
+        planner: &'static str,
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: Vec<&'static str>,
+        /// The one it resembles.
+        suggestion: Option<&'static str>,
+    },
+    /// There is no such planner.
+    #[error("there is no planner `{name}`{}; there are: {}", hint(suggestion), known.join(", "))]
+    UnknownPlanner {
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: Vec<&'static str>,
+        /// The one it resembles.
+        suggestion: Option<&'static str>,
+    },
+}
+
+fn describe(check: &MotionCheck) -> &'static str {
+    match check {
+        MotionCheck::Free { .. } => "free",
+        MotionCheck::Collides { .. } => "in collision",
+        MotionCheck::Undecided { .. } => "within tolerance of contact",
+    }
+}
+
+fn hint(suggestion: &Option<&'static str>) -> String {
+    suggestion.map_or_else(String::new, |name| format!(" (did you mean `{name}`?)"))
+}

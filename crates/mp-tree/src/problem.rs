@@ -1,0 +1,79 @@
+//! What to plan: checked before any planner sees it.
+
+use crate::{BuildError, Endpoint, Goals, Verify};
+use mp_cspace::{LocalPlanner, Space};
+use std::fmt;
+
+/// A space, the local planner that moves in it, the verifier of finished paths, a start and
+/// goals.
+pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
+    pub(crate) space: &'c C,
+    pub(crate) local: L,
+    pub(crate) verify: Box<dyn Verify<C::State, L::Edge> + 'c>,
+    pub(crate) start: C::State,
+    pub(crate) goals: Goals<'c, C::State>,
+}
+
+impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
+    /// A problem whose start and listed goals are in the space, free by the verifier, and
+    /// admitted by the local planner. Goal states that are not are left out as long as there is
+    /// something else to reach.
+    ///
+    /// `verifier` should share no code with the check inside `local`: what it does not find free
+    /// is not returned. Pass `&mut` values to look at counters afterwards.
+    ///
+    /// # Errors
+    /// When the start, or all that is given as goal, is outside the space, not free or refused;
+    /// when the distance between them is not finite; when there is no goal at all.
+    pub fn new(
+        space: &'c C,
+        mut local: L,
+        mut verifier: impl Verify<C::State, L::Edge> + 'c,
+        start: C::State,
+        goal: impl Into<Goals<'c, C::State>>,
+    ) -> Result<Self, BuildError> {
+        let mut goals = goal.into();
+        if goals.is_empty() {
+            return Err(BuildError::NoGoal);
+        }
+        let mut check = |endpoint, q: &C::State| {
+            let state = || format!("{q:?}");
+            if !space.contains(q) {
+                return Err(BuildError::Outside { endpoint, state: state() });
+            }
+            let check = verifier.verify_state(q);
+            if !check.is_free() {
+                return Err(BuildError::NotFree { endpoint, state: state(), check });
+            }
+            if !local.admits(q) {
+                return Err(BuildError::Refused { endpoint, state: state() });
+            }
+            Ok(())
+        };
+        check(Endpoint::Start, &start)?;
+        let mut bad = None;
+        goals.listed_mut().retain(|q| {
+            let distance = space.distance(&start, q);
+            let verdict = check(Endpoint::Goal, q).and(match distance.is_finite() {
+                true => Ok(()),
+                false => Err(BuildError::Distance { distance }),
+            });
+            let keep = verdict.is_ok();
+            bad = bad.take().or(verdict.err());
+            keep
+        });
+        match bad {
+            Some(error) if goals.is_empty() => Err(error),
+            _ => Ok(Self { space, local, verify: Box::new(verifier), start, goals }),
+        }
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State>> fmt::Debug for Problem<'_, C, L> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Problem")
+            .field("start", &self.start)
+            .field("goals", &self.goals)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,248 @@
+//! Parameters by name: what a planner is told at run time.
+
+use crate::{BuildError, Step, Tuning};
+
+/// A parameter of a planner, for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// Its name in settings.
+    pub name: &'static str,
+    /// The values allowed.
+    pub range: &'static str,
+    /// Its default, as it would be set.
+    pub default: &'static str,
+    /// What it does.
+    pub doc: &'static str,
+}
+
+/// A planner, for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlannerInfo {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it is and when to use it, in a line.
+    pub summary: &'static str,
+    /// Its paper.
+    pub citation: &'static str,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+}
+
+/// [`Tuning::step`].
+pub const STEP: Parameter = Parameter {
+    name: "step",
+    range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
+    default: "20%",
+    doc: "longest step, in the metric of the space",
+};
+
+/// [`Tuning::goal_bias`].
+pub const GOAL_BIAS: Parameter = Parameter {
+    name: "goal-bias",
+    range: "in [0, 1]",
+    default: "0.05",
+    doc: "probability of aiming at the goal (with two trees: of sampling a new goal state)",
+};
+
+/// [`Tuning::patience`].
+pub const PATIENCE: Parameter = Parameter {
+    name: "patience",
+    range: "a whole number",
+    default: "10",
+    doc: "rejected paths after which every new edge is verified as it grows",
+};
+
+/// Values of parameters by name.
+///
+/// ```
+/// use mp_tree::Settings;
+/// let settings = Settings::parse(["step=15%", "goal-bias=0.1"])?;
+/// assert_eq!(settings.number("goal-bias")?, Some(0.1));
+/// assert!(Settings::parse(["step"]).is_err());
+/// # Ok::<(), mp_tree::BuildError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Settings(Vec<(String, String)>);
+
+impl Settings {
+    /// Settings from texts of the form `key=value`.
+    ///
+    /// # Errors
+    /// When a text has no `=`, or nothing before it.
+    pub fn parse<T: AsRef<str>>(texts: impl IntoIterator<Item = T>) -> Result<Self, BuildError> {
+        let mut settings = Self::default();
+        for text in texts {
+            let text = text.as_ref();
+            match text.split_once('=') {
+                Some((key, value)) if !key.trim().is_empty() => settings.set(key.trim(), value.trim()),
+                _ => return Err(malformed(text.to_owned(), "KEY=VALUE")),
+            }
+        }
+        Ok(settings)
+    }
+
+    /// Sets a parameter; the last value counts.
+    pub fn set(&mut self, key: &str, value: &str) {
+        self.0.retain(|(known, _)| known != key);
+        self.0.push((key.to_owned(), value.to_owned()));
+    }
+
+    /// Refuses names that `planner` does not have.
+    ///
+    /// # Errors
+    /// When there is one, with the names there are.
+    pub fn check(&self, planner: &PlannerInfo) -> Result<(), BuildError> {
+        let known = || planner.parameters.iter().map(|parameter| parameter.name);
+        match self.0.iter().find(|(key, _)| !known().any(|name| name == key)) {
+            None => Ok(()),
+            Some((key, _)) => Err(BuildError::UnknownParameter {
+                planner: planner.name,
+                name: key.clone(),
+                known: known().collect(),
+                suggestion: closest(key, known()),
+            }),
+        }
+    }
+
+    fn read<T>(
+        &self,
+        key: &str,
+        expected: &'static str,
+        parse: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<T>, BuildError> {
+        let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
+        match parse(value) {
+            Some(parsed) => Ok(Some(parsed)),
+            None => Err(malformed(format!("{key}={value}"), expected)),
+        }
+    }
+
+    /// The number set for `key`, if any.
+    ///
+    /// # Errors
+    /// When it is not a number.
+    pub fn number(&self, key: &str) -> Result<Option<f64>, BuildError> {
+        self.read(key, "a number", |value| value.parse().ok())
+    }
+
+    /// The whole number set for `key`, if any.
+    ///
+    /// # Errors
+    /// When it is not a whole number, or negative.
+    pub fn count(&self, key: &str) -> Result<Option<u64>, BuildError> {
+        self.read(key, "a whole number, not negative", |value| value.parse().ok())
+    }
+
+    /// The step set for `key`, if any: a length, or with `%` a part of the extent.
+    ///
+    /// # Errors
+    /// When it is neither.
+    pub fn step(&self, key: &str) -> Result<Option<Step>, BuildError> {
+        self.read(key, "a length, or a percentage of the extent like 20%", |value| {
+            match value.strip_suffix('%') {
+                Some(percent) => percent.trim().parse().ok().map(|p: f64| Step::Fraction(p / 100.0)),
+                None => value.parse().ok().map(Step::Length),
+            }
+        })
+    }
+
+    /// The common parameters, by default where they are not set. Their range is checked when the
+    /// planner is made.
+    ///
+    /// # Errors
+    /// When `planner` has no parameter of a name that is set, or a value cannot be read.
+    pub fn tuning(&self, planner: &PlannerInfo) -> Result<Tuning, BuildError> {
+        self.check(planner)?;
+        let default = Tuning::default();
+        Ok(Tuning {
+            step: self.step(STEP.name)?.unwrap_or(default.step),
+            goal_bias: self.number(GOAL_BIAS.name)?.unwrap_or(default.goal_bias),
+            patience: self.count(PATIENCE.name)?.unwrap_or(default.patience),
+        })
+    }
+}
+
+fn malformed(setting: String, expected: &'static str) -> BuildError {
+    BuildError::Malformed { setting, expected }
+}
+
+/// The name that `name` was probably meant to be: the one fewest edits away, if not too many.
+///
+/// ```
+/// assert_eq!(mp_tree::closest("rrt-conect", ["rrt", "rrt-connect"]), Some("rrt-connect"));
+/// assert_eq!(mp_tree::closest("dijkstra", ["rrt", "rrt-connect"]), None);
+/// ```
+pub fn closest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let fold = |text: &str| -> Vec<char> { text.to_lowercase().replace('_', "-").chars().take(64).collect() };
+    let name = fold(name);
+    let most = name.len().div_ceil(3);
+    let near = known.into_iter().map(|other| (edits(&name, &fold(other)), other));
+    near.filter(|&(edits, _)| edits <= most).min_by_key(|&(edits, _)| edits).map(|(_, other)| other)
+}
+
+/// Levenshtein's distance: insertions, deletions and substitutions from `a` to `b`.
+fn edits(a: &[char], b: &[char]) -> usize {
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.iter().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const INFO: PlannerInfo =
+        PlannerInfo { name: "p", summary: "", citation: "", parameters: &[STEP, GOAL_BIAS, PATIENCE] };
+
+    #[test]
+    fn reads_what_is_set() {
+        let settings = Settings::parse(["step = 2.5", "patience=3", "step=10%"]).unwrap();
+        let tuning = settings.tuning(&INFO).unwrap();
+        assert_eq!(tuning, Tuning { step: Step::Fraction(0.1), patience: 3, ..Tuning::default() });
+        assert_eq!(Settings::default().tuning(&INFO).unwrap(), Tuning::default());
+    }
+
+    #[test]
+    fn the_tables_defaults_are_the_defaults() {
+        let settings =
+            Settings::parse(INFO.parameters.iter().map(|p| format!("{}={}", p.name, p.default))).unwrap();
+        assert_eq!(settings.tuning(&INFO).unwrap(), Tuning::default());
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_read() {
+        for text in ["step=far", "step=%", "goal-bias=", "patience=-1", "patience=1.5"] {
+            let error = Settings::parse([text]).unwrap().tuning(&INFO).unwrap_err();
+            assert!(matches!(error, BuildError::Malformed { .. }), "{text}: {error}");
+        }
+        assert!(matches!(Settings::parse(["=3"]), Err(BuildError::Malformed { .. })));
+        let error = Settings::parse(["stepp=1"]).unwrap().tuning(&INFO).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "p has no parameter `stepp` (did you mean `step`?); it has: step, goal-bias, patience"
+        );
+    }
+
+    #[test]
+    fn counts_edits() {
+        let count = |a: &str, b: &str| edits(&a.chars().collect::<Vec<_>>(), &b.chars().collect::<Vec<_>>());
+        assert_eq!(count("kitten", "sitting"), 3);
+        assert_eq!(count("", "abc"), 3);
+        assert_eq!(count("same", "same"), 0);
+    }
+
+    #[test]
+    fn suggests_only_what_is_near() {
+        assert_eq!(closest("RRT_Connect", ["rrt", "rrt-connect"]), Some("rrt-connect"));
+        assert_eq!(closest("rtt", ["rrt", "rrt-connect"]), Some("rrt"));
+        assert_eq!(closest("", ["rrt"]), None);
+    }
+}

@@ -1,0 +1,146 @@
+//! The loop with one tree, grown from the start.
+
+use crate::{
+    Attach, Branch, BuildError, Goals, Grown, Growth, Problem, Propose, Purpose, Recipe, Selector, Steer,
+    Tree,
+};
+use mp_cspace::{Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
+use rand::RngExt;
+
+/// A planner that grows one tree from the start until it enters the goal.
+///
+/// The first iteration tries to go straight from the start to each listed goal state. Each one
+/// then proposes a target (with probability [`goal_bias`](crate::Tuning::goal_bias) a goal),
+/// grows the tree toward it, and verifies the path to what entered the goal. Stepping on after a
+/// solution grows the same tree on; the same path may be found again.
+#[derive(Debug)]
+pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
+    start: Option<C::State>,
+    goals: Goals<'c, C::State>,
+    steer: Steer<'c, C, L>,
+    branch: Branch<C, L, Se, A>,
+    propose: P,
+    growth: G,
+    goal_bias: f64,
+    iterations: u64,
+}
+
+impl<'c, C, L, P, Se, G, A> SingleTree<'c, C, L, P, Se, G, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    G: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    /// The planner made by a recipe.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
+        let goal_bias = if problem.goals.can_aim() { recipe.tuning.checked_bias()? } else { 0.0 };
+        Ok(Self {
+            steer: Steer::new(problem.space, problem.local, problem.verify, &recipe.tuning)?,
+            start: Some(problem.start),
+            goals: problem.goals,
+            branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
+            propose: recipe.propose,
+            growth: recipe.grow,
+            goal_bias,
+            iterations: 0,
+        })
+    }
+
+    /// The tree; empty before the first step.
+    #[must_use]
+    pub fn tree(&self) -> &Tree<C::State, L::Edge> {
+        self.branch.tree()
+    }
+
+    /// Plants the root and tries the straight way.
+    fn begin(
+        &mut self,
+        start: C::State,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        let root = self.branch.add_root(self.steer.space(), start, observer);
+        if self.goals.reached(self.branch.tree().state(root)) {
+            return self.candidate(root, observer);
+        }
+        for i in 0..self.goals.listed().len() {
+            let grown = self.branch.leap(root, &self.goals.listed()[i], &mut self.steer, observer);
+            let Grown::Reached(id) = grown else { continue };
+            if let Some(path) = self.candidate(id, observer) {
+                return Some(path);
+            }
+        }
+        None
+    }
+
+    /// The path to `id` if it passes verification; otherwise its bad part is pruned.
+    fn candidate(
+        &mut self,
+        id: NodeId,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        match self.branch.verify(id, &mut self.steer, observer) {
+            Ok(()) => Some(self.branch.tree().path(id)),
+            Err(survivors) => {
+                self.growth.pruned(Direction::Forward, &survivors);
+                None
+            }
+        }
+    }
+}
+
+impl<C, L, P, Se, G, A> Planner<C::State> for SingleTree<'_, C, L, P, Se, G, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    G: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.iterations += 1;
+        if let Some(start) = self.start.take()
+            && let Some(path) = self.begin(start, observer)
+        {
+            return Some(path);
+        }
+        let aim =
+            if self.goal_bias > 0.0 && rng.random_bool(self.goal_bias) { self.goals.aim(rng) } else { None };
+        let why = if aim.is_some() { Purpose::Join } else { Purpose::Explore };
+        let target = aim.unwrap_or_else(|| {
+            let (points, select) = self.branch.parts();
+            self.propose.propose(rng, self.steer.space(), points, select)
+        });
+        observer.on(Event::Sampled(&target));
+        let before = self.branch.tree().len();
+        let grown = self.branch.toward(&target, why, &mut self.steer, &mut self.growth, observer);
+        if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
+            return self.candidate(id, observer);
+        }
+        if self.goals.has_region() {
+            let new = before as NodeId..self.branch.tree().len() as NodeId;
+            let entered = new.into_iter().find(|&id| self.goals.reached(self.branch.tree().state(id)))?;
+            return self.candidate(entered, observer);
+        }
+        None
+    }
+
+    fn progress(&self) -> Progress {
+        let nodes = self.branch.tree().len();
+        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
+        progress.rejected = self.steer.rejected();
+        progress
+    }
+}

@@ -1,0 +1,23 @@
+//! The independent check of finished paths.
+
+use mp_cspace::{MotionCheck, MotionValidity};
+
+/// Verifies states and edges of a candidate path, sharing nothing with the local planner.
+///
+/// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`).
+/// Local planners with other edges bring a verifier that replays them.
+pub trait Verify<S, E> {
+    /// Checks one state.
+    fn verify_state(&mut self, q: &S) -> MotionCheck;
+    /// Checks the motion along `edge` from `from` to `to`, in forward time, both ends included.
+    fn verify_edge(&mut self, from: &S, edge: &E, to: &S) -> MotionCheck;
+}
+
+impl<S, V: MotionValidity<S>> Verify<S, ()> for V {
+    fn verify_state(&mut self, q: &S) -> MotionCheck {
+        self.check_motion(q, q)
+    }
+    fn verify_edge(&mut self, from: &S, _: &(), to: &S) -> MotionCheck {
+        self.check_motion(from, to)
+    }
+}
