@@ -2,22 +2,50 @@
 //! neighbours, goals, stops, observers and paths.
 //!
 //! Planners know only the traits of this crate; they never see a mesh.
+//!
+//! | to say | use |
+//! |---|---|
+//! | what configurations are | [`Rn`], [`RnDyn`], [`So2`], [`So3`], [`Se2`], [`Se3`], [`Torus`], [`Product`] |
+//! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`Bounded`] |
+//! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
+//! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
+//! | how to move | [`Straight`] |
+//! | what to reach | [`Exactly`], [`Ball`], a closure |
+//! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
+//! | what to do with a path | [`Path`] |
 
+mod error;
+mod goal;
 mod local;
+mod metric;
 mod motion;
 mod nn;
+mod observer;
 mod path;
 mod planner;
 mod rng;
 mod sampler;
 mod space;
+mod stop;
 mod validity;
 
+pub use error::{ParameterError, SpaceError};
+pub use goal::{Ball, Exactly, Goal};
 pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Straight};
+pub use metric::{
+    Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, TrueMetricOn,
+    WithMetric,
+};
+pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
 pub use nn::{DefaultNn, Hit, Linear, NearestNeighbors, NodeId};
+pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::Path;
-pub use planner::{Event, Goal, Observer, Or, Outcome, Planner, Progress, Stop, StopReason};
+pub use planner::{Outcome, Planner};
 pub use rng::Rng;
-pub use sampler::{Sampler, Uniform};
-pub use space::{Metric, Space, TrueMetric};
-pub use validity::{Clearance, MotionBound, MotionCheck, MotionValidity, Validity};
+pub use sampler::{GoalBias, Halton, Sampler, Uniform};
+pub use space::{
+    Factored, Metric, Product, Rn, RnDyn, Se2, Se2State, Se3, So2, So3, Space, Torus, TrueMetric,
+    rotation_angle, slerp, wrap_angle,
+};
+pub use stop::{Cancel, Deadline, Iterations, Motions, Nodes, Or, Progress, Stop, StopReason};
+pub use validity::{Clearance, KnownFree, MotionBound, MotionCheck, MotionValidity, Validity};

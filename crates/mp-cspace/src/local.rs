@@ -1,6 +1,6 @@
 //! Local planners: how one configuration reaches for another.
 
-use crate::{MotionValidity, Space};
+use crate::{KnownFree, MotionValidity, Space};
 use std::fmt::Debug;
 
 /// Which end of an edge is the parent. Edges are always stored in forward time.
@@ -48,7 +48,7 @@ pub enum Extension<S, E> {
 pub trait LocalPlanner<S> {
     /// What an edge remembers, enough to replay it exactly.
     type Edge: Clone + Debug;
-    /// Tries to move from `from` toward `toward`, at most as far as `reach` allows.
+    /// Tries to move from `from`, which is free, toward `toward`, at most as far as `reach` allows.
     fn extend(
         &mut self,
         from: &S,
@@ -75,6 +75,9 @@ impl<S, L: LocalPlanner<S> + ?Sized> LocalPlanner<S> for &mut L {
 
 /// The straight local planner: the space's own interpolation, accepted when `check` finds the
 /// whole motion free.
+///
+/// A step is a fraction of the motion: `step / distance`. Under a metric without constant speed
+/// (maximum displacement) the distance covered is only near the step.
 #[derive(Clone, Debug)]
 pub struct Straight<'c, C, M> {
     /// The space to interpolate in.
@@ -107,8 +110,8 @@ impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for Straight<
             _ => (toward.clone(), distance, true),
         };
         let check = match direction {
-            Direction::Forward => self.check.check_motion(from, &end),
-            Direction::Backward => self.check.check_motion(&end, from),
+            Direction::Forward => self.check.check_extension(from, &end, KnownFree::From),
+            Direction::Backward => self.check.check_extension(&end, from, KnownFree::To),
         };
         let motion = Motion { end, edge: (), cost };
         match (check.is_free(), reached) {

@@ -1,4 +1,22 @@
-//! Spaces and metrics.
+//! Spaces and metrics: the traits, and the spaces one file each.
+
+mod product;
+mod rn;
+mod rn_dyn;
+mod se2;
+mod se3;
+mod so2;
+mod so3;
+mod torus;
+
+pub use product::Product;
+pub use rn::Rn;
+pub use rn_dyn::RnDyn;
+pub use se2::{Se2, Se2State};
+pub use se3::Se3;
+pub use so2::{So2, wrap_angle};
+pub use so3::{So3, rotation_angle, slerp};
+pub use torus::Torus;
 
 use crate::Rng;
 use std::fmt::Debug;
@@ -14,7 +32,8 @@ pub trait Metric<S> {
 
 /// Marker: the metric is symmetric and satisfies the triangle inequality.
 ///
-/// Metric trees prune with it, so they demand it.
+/// Metric trees prune with it, so they demand it. Different states may be at distance zero
+/// (`q` and `-q` of unit quaternions are).
 pub trait TrueMetric<S>: Metric<S> {}
 
 impl<S, M: Metric<S> + ?Sized> Metric<S> for &M {
@@ -28,9 +47,12 @@ impl<S, M: TrueMetric<S> + ?Sized> TrueMetric<S> for &M {}
 /// A configuration space (or state space): what states are, how far apart, and what lies between.
 ///
 /// Contract, checked by the conformance test kit:
-/// `interpolate(a, b, 0) = a`, `interpolate(a, b, 1) = b`,
-/// `distance(a, interpolate(a, b, t)) = t · distance(a, b)` (constant speed along a shortest
-/// curve), and every sample is contained.
+/// - `interpolate(a, b, 0) = a` and `interpolate(a, b, 1) = b`, exactly;
+/// - constant speed along a shortest curve: `distance(a, interpolate(a, b, t)) = t · distance(a, b)`
+///   up to rounding (a metric put on by [`WithMetric`](crate::WithMetric) may lack this one:
+///   maximum displacement measures chords);
+/// - every sample is contained, and so is every state between two contained ones;
+/// - no two contained states are farther apart than `extent`.
 pub trait Space: Metric<Self::State> {
     /// A configuration. Equality is exact: planners use it to tell a state they already have.
     type State: Clone + Debug + PartialEq;
@@ -60,9 +82,51 @@ pub trait Space: Metric<Self::State> {
     fn contains(&self, q: &Self::State) -> bool;
 
     /// As [`interpolate_into`](Space::interpolate_into), returning the state.
+    #[inline]
     fn interpolate(&self, from: &Self::State, to: &Self::State, t: f64) -> Self::State {
         let mut out = from.clone();
         self.interpolate_into(from, to, t, &mut out);
         out
     }
+}
+
+/// A space that is a product of factors which move independently of each other: the axes of a
+/// box, the angles of a torus, the rotation of a rigid body (one factor, by its angle).
+///
+/// Each factor has its own true metric and is interpolated at constant speed by itself, so any
+/// weighted sum or Euclidean norm over the factors is again a true metric of constant speed.
+/// [`Euclidean`](crate::Euclidean), [`ScaledEuclidean`](crate::ScaledEuclidean),
+/// [`Manhattan`](crate::Manhattan) and partial shortcuts work on factors.
+pub trait Factored: Space {
+    /// Number of factors.
+    fn factors(&self) -> usize;
+
+    /// Calls `f(i, d)` for each factor `i` in order, `d` ≥ 0 being the distance in that factor.
+    fn each_factor(&self, from: &Self::State, to: &Self::State, f: &mut impl FnMut(usize, f64));
+
+    /// An upper bound on the distance in one factor; zero for a factor that does not exist.
+    fn factor_extent(&self, factor: usize) -> f64;
+
+    /// Sets one factor of `out` to the state at fraction `t` between `from` and `to`.
+    fn interpolate_factor(
+        &self,
+        factor: usize,
+        from: &Self::State,
+        to: &Self::State,
+        t: f64,
+        out: &mut Self::State,
+    );
+}
+
+/// Linear interpolation that is exact at both ends, never leaves \[a, b\] by rounding, and gives
+/// the same value seen from either end.
+#[inline]
+pub(crate) fn lerp(a: f64, b: f64, t: f64) -> f64 {
+    if t < 0.5 { a + (b - a) * t } else { b - (b - a) * (1.0 - t) }
+}
+
+/// `low + u · (high - low)` kept within the bounds.
+#[inline]
+pub(crate) fn scale(low: f64, high: f64, u: f64) -> f64 {
+    (low + (high - low) * u).min(high)
 }

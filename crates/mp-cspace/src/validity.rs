@@ -7,6 +7,18 @@
 pub trait Validity<S> {
     /// Whether `q` is free (no collision, every constraint holds).
     fn is_valid(&mut self, q: &S) -> bool;
+
+    /// The index of one that is not free, `None` when all are: the hook for checks that test
+    /// several states at once. The states come in the order they should be tried.
+    fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
+        states.iter().position(|q| !self.is_valid(q))
+    }
+
+    /// How many states [`first_invalid`](Validity::first_invalid) takes best at a time, at least
+    /// one. Sampled motion checks hand over that many.
+    fn batch_size(&self) -> usize {
+        1
+    }
 }
 
 impl<S, F: FnMut(&S) -> bool> Validity<S> for F {
@@ -23,6 +35,21 @@ pub trait Clearance<S> {
     /// The search may stop as soon as the bound reaches `enough`: any return value ≥ `enough`
     /// says only "at least `enough`". Zero or less means contact, or no bound known.
     fn clearance(&mut self, q: &S, enough: f64) -> f64;
+
+    /// Whether the robot at `q` surely touches something. May be overridden where an intersection
+    /// test is cheaper than a distance; answering `false` wrongly costs time, never safety.
+    fn in_contact(&mut self, q: &S) -> bool {
+        self.clearance(q, f64::MIN_POSITIVE) <= 0.0
+    }
+}
+
+impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {
+    fn clearance(&mut self, q: &S, enough: f64) -> f64 {
+        (**self).clearance(q, enough)
+    }
+    fn in_contact(&mut self, q: &S) -> bool {
+        (**self).in_contact(q)
+    }
 }
 
 /// An upper bound on how far any point of the robot travels, in metres.
@@ -33,6 +60,12 @@ pub trait MotionBound<S> {
     /// Travel is at constant speed: over a part `dt` of the motion, no point travels farther
     /// than `dt` times this.
     fn motion_bound(&self, from: &S, to: &S) -> f64;
+}
+
+impl<S, V: MotionBound<S> + ?Sized> MotionBound<S> for &mut V {
+    fn motion_bound(&self, from: &S, to: &S) -> f64 {
+        (**self).motion_bound(from, to)
+    }
 }
 
 /// What a check of a whole motion found. Times are fractions of the motion in \[0, 1\].
@@ -58,11 +91,31 @@ pub enum MotionCheck {
 }
 
 impl MotionCheck {
+    /// The fraction of the motion at which it failed, `None` when it is free.
+    #[must_use]
+    pub fn failed_at(&self) -> Option<f64> {
+        match *self {
+            Self::Free { .. } => None,
+            Self::Collides { at } | Self::Undecided { at } => Some(at),
+        }
+    }
+
     /// Whether the motion was found free.
     #[must_use]
     pub fn is_free(&self) -> bool {
         matches!(self, Self::Free { .. })
     }
+}
+
+/// Which end of a motion is already known to be free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum KnownFree {
+    /// Neither.
+    Neither,
+    /// The state it starts from.
+    From,
+    /// The state it leads to.
+    To,
 }
 
 /// Whether a whole motion along the space's interpolation is free.
@@ -72,15 +125,27 @@ impl MotionCheck {
 pub trait MotionValidity<S> {
     /// Checks the motion from `from` to `to`, both ends included.
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck;
+
+    /// Checks a motion one end of which is known to be free, being a node already: that end need
+    /// not be tested again.
+    fn check_extension(&mut self, from: &S, to: &S, _known: KnownFree) -> MotionCheck {
+        self.check_motion(from, to)
+    }
 }
 
 impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for &mut V {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
         (**self).check_motion(from, to)
     }
+    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
+        (**self).check_extension(from, to, known)
+    }
 }
 impl<S, V: MotionValidity<S> + ?Sized> MotionValidity<S> for Box<V> {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
         (**self).check_motion(from, to)
+    }
+    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
+        (**self).check_extension(from, to, known)
     }
 }

@@ -1,1 +1,28 @@
 //! File formats of motion planning: meshes, scenes, problems, paths.
+//!
+//! - [`Problem::load`] reads a problem and its meshes, whatever the format.
+//! - [`read_mesh`] reads a mesh, whatever the format.
+//! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
+//! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: mesh formats.
+//!
+//! Every reader takes a path, or bytes with the name errors should give. Errors ([`Error`]) say file, line,
+//! column, what was expected and what to do; no input makes a reader panic, hang or use memory out of
+//! proportion to its size. Every writer writes to a temporary file and renames it. Lengths are metres and
+//! angles radians. The formats are documented in `docs/formats/`.
+
+mod error;
+mod gempa;
+mod json;
+mod mesh;
+mod number;
+mod off;
+mod problem;
+mod source;
+mod text;
+
+pub use error::{Error, ErrorKind};
+pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
+pub use mesh::{MAX_CORNERS, read_mesh};
+pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
+pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
+pub use source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, write_atomic};

@@ -1,0 +1,218 @@
+//! When to stop.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// What has been done so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// Iterations of the planner's loop.
+    pub iterations: u64,
+    /// Nodes of its trees or roadmap.
+    pub nodes: usize,
+    /// Motion checks asked of the local planner.
+    pub motions: u64,
+    /// Candidate paths that failed independent verification.
+    pub rejected: u64,
+}
+
+impl Progress {
+    /// Progress with the given counts, nothing rejected.
+    #[must_use]
+    pub fn new(iterations: u64, nodes: usize, motions: u64) -> Self {
+        Self { iterations, nodes, motions, rejected: 0 }
+    }
+}
+
+/// Why a planner stopped without a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum StopReason {
+    /// The iteration budget is spent.
+    Iterations,
+    /// The node budget is spent.
+    Nodes,
+    /// The motion-check budget is spent.
+    Motions,
+    /// The deadline has passed.
+    Deadline,
+    /// Somebody asked it to stop.
+    Cancelled,
+}
+
+/// When to stop. Combine with [`Stop::or`].
+pub trait Stop {
+    /// `Some(reason)` to stop now. Called once per iteration, before it.
+    fn check(&mut self, progress: &Progress) -> Option<StopReason>;
+    /// Stops when either does; `self` is asked first.
+    fn or<B: Stop>(self, other: B) -> Or<Self, B>
+    where
+        Self: Sized,
+    {
+        Or(self, other)
+    }
+}
+
+impl<S: Stop + ?Sized> Stop for &mut S {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        (**self).check(progress)
+    }
+}
+impl<S: Stop + ?Sized> Stop for Box<S> {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        (**self).check(progress)
+    }
+}
+/// `None` never stops.
+impl<S: Stop> Stop for Option<S> {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        self.as_mut().and_then(|stop| stop.check(progress))
+    }
+}
+
+/// Either of two stops.
+#[derive(Clone, Copy, Debug)]
+pub struct Or<A, B>(pub A, pub B);
+
+impl<A: Stop, B: Stop> Stop for Or<A, B> {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        self.0.check(progress).or_else(|| self.1.check(progress))
+    }
+}
+
+/// Stops after this many iterations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Iterations(pub u64);
+
+impl Stop for Iterations {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        (progress.iterations >= self.0).then_some(StopReason::Iterations)
+    }
+}
+
+/// Stops at this many nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Nodes(pub usize);
+
+impl Stop for Nodes {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        (progress.nodes >= self.0).then_some(StopReason::Nodes)
+    }
+}
+
+/// Stops after this many motion checks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Motions(pub u64);
+
+impl Stop for Motions {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        (progress.motions >= self.0).then_some(StopReason::Motions)
+    }
+}
+
+/// Stops at a time of the wall clock. What is computed before does not depend on it, only when
+/// it ends: for reproducible runs use the counting stops.
+///
+/// While iterations are short the clock is read only once in a while (at most every 64th time, and
+/// only while that many iterations take less than a millisecond).
+#[derive(Clone, Copy, Debug)]
+pub struct Deadline {
+    at: Option<Instant>,
+    looked: Instant,
+    skip: u32,
+    left: u32,
+}
+
+impl Deadline {
+    /// At the instant `at`.
+    #[must_use]
+    pub fn at(at: Instant) -> Self {
+        Self { at: Some(at), looked: Instant::now(), skip: 0, left: 0 }
+    }
+
+    /// When `time` has passed from now.
+    #[must_use]
+    pub fn after(time: Duration) -> Self {
+        let looked = Instant::now();
+        Self { at: looked.checked_add(time), looked, skip: 0, left: 0 }
+    }
+}
+
+impl Stop for Deadline {
+    fn check(&mut self, _: &Progress) -> Option<StopReason> {
+        let at = self.at?;
+        if self.left > 0 {
+            self.left -= 1;
+            return None;
+        }
+        let now = Instant::now();
+        let slow = now.duration_since(self.looked) > Duration::from_millis(1);
+        self.skip = if slow { 0 } else { (2 * self.skip + 1).min(63) };
+        (self.looked, self.left) = (now, self.skip);
+        (now >= at).then_some(StopReason::Deadline)
+    }
+}
+
+/// Stops when its flag is raised, from another thread or a signal handler.
+///
+/// ```
+/// use mp_cspace::{Cancel, Iterations, Progress, Stop, StopReason};
+/// let cancel = Cancel::new();
+/// let handle = cancel.clone();
+/// let mut stop = Iterations(1000).or(cancel);
+/// assert_eq!(stop.check(&Progress::default()), None);
+/// handle.cancel();
+/// assert_eq!(stop.check(&Progress::default()), Some(StopReason::Cancelled));
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Cancel(pub Arc<AtomicBool>);
+
+impl Cancel {
+    /// A flag not raised; clones share it.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Raises the flag.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+impl Stop for Cancel {
+    fn check(&mut self, _: &Progress) -> Option<StopReason> {
+        self.0.load(Ordering::Relaxed).then_some(StopReason::Cancelled)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn budgets_and_their_combination() {
+        let mut stop = Iterations(10).or(Nodes(5)).or(Motions(7)).or(None::<Nodes>);
+        assert_eq!(stop.check(&Progress::new(9, 4, 6)), None);
+        assert_eq!(stop.check(&Progress::new(10, 5, 7)), Some(StopReason::Iterations));
+        assert_eq!(stop.check(&Progress::new(9, 5, 7)), Some(StopReason::Nodes));
+        assert_eq!(stop.check(&Progress::new(9, 4, 7)), Some(StopReason::Motions));
+        assert_eq!(Iterations(0).check(&Progress::default()), Some(StopReason::Iterations));
+    }
+
+    #[test]
+    fn deadlines_pass() {
+        let mut passed = Deadline::at(Instant::now());
+        assert_eq!(passed.check(&Progress::default()), Some(StopReason::Deadline));
+        let mut never = Deadline::after(Duration::MAX);
+        let mut far = Deadline::after(Duration::from_secs(3600));
+        for _ in 0..1000 {
+            assert_eq!(never.check(&Progress::default()), None);
+            assert_eq!(far.check(&Progress::default()), None);
+        }
+        let mut soon = Deadline::after(Duration::from_millis(5));
+        while soon.check(&Progress::default()).is_none() {}
+    }
+}

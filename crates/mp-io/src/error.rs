@@ -1,0 +1,335 @@
+//! The one error of this crate: what is wrong, where, what was expected and what to do about it.
+
+use miette::{
+    Diagnostic, LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents,
+};
+use std::fmt::{self, Display};
+use std::path::Path;
+
+/// What kind of thing went wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum ErrorKind {
+    /// A file or folder cannot be read or written.
+    Io,
+    /// The text or the bytes do not follow the format.
+    Format,
+    /// The format allows it, this crate does not read it.
+    Unsupported,
+    /// Well formed, but its content makes no sense: an empty mesh, a start outside the bounds.
+    Content,
+    /// Larger than this crate is willing to read.
+    TooLarge,
+}
+
+impl ErrorKind {
+    fn code(self) -> &'static str {
+        match self {
+            Self::Io => "mp_io::io",
+            Self::Format => "mp_io::format",
+            Self::Unsupported => "mp_io::unsupported",
+            Self::Content => "mp_io::content",
+            Self::TooLarge => "mp_io::too_large",
+        }
+    }
+}
+
+/// A bad file: what is wrong, in which file, line and column, what was expected, and a remedy.
+///
+/// [`Display`] gives one line, `file:line:column: what is wrong`; as a [`Diagnostic`], `miette` shows the
+/// line of the file as well. Converts into [`miette::Report`] by `?`.
+#[derive(Clone, Debug)]
+pub struct Error(Box<Inner>);
+
+#[derive(Clone, Debug)]
+struct Inner {
+    kind: ErrorKind,
+    file: String,
+    position: Option<(usize, usize)>,
+    message: String,
+    expected: Option<String>,
+    help: Option<String>,
+    excerpt: Option<Excerpt>,
+    cited_at: Option<String>,
+}
+
+/// The line an error is in, cut to what fits a screen, so that an error never holds a whole file.
+#[derive(Clone, Debug)]
+struct Excerpt {
+    name: String,
+    text: String,
+    /// Byte range in `text` that is wrong.
+    start: usize,
+    len: usize,
+    line: usize,
+    column: usize,
+}
+
+impl Error {
+    pub(crate) fn new(kind: ErrorKind, file: impl Display, message: impl Into<String>) -> Self {
+        Self(Box::new(Inner {
+            kind,
+            file: file.to_string(),
+            position: None,
+            message: message.into(),
+            expected: None,
+            help: None,
+            excerpt: None,
+            cited_at: None,
+        }))
+    }
+
+    /// An error of the operating system on `path`; `doing` completes "cannot …".
+    pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
+        let why = match error.kind() {
+            std::io::ErrorKind::NotFound => "no such file".to_owned(),
+            std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+            _ => error.to_string(),
+        };
+        Self::new(ErrorKind::Io, path.display(), format!("cannot {doing}: {why}"))
+    }
+
+    /// An error at bytes `start..start + len` of `text`, the content of `file`.
+    pub(crate) fn at(
+        kind: ErrorKind,
+        file: &str,
+        text: &str,
+        start: usize,
+        len: usize,
+        message: String,
+    ) -> Self {
+        let start = floor_boundary(text, start.min(text.len()));
+        let end = floor_boundary(text, start.saturating_add(len).min(text.len())).max(start);
+        let (line, line_start) = line_of(text.as_bytes(), start);
+        let column = text[line_start..start].chars().count() + 1;
+        let mut e = Self::new(kind, file, message);
+        e.0.position = Some((line, column));
+        e.0.excerpt = Some(Excerpt::cut(file, text, line_start, start..end, line, column));
+        e
+    }
+
+    pub(crate) fn expected(mut self, what: impl Into<String>) -> Self {
+        self.0.expected = Some(what.into());
+        self
+    }
+
+    pub(crate) fn help(mut self, what: impl Into<String>) -> Self {
+        self.0.help = Some(what.into());
+        self
+    }
+
+    pub(crate) fn with_kind(mut self, kind: ErrorKind) -> Self {
+        self.0.kind = kind;
+        self
+    }
+
+    /// Notes that the file in error was named at this place of another file.
+    pub(crate) fn cited_at(mut self, place: String) -> Self {
+        self.0.cited_at = Some(place);
+        self
+    }
+
+    pub(crate) fn with_position(mut self, line: usize, column: usize) -> Self {
+        self.0.position = Some((line, column));
+        self
+    }
+
+    /// What kind of thing went wrong.
+    #[must_use]
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
+    }
+
+    /// The file in error, as it was named.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.0.file
+    }
+
+    /// The line in error, counted from 1; `None` when the error is not in one place of a text.
+    #[must_use]
+    pub fn line(&self) -> Option<usize> {
+        self.0.position.map(|p| p.0)
+    }
+
+    /// The column in error, in characters, counted from 1.
+    #[must_use]
+    pub fn column(&self) -> Option<usize> {
+        self.0.position.map(|p| p.1)
+    }
+
+    /// What is wrong, without the place.
+    #[must_use]
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+
+    /// What was expected there.
+    #[must_use]
+    pub fn expectation(&self) -> Option<&str> {
+        self.0.expected.as_deref()
+    }
+
+    /// What to do about it.
+    #[must_use]
+    pub fn remedy(&self) -> Option<&str> {
+        self.0.help.as_deref()
+    }
+}
+
+impl Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.0.file)?;
+        if let Some((line, column)) = self.0.position {
+            write!(f, "{line}:{column}:")?;
+        }
+        write!(f, " {}", self.0.message)?;
+        if let Some(expected) = &self.0.expected {
+            write!(f, "; expected {expected}")?;
+        }
+        match &self.0.cited_at {
+            Some(place) => write!(f, " (named at {place})"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl Diagnostic for Error {
+    fn code<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        Some(Box::new(self.0.kind.code()))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
+        self.0.help.as_ref().map(|h| Box::new(h) as Box<dyn Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.0.excerpt.as_ref().map(|e| e as &dyn SourceCode)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let e = self.0.excerpt.as_ref()?;
+        let label = self.0.expected.as_ref().map_or_else(|| "here".to_owned(), |x| format!("expected {x}"));
+        Some(Box::new(std::iter::once(LabeledSpan::new_primary_with_span(Some(label), (e.start, e.len)))))
+    }
+}
+
+impl Excerpt {
+    fn cut(
+        name: &str,
+        text: &str,
+        line_start: usize,
+        wrong: std::ops::Range<usize>,
+        line: usize,
+        column: usize,
+    ) -> Self {
+        const BEFORE: usize = 60;
+        const AFTER: usize = 90;
+        let bytes = text.as_bytes();
+        let mut from = line_start;
+        if wrong.start - line_start > BEFORE {
+            from = floor_boundary(text, wrong.start - BEFORE);
+        }
+        let limit = floor_boundary(text, (wrong.start + AFTER).min(text.len()));
+        let to = (wrong.start..limit).find(|&i| matches!(bytes[i], b'\n' | b'\r')).unwrap_or(limit);
+        Self {
+            name: name.to_owned(),
+            text: text[from..to].to_owned(),
+            start: wrong.start - from,
+            len: wrong.end.min(to) - wrong.start,
+            line,
+            column,
+        }
+    }
+}
+
+impl SourceCode for Excerpt {
+    fn read_span<'a>(
+        &'a self,
+        _span: &SourceSpan,
+        before: usize,
+        after: usize,
+    ) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        // Asked without context, miette wants the place itself, for the header of the picture.
+        let column = if before == 0 && after == 0 { self.column - 1 } else { 0 };
+        Ok(Box::new(MietteSpanContents::new_named(
+            self.name.clone(),
+            self.text.as_bytes(),
+            (0, self.text.len()).into(),
+            self.line - 1,
+            column,
+            1,
+        )))
+    }
+}
+
+/// Line of byte `at` (from 1), and where that line begins. A line ends at `\n`, `\r\n` or a lone `\r`.
+pub(crate) fn line_of(text: &[u8], at: usize) -> (usize, usize) {
+    let (mut line, mut start) = (1, 0);
+    for (i, &b) in text[..at].iter().enumerate() {
+        if b == b'\n' || (b == b'\r' && text.get(i + 1) != Some(&b'\n')) {
+            line += 1;
+            start = i + 1;
+        }
+    }
+    (line, start)
+}
+
+fn floor_boundary(text: &str, mut at: usize) -> usize {
+    while !text.is_char_boundary(at) {
+        at -= 1;
+    }
+    at
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shown(e: Error) -> String {
+        let mut out = String::new();
+        miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor())
+            .render_report(&mut out, &e)
+            .unwrap();
+        out
+    }
+
+    #[test]
+    fn shows_the_line_and_its_number() {
+        let text = "one\r\ntwo bad three\nfour";
+        let e = Error::at(ErrorKind::Format, "a.off", text, 9, 3, "`bad` is not a number".into())
+            .expected("x y z")
+            .help("write a number");
+        assert_eq!(e.to_string(), "a.off:2:5: `bad` is not a number; expected x y z");
+        insta::assert_snapshot!(shown(e), @r"
+        mp_io::format
+
+          × a.off:2:5: `bad` is not a number; expected x y z
+           ╭─[a.off:2:5]
+         2 │ two bad three
+           ·     ─┬─
+           ·      ╰── expected x y z
+           ╰────
+          help: write a number
+        ");
+    }
+
+    #[test]
+    fn an_endless_line_is_cut() {
+        let text = "x ".repeat(1_000_000);
+        let e = Error::at(ErrorKind::Format, "a.off", &text, 1_000_000, 1, "no".into());
+        assert_eq!((e.line(), e.column()), (Some(1), Some(1_000_001)));
+        assert!(e.0.excerpt.as_ref().unwrap().text.len() < 200);
+        assert!(shown(e).contains("[a.off:1:1000001]"));
+    }
+
+    #[test]
+    fn places_after_the_end_and_inside_characters_are_moved() {
+        for at in 0..12 {
+            let e = Error::at(ErrorKind::Format, "f", "αβ\n→", at, 5, "m".into());
+            assert!(!shown(e).is_empty());
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! The text formats of GEMPA (Benitez and Mugarte; Figure 14 of "Key elements for motion planning
+//! algorithms", 2010): environments, configuration files and `.txt` meshes. See `docs/formats/`.
+
+pub(crate) mod environment;
+pub(crate) mod mesh;
+pub(crate) mod path;
+
+pub use environment::{Environment, Obstacle};
+pub use mesh::{gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
+pub use path::PathFile;

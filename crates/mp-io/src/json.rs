@@ -1,0 +1,58 @@
+//! Paths and results of planning as JSON.
+
+use crate::error::{Error, ErrorKind};
+use crate::gempa::PathFile;
+use crate::source::decode;
+use serde::{Deserialize, Serialize};
+
+/// What is read of a result: its path. All other members may be there and are skipped.
+#[derive(Deserialize)]
+struct HasPath {
+    path: Option<Vec<[f64; 6]>>,
+}
+
+#[derive(Serialize)]
+struct OnlyPath<'a> {
+    path: &'a [[f64; 6]],
+}
+
+impl PathFile {
+    /// Reads `bytes`, the content of a JSON file that errors call `file`: an object with a member `path`, a
+    /// list of six-tuples; its other members are skipped.
+    ///
+    /// # Errors
+    /// [`Error`] when it is not JSON or has no path, with the line and column.
+    pub fn parse_json(file: &str, bytes: &[u8]) -> Result<Self, Error> {
+        let text = decode(file, bytes)?;
+        let what = "an object with a member `path`, a list of six-tuples [x, y, z, α, β, γ]";
+        let read: HasPath = serde_json::from_str(text).map_err(|e| {
+            let at = offset(text, e.line(), e.column());
+            let shown = e.to_string();
+            let message = shown.split(" at line ").next().unwrap_or(&shown).to_owned();
+            Error::at(ErrorKind::Format, file, text, at, 1, message).expected(what)
+        })?;
+        match read.path {
+            Some(configurations) if !configurations.is_empty() => Ok(Self { configurations }),
+            Some(_) => {
+                Err(Error::new(ErrorKind::Content, file, "the path has no configurations").expected(what))
+            }
+            None => Err(Error::new(ErrorKind::Content, file, "there is no path in this file")
+                .expected(what)
+                .help("a result that is not solved has no path")),
+        }
+    }
+
+    /// The path as JSON: an object with the member `path`, one six-tuple on a line.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // Numbers of a path are finite and its shape is fixed, so this cannot fail.
+        let one_line = serde_json::to_string(&OnlyPath { path: &self.configurations }).unwrap_or_default();
+        one_line.replace("[[", "[\n[").replace("],[", "],\n[").replace("]]", "]\n]") + "\n"
+    }
+}
+
+/// The byte before which serde_json found fault; its lines count from 1, its columns are bytes read.
+fn offset(text: &str, line: usize, column: usize) -> usize {
+    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    (start + column.saturating_sub(1)).min(text.len())
+}

@@ -1,0 +1,264 @@
+//! A problem to plan on, whatever file it came from.
+
+use crate::error::{Error, ErrorKind};
+use crate::gempa::environment::{self, Environment};
+use crate::mesh::read_mesh;
+use crate::source::{MAX_TEXT_BYTES, read_file};
+use crate::text::{Text, Token};
+use mp_geom::{Aabb, TriMesh, pose_from_six};
+use nalgebra::{Isometry3, Point3};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The largest coordinate of a problem, metres: beyond it single precision and volumes lose their meaning.
+pub const MAX_COORDINATE: f64 = 1e9;
+
+/// In which space the robot moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum SpaceKind {
+    /// SE(3): anywhere, turned anyhow.
+    #[default]
+    Se3,
+    /// SE(2): in the plane z = 0, turned about Z.
+    Se2,
+}
+
+impl fmt::Display for SpaceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Se3 => "SE3",
+            Self::Se2 => "SE2",
+        })
+    }
+}
+
+/// A body: its mesh, and where that came from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// What messages call it.
+    pub name: String,
+    /// The file of its mesh.
+    pub file: PathBuf,
+    /// Its mesh, in its own frame, metres.
+    pub mesh: TriMesh,
+}
+
+/// A body that stands in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlacedBody {
+    /// What messages call it.
+    pub name: String,
+    /// The file of its mesh.
+    pub file: PathBuf,
+    /// Its mesh, in its own frame, metres.
+    pub mesh: TriMesh,
+    /// Its pose in the world.
+    pub pose: Isometry3<f64>,
+}
+
+/// A robot, obstacles, a start and a goal.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The name of the file, without extension.
+    pub name: String,
+    /// Where the robot moves.
+    pub space: SpaceKind,
+    /// The robot.
+    pub robot: Body,
+    /// The obstacles.
+    pub obstacles: Vec<PlacedBody>,
+    /// The robot's pose in the world at the start.
+    pub start: Isometry3<f64>,
+    /// The robot's pose in the world at the goal.
+    pub goal: Isometry3<f64>,
+    /// Where the origin of the robot may be, if the file says so. Contains start and goal.
+    pub bounds: Option<Aabb>,
+}
+
+impl Problem {
+    /// Reads a problem and its meshes: a GEMPA environment file (`.env`, `.txt`) or an OMPL.app problem
+    /// (`.cfg`). Files of other names are told apart by their content.
+    ///
+    /// # Errors
+    /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let (file, bytes) = (path.display().to_string(), read_file(path, MAX_TEXT_BYTES)?);
+        let text = Text::new(&file, &bytes)?;
+        Self::from_environment(path, &text)
+    }
+
+    fn from_environment(path: &Path, text: &Text<'_>) -> Result<Self, Error> {
+        let (env, places) = environment::parse(text)?;
+        let Environment { start, goal, .. } = env;
+        let space = env.space.unwrap_or_default();
+        check_size(text, places.start, "the initial configuration", &start[..3])?;
+        check_size(text, places.goal, "the goal configuration", &goal[..3])?;
+        if space == SpaceKind::Se2 {
+            check_planar(text, places.start, "initial", &start)?;
+            check_planar(text, places.goal, "goal", &goal)?;
+        }
+        let bounds = match (env.bounds, places.bounds) {
+            (Some([a, b, c, d, e, f]), Some(place)) => {
+                check_size(text, place, "the bounds", &[a, b, c, d, e, f])?;
+                let bounds = Aabb::new(Point3::new(a, b, c), Point3::new(d, e, f));
+                check_inside(text, places.start, "initial", &start, &bounds)?;
+                check_inside(text, places.goal, "goal", &goal, &bounds)?;
+                Some(bounds)
+            }
+            _ => None,
+        };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let (file, mesh) = body_mesh(text, folder, places.robot, "the robot")?;
+        let robot = Body { name: "robot".to_owned(), file, mesh };
+        let mut obstacles: Vec<PlacedBody> = Vec::new();
+        for (i, o) in env.obstacles.iter().enumerate() {
+            let name = format!("Obstacle #{}", o.number);
+            check_size(text, places.poses[i], "the pose", &o.pose[..3])?;
+            // The same mesh often stands in many places: read it once.
+            let seen = (0..i).find(|&k| env.obstacles[k].mesh == o.mesh);
+            let (file, mesh) = match seen {
+                Some(k) => (obstacles[k].file.clone(), obstacles[k].mesh.clone()),
+                None => body_mesh(text, folder, places.meshes[i], &name)?,
+            };
+            obstacles.push(PlacedBody { name, file, mesh, pose: pose_from_six(o.pose) });
+        }
+        let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let (start, goal) = (pose_from_six(start), pose_from_six(goal));
+        Ok(Self { name, space, robot, obstacles, start, goal, bounds })
+    }
+}
+
+/// Reads the mesh named at `place`.
+fn body_mesh(
+    text: &Text<'_>,
+    folder: &Path,
+    place: Token<'_>,
+    what: &str,
+) -> Result<(PathBuf, TriMesh), Error> {
+    let file = folder.join(place.text);
+    let mesh = match read_mesh(&file) {
+        Ok(mesh) => mesh,
+        // What cannot be opened is the fault of this line; what is in the mesh file, of that file.
+        Err(e) if e.kind() == ErrorKind::Io => {
+            let message = format!("the mesh of {what} is not readable: {}: {}", e.file(), e.message());
+            let remedy = e.remedy().unwrap_or("check the name of the file").to_owned();
+            return Err(text.error(place, message).help(remedy).with_kind(ErrorKind::Io));
+        }
+        Err(e) => return Err(e.cited_at(text.place(place))),
+    };
+    if let Some(v) = mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE)) {
+        let message = format!("vertex ({}, {}, {}) is more than {MAX_COORDINATE:e} m away", v.x, v.y, v.z);
+        return Err(Error::new(ErrorKind::Content, file.display(), message)
+            .help("coordinates are metres: scale the mesh")
+            .cited_at(text.place(place)));
+    }
+    Ok((file, mesh))
+}
+
+fn check_size(text: &Text<'_>, place: Token<'_>, what: &str, values: &[f64]) -> Result<(), Error> {
+    match values.iter().find(|v| v.abs() > MAX_COORDINATE) {
+        None => Ok(()),
+        Some(v) => Err(text
+            .error(place, format!("{what} has {v:e}, more than {MAX_COORDINATE:e} m"))
+            .help("coordinates are metres")
+            .with_kind(ErrorKind::Content)),
+    }
+}
+
+fn check_planar(text: &Text<'_>, place: Token<'_>, which: &str, six: &[f64; 6]) -> Result<(), Error> {
+    if six[2] == 0.0 && six[4] == 0.0 && six[5] == 0.0 {
+        return Ok(());
+    }
+    Err(text
+        .error(place, format!("the {which} configuration leaves the plane"))
+        .expected("z, β and γ equal to 0, as the file says `Space SE2`")
+        .help("write x y 0 α 0 0, or remove the line `Space SE2`")
+        .with_kind(ErrorKind::Content))
+}
+
+fn check_inside(
+    text: &Text<'_>,
+    place: Token<'_>,
+    which: &str,
+    six: &[f64; 6],
+    bounds: &Aabb,
+) -> Result<(), Error> {
+    for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+        let (v, low, high) = (six[i], bounds.min[i], bounds.max[i]);
+        if v < low || v > high {
+            return Err(text
+                .error(place, format!("the {which} configuration is out of bounds: {axis} = {v}"))
+                .expected(format!("{axis} from {low} to {high}, as `Bounds` says"))
+                .help("move the configuration or widen `Bounds`")
+                .with_kind(ErrorKind::Content));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{PathFile, write_gempa_mesh, write_off};
+    use mp_geom::primitives;
+
+    const ENV: &str = "Robot\nrobot.txt\n0 0 0 0 0 0\n5 0 0 1 0 0\nObstacle #1\nwall.off\n2 0 0 0 0 0\n\
+                       Obstacle #4\nwall.off\n3 0 0 0 0.5 0\nEnd\nSpace SE3\nBounds -1 -1 -1 6 1 1\n";
+
+    fn folder() -> tempfile::TempDir {
+        let dir = tempfile::tempdir().unwrap();
+        write_gempa_mesh(dir.path().join("robot.txt"), &primitives::cuboid(0.1, 0.1, 0.1).unwrap()).unwrap();
+        write_off(dir.path().join("wall.off"), &primitives::cuboid(0.1, 1.0, 1.0).unwrap()).unwrap();
+        dir
+    }
+
+    #[test]
+    fn loads_an_environment_and_its_meshes() {
+        let dir = folder();
+        let path = dir.path().join("scene.env");
+        std::fs::write(&path, ENV).unwrap();
+        let p = Problem::load(&path).unwrap();
+        assert_eq!((p.name.as_str(), p.space), ("scene", SpaceKind::Se3));
+        assert_eq!(p.robot.mesh.triangles().len(), 12);
+        assert_eq!(
+            p.obstacles.iter().map(|o| o.name.as_str()).collect::<Vec<_>>(),
+            ["Obstacle #1", "Obstacle #4"]
+        );
+        assert_eq!(p.obstacles[1].pose, pose_from_six([3.0, 0.0, 0.0, 0.0, 0.5, 0.0]));
+        assert_eq!(p.bounds.unwrap().max, Point3::new(6.0, 1.0, 1.0));
+    }
+
+    #[test]
+    fn faults_of_meshes_name_the_mesh_and_the_line_that_names_it() {
+        let dir = folder();
+        let path = dir.path().join("scene.env");
+        std::fs::write(&path, ENV.replacen("wall.off", "wal.off", 1)).unwrap();
+        let e = Problem::load(&path).unwrap_err();
+        assert_eq!((e.kind(), e.line(), e.column()), (ErrorKind::Io, Some(6), Some(1)));
+        assert!(e.message().contains("no such file"), "{e}");
+        std::fs::write(&path, ENV).unwrap();
+        std::fs::write(dir.path().join("wall.off"), "OFF 1 1 0\n0 0 0\n3 0 0 1\n").unwrap();
+        let e = Problem::load(&path).unwrap_err();
+        assert_eq!((e.line(), e.column()), (Some(3), Some(7)));
+        assert!(e.file().ends_with("wall.off") && e.to_string().ends_with("scene.env:6:1)"), "{e}");
+    }
+
+    #[test]
+    fn paths_round_trip_as_text_and_json() {
+        let dir = folder();
+        let path = PathFile { configurations: vec![[0.1, 2.0, -0.0, 1e-9, 0.25, 3.0], [1.0; 6]] };
+        for name in ["p.txt", "p.json"] {
+            let file = dir.path().join(name);
+            path.write(&file).unwrap();
+            assert_eq!(PathFile::read(&file).unwrap(), path);
+        }
+        assert_eq!(path.to_text(), "2\n0.1 2 -0 1e-9 0.25 3\n1 1 1 1 1 1\n");
+        assert_eq!(
+            path.to_json(),
+            "{\"path\":[\n[0.1,2.0,-0.0,1e-9,0.25,3.0],\n[1.0,1.0,1.0,1.0,1.0,1.0]\n]}\n"
+        );
+        let e = PathFile::parse_json("r.json", b"{\"solved\": true,\n \"path\": [[1,2,3]]}").unwrap_err();
+        assert_eq!(e.line(), Some(2), "{e}");
+    }
+}

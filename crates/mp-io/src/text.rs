@@ -1,0 +1,225 @@
+//! Tokens and lines of a text file, and numbers in them, with the places errors need.
+
+use crate::error::{Error, ErrorKind};
+
+/// A text file being read.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Text<'a> {
+    pub(crate) file: &'a str,
+    pub(crate) text: &'a str,
+}
+
+/// A word of the text and where it begins, in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Token<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) at: usize,
+}
+
+impl<'a> Text<'a> {
+    pub(crate) fn new(file: &'a str, bytes: &'a [u8]) -> Result<Self, Error> {
+        Ok(Self { file, text: crate::source::decode(file, bytes)? })
+    }
+
+    /// An error at a token.
+    pub(crate) fn error(&self, token: Token<'_>, message: impl Into<String>) -> Error {
+        Error::at(ErrorKind::Format, self.file, self.text, token.at, token.text.len(), message.into())
+    }
+
+    /// `file:line:column` of a token.
+    pub(crate) fn place(&self, token: Token<'_>) -> String {
+        let e = self.error(token, "");
+        format!("{}:{}:{}", self.file, e.line().unwrap_or(1), e.column().unwrap_or(1))
+    }
+
+    /// An error where the text ends.
+    pub(crate) fn error_at_end(&self, expected: impl Into<String>) -> Error {
+        let at = self.text.trim_end().len();
+        Error::at(ErrorKind::Format, self.file, self.text, at, 0, "the file ends too early".into())
+            .expected(expected)
+            .help("the file may be cut short: copy or export it again")
+    }
+
+    /// A finite number.
+    pub(crate) fn number(&self, token: Token<'_>, expected: &str) -> Result<f64, Error> {
+        match token.text.parse::<f64>() {
+            Ok(v) if v.is_finite() => Ok(v),
+            Ok(_) => {
+                let shown = clipped(token.text);
+                Err(self
+                    .error(token, format!("`{shown}` is not a finite number"))
+                    .expected(expected)
+                    .help("coordinates must be finite: mend the program that wrote the file"))
+            }
+            Err(_) => {
+                let shown = clipped(token.text);
+                let e = self.error(token, format!("`{shown}` is not a number")).expected(expected);
+                Err(if token.text.contains(',') {
+                    e.help("write numbers with a decimal point, separated by blanks, without commas")
+                } else {
+                    e
+                })
+            }
+        }
+    }
+
+    /// A count or an index from 0.
+    pub(crate) fn count(&self, token: Token<'_>, expected: &str) -> Result<usize, Error> {
+        token.text.parse::<usize>().map_err(|_| {
+            let shown = clipped(token.text);
+            self.error(token, format!("`{shown}` is not a count")).expected(expected)
+        })
+    }
+}
+
+/// At most 40 characters of `text`, with control characters replaced.
+pub(crate) fn clipped(text: &str) -> String {
+    let mut out: String =
+        text.chars().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if text.chars().nth(40).is_some() {
+        out.push('…');
+    }
+    out
+}
+
+impl<'a> Text<'a> {
+    /// The lines that are not blank, trimmed. Lines end at `\n`, `\r\n` or a lone `\r`.
+    pub(crate) fn lines(&self) -> impl Iterator<Item = Token<'a>> + use<'a> {
+        let text = self.text;
+        text.split(['\n', '\r']).filter_map(move |line| {
+            let trimmed = line.trim();
+            let at = trimmed.as_ptr() as usize - text.as_ptr() as usize;
+            (!trimmed.is_empty()).then_some(Token { text: trimmed, at })
+        })
+    }
+}
+
+impl<'a> Token<'a> {
+    /// The words of a line.
+    pub(crate) fn words(self) -> impl Iterator<Item = Token<'a>> + Clone {
+        self.text.split_whitespace().map(move |word| Token {
+            text: word,
+            at: self.at + (word.as_ptr() as usize - self.text.as_ptr() as usize),
+        })
+    }
+
+    /// Without blanks around it.
+    pub(crate) fn trimmed(self) -> Token<'a> {
+        let start = self.text.trim_start();
+        Token { text: start.trim_end(), at: self.at + (self.text.len() - start.len()) }
+    }
+
+    /// The empty place right after it.
+    pub(crate) fn end(self) -> Token<'a> {
+        Token { text: &self.text[self.text.len()..], at: self.at + self.text.len() }
+    }
+}
+
+/// Words across lines, for formats where a line break means little; `#` begins a comment.
+#[derive(Clone, Debug)]
+pub(crate) struct Lexer<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Lexer<'a> {
+    pub(crate) fn new(text: &Text<'a>) -> Self {
+        Self { text: text.text, at: 0 }
+    }
+
+    /// The next word; line breaks and comments are skipped.
+    pub(crate) fn next(&mut self) -> Option<Token<'a>> {
+        loop {
+            if let Some(token) = self.next_on_line() {
+                return Some(token);
+            }
+            if self.at >= self.text.len() {
+                return None;
+            }
+            self.next_line();
+        }
+    }
+
+    /// The next word of this line; `None` at its end, which is not passed.
+    pub(crate) fn next_on_line(&mut self) -> Option<Token<'a>> {
+        let bytes = self.text.as_bytes();
+        while self.at < bytes.len() && is_blank(bytes[self.at]) {
+            self.at += 1;
+        }
+        let start = self.at;
+        while self.at < bytes.len() && !ends_word(bytes[self.at]) {
+            self.at += 1;
+        }
+        (self.at > start).then(|| Token { text: &self.text[start..self.at], at: start })
+    }
+
+    /// Goes to the next line; gives the comment that ended this one.
+    pub(crate) fn next_line(&mut self) -> Option<&'a str> {
+        let bytes = self.text.as_bytes();
+        let start = self.at;
+        while self.at < bytes.len() && !is_break(bytes[self.at]) {
+            self.at += 1;
+        }
+        let skipped = &self.text[start..self.at];
+        if self.at < bytes.len() {
+            self.at += if bytes[self.at..].starts_with(b"\r\n") { 2 } else { 1 };
+        }
+        skipped.find('#').map(|i| &skipped[i + 1..])
+    }
+
+    /// How many words this line still has.
+    pub(crate) fn left_on_line(&self) -> usize {
+        let mut ahead = self.clone();
+        std::iter::from_fn(|| ahead.next_on_line()).count()
+    }
+
+    /// Where reading stands, in bytes.
+    pub(crate) fn position(&self) -> usize {
+        self.at
+    }
+}
+
+fn is_blank(b: u8) -> bool {
+    matches!(b, b' ' | b'\t' | 0x0b | 0x0c)
+}
+
+fn is_break(b: u8) -> bool {
+    matches!(b, b'\n' | b'\r')
+}
+
+fn ends_word(b: u8) -> bool {
+    is_blank(b) || is_break(b) || b == b'#'
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_lines_and_comments() {
+        let text = Text { file: "f", text: "OFF# x\r\n 1\t2 # two\r\r3#\n" };
+        let mut lexer = Lexer::new(&text);
+        assert_eq!(lexer.next().unwrap().text, "OFF");
+        assert_eq!(lexer.next_on_line(), None);
+        assert_eq!(lexer.next_line(), Some(" x"));
+        assert_eq!(lexer.left_on_line(), 2);
+        assert_eq!(lexer.next(), Some(Token { text: "1", at: 9 }));
+        assert_eq!(lexer.next().unwrap().text, "2");
+        assert_eq!(lexer.next().unwrap().text, "3");
+        assert_eq!(lexer.next(), None);
+        assert_eq!(text.lines().map(|l| l.text).collect::<Vec<_>>(), ["OFF# x", "1\t2 # two", "3#"]);
+        let line = text.lines().nth(1).unwrap();
+        assert_eq!(line.words().map(|w| w.at).collect::<Vec<_>>(), [9, 11, 13, 15]);
+    }
+
+    #[test]
+    fn numbers() {
+        let text = Text { file: "f", text: "1 -.5e3 nan 1e999 1,5 x" };
+        let got: Vec<_> = text.lines().next().unwrap().words().map(|w| text.number(w, "x")).collect();
+        assert_eq!(got[0].as_ref().unwrap(), &1.0);
+        assert_eq!(got[1].as_ref().unwrap(), &-500.0);
+        assert!(got[2..].iter().all(Result::is_err));
+        assert!(got[4].as_ref().unwrap_err().remedy().unwrap().contains("decimal point"));
+        assert_eq!(got[3].as_ref().unwrap_err().column(), Some(13));
+    }
+}
