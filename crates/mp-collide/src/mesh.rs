@@ -1,0 +1,60 @@
+//! The mesh as queries see it.
+
+use std::sync::Arc;
+
+use mp_geom::TriMesh;
+
+use crate::tree::Tree;
+use crate::triangle::Triangle;
+
+/// A mesh with its tree of oriented boxes: built once, immutable, cheap to clone, shared between threads.
+#[derive(Clone, Debug)]
+pub struct CollisionMesh {
+    tree: Arc<Tree>,
+}
+
+impl CollisionMesh {
+    /// Builds the tree of `mesh`: O(n log² n) for n triangles.
+    #[must_use]
+    pub fn new(mesh: &TriMesh) -> Self {
+        let triangles = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
+        Self::from_triangles(triangles)
+    }
+
+    /// `triangles`: at least one, at most `u32::MAX`, finite.
+    pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
+        Self { tree: Arc::new(Tree::build(triangles)) }
+    }
+
+    /// How many triangles there are.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.tree.triangles.len()
+    }
+
+    /// The triangles in the order of the mesh this was built from.
+    #[must_use]
+    pub fn triangles(&self) -> Vec<Triangle> {
+        let mut triangles = vec![[nalgebra::Point3::origin(); 3]; self.triangle_count()];
+        for (triangle, &id) in self.tree.triangles.iter().zip(&self.tree.ids) {
+            triangles[id as usize] = *triangle;
+        }
+        triangles
+    }
+
+    /// The largest distance of a point of the mesh from the origin of its frame (metres), rounded up.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.tree.radius
+    }
+
+    /// Memory of tree and triangles (bytes).
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.tree.memory()
+    }
+
+    pub(crate) fn tree(&self) -> &Tree {
+        &self.tree
+    }
+}

@@ -1,0 +1,206 @@
+//! The oriented bounding box: fitting, the separating-axis test, a lower bound on distance.
+//!
+//! Gottschalk, Lin, Manocha, *OBBTree: A Hierarchical Structure for Rapid Interference Detection*,
+//! SIGGRAPH 1996.
+
+use nalgebra::{Matrix3, Point3, Vector3};
+
+use crate::triangle::Triangle;
+
+/// A box: centre, three orthonormal axes, half its extent along each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Obb {
+    pub(crate) center: Point3<f64>,
+    pub(crate) axes: [Vector3<f64>; 3],
+    pub(crate) half: Vector3<f64>,
+}
+
+impl Obb {
+    /// A small box around `triangles`: the one of least surface among several frames (the axes of the
+    /// mesh, `parent`'s, the principal axes of the surface, the largest triangle's).
+    pub(crate) fn fit<'a>(
+        triangles: impl Iterator<Item = &'a Triangle> + Clone,
+        parent: &[Vector3<f64>; 3],
+    ) -> Self {
+        let frames = [
+            principal_axes(triangles.clone()),
+            largest_triangle_axes(triangles.clone()),
+            *parent,
+            [Vector3::x(), Vector3::y(), Vector3::z()],
+        ];
+        let mut best = Self::around(triangles.clone(), frames[0]);
+        for frame in &frames[1..] {
+            let other = Self::around(triangles.clone(), *frame);
+            if other.surface() < best.surface() {
+                best = other;
+            }
+        }
+        best
+    }
+
+    /// The smallest box with these axes.
+    fn around<'a>(triangles: impl Iterator<Item = &'a Triangle>, axes: [Vector3<f64>; 3]) -> Self {
+        let (mut min, mut max) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
+        for p in triangles.flatten() {
+            let along = Vector3::new(axes[0].dot(&p.coords), axes[1].dot(&p.coords), axes[2].dot(&p.coords));
+            min = min.inf(&along);
+            max = max.sup(&along);
+        }
+        let middle = (min + max) * 0.5;
+        let center = Point3::from(axes[0] * middle.x + axes[1] * middle.y + axes[2] * middle.z);
+        Self { center, axes, half: (max - min) * 0.5 }
+    }
+
+    /// An eighth of the surface of the box: enough to compare by.
+    fn surface(&self) -> f64 {
+        let h = &self.half;
+        h.x * h.y + h.y * h.z + h.z * h.x
+    }
+
+    /// A measure of size, to choose the larger of two boxes to open.
+    pub(crate) fn size(&self) -> f64 {
+        self.half.norm_squared()
+    }
+
+    /// Half extents of the axis-aligned box around this one.
+    pub(crate) fn aligned_half(&self) -> Vector3<f64> {
+        self.axes[0].abs() * self.half.x + self.axes[1].abs() * self.half.y + self.axes[2].abs() * self.half.z
+    }
+
+    /// The separating-axis test on 15 axes, the cheap ones first: `true` only when the boxes (both in the
+    /// same frame) are further apart than `slack` can explain.
+    ///
+    /// The nine axes that are cross products are not normalised; for nearly parallel edges both sides of
+    /// the comparison vanish and `slack` keeps the test from separating.
+    pub(crate) fn disjoint(&self, other: &Self, slack: f64) -> bool {
+        let d = other.center - self.center;
+        let (ha, hb) = (&self.half, &other.half);
+        let mut t = [0.0; 3];
+        let mut r = [[0.0; 3]; 3];
+        let mut q = [[0.0; 3]; 3];
+        for i in 0..3 {
+            t[i] = self.axes[i].dot(&d);
+            for j in 0..3 {
+                r[i][j] = self.axes[i].dot(&other.axes[j]);
+                q[i][j] = f64::abs(r[i][j]);
+            }
+            if t[i].abs() > ha[i] + (hb[0] * q[i][0] + hb[1] * q[i][1] + hb[2] * q[i][2]) + slack {
+                return true;
+            }
+        }
+        for j in 0..3 {
+            let gap = f64::abs(t[0] * r[0][j] + t[1] * r[1][j] + t[2] * r[2][j]);
+            if gap > hb[j] + (ha[0] * q[0][j] + ha[1] * q[1][j] + ha[2] * q[2][j]) + slack {
+                return true;
+            }
+        }
+        for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+                let gap = f64::abs(t[i2] * r[i1][j] - t[i1] * r[i2][j]);
+                let reach_a = ha[i1] * q[i2][j] + ha[i2] * q[i1][j];
+                let reach_b = hb[j1] * q[i][j2] + hb[j2] * q[i][j1];
+                if gap > reach_a + reach_b + slack {
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// A lower bound on the distance of two boxes (both in the same frame), less `slack`; at least 0.
+    ///
+    /// The larger of two distances: from each box to the box around the other that is aligned with it.
+    pub(crate) fn distance_bound(&self, other: &Self, slack: f64) -> f64 {
+        let d = other.center - self.center;
+        let (ha, hb) = (&self.half, &other.half);
+        let across = |i: usize, j: usize| self.axes[i].dot(&other.axes[j]).abs();
+        let q = [0, 1, 2].map(|i| [across(i, 0), across(i, 1), across(i, 2)]);
+        let (mut from_a, mut from_b) = (0.0, 0.0);
+        for k in 0..3 {
+            let reach = ha[k] + (hb[0] * q[k][0] + hb[1] * q[k][1] + hb[2] * q[k][2]);
+            let gap = (self.axes[k].dot(&d).abs() - reach).max(0.0);
+            from_a += gap * gap;
+            let reach = hb[k] + (ha[0] * q[0][k] + ha[1] * q[1][k] + ha[2] * q[2][k]);
+            let gap = (other.axes[k].dot(&d).abs() - reach).max(0.0);
+            from_b += gap * gap;
+        }
+        (f64::max(from_a, from_b).sqrt() - slack).max(0.0)
+    }
+}
+
+/// The principal axes of the surface of `triangles` (of their corners when that has no area).
+fn principal_axes<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> [Vector3<f64>; 3] {
+    // Around a corner, not the origin of the mesh: less cancellation far away from it.
+    let Some(origin) = triangles.clone().next().map(|t| t[0]) else {
+        return [Vector3::x(), Vector3::y(), Vector3::z()];
+    };
+    let (mut weight, mut mean, mut moment) = (0.0, Vector3::zeros(), Matrix3::zeros());
+    let (mut corners, mut corner_mean, mut corner_moment) = (0.0, Vector3::zeros(), Matrix3::zeros());
+    for t in triangles {
+        let p = t.map(|corner| corner - origin);
+        let area = (p[1] - p[0]).cross(&(p[2] - p[0])).norm();
+        let sum = p[0] + p[1] + p[2];
+        let outer = p[0] * p[0].transpose() + p[1] * p[1].transpose() + p[2] * p[2].transpose();
+        weight += area;
+        mean += sum * (area / 3.0);
+        // ∫ x xᵀ over a triangle = area/12 · (s sᵀ + Σ p pᵀ), s the sum of its corners.
+        moment += (sum * sum.transpose() + outer) * (area / 12.0);
+        corners += 3.0;
+        corner_mean += sum;
+        corner_moment += outer;
+    }
+    if weight <= 0.0 {
+        (weight, mean, moment) = (corners, corner_mean, corner_moment);
+    }
+    let mean = mean / weight;
+    eigenvectors(moment / weight - mean * mean.transpose())
+}
+
+/// The frame of the largest triangle: its longest edge, its normal, and what is left.
+fn largest_triangle_axes<'a>(triangles: impl Iterator<Item = &'a Triangle>) -> [Vector3<f64>; 3] {
+    let mut best = (0.0, [Vector3::x(), Vector3::y(), Vector3::z()]);
+    for t in triangles {
+        let edges = [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
+        let longest = edges.iter().max_by(|a, b| a.norm_squared().total_cmp(&b.norm_squared()));
+        let normal = edges[0].cross(&edges[1]);
+        let area = normal.norm();
+        if let Some(longest) = longest
+            && area > best.0
+        {
+            // Gram–Schmidt: the normal of a sliver is not quite at a right angle to its edges.
+            let x = longest.normalize();
+            let z = (normal / area - x * (normal / area).dot(&x)).normalize();
+            if z.iter().all(|c| c.is_finite()) {
+                best = (area, [x, z.cross(&x), z]);
+            }
+        }
+    }
+    best.1
+}
+
+/// The eigenvectors of a symmetric matrix, by Jacobi's rotations: orthonormal whatever comes in.
+fn eigenvectors(mut m: Matrix3<f64>) -> [Vector3<f64>; 3] {
+    let mut v = Matrix3::identity();
+    if m.iter().all(|c| c.is_finite()) {
+        for _ in 0..12 {
+            for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+                if m[(p, q)].abs() <= f64::MIN_POSITIVE {
+                    continue;
+                }
+                let theta = (m[(q, q)] - m[(p, p)]) / (2.0 * m[(p, q)]);
+                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+                let c = 1.0 / t.hypot(1.0);
+                let s = t * c;
+                let mut j = Matrix3::identity();
+                (j[(p, p)], j[(q, q)], j[(p, q)], j[(q, p)]) = (c, c, s, -s);
+                m = j.transpose() * m * j;
+                v *= j;
+            }
+        }
+    }
+    // Rounding adds up over the rotations; boxes want axes orthonormal to the last place.
+    let x: Vector3<f64> = v.column(0).normalize();
+    let y: Vector3<f64> = v.column(1).into();
+    let y = (y - x * x.dot(&y)).normalize();
+    [x, y, x.cross(&y)]
+}

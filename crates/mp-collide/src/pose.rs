@@ -1,0 +1,101 @@
+//! The pose of one mesh relative to another, checked.
+
+use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Vector3};
+
+use crate::obb::Obb;
+use crate::triangle::Triangle;
+
+/// Coordinates beyond this could overflow in the exact predicates; see the contract in the crate docs.
+pub(crate) const LIMIT: f64 = 1e75;
+
+/// How far from 1 the squared length of a quaternion may be.
+const UNIT_TOLERANCE: f64 = 2e-6;
+
+/// Boxes are kept apart only when the gap exceeds this much of the size of the problem: some fifty times
+/// the rounding errors of fitting, transforming and testing a box.
+const SLACK: f64 = 1e-13;
+
+/// The pose of mesh `b` in the frame of mesh `a`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Relative {
+    rotation: Matrix3<f64>,
+    translation: Vector3<f64>,
+    /// What to add to boxes (metres) so that rounding never makes them miss.
+    pub(crate) slack: f64,
+}
+
+impl Relative {
+    /// `None` when a pose or a mesh (by `radius`, its largest coordinate) is not within the limits.
+    pub(crate) fn between(
+        pose_wa: &Isometry3<f64>,
+        radius_a: f64,
+        pose_wb: &Isometry3<f64>,
+        radius_b: f64,
+    ) -> Option<Self> {
+        if !(is_rigid(pose_wa) && is_rigid(pose_wb) && radius_a <= LIMIT && radius_b <= LIMIT) {
+            return None;
+        }
+        let (q_wa, q_wb) = (pose_wa.rotation.quaternion(), pose_wb.rotation.quaternion());
+        let (t_wa, t_wb) = (&pose_wa.translation.vector, &pose_wb.translation.vector);
+        let translation = rotation_matrix(q_wa).tr_mul(&(t_wb - t_wa));
+        let rotation =
+            if q_wa == q_wb { Matrix3::identity() } else { rotation_matrix(&(q_wa.conjugate() * q_wb)) };
+        // Differences of world coordinates are exact to rounding of the world coordinates themselves, and
+        // boxes and triangles see the same difference: only the relative size counts.
+        let slack = SLACK * (radius_a + radius_b + translation.norm());
+        Some(Self { rotation, translation, slack })
+    }
+
+    /// A point of `b` in the frame of `a`.
+    pub(crate) fn point(&self, p: &Point3<f64>) -> Point3<f64> {
+        let (r, t) = (&self.rotation, &self.translation);
+        Point3::new(
+            r.m11 * p.x + r.m12 * p.y + r.m13 * p.z + t.x,
+            r.m21 * p.x + r.m22 * p.y + r.m23 * p.z + t.y,
+            r.m31 * p.x + r.m32 * p.y + r.m33 * p.z + t.z,
+        )
+    }
+
+    /// A triangle of `b` in the frame of `a`.
+    pub(crate) fn triangle(&self, triangle: &Triangle) -> Triangle {
+        [self.point(&triangle[0]), self.point(&triangle[1]), self.point(&triangle[2])]
+    }
+
+    /// A box of `b` in the frame of `a`.
+    pub(crate) fn obb(&self, obb: &Obb) -> Obb {
+        let r = &self.rotation;
+        Obb {
+            center: self.point(&obb.center),
+            axes: [r * obb.axes[0], r * obb.axes[1], r * obb.axes[2]],
+            half: obb.half,
+        }
+    }
+}
+
+/// Whether `pose` is within the limits of the crate docs; NaN is not.
+fn is_rigid(pose: &Isometry3<f64>) -> bool {
+    (pose.rotation.quaternion().norm_squared() - 1.0).abs() <= UNIT_TOLERANCE
+        && pose.translation.vector.iter().all(|c| c.abs() <= LIMIT)
+}
+
+/// A point of a body placed in the world.
+pub(crate) fn to_world(pose: &Isometry3<f64>, p: &Point3<f64>) -> Point3<f64> {
+    rotation_matrix(pose.rotation.quaternion()) * p + pose.translation.vector
+}
+
+/// The rotation by `q`, which need not be quite of unit length.
+fn rotation_matrix(q: &Quaternion<f64>) -> Matrix3<f64> {
+    let s = 2.0 / q.norm_squared();
+    let (w, x, y, z) = (q.w, q.i, q.j, q.k);
+    Matrix3::new(
+        1.0 - s * (y * y + z * z),
+        s * (x * y - w * z),
+        s * (x * z + w * y),
+        s * (x * y + w * z),
+        1.0 - s * (x * x + z * z),
+        s * (y * z - w * x),
+        s * (x * z - w * y),
+        s * (y * z + w * x),
+        1.0 - s * (x * x + y * y),
+    )
+}

@@ -1,0 +1,177 @@
+//! A second implementation, deliberately plain, that shares no code with the first: a tree of spheres,
+//! split at the median, and its own distance of triangles. The independent path checker rests on it, and
+//! the differential tests compare both.
+//!
+//! It is not exact at contact: whatever is nearer than about 1e-13 of the coordinates counts as touching.
+
+mod triangle;
+
+use mp_geom::TriMesh;
+use nalgebra::{Isometry3, IsometryMatrix3, Point3};
+
+pub use triangle::triangle_distance;
+
+use triangle::{Triangle, point_triangle};
+
+/// Anything nearer than this part of the coordinates counts as touching.
+const TOUCHING: f64 = 1e-13;
+
+/// A ball around some triangles.
+#[derive(Clone, Copy, Debug)]
+struct Ball {
+    center: Point3<f64>,
+    radius: f64,
+    content: Content,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Content {
+    Triangle(usize),
+    /// Two balls.
+    Parts([usize; 2]),
+}
+
+/// A mesh with its tree of spheres.
+#[derive(Clone, Debug)]
+pub struct RefMesh {
+    /// The last one is the root.
+    balls: Vec<Ball>,
+    triangles: Vec<Triangle>,
+    /// The largest absolute coordinate.
+    size: f64,
+}
+
+impl RefMesh {
+    /// Builds the tree of `mesh`: O(n log² n) for n triangles.
+    #[must_use]
+    pub fn new(mesh: &TriMesh) -> Self {
+        let triangles: Vec<Triangle> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
+        let size = triangles.iter().flatten().map(|p| p.coords.amax()).fold(0.0, f64::max);
+        let mut order: Vec<usize> = (0..triangles.len()).collect();
+        let mut balls = Vec::with_capacity(2 * triangles.len());
+        build(&triangles, &mut order, &mut balls);
+        Self { balls, triangles, size }
+    }
+
+    /// A lower bound on the distance from this mesh at `pose_wa` to `other` at `pose_wb` that is exact (up to
+    /// rounding) when below `enough` (metres), and some value of at least `enough` otherwise; 0 when they
+    /// intersect or touch.
+    ///
+    /// A pose that is not finite or not a rigid motion, and coordinates beyond 1e75, give 0. `enough` NaN
+    /// counts as infinity.
+    #[must_use]
+    pub fn clearance(
+        &self,
+        pose_wa: &Isometry3<f64>,
+        other: &RefMesh,
+        pose_wb: &Isometry3<f64>,
+        enough: f64,
+    ) -> f64 {
+        let pose_ab = pose_wa.inverse() * pose_wb;
+        let scale = self.size + other.size + pose_ab.translation.vector.norm();
+        let rigid = |pose: &Isometry3<f64>| (pose.rotation.quaternion().norm() - 1.0).abs() < 1e-6;
+        if !(rigid(pose_wa) && rigid(pose_wb) && scale < 1e75) {
+            return 0.0;
+        }
+        let pose_ab = IsometryMatrix3::from_parts(pose_ab.translation, pose_ab.rotation.to_rotation_matrix());
+        let touching = TOUCHING * scale;
+        // Look a little further than asked, so that touching is always seen.
+        let enough = if enough.is_nan() { f64::INFINITY } else { enough.max(2.0 * touching) };
+        let mut search = Search { a: self, b: other, pose_ab, touching, best: enough };
+        let (root_a, root_b) = (self.balls.len() - 1, other.balls.len() - 1);
+        let bound = search.bound(root_a, root_b);
+        if bound >= enough {
+            return bound;
+        }
+        search.visit(root_a, root_b);
+        if search.best <= touching { 0.0 } else { search.best }
+    }
+}
+
+/// One search for the smallest distance.
+struct Search<'a> {
+    a: &'a RefMesh,
+    b: &'a RefMesh,
+    pose_ab: IsometryMatrix3<f64>,
+    touching: f64,
+    /// The smallest distance so far; at first, the distance that is enough.
+    best: f64,
+}
+
+impl Search<'_> {
+    /// A lower bound on the distance of what two balls hold.
+    fn bound(&self, i: usize, j: usize) -> f64 {
+        let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
+        // For a ball against a single triangle, the triangle itself is the better bound.
+        let distance = match (ball_a.content, ball_b.content) {
+            (Content::Triangle(k), Content::Parts(_)) => {
+                point_triangle(&(self.pose_ab * ball_b.center), &self.a.triangles[k]) - ball_b.radius
+            }
+            (Content::Parts(_), Content::Triangle(l)) => {
+                let center = self.pose_ab.inverse_transform_point(&ball_a.center);
+                point_triangle(&center, &self.b.triangles[l]) - ball_a.radius
+            }
+            _ => (self.pose_ab * ball_b.center - ball_a.center).norm() - ball_a.radius - ball_b.radius,
+        };
+        distance - self.touching
+    }
+
+    /// Lowers `best` to the distance of what two balls hold, if that is smaller.
+    fn visit(&mut self, i: usize, j: usize) {
+        let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
+        let pairs = match (ball_a.content, ball_b.content) {
+            (Content::Triangle(k), Content::Triangle(l)) => {
+                let triangle_b = self.b.triangles[l].map(|p| self.pose_ab * p);
+                self.best = self.best.min(triangle_distance(&self.a.triangles[k], &triangle_b));
+                return;
+            }
+            (Content::Parts(parts), Content::Parts(_)) if ball_a.radius >= ball_b.radius => {
+                parts.map(|part| (part, j))
+            }
+            (_, Content::Parts(parts)) => parts.map(|part| (i, part)),
+            (Content::Parts(parts), Content::Triangle(_)) => parts.map(|part| (part, j)),
+        };
+        let mut bounds = pairs.map(|(k, l)| (self.bound(k, l), k, l));
+        if bounds[1].0 < bounds[0].0 {
+            bounds.swap(0, 1);
+        }
+        for (bound, k, l) in bounds {
+            if bound < self.best && self.best > self.touching {
+                self.visit(k, l);
+            }
+        }
+    }
+}
+
+/// Adds the balls of the triangles in `order`, children first; returns the index of the outermost.
+fn build(triangles: &[Triangle], order: &mut [usize], balls: &mut Vec<Ball>) -> usize {
+    let content = if let [only] = order {
+        Content::Triangle(*only)
+    } else {
+        let middle = |i: &usize, k: usize| triangles[*i].iter().map(|p| p[k] / 3.0).sum::<f64>();
+        let extent = |k: usize| {
+            let along = order.iter().map(|i| middle(i, k));
+            along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+        };
+        let extents = [extent(0), extent(1), extent(2)];
+        let widest = (0..3).max_by(|&x, &y| extents[x].total_cmp(&extents[y])).unwrap_or(0);
+        let half = order.len() / 2;
+        order.select_nth_unstable_by(half, |x, y| {
+            middle(x, widest).total_cmp(&middle(y, widest)).then(x.cmp(y))
+        });
+        let (low, high) = order.split_at_mut(half);
+        Content::Parts([build(triangles, low, balls), build(triangles, high, balls)])
+    };
+    let (center, radius) = enclosing_ball(order.iter().flat_map(|&i| triangles[i]));
+    balls.push(Ball { center, radius, content });
+    balls.len() - 1
+}
+
+/// A ball around the points: the middle of their box, the distance of the farthest.
+fn enclosing_ball(points: impl Iterator<Item = Point3<f64>> + Clone) -> (Point3<f64>, f64) {
+    let low = points.clone().reduce(|p, q| p.inf(&q)).unwrap_or_default();
+    let high = points.clone().reduce(|p, q| p.sup(&q)).unwrap_or_default();
+    let center = nalgebra::center(&low, &high);
+    let radius = points.map(|p| (p - center).norm()).fold(0.0, f64::max);
+    (center, radius)
+}

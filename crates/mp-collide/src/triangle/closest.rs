@@ -1,0 +1,168 @@
+//! The distance between triangles and the points where it is taken.
+//!
+//! Two triangles apart are closest either edge to edge or corner to face: nine pairs of segments and six
+//! points against triangles. Minima are found by orthogonal projection rather than normal equations, so
+//! that nearly parallel edges and slivers keep their accuracy: errors stay at some units in the last place
+//! of the coordinates.
+
+use nalgebra::{Point3, Vector3};
+
+use super::{Triangle, intersect};
+use crate::query::Separation;
+
+/// Squared distance and the points where it is taken.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closest {
+    pub(crate) squared: f64,
+    pub(crate) on_a: Point3<f64>,
+    pub(crate) on_b: Point3<f64>,
+}
+
+impl Closest {
+    pub(crate) const NONE: Self =
+        Self { squared: f64::INFINITY, on_a: Point3::new(0.0, 0.0, 0.0), on_b: Point3::new(0.0, 0.0, 0.0) };
+
+    fn keep(&mut self, on_a: Point3<f64>, on_b: Point3<f64>) -> bool {
+        let squared = (on_b - on_a).norm_squared();
+        let better = squared < self.squared;
+        if better {
+            *self = Self { squared, on_a, on_b };
+        }
+        better
+    }
+}
+
+/// The distance of two triangles in the same frame with nearest points; 0 exactly when they intersect.
+#[must_use]
+pub fn closest(a: &Triangle, b: &Triangle) -> Separation {
+    if intersect(a, b) {
+        let point = crossing(a, b);
+        return Separation { distance: 0.0, point_a: point, point_b: point };
+    }
+    let best = closest_within(a, b, f64::INFINITY).unwrap_or(Closest::NONE);
+    Separation {
+        distance: best.squared.sqrt().max(f64::MIN_POSITIVE),
+        point_a: best.on_a,
+        point_b: best.on_b,
+    }
+}
+
+/// The nearest points of two triangles that do not intersect, when nearer than the root of `squared`.
+pub(crate) fn closest_within(a: &Triangle, b: &Triangle, squared: f64) -> Option<Closest> {
+    let mut best = Closest { squared, ..Closest::NONE };
+    let mut found = false;
+    for i in 0..3 {
+        for j in 0..3 {
+            let (p, q) = between_segments((&a[i], &a[(i + 1) % 3]), (&b[j], &b[(j + 1) % 3]));
+            if best.keep(p, q) {
+                found = true;
+                if is_nearest(a, b, p, q) {
+                    return Some(best);
+                }
+            }
+        }
+    }
+    for p in a {
+        if let Some(q) = foot_inside(p, b) {
+            found |= best.keep(*p, q);
+        }
+    }
+    for q in b {
+        if let Some(p) = foot_inside(q, a) {
+            found |= best.keep(p, *q);
+        }
+    }
+    found.then_some(best)
+}
+
+/// Whether the slab between `p` on `a` and `q` on `b`, at right angles to their join, keeps the triangles
+/// apart: then no points are nearer, up to rounding.
+fn is_nearest(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> bool {
+    let join = q - p;
+    let (mut top_a, mut bottom_b, mut size) = (f64::NEG_INFINITY, f64::INFINITY, 0.0_f64);
+    for corner in a {
+        let along = join.dot(&(corner - p));
+        top_a = top_a.max(along);
+        size = size.max(along.abs());
+    }
+    for corner in b {
+        let along = join.dot(&(corner - p));
+        bottom_b = bottom_b.min(along);
+        size = size.max(along.abs());
+    }
+    bottom_b - top_a >= join.norm_squared() - 4.0 * f64::EPSILON * size
+}
+
+/// The nearest points of two closed segments (either may be a point).
+fn between_segments(
+    (p0, p1): (&Point3<f64>, &Point3<f64>),
+    (q0, q1): (&Point3<f64>, &Point3<f64>),
+) -> (Point3<f64>, Point3<f64>) {
+    let (u, v, r) = (p1 - p0, q1 - q0, q0 - p0);
+    let vv = v.norm_squared();
+    // What u and r are beside v; the distance of the lines depends on nothing else.
+    let beside = |w: &Vector3<f64>| if vv > 0.0 { w - v * (w.dot(&v) / vv) } else { *w };
+    let (u_beside, r_beside) = (beside(&u), beside(&r));
+    let mut s = ratio(r_beside.dot(&u_beside), u_beside.norm_squared());
+    let t = unclamped_ratio((u * s - r).dot(&v), vv);
+    let t = if t < 0.0 {
+        s = ratio(r.dot(&u), u.norm_squared());
+        0.0
+    } else if t > 1.0 {
+        s = ratio((r + v).dot(&u), u.norm_squared());
+        1.0
+    } else {
+        t
+    };
+    (at(p0, p1, s), at(q0, q1, t))
+}
+
+/// The point at `s` of the way; the ends themselves at 0 and 1.
+fn at(p0: &Point3<f64>, p1: &Point3<f64>, s: f64) -> Point3<f64> {
+    if s < 1.0 { p0 + (p1 - p0) * s } else { *p1 }
+}
+
+fn unclamped_ratio(x: f64, y: f64) -> f64 {
+    if y > 0.0 { x / y } else { 0.0 }
+}
+
+fn ratio(x: f64, y: f64) -> f64 {
+    unclamped_ratio(x, y).clamp(0.0, 1.0)
+}
+
+/// The foot of the perpendicular from `p` on the plane of `t`, when within the triangle.
+fn foot_inside(p: &Point3<f64>, t: &Triangle) -> Option<Point3<f64>> {
+    let (u, v, r) = (t[1] - t[0], t[2] - t[0], p - t[0]);
+    let uu = u.norm_squared();
+    if uu <= 0.0 {
+        return None;
+    }
+    let along = |w: &Vector3<f64>| w.dot(&u) / uu;
+    let v_beside = v - u * along(&v);
+    let vv = v_beside.norm_squared();
+    if vv <= 0.0 {
+        return None;
+    }
+    let y = (r - u * along(&r)).dot(&v_beside) / vv;
+    let x = along(&(r - v * y));
+    (x >= 0.0 && y >= 0.0 && x + y <= 1.0).then(|| t[0] + u * x + v * y)
+}
+
+/// A point common to two triangles that intersect, up to rounding.
+pub(crate) fn crossing(a: &Triangle, b: &Triangle) -> Point3<f64> {
+    let mut best = closest_within(a, b, f64::INFINITY).unwrap_or(Closest::NONE);
+    for (edges, face) in [(a, b), (b, a)] {
+        let normal = (face[1] - face[0]).cross(&(face[2] - face[0]));
+        for i in 0..3 {
+            let (p, q) = (&edges[i], &edges[(i + 1) % 3]);
+            let (hp, hq) = (normal.dot(&(p - face[0])), normal.dot(&(q - face[0])));
+            if hp * hq < 0.0 {
+                let through = at(p, q, hp / (hp - hq));
+                if let Some(foot) = foot_inside(&through, face) {
+                    best.keep(through, foot);
+                }
+            }
+        }
+    }
+    best.on_a
+}

@@ -1,0 +1,156 @@
+//! The exact triangle–triangle intersection test.
+//!
+//! Two convex hulls of three points meet exactly when an edge of one meets the other. For triangles in
+//! general position this is decided by the signs of 6 + 9 tetrahedron volumes (as in Guigue, Devillers,
+//! *Fast and Robust Triangle-Triangle Overlap Test Using Orientation Predicates*, JGT 2003), each computed
+//! with an error bound and, where that is not enough, exactly (Shewchuk, *Adaptive Precision
+//! Floating-Point Arithmetic and Fast Robust Geometric Predicates*, 1997).
+
+use nalgebra::Point3;
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+use super::Triangle;
+
+/// Whether two closed triangles have a point in common: exactly, for the coordinates as given.
+///
+/// Touching counts. Any of them may be a segment or a point.
+#[must_use]
+pub fn intersect(a: &Triangle, b: &Triangle) -> bool {
+    let side_of_a = b.map(|p| volume(&a[0], &a[1], &a[2], &p));
+    if one_sided(side_of_a) {
+        return false;
+    }
+    let side_of_b = a.map(|p| volume(&b[0], &b[1], &b[2], &p));
+    if one_sided(side_of_b) {
+        return false;
+    }
+    if side_of_a == [0; 3] || side_of_b == [0; 3] {
+        // Coplanar, or one has no area.
+        return edges(a).any(|(p, q)| segment_meets(p, q, b))
+            || edges(b).any(|(p, q)| segment_meets(p, q, a));
+    }
+    // Both have an area, in different planes: they meet exactly when an edge of one that does not lie in
+    // the plane of the other meets it there. Corner k starts edge k.
+    let mut memo = [[None; 3]; 3];
+    let mut twist = |i: usize, j: usize| {
+        *memo[i][j].get_or_insert_with(|| volume(&a[i], &a[next(i)], &b[j], &b[next(j)]))
+    };
+    (0..3).any(|j| crosses(side_of_a[j], side_of_a[next(j)]) && agree((0..3).map(|i| twist(i, j))))
+        || (0..3).any(|i| crosses(side_of_b[i], side_of_b[next(i)]) && agree((0..3).map(|j| twist(i, j))))
+}
+
+fn next(i: usize) -> usize {
+    (i + 1) % 3
+}
+
+fn edges(t: &Triangle) -> impl Iterator<Item = (&Point3<f64>, &Point3<f64>)> {
+    (0..3).map(|i| (&t[i], &t[next(i)]))
+}
+
+fn one_sided(sides: [i8; 3]) -> bool {
+    sides == [1; 3] || sides == [-1; 3]
+}
+
+/// Whether a segment with ends on these sides of a plane meets it in exactly one point.
+fn crosses(p: i8, q: i8) -> bool {
+    p * q <= 0 && (p, q) != (0, 0)
+}
+
+/// No two of opposite sign.
+fn agree(signs: impl Iterator<Item = i8>) -> bool {
+    let (mut positive, mut negative) = (false, false);
+    for s in signs {
+        positive |= s > 0;
+        negative |= s < 0;
+        if positive && negative {
+            return false;
+        }
+    }
+    true
+}
+
+fn sign(x: f64) -> i8 {
+    i8::from(x > 0.0) - i8::from(x < 0.0)
+}
+
+/// The sign of the volume of a tetrahedron, exactly.
+fn volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) -> i8 {
+    let coord = |p: &Point3<f64>| Coord3D { x: p.x, y: p.y, z: p.z };
+    sign(orient3d(coord(a), coord(b), coord(c), coord(d)))
+}
+
+/// The point without coordinate `drop`.
+fn flat(p: &Point3<f64>, drop: usize) -> Coord<f64> {
+    let (x, y) = [(1, 2), (0, 2), (0, 1)][drop];
+    Coord { x: p[x], y: p[y] }
+}
+
+/// The sign of the area of a triangle seen along axis `drop`, exactly.
+fn area(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, drop: usize) -> i8 {
+    sign(orient2d(flat(a, drop), flat(b, drop), flat(c, drop)))
+}
+
+/// An axis along which the triangle is seen to have an area; `None` when its corners lie on a line.
+fn visible_along(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>) -> Option<usize> {
+    (0..3).find(|&drop| area(a, b, c, drop) != 0)
+}
+
+/// Whether a closed segment meets a closed triangle, whatever degenerates.
+fn segment_meets(p: &Point3<f64>, q: &Point3<f64>, t: &Triangle) -> bool {
+    let (sp, sq) = (volume(&t[0], &t[1], &t[2], p), volume(&t[0], &t[1], &t[2], q));
+    if crosses(sp, sq) {
+        return agree(edges(t).map(|(u, v)| volume(p, q, u, v)));
+    }
+    if (sp, sq) != (0, 0) {
+        return false;
+    }
+    match visible_along(&t[0], &t[1], &t[2]) {
+        // All in one plane, which is seen undistorted (up to an affine map) along `drop`.
+        Some(drop) => {
+            agree(edges(t).map(|(u, v)| area(u, v, p, drop)))
+                || edges(t).any(|(u, v)| segments_meet_flat(p, q, u, v, drop))
+        }
+        None => edges(t).any(|(u, v)| segments_meet(p, q, u, v)),
+    }
+}
+
+/// Whether two closed segments in space meet.
+fn segments_meet(p: &Point3<f64>, q: &Point3<f64>, u: &Point3<f64>, v: &Point3<f64>) -> bool {
+    if volume(p, q, u, v) != 0 {
+        return false;
+    }
+    // In one plane: see it along an axis that shows some three of the four points as a triangle.
+    let drop = visible_along(p, q, u)
+        .or_else(|| visible_along(p, q, v))
+        .or_else(|| visible_along(u, v, p))
+        .or_else(|| visible_along(u, v, q));
+    match drop {
+        Some(drop) => segments_meet_flat(p, q, u, v, drop),
+        None => on_line_overlap(p, q, u, v),
+    }
+}
+
+/// Whether two closed segments of one plane meet, seen along axis `drop`, which must not be in the plane.
+fn segments_meet_flat(
+    p: &Point3<f64>,
+    q: &Point3<f64>,
+    u: &Point3<f64>,
+    v: &Point3<f64>,
+    drop: usize,
+) -> bool {
+    let (su, sv) = (area(p, q, u, drop), area(p, q, v, drop));
+    let (sp, sq) = (area(u, v, p, drop), area(u, v, q, drop));
+    if [su, sv, sp, sq] == [0; 4] {
+        return on_line_overlap(p, q, u, v);
+    }
+    su * sv <= 0 && sp * sq <= 0
+}
+
+/// Whether two closed segments meet whose ends all lie on one line: along a line points are ordered as
+/// their coordinates are, lexicographically.
+fn on_line_overlap(p: &Point3<f64>, q: &Point3<f64>, u: &Point3<f64>, v: &Point3<f64>) -> bool {
+    let key = |p: &Point3<f64>| [p.x, p.y, p.z];
+    let sorted = |a: [f64; 3], b: [f64; 3]| if a <= b { (a, b) } else { (b, a) };
+    let ((low, high), (low2, high2)) = (sorted(key(p), key(q)), sorted(key(u), key(v)));
+    low <= high2 && low2 <= high
+}

@@ -1,0 +1,14 @@
+//! Two triangles: do they intersect (exactly), how far apart are they.
+
+mod closest;
+mod exact;
+
+pub use closest::closest;
+pub(crate) use closest::{Closest, closest_within, crossing};
+pub use exact::intersect;
+
+use nalgebra::Point3;
+
+/// The corners of a triangle, in any order. Its corners may coincide or lie on a line: a triangle is the
+/// convex hull of its corners.
+pub type Triangle = [Point3<f64>; 3];
