@@ -12,7 +12,8 @@
 //! | how to move | [`Straight`] |
 //! | what to reach | [`Exactly`], [`Ball`], a closure |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
-//! | what to do with a path | [`Path`] |
+//! | what to do with a path | [`Path`], [`verify_path`], [`least_clearance`], [`shorten`] |
+//! | whether your own implementation is right | [`testkit`] |
 
 mod error;
 mod goal;
@@ -25,8 +26,10 @@ mod path;
 mod planner;
 mod rng;
 mod sampler;
+pub mod shorten;
 mod space;
 mod stop;
+pub mod testkit;
 mod validity;
 
 pub use error::{ParameterError, SpaceError};
@@ -39,7 +42,7 @@ pub use metric::{
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
 pub use nn::{DefaultNn, Hit, Linear, NearestNeighbors, NodeId};
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
-pub use path::Path;
+pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use rng::Rng;
 pub use sampler::{GoalBias, Halton, Sampler, Uniform};

@@ -46,7 +46,7 @@ impl<S, M: TrueMetric<S> + ?Sized> TrueMetric<S> for &M {}
 
 /// A configuration space (or state space): what states are, how far apart, and what lies between.
 ///
-/// Contract, checked by the conformance test kit:
+/// Contract, checked by the conformance [test kit](crate::testkit):
 /// - `interpolate(a, b, 0) = a` and `interpolate(a, b, 1) = b`, exactly;
 /// - constant speed along a shortest curve: `distance(a, interpolate(a, b, t)) = t · distance(a, b)`
 ///   up to rounding (a metric put on by [`WithMetric`](crate::WithMetric) may lack this one:
@@ -118,8 +118,7 @@ pub trait Factored: Space {
     );
 }
 
-/// Linear interpolation that is exact at both ends, never leaves \[a, b\] by rounding, and gives
-/// the same value seen from either end.
+/// Linear interpolation that is exact at both ends and never leaves \[a, b\] by rounding.
 #[inline]
 pub(crate) fn lerp(a: f64, b: f64, t: f64) -> f64 {
     if t < 0.5 { a + (b - a) * t } else { b - (b - a) * (1.0 - t) }

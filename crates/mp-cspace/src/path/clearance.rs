@@ -1,0 +1,155 @@
+//! The least clearance along a path, to a given accuracy.
+
+use super::Path;
+use crate::{Clearance, MotionBound, Space};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Where a path is tightest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tightest {
+    /// A lower bound (m) on the clearance all along the path.
+    pub clearance: f64,
+    /// The clearance (m) actually found at `at`: an upper bound on the least.
+    pub found: f64,
+    /// The index of the edge.
+    pub edge: usize,
+    /// The fraction of that edge.
+    pub at: f64,
+}
+
+/// A part of an edge from fraction `a` to `b`, with lower bounds on the clearance at both and
+/// between.
+struct Part {
+    bound: f64,
+    edge: usize,
+    a: (f64, f64),
+    b: (f64, f64),
+}
+
+impl Part {
+    /// The part between two places whose clearance is known, `travel` the motion bound of the edge:
+    /// the two cones of descent meet at the bound.
+    fn new(edge: usize, travel: f64, a: (f64, f64), b: (f64, f64)) -> Self {
+        let bound = 0.5 * (a.1 + b.1 - travel * (b.0 - a.0));
+        Self { bound, edge, a, b }
+    }
+}
+
+/// The greatest part in a heap is the one of least bound, ties by place.
+impl Ord for Part {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let place = other.edge.cmp(&self.edge).then(other.a.0.total_cmp(&self.a.0));
+        other.bound.total_cmp(&self.bound).then(place)
+    }
+}
+impl PartialOrd for Part {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl PartialEq for Part {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Part {}
+
+/// How many clearances are asked for at most.
+const MAX_QUERIES: usize = 1_000_000;
+
+/// The least clearance along `path`, its bounds at most `accuracy` metres apart; `None` for the
+/// empty path.
+///
+/// Branch and bound on the motion bound (Piyavskii 1972, Shubert 1972): the part that may be
+/// tightest is halved first. A path in contact gives zero. An accuracy that is not positive, or
+/// takes over a million queries, ends with what is known then: still a lower bound.
+pub fn least_clearance<C, V>(
+    space: &C,
+    valid: &mut V,
+    path: &Path<C::State>,
+    accuracy: f64,
+) -> Option<Tightest>
+where
+    C: Space,
+    V: Clearance<C::State> + MotionBound<C::State>,
+{
+    let edges = path.states.len().checked_sub(1)?;
+    // Of the states exactly; first of all, as the search starts from the tightest of them.
+    let mut at_states = Vec::with_capacity(edges + 1);
+    let mut tightest = Tightest { clearance: 0.0, found: f64::INFINITY, edge: 0, at: 0.0 };
+    for (i, q) in path.states.iter().enumerate() {
+        let clearance = valid.clearance(q, f64::INFINITY).max(0.0);
+        at_states.push(clearance);
+        if clearance < tightest.found {
+            // The last state is the end of the last edge.
+            let edge = i.min(edges.saturating_sub(1));
+            tightest = Tightest { found: clearance, edge, at: (i - edge) as f64, ..tightest };
+        }
+    }
+    let travels: Vec<f64> = path.states.windows(2).map(|w| valid.motion_bound(&w[0], &w[1])).collect();
+    let mut parts: BinaryHeap<Part> =
+        (0..edges).map(|i| Part::new(i, travels[i], (0.0, at_states[i]), (1.0, at_states[i + 1]))).collect();
+    for _ in 0..MAX_QUERIES {
+        let settled = parts.peek().is_none_or(|p| p.bound >= tightest.found - accuracy);
+        if settled || tightest.found <= 0.0 {
+            break;
+        }
+        let Some(Part { edge, a, b, .. }) = parts.pop() else { break };
+        let at = 0.5 * (a.0 + b.0);
+        let q = space.interpolate(&path.states[edge], &path.states[edge + 1], at);
+        // What would settle both halves.
+        let enough = 2.0 * tightest.found - a.1.min(b.1) + (at - a.0) * travels[edge];
+        let clearance = valid.clearance(&q, enough.max(tightest.found)).max(0.0);
+        if clearance < tightest.found {
+            tightest = Tightest { found: clearance, edge, at, ..tightest };
+        }
+        let middle = (at, clearance);
+        parts.push(Part::new(edge, travels[edge], a, middle));
+        parts.push(Part::new(edge, travels[edge], middle, b));
+    }
+    let bound = parts.peek().map_or(tightest.found, |p| p.bound);
+    tightest.clearance = bound.min(tightest.found).max(0.0);
+    Some(tightest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Rn;
+    use nalgebra::Vector2;
+
+    /// A point beside a disc of radius 1 about the origin.
+    struct Disc(usize);
+    impl Clearance<Vector2<f64>> for Disc {
+        fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
+            self.0 += 1;
+            (q.norm() - 1.0).min(enough)
+        }
+    }
+    impl MotionBound<Vector2<f64>> for Disc {
+        fn motion_bound(&self, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
+            (b - a).norm()
+        }
+    }
+
+    #[test]
+    fn finds_the_tightest_place() {
+        let space = Rn::<2>::new([-5.0, -5.0], [5.0, 5.0]).unwrap();
+        let path =
+            |points: &[(f64, f64)]| Path::straight(points.iter().map(|&(x, y)| Vector2::new(x, y)).collect());
+        let mut disc = Disc(0);
+        let bent = path(&[(-4.0, 3.0), (-4.0, 1.25), (3.5, 1.25), (3.5, -3.0)]);
+        for accuracy in [0.1, 1e-3, 1e-6] {
+            let t = least_clearance(&space, &mut disc, &bent, accuracy).unwrap();
+            assert!(t.clearance <= 0.25 && 0.25 <= t.found && t.found - t.clearance <= accuracy);
+            assert_eq!(t.edge, 1);
+        }
+        assert!(disc.0 < 4000, "{} queries", disc.0);
+        let through = path(&[(-4.0, 0.1), (4.0, 0.1)]);
+        assert_eq!(least_clearance(&space, &mut disc, &through, 1e-3).unwrap().clearance, 0.0);
+        let standing = least_clearance(&space, &mut disc, &path(&[(3.0, 0.0)]), 1e-3).unwrap();
+        assert_eq!((standing.clearance, standing.found), (2.0, 2.0));
+        assert_eq!(least_clearance(&space, &mut disc, &path(&[]), 1e-3), None);
+    }
+}

@@ -1,0 +1,91 @@
+//! Shortening and smoothing of paths without ever leaving free space.
+//!
+//! Every edge these functions add, halves of old edges included, has been found free by `check`;
+//! what is not is rolled back. All are bounded in work and depend on nothing but their arguments:
+//! the same seed gives the same path.
+//!
+//! | function | does |
+//! |---|---|
+//! | [`reduce`] | leaves out states, deterministic |
+//! | [`shortcut`] | joins random places of the path by straight motions |
+//! | [`partial_shortcut`] | the same for one factor of the space at a time |
+//! | [`bspline`] | rounds corners by cubic B-spline subdivision |
+//! | [`simplify`] | all of them in a good order |
+
+mod bspline;
+mod random;
+
+pub use bspline::bspline;
+pub use random::{partial_shortcut, shortcut};
+
+use crate::{Factored, MotionValidity, Path, Rng, Space};
+
+/// How much work to put into shortening a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Shortcuts tried at most, of each kind.
+    pub attempts: usize,
+    /// Shortcuts that may fail one after another before giving up.
+    pub patience: usize,
+    /// Rounds of corner rounding, each at most doubling the number of states; at most 10 are done.
+    pub rounds: usize,
+}
+
+impl Default for Effort {
+    /// 200 attempts, patience 60, 3 rounds.
+    fn default() -> Self {
+        Self { attempts: 200, patience: 60, rounds: 3 }
+    }
+}
+
+/// Leaves out states: from each kept state goes straight to a later one as far along as `check`
+/// allows, trying the goal first and halving the way back after each failure.
+///
+/// At most `n·log₂ n` checks for `n` states. The length does not increase.
+pub fn reduce<C: Space>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    path: &Path<C::State>,
+) -> Path<C::State> {
+    let old = &path.states;
+    let mut states: Vec<C::State> = old.first().cloned().into_iter().collect();
+    let mut here = 0;
+    while here + 1 < old.len() {
+        let mut there = old.len() - 1;
+        while there > here + 1 && !joins(space, check, &old[here..=there]) {
+            there = here + (there - here) / 2;
+        }
+        states.push(old[there].clone());
+        here = there;
+    }
+    Path::straight(states)
+}
+
+/// Whether the straight motion between the ends of a piece of path is free and no longer than it.
+fn joins<C: Space>(space: &C, check: &mut impl MotionValidity<C::State>, piece: &[C::State]) -> bool {
+    let [first, .., last] = piece else { return false };
+    let along: f64 = piece.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
+    space.distance(first, last) <= along && check.check_motion(first, last).is_free()
+}
+
+/// Whether every edge through `states` is free.
+fn all_free<S>(check: &mut impl MotionValidity<S>, states: &[S]) -> bool {
+    states.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free())
+}
+
+/// Reduces, takes shortcuts of both kinds, reduces again and rounds the corners.
+///
+/// In a metric of constant speed the length does not increase.
+pub fn simplify<C: Factored>(
+    space: &C,
+    check: &mut impl MotionValidity<C::State>,
+    path: &Path<C::State>,
+    effort: Effort,
+    rng: &mut Rng,
+) -> Path<C::State> {
+    let path = reduce(space, check, path);
+    let path = shortcut(space, check, &path, effort, rng);
+    let path = partial_shortcut(space, check, &path, effort, rng);
+    let path = reduce(space, check, &path);
+    bspline(space, check, &path, effort.rounds)
+}

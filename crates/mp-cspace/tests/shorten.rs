@@ -1,0 +1,122 @@
+//! Shortening never leaves free space, never lengthens, and repeats itself.
+
+use mp_cspace::shorten::{Effort, bspline, partial_shortcut, reduce, shortcut, simplify};
+use mp_cspace::*;
+use nalgebra::Vector2;
+
+/// A segment robot of length 0.4 in a square with a disc in the middle, checked at points.
+fn free(q: &Se2State) -> bool {
+    (0..=8).all(|i| {
+        let p = q.transform_point(&[f64::from(i) * 0.05 - 0.2, 0.0].into());
+        p.coords.norm() > 1.0
+    })
+}
+
+fn space() -> Se2 {
+    Se2::new([-3.0, -3.0], [3.0, 3.0]).unwrap()
+}
+
+/// A detour around the disc with much idle turning, by random steps kept free.
+fn rambling(space: &Se2, seed: u64) -> Path<Se2State> {
+    let mut rng = Rng::seed(seed);
+    let mut check = Discrete::new(space, free, Resolution::Length(0.01)).unwrap();
+    let mut states = vec![Se2State::new(-2.0, 0.0, 0.0)];
+    for i in 1..=12 {
+        let around = std::f64::consts::PI * (1.0 - f64::from(i) / 12.0);
+        let wished = Se2State::new(2.2 * around.cos(), 2.2 * around.sin(), 0.0);
+        let last = states[states.len() - 1];
+        for _ in 0..100 {
+            let noise = space.sample_uniform(&mut rng);
+            let q = Se2State::new(
+                wished.translation.x + 0.1 * noise.translation.x,
+                wished.translation.y + 0.1 * noise.translation.y,
+                noise.angle,
+            );
+            if check.check_motion(&last, &q).is_free() {
+                states.push(q);
+                break;
+            }
+        }
+    }
+    Path::straight(states)
+}
+
+fn all_free(space: &Se2, path: &Path<Se2State>) {
+    let mut check = FineDiscrete::new(space, free, Resolution::Length(0.005)).unwrap();
+    let report = verify_path(space, path, &mut check);
+    assert!(report.is_free(), "{:?}", report.fault);
+}
+
+#[test]
+fn every_kind_stays_free_and_does_not_lengthen() {
+    let space = space();
+    let effort = Effort { attempts: 300, patience: 100, rounds: 3 };
+    for seed in 0..10 {
+        let path = rambling(&space, seed);
+        let mut check = FineDiscrete::new(&space, free, Resolution::Length(0.005)).unwrap();
+        let before = path.length(&space);
+        all_free(&space, &path);
+        let results = [
+            reduce(&space, &mut check, &path),
+            shortcut(&space, &mut check, &path, effort, &mut Rng::seed(seed)),
+            partial_shortcut(&space, &mut check, &path, effort, &mut Rng::seed(seed)),
+            bspline(&space, &mut check, &path, 3),
+            simplify(&space, &mut check, &path, effort, &mut Rng::seed(seed)),
+        ];
+        for result in &results {
+            all_free(&space, result);
+            assert_eq!(result.states.first(), path.states.first());
+            assert_eq!(result.states.last(), path.states.last());
+            assert!(result.length(&space) <= before * (1.0 + 1e-12));
+        }
+        let lengths = results.map(|r| r.length(&space));
+        assert!(
+            lengths[1] < 0.8 * before && lengths[2] < 0.9 * before && lengths[4] < 0.7 * before,
+            "{before} to {lengths:?}"
+        );
+        let again = simplify(&space, &mut check, &path, effort, &mut Rng::seed(seed));
+        assert_eq!(again.length(&space), lengths[4]);
+    }
+}
+
+/// Corners in free space are rounded: the sharpest turn gets flatter.
+#[test]
+fn bspline_rounds_corners() {
+    let space = Rn::<2>::new([0.0, 0.0], [4.0, 4.0]).unwrap();
+    let path = Path::straight([(0.0, 0.0), (2.0, 2.0), (4.0, 0.0)].map(|(x, y)| Vector2::new(x, y)).to_vec());
+    let sharpest = |path: &Path<Vector2<f64>>| {
+        let turn = |w: &[Vector2<f64>]| (w[1] - w[0]).angle(&(w[2] - w[1]));
+        path.states.windows(3).map(turn).fold(0.0, f64::max)
+    };
+    let valid = |q: &Vector2<f64>| q.y < 1.9 || (q.x - 2.0).abs() < 0.1;
+    let mut check = FineDiscrete::new(&space, valid, Resolution::Length(0.01)).unwrap();
+    let rounded = bspline(&space, &mut check, &path, 4);
+    assert!(sharpest(&rounded) < 0.3 * sharpest(&path));
+    assert!(rounded.length(&space) < path.length(&space));
+    let mut never = |_: &Vector2<f64>| false;
+    let mut check = FineDiscrete::new(&space, &mut never, Resolution::Length(0.1)).unwrap();
+    assert_eq!(bspline(&space, &mut check, &path, 4), path);
+}
+
+#[test]
+fn reduction_takes_the_straight_way() {
+    let space = Rn::<2>::new([0.0, 0.0], [4.0, 4.0]).unwrap();
+    let zigzag = (0..41).map(|i| Vector2::new(f64::from(i) * 0.1, f64::from(i % 2) * 0.1));
+    let path = Path::straight(zigzag.collect());
+    let mut check = FineDiscrete::new(&space, |_: &Vector2<f64>| true, Resolution::Length(0.1)).unwrap();
+    assert_eq!(reduce(&space, &mut check, &path).states.len(), 2);
+}
+
+#[test]
+fn degenerate_paths_are_left_alone() {
+    let space = space();
+    let mut check = FineDiscrete::new(&space, free, Resolution::Length(0.01)).unwrap();
+    let q = Se2State::new(2.0, 2.0, 0.0);
+    for n in 0..4 {
+        let path = Path::straight(vec![q; n]);
+        let out = simplify(&space, &mut check, &path, Effort::default(), &mut Rng::seed(1));
+        assert_eq!(out.states.first(), path.states.first());
+        assert_eq!(out.length(&space), 0.0);
+        assert!(out.states.len() <= n);
+    }
+}

@@ -1,0 +1,190 @@
+//! Every space and metric of the crate against the conformance kit and under proptest.
+
+use mp_cspace::testkit::{SpaceKit, check_local_planner, check_true_metric};
+use mp_cspace::*;
+use nalgebra::{Isometry3, Point2, Point3, UnitQuaternion, Vector3};
+use proptest::prelude::*;
+
+type Ok = Result<(), TestCaseError>;
+
+/// The kit, the true-metric axioms, and the straight planner on one space.
+fn conforms<C: Space + TrueMetric<C::State>>(space: &C, kit: SpaceKit) {
+    kit.run(space);
+    let mut rng = mp_cspace::Rng::seed(9);
+    let states: Vec<_> = (0..40).map(|_| space.sample_uniform(&mut rng)).collect();
+    check_true_metric(space, &states, 1e-12);
+    let check = Discrete::new(space, |_: &C::State| true, Resolution::Fraction(0.1)).unwrap();
+    if kit == SpaceKit::new() {
+        check_local_planner(space, &mut Straight::new(space, check), 0.3 * space.extent(), 4);
+    }
+}
+
+/// The axioms on three states and two times chosen by proptest, which shrinks to simple ones.
+fn axioms<C: Space + TrueMetric<C::State>>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
+    let [a, b, c] = [0, 1, 2].map(|i| space.unit_cube_to_state(&u[i]));
+    let slack = 1e-12 * space.extent();
+    let (ab, bc, ac) = (space.distance(&a, &b), space.distance(&b, &c), space.distance(&a, &c));
+    prop_assert!(ac <= ab + bc + slack);
+    prop_assert!((ab - space.distance(&b, &a)).abs() <= slack);
+    prop_assert!(ab <= space.extent() + slack);
+    let m = space.interpolate(&a, &b, t);
+    prop_assert!(space.contains(&m));
+    prop_assert!(space.distance(&m, &space.interpolate(&b, &a, 1.0 - t)) <= slack);
+    Ok(())
+}
+
+/// As [`axioms`], with constant speed.
+fn geodesic_axioms<C: Space + TrueMetric<C::State>>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
+    let [a, b] = [0, 1].map(|i| space.unit_cube_to_state(&u[i]));
+    let (d, m) = (space.distance(&a, &b), space.interpolate(&a, &b, t));
+    prop_assert!((space.distance(&a, &m) - t * d).abs() <= 1e-12 * space.extent());
+    prop_assert!((space.distance(&m, &b) - (1.0 - t) * d).abs() <= 1e-12 * space.extent());
+    axioms(space, u, t)
+}
+
+fn cube_points(dim: usize) -> impl Strategy<Value = [Vec<f64>; 3]> {
+    let coordinate =
+        prop_oneof![4 => 0.0..1.0f64, 1 => Just(0.0), 1 => Just(0.5), 1 => Just(1.0 - f64::EPSILON)];
+    prop::array::uniform3(prop::collection::vec(coordinate, dim))
+}
+
+/// One kit test and one property test per space.
+macro_rules! spaces {
+    ($($name:ident: $space:expr, $kit:expr, $axioms:ident;)*) => {$(
+        mod $name {
+            use super::*;
+            #[test]
+            fn conforms_to_the_kit() {
+                conforms(&$space, $kit);
+            }
+            proptest! {
+                #![proptest_config(ProptestConfig::with_cases(300))]
+                #[test]
+                fn obeys_the_axioms(u in cube_points($space.dim()), t in 0.0..=1.0f64) {
+                    $axioms(&$space, &u, t)?;
+                }
+            }
+        }
+    )*};
+}
+
+fn hull() -> Vec<Point3<f64>> {
+    vec![Point3::new(0.3, 0.1, 0.0), Point3::new(-0.2, 0.4, 0.1), Point3::new(0.0, -0.3, 0.5)]
+}
+fn r3() -> Rn<3> {
+    Rn::new([-1.0, 0.0, 5.0], [1.0, 0.5, 25.0]).unwrap()
+}
+fn se2() -> Se2 {
+    Se2::new([-1.0, -2.0], [3.0, 4.0]).unwrap()
+}
+fn se3() -> Se3 {
+    Se3::new([-1.0, -2.0, 0.0], [3.0, 4.0, 5.0]).unwrap()
+}
+
+spaces! {
+    rn: r3(), SpaceKit::new(), geodesic_axioms;
+    rn_far_from_zero: Rn::<2>::new([1e9, -1e9], [1e9 + 1.0, -1e9 + 3.0]).unwrap(), SpaceKit::new().tolerance(1e-6), axioms;
+    rn_dyn: RnDyn::new(vec![0.0; 7], vec![2.0; 7]).unwrap(), SpaceKit::new(), geodesic_axioms;
+    so2: So2, SpaceKit::new(), geodesic_axioms;
+    so3: So3, SpaceKit::new(), geodesic_axioms;
+    se2_space: se2(), SpaceKit::new(), geodesic_axioms;
+    se3_space: se3(), SpaceKit::new(), geodesic_axioms;
+    se3_heavy: se3().with_rotation_weight(30.0).unwrap(), SpaceKit::new(), geodesic_axioms;
+    torus: Torus::<3>, SpaceKit::new(), geodesic_axioms;
+    product: Product::new(se2(), 1.0, Torus::<2>, 0.25).unwrap(), SpaceKit::new(), geodesic_axioms;
+    nested: Product::new(Product::new(So3, 0.1, So2, 1.0).unwrap(), 2.0, r3(), 1.0).unwrap(), SpaceKit::new(), geodesic_axioms;
+    euclidean: WithMetric::new(se3(), Euclidean), SpaceKit::new(), geodesic_axioms;
+    manhattan: WithMetric::new(Product::new(se3(), 1.0, So2, 1.0).unwrap(), Manhattan), SpaceKit::new(), geodesic_axioms;
+    scaled: WithMetric::new(se3(), ScaledEuclidean::new(&se3(), [1.0, 2.0, 1.0, 0.3]).unwrap()), SpaceKit::new(), geodesic_axioms;
+    displacement: WithMetric::new(se3(), MaxDisplacement::new(hull()).unwrap()), SpaceKit::new().any_speed(), axioms;
+    planar_displacement: WithMetric::new(se2(), MaxDisplacement::planar([Point2::new(0.5, 0.0), Point2::new(0.0, 0.2)]).unwrap()), SpaceKit::new().any_speed(), axioms;
+}
+
+/// Equation 6 at points of the body, not only at its vertices.
+#[test]
+fn displacement_is_attained_at_a_vertex() {
+    let metric = MaxDisplacement::new(hull()).unwrap();
+    let mut rng = mp_cspace::Rng::seed(3);
+    let space = se3();
+    for _ in 0..1000 {
+        let (a, b) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
+        let d = metric.distance(&a, &b);
+        let moved = |p: Point3<f64>| (a * p - b * p).norm();
+        let vertices = hull().into_iter().map(moved).fold(0.0, f64::max);
+        assert!((d - vertices).abs() < 1e-12);
+        let inner = hull().iter().fold(Point3::origin(), |sum, p| sum + p.coords / 3.0);
+        assert!(moved(inner) <= d + 1e-12);
+    }
+    let turned =
+        Isometry3::from_parts(Vector3::zeros().into(), UnitQuaternion::from_euler_angles(0.0, 0.0, 3.0));
+    assert!(metric.distance(&Isometry3::identity(), &turned) > 0.6);
+}
+
+/// The default distance of SE(3) is position plus half the angle.
+#[test]
+fn se3_weighs_half_a_metre_per_radian() {
+    let a = Isometry3::identity();
+    let b = Isometry3::new(Vector3::new(0.0, 2.0, 0.0), Vector3::new(1.5, 0.0, 0.0));
+    assert!((se3().distance(&a, &b) - 2.75).abs() < 1e-15);
+    assert!((se3().extent() - (77.0_f64.sqrt() + std::f64::consts::FRAC_PI_2)).abs() < 1e-14);
+    let (c, d) = (Se2State::new(0.0, 0.0, 3.0), Se2State::new(3.0, 4.0, -3.0));
+    assert!((se2().distance(&c, &d) - 5.0 - 0.5 * (std::f64::consts::TAU - 6.0)).abs() < 1e-14);
+}
+
+#[test]
+fn bad_parameters_are_errors() {
+    let nan = f64::NAN;
+    assert!(matches!(Rn::new([0.0, nan], [1.0, 1.0]), Err(SpaceError::NotFinite { axis: 1, .. })));
+    assert!(matches!(Rn::new([0.0, 1.0], [1.0, 1.0]), Err(SpaceError::EmptyRange { axis: 1, .. })));
+    assert!(matches!(Rn::new([0.0], [f64::INFINITY]), Err(SpaceError::NotFinite { axis: 0, .. })));
+    assert!(matches!(Rn::new([-1e300], [1e300]), Err(SpaceError::NotFinite { .. })));
+    assert!(matches!(Rn::<0>::new([], []), Err(SpaceError::Empty { .. })));
+    assert!(matches!(RnDyn::new(vec![0.0], vec![1.0, 2.0]), Err(SpaceError::Count { .. })));
+    assert!(Se2::new([0.0, 0.0], [1.0, 0.0]).is_err() && Se3::new([0.0; 3], [1.0, nan, 1.0]).is_err());
+    for w in [0.0, -1.0, nan, f64::INFINITY] {
+        assert!(matches!(se3().with_rotation_weight(w), Err(SpaceError::Weight { .. })));
+        assert!(matches!(se2().with_rotation_weight(w), Err(SpaceError::Weight { .. })));
+        assert!(Product::new(So2, w, So3, 1.0).is_err() && Product::new(So2, 1.0, So3, w).is_err());
+        assert!(ScaledEuclidean::new(&So2, [w]).is_err());
+        assert!(Bounded::new(MetricFn(|_: &f64, _: &f64| 1.0), w).is_err());
+    }
+    assert!(matches!(
+        ScaledEuclidean::new(&se3(), [1.0; 6]),
+        Err(SpaceError::Count { expected: 4, found: 6, .. })
+    ));
+    assert!(matches!(MaxDisplacement::new([]), Err(SpaceError::Empty { .. })));
+    assert!(MaxDisplacement::new([Point3::new(nan, 0.0, 0.0)]).is_err());
+    assert_eq!(
+        Rn::new([0.0, 3.0], [1.0, 2.0]).unwrap_err().to_string(),
+        "axis 1 is empty: its lower bound 3 must be below its upper bound 2"
+    );
+}
+
+#[test]
+fn states_that_are_not_contained() {
+    let (nan, inf) = (f64::NAN, f64::INFINITY);
+    for x in [nan, inf, -1.5, 1.5] {
+        assert!(!r3().contains(&[x, 0.2, 6.0].into()));
+    }
+    for angle in [nan, inf, 3.2, -3.2, -std::f64::consts::PI] {
+        assert!(!So2.contains(&angle) && !Torus::<2>.contains(&[0.0, angle].into()));
+        assert!(!se2().contains(&Se2State { angle, ..Se2State::default() }));
+    }
+    assert!(So2.contains(&std::f64::consts::PI));
+    assert!(!RnDyn::new(vec![0.0; 2], vec![1.0; 2]).unwrap().contains(&vec![0.5].into()));
+    let long = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.1, 0.0, 0.0, 0.0));
+    let bad = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(nan, 0.0, 0.0, 0.0));
+    assert!(!So3.contains(&long) && !So3.contains(&bad));
+    assert!(!se3().contains(&Isometry3::translation(9.0, 0.0, 0.0)));
+}
+
+proptest! {
+    /// Wrapping keeps the direction and lands in range, wherever the angle comes from.
+    #[test]
+    fn angles_wrap(angle in prop_oneof![-10.0..10.0f64, -1e6..1e6f64]) {
+        let wrapped = wrap_angle(angle);
+        prop_assert!(So2.contains(&wrapped));
+        prop_assert!((wrapped.sin() - angle.sin()).abs() < 1e-9 && (wrapped.cos() - angle.cos()).abs() < 1e-9);
+        prop_assert!(So2.distance(&angle, &wrapped) < 1e-9);
+    }
+}
