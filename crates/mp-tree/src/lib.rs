@@ -9,6 +9,26 @@
 //! [`Planner`](mp_cspace::Planner): one step at a time, or until a stop says so. [`build`] makes
 //! one by name.
 //!
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Linear, Outcome, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Problem, Settings, build_with};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || q.y > 0.8;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1))?;
+//!
+//! let settings = Settings::parse(["step=10%"])?;
+//! let mut planner = build_with("rrt-connect", problem, Linear::new(), &settings)?;
+//! match planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ()) {
+//!     Outcome::Solved(path) => assert!(path.states.len() > 2),
+//!     Outcome::Stopped(reason) => panic!("stopped: {reason:?}"),
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # The engine
 //! A [`Branch`] is a [`Tree`] with its policies. Every iteration of every variant is: propose a
 //! target, select nodes, grow from them, attach what came of it. Each verb is a slot:

@@ -39,15 +39,15 @@ where
     /// # Errors
     /// When a parameter is out of range.
     pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
-        let goal_bias = if problem.goals.can_aim() { recipe.tuning.checked_bias()? } else { 0.0 };
+        let goal_bias = recipe.tuning.checked_bias()?;
         Ok(Self {
             steer: Steer::new(problem.space, problem.local, problem.verify, &recipe.tuning)?,
             start: Some(problem.start),
+            goal_bias: if problem.goals.can_aim() { goal_bias } else { 0.0 },
             goals: problem.goals,
             branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
             propose: recipe.propose,
             growth: recipe.grow,
-            goal_bias,
             iterations: 0,
         })
     }

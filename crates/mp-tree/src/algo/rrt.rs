@@ -21,6 +21,26 @@
 //! | `step`: longest step | (0, extent of the space] | 20% of the extent |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point goes around a disc to the far side of the unit square:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Linear, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Goals, Problem, Rrt, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let far_side = Goals::region(|q: &Vector2<f64>| q.x > 0.95);
+//!
+//! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.5), far_side)?;
+//! let mut planner = Rrt::with_index(problem, Linear::new(), Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert!(path.states.last().unwrap().x > 0.95);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{Append, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, SingleTree, Tuning};

@@ -20,6 +20,26 @@
 //! | `step`: longest step | (0, extent of the space] | 20% of the extent |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point goes around a disc in the unit square:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Linear, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Problem, RrtConnect, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let mut planner = RrtConnect::with_index(problem, Linear::new(), Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{

@@ -1,0 +1,175 @@
+//! Worlds of boxes with exact answers, for the tests of this crate.
+#![allow(dead_code, unreachable_pub)] // each test file is a crate and uses its part
+
+use mp_cspace::*;
+use nalgebra::{SVector, Vector2};
+
+/// Closed boxes in R^n, and points among them.
+#[derive(Clone, Debug, Default)]
+pub struct Boxes<const N: usize>(pub Vec<([f64; N], [f64; N])>);
+
+impl<const N: usize> Boxes<N> {
+    /// Distance from a point to the nearest box.
+    pub fn distance(&self, q: &SVector<f64, N>) -> f64 {
+        let to_box = |(low, high): &([f64; N], [f64; N])| {
+            (0..N).map(|i| (low[i] - q[i]).max(q[i] - high[i]).max(0.0).powi(2)).sum::<f64>().sqrt()
+        };
+        self.0.iter().map(to_box).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether a segment touches a box: exact, by clipping it against the slabs.
+    pub fn hit(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> bool {
+        self.0.iter().any(|(low, high)| {
+            let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+            for i in 0..N {
+                let (p, v) = (from[i], to[i] - from[i]);
+                if v == 0.0 {
+                    if p < low[i] || p > high[i] {
+                        return false;
+                    }
+                } else {
+                    let (a, b) = ((low[i] - p) / v, (high[i] - p) / v);
+                    enter = enter.max(a.min(b));
+                    leave = leave.min(a.max(b));
+                }
+            }
+            enter <= leave
+        })
+    }
+}
+
+impl<const N: usize> Validity<SVector<f64, N>> for Boxes<N> {
+    fn is_valid(&mut self, q: &SVector<f64, N>) -> bool {
+        !self.0.iter().any(|(low, high)| (0..N).all(|i| low[i] <= q[i] && q[i] <= high[i]))
+    }
+}
+impl<const N: usize> Clearance<SVector<f64, N>> for Boxes<N> {
+    fn clearance(&mut self, q: &SVector<f64, N>, _: f64) -> f64 {
+        self.distance(q)
+    }
+}
+impl<const N: usize> MotionBound<SVector<f64, N>> for Boxes<N> {
+    fn motion_bound(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> f64 {
+        (to - from).norm()
+    }
+}
+
+/// The exact verifier of straight motions among boxes.
+#[derive(Clone, Debug)]
+pub struct Exact<const N: usize>(pub Boxes<N>);
+
+impl<const N: usize> MotionValidity<SVector<f64, N>> for Exact<N> {
+    fn check_motion(&mut self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> MotionCheck {
+        match self.0.hit(from, to) {
+            true => MotionCheck::Collides { at: 0.5 },
+            false => MotionCheck::Free { clearance: 0.0 },
+        }
+    }
+}
+
+/// The unit square.
+pub fn square() -> Rn<2> {
+    Rn::new([0.0; 2], [1.0; 2]).unwrap()
+}
+
+/// The unit cube.
+pub fn cube() -> Rn<3> {
+    Rn::new([0.0; 3], [1.0; 3]).unwrap()
+}
+
+/// A wall of `thickness` across the first axis, with a passage of `width` around `at` on the
+/// others.
+pub fn slit<const N: usize>(thickness: f64, at: f64, width: f64) -> Boxes<N> {
+    let (mut low, mut high) = ([-1.0; N], [2.0; N]);
+    (low[0], high[0]) = (0.5 - thickness / 2.0, 0.5 + thickness / 2.0);
+    let mut boxes = Vec::new();
+    for i in 1..N {
+        // Left of the passage on axis i, then right of it; nearer axes are within the passage.
+        let (mut a, mut b) = ((low, high), (low, high));
+        a.1[i] = at - width / 2.0;
+        b.0[i] = at + width / 2.0;
+        boxes.extend([a, b]);
+        (low[i], high[i]) = (at - width / 2.0, at + width / 2.0);
+    }
+    Boxes(boxes)
+}
+
+/// A hollow box of half size `inner` around `center`, walls `thickness` thick, with a hole of
+/// half size `hole` in the wall toward larger x (zero: closed).
+pub fn hollow<const N: usize>(center: [f64; N], inner: f64, thickness: f64, hole: f64) -> Boxes<N> {
+    let outer = inner + thickness;
+    let around = |r: f64| (center.map(|c| c - r), center.map(|c| c + r));
+    let mut boxes = Vec::new();
+    for i in 0..N {
+        let (low, high) = around(outer);
+        let (mut a, mut b) = ((low, high), (low, high));
+        a.1[i] = center[i] - inner;
+        b.0[i] = center[i] + inner;
+        boxes.push(a);
+        if i > 0 || hole <= 0.0 {
+            boxes.push(b);
+            continue;
+        }
+        let (mut low, mut high) = b;
+        for j in 1..N {
+            let (mut a, mut b) = ((low, high), (low, high));
+            a.1[j] = center[j] - hole;
+            b.0[j] = center[j] + hole;
+            boxes.extend([a, b]);
+            (low[j], high[j]) = (center[j] - hole, center[j] + hole);
+        }
+    }
+    Boxes(boxes)
+}
+
+/// A rod of five discs moving in the plane among boxes.
+#[derive(Clone, Debug)]
+pub struct Rod {
+    pub boxes: Boxes<2>,
+    pub half_length: f64,
+    pub radius: f64,
+}
+
+impl Rod {
+    fn centers(&self, q: &Se2State) -> [Vector2<f64>; 5] {
+        let (s, c) = q.angle.sin_cos();
+        [-1.0, -0.5, 0.0, 0.5, 1.0].map(|k| q.translation + Vector2::new(c, s) * (k * self.half_length))
+    }
+}
+impl Validity<Se2State> for Rod {
+    fn is_valid(&mut self, q: &Se2State) -> bool {
+        self.clearance(q, 0.0) > 0.0
+    }
+}
+impl Clearance<Se2State> for Rod {
+    fn clearance(&mut self, q: &Se2State, _: f64) -> f64 {
+        let least = self.centers(q).iter().map(|c| self.boxes.distance(c)).fold(f64::INFINITY, f64::min);
+        least - self.radius
+    }
+}
+impl MotionBound<Se2State> for Rod {
+    fn motion_bound(&self, from: &Se2State, to: &Se2State) -> f64 {
+        let turn = wrap_angle(to.angle - from.angle).abs();
+        (to.translation - from.translation).norm() + turn * self.half_length
+    }
+}
+
+/// Checks a path from `start` to `goal`, densely along each edge.
+pub fn assert_path<C: Space>(
+    space: &C,
+    path: &Path<C::State>,
+    start: &C::State,
+    goal: impl Fn(&C::State) -> bool,
+    mut valid: impl FnMut(&C::State) -> bool,
+) {
+    assert_eq!(path.states.len(), path.edges.len() + 1);
+    assert_eq!(path.states.first(), Some(start));
+    assert!(goal(path.states.last().unwrap()), "the path does not end in the goal");
+    for pair in path.states.windows(2) {
+        let steps = (space.distance(&pair[0], &pair[1]) / space.extent() / 2e-4).ceil().max(1.0) as usize;
+        for i in 0..=steps {
+            let q = space.interpolate(&pair[0], &pair[1], i as f64 / steps as f64);
+            assert!(space.contains(&q) && valid(&q), "the path collides at {q:?}");
+        }
+    }
+}
