@@ -10,19 +10,27 @@
 //! proportion to its size. Every writer writes to a temporary file and renames it. Lengths are metres and
 //! angles radians. The formats are documented in `docs/formats/`.
 
+mod collada;
 mod error;
 mod gempa;
 mod json;
 mod mesh;
 mod number;
+mod obj;
 mod off;
+mod ompl;
 mod problem;
 mod source;
+mod stl;
 mod text;
 
+pub use collada::parse_collada;
 pub use error::{Error, ErrorKind};
 pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use mesh::{MAX_CORNERS, read_mesh};
+pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh};
+pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
+pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
 pub use source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, write_atomic};
+pub use stl::{parse_stl, stl_text, write_stl};

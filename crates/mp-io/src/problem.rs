@@ -3,6 +3,7 @@
 use crate::error::{Error, ErrorKind};
 use crate::gempa::environment::{self, Environment};
 use crate::mesh::read_mesh;
+use crate::ompl;
 use crate::source::{MAX_TEXT_BYTES, read_file};
 use crate::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
@@ -75,6 +76,28 @@ pub struct Problem {
     pub bounds: Option<Aabb>,
 }
 
+/// A format of problems.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ProblemFormat {
+    Gempa,
+    OmplApp,
+}
+
+impl ProblemFormat {
+    /// The format of a file, by the extension of its name, or else by its content.
+    fn of(path: &Path, text: &str) -> Option<Self> {
+        let extension =
+            path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        match extension.as_str() {
+            "env" | "txt" => Some(Self::Gempa),
+            "cfg" => Some(Self::OmplApp),
+            "off" | "stl" | "obj" | "dae" | "json" => None,
+            _ if text.lines().any(|l| l.trim() == "[problem]") => Some(Self::OmplApp),
+            _ => text.trim_start().get(..5).filter(|w| w.eq_ignore_ascii_case("Robot")).map(|_| Self::Gempa),
+        }
+    }
+}
+
 impl Problem {
     /// Reads a problem and its meshes: a GEMPA environment file (`.env`, `.txt`) or an OMPL.app problem
     /// (`.cfg`). Files of other names are told apart by their content.
@@ -85,7 +108,30 @@ impl Problem {
         let path = path.as_ref();
         let (file, bytes) = (path.display().to_string(), read_file(path, MAX_TEXT_BYTES)?);
         let text = Text::new(&file, &bytes)?;
-        Self::from_environment(path, &text)
+        match ProblemFormat::of(path, text.text) {
+            Some(ProblemFormat::Gempa) => Self::from_environment(path, &text),
+            Some(ProblemFormat::OmplApp) => ompl::load(path, &text),
+            None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
+                .expected("a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)")
+                .help(
+                    "a mesh or a path is no problem: name the file that names the robot and the obstacles",
+                )),
+        }
+    }
+
+    /// Where the origin of the robot may be: [`bounds`](Self::bounds), or, when the file says nothing, a box
+    /// around all obstacles, start and goal with room for the robot to go around them.
+    #[must_use]
+    pub fn position_bounds(&self) -> Aabb {
+        self.bounds.unwrap_or_else(|| {
+            let ends = [self.start, self.goal].map(|p| Point3::from(p.translation.vector));
+            let all = self
+                .obstacles
+                .iter()
+                .map(|o| o.mesh.transformed(&o.pose).aabb())
+                .fold(Aabb::of_points(&ends), |all, b| all.union(&b));
+            all.enlarged(2.0 * self.robot.mesh.radius_about(&Point3::origin()))
+        })
     }
 
     fn from_environment(path: &Path, text: &Text<'_>) -> Result<Self, Error> {
@@ -136,27 +182,51 @@ fn body_mesh(
     place: Token<'_>,
     what: &str,
 ) -> Result<(PathBuf, TriMesh), Error> {
+    let (file, mesh) = cited(text, folder, place, what, |f| read_mesh(f))?;
+    check_mesh(text, place, &file, &mesh)?;
+    Ok((file, mesh))
+}
+
+/// What `read` makes of the file named at `place`; errors tell where it is named.
+pub(crate) fn cited<T>(
+    text: &Text<'_>,
+    folder: &Path,
+    place: Token<'_>,
+    what: &str,
+    read: impl FnOnce(&Path) -> Result<T, Error>,
+) -> Result<(PathBuf, T), Error> {
     let file = folder.join(place.text);
-    let mesh = match read_mesh(&file) {
-        Ok(mesh) => mesh,
+    match read(&file) {
+        Ok(mesh) => Ok((file, mesh)),
         // What cannot be opened is the fault of this line; what is in the mesh file, of that file.
         Err(e) if e.kind() == ErrorKind::Io => {
             let message = format!("the mesh of {what} is not readable: {}: {}", e.file(), e.message());
             let remedy = e.remedy().unwrap_or("check the name of the file").to_owned();
-            return Err(text.error(place, message).help(remedy).with_kind(ErrorKind::Io));
+            Err(text.error(place, message).help(remedy).with_kind(ErrorKind::Io))
         }
-        Err(e) => return Err(e.cited_at(text.place(place))),
-    };
-    if let Some(v) = mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE)) {
-        let message = format!("vertex ({}, {}, {}) is more than {MAX_COORDINATE:e} m away", v.x, v.y, v.z);
-        return Err(Error::new(ErrorKind::Content, file.display(), message)
-            .help("coordinates are metres: scale the mesh")
-            .cited_at(text.place(place)));
+        Err(e) => Err(e.cited_at(text.place(place))),
     }
-    Ok((file, mesh))
 }
 
-fn check_size(text: &Text<'_>, place: Token<'_>, what: &str, values: &[f64]) -> Result<(), Error> {
+/// Refuses coordinates too large to compute with.
+pub(crate) fn check_mesh(
+    text: &Text<'_>,
+    place: Token<'_>,
+    file: &Path,
+    mesh: &TriMesh,
+) -> Result<(), Error> {
+    match mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE)) {
+        None => Ok(()),
+        Some(v) => {
+            let message = format!("vertex ({:e}, {:e}, {:e}) is beyond {MAX_COORDINATE:e} m", v.x, v.y, v.z);
+            Err(Error::new(ErrorKind::Content, file.display(), message)
+                .help("coordinates are metres: scale the mesh")
+                .cited_at(text.place(place)))
+        }
+    }
+}
+
+pub(crate) fn check_size(text: &Text<'_>, place: Token<'_>, what: &str, values: &[f64]) -> Result<(), Error> {
     match values.iter().find(|v| v.abs() > MAX_COORDINATE) {
         None => Ok(()),
         Some(v) => Err(text

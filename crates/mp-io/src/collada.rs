@@ -1,0 +1,89 @@
+//! COLLADA 1.4 and 1.5: the meshes of the visual scene. See `docs/formats/meshes.md`.
+//!
+//! Read as the importer does that OMPL.app uses (assimp), so that its problem files mean the same here:
+//! node transforms are applied, then the unit of length, then the up axis is turned to Y.
+
+pub(crate) mod center;
+mod document;
+mod geometry;
+mod scene;
+#[cfg(test)]
+mod tests;
+
+use crate::error::{Error, ErrorKind};
+use crate::mesh::{build, mesh_error};
+use document::Document;
+use geometry::Geometry;
+use mp_geom::TriMesh;
+use nalgebra::{Matrix4, Point3};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::rc::Rc;
+
+/// The most triangles and vertices that the instances of a scene may have together.
+const MAX_INSTANCED: usize = 50_000_000;
+
+/// A geometry and where the scene puts it.
+pub(crate) struct Instance {
+    geometry: Rc<Geometry>,
+    /// From the frame of the geometry to the world.
+    matrix: Matrix4<f64>,
+}
+
+/// The visual scene of a file.
+pub(crate) struct Scene {
+    instances: Vec<Instance>,
+}
+
+/// Reads `bytes`, the content of a COLLADA file that errors call `file`: all meshes of its visual scene, in
+/// metres, Y up, as one mesh.
+///
+/// # Errors
+/// [`Error`] when it is not COLLADA or uses what is not read here, with the line and column.
+pub fn parse_collada(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
+    Scene::parse(file, bytes)?.to_mesh(file)
+}
+
+impl Scene {
+    pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
+        let text = crate::source::decode(file, bytes)?;
+        document::refuse_floods(file, text)?;
+        let options = roxmltree::ParsingOptions { nodes_limit: document::MAX_NODES, ..Default::default() };
+        let xml = roxmltree::Document::parse_with_options(text, options)
+            .map_err(|e| document::xml_error(file, text, &e))?;
+        let document = Document::new(file, text, &xml)?;
+        Ok(Self { instances: scene::instances(&document)? })
+    }
+
+    /// All instances in one mesh.
+    pub(crate) fn to_mesh(&self, file: &str) -> Result<TriMesh, Error> {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        let mut meshes: HashMap<*const Geometry, TriMesh> = HashMap::new();
+        for Instance { geometry, matrix } in &self.instances {
+            if geometry.ends.is_empty() {
+                continue;
+            }
+            let mesh = match meshes.entry(Rc::as_ptr(geometry)) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => {
+                    new.insert(build(file, geometry.positions.clone(), geometry.polygons())?)
+                }
+            };
+            if vertices.len() + mesh.vertices().len() > MAX_INSTANCED
+                || triangles.len() + mesh.triangles().len() > MAX_INSTANCED
+            {
+                let message = format!("the scene has more than {MAX_INSTANCED} triangles or vertices");
+                return Err(Error::new(ErrorKind::TooLarge, file, message).help("simplify the meshes"));
+            }
+            let base = vertices.len() as u32; // at most MAX_INSTANCED
+            vertices.extend(mesh.vertices().iter().map(|p| transformed(matrix, p)));
+            triangles.extend(mesh.triangles().iter().map(|t| t.map(|i| i + base)));
+        }
+        TriMesh::new(vertices, triangles).map_err(|e| mesh_error(file, &e))
+    }
+}
+
+/// The affine part only, as the importer does.
+fn transformed(m: &Matrix4<f64>, p: &Point3<f64>) -> Point3<f64> {
+    Point3::from(m.fixed_view::<3, 3>(0, 0) * p.coords + m.fixed_view::<3, 1>(0, 3))
+}

@@ -1,0 +1,169 @@
+//! Small files of our own, each a feature of the format.
+
+use super::{Scene, parse_collada};
+use crate::error::ErrorKind;
+use mp_geom::TriMesh;
+use nalgebra::{Point3, Vector3};
+
+const ASSET: &str = "<asset><unit meter=\"1\"/><up_axis>Y_UP</up_axis></asset>";
+
+/// A right triangle and a square above it, sharing their positions.
+const POLYGONS: &str = r##"<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="24">0 0 0  1 0 0  1 1 0  0 1 0  0 0 2  1 0 2  1 1 2  0 1 2</float_array>
+<technique_common><accessor source="#pa" count="8" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+PRIMITIVES
+</mesh></geometry></library_geometries>"##;
+
+const TRIANGLE: &str =
+    r##"<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>"##;
+
+fn dae(asset: &str, primitives: &str, nodes: &str) -> String {
+    let library = POLYGONS.replace("PRIMITIVES", primitives);
+    format!(
+        "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n\
+         {asset}\n{library}\n<library_visual_scenes><visual_scene id=\"s\">{nodes}</visual_scene></library_visual_scenes>\n\
+         <scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>\n"
+    )
+}
+
+const PLAIN: &str = "<node><instance_geometry url=\"#g\"/></node>";
+
+fn parse(text: &str) -> TriMesh {
+    parse_collada("t.dae", text.as_bytes()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn area(mesh: &TriMesh) -> f64 {
+    let of = |i| {
+        let [a, b, c] = mesh.triangle(i);
+        0.5 * (b - a).cross(&(c - a)).norm()
+    };
+    (0..mesh.triangles().len()).map(of).sum()
+}
+
+#[test]
+fn all_kinds_of_primitives() {
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    let cases = [
+        ("triangles", 2, "<p>0 1 2 0 2 3</p>", "", 2, 1.0),
+        ("polylist", 2, "<p>0 1 2 4 5 6 7</p>", "<vcount>3 4</vcount>", 3, 1.5),
+        ("polygons", 2, "<p>0 1 2</p><p>4 5 6 7</p>", "", 3, 1.5),
+        ("tristrips", 1, "<p>0 1 3 2</p>", "", 2, 1.0),
+        ("trifans", 1, "<p>0 1 2 3</p>", "", 2, 1.0),
+    ];
+    for (tag, count, p, vcount, triangles, expected) in cases {
+        let text = dae(ASSET, &format!("<{tag} count=\"{count}\">{input}{vcount}{p}</{tag}>"), PLAIN);
+        let mesh = parse(&text);
+        assert_eq!(mesh.triangles().len(), triangles, "{tag}");
+        assert!((area(&mesh) - expected).abs() < 1e-12, "{tag}");
+    }
+    // The triangles of a strip all face the same way.
+    let strip = parse(&dae(ASSET, &format!("<tristrips>{input}<p>0 1 3 2</p></tristrips>"), PLAIN));
+    for i in 0..2 {
+        let [a, b, c] = strip.triangle(i);
+        assert_eq!((b - a).cross(&(c - a)).normalize(), Vector3::z());
+    }
+}
+
+#[test]
+fn offsets_of_other_inputs_are_passed_over() {
+    let primitives = r##"<source id="n"><float_array count="6">0 0 1 0 1 0</float_array></source>
+<triangles count="1" material="m"><input semantic="NORMAL" source="#n" offset="0"/><input semantic="VERTEX" source="#v" offset="2"/><p>1 9 0 0 9 1 1 9 2</p></triangles>"##;
+    let mesh = parse(&dae(ASSET, primitives, PLAIN));
+    assert_eq!(mesh.triangle(0), [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(1.0, 1.0, 0.0)]);
+}
+
+#[test]
+fn units_and_up_axes() {
+    for (up, expected) in [("X_UP", [-2.0, 1.0, 0.0]), ("Y_UP", [1.0, 2.0, 0.0]), ("Z_UP", [1.0, 0.0, -2.0])]
+    {
+        let asset = format!("<asset><unit name=\"cm\" meter=\"0.01\"/><up_axis>{up}</up_axis></asset>");
+        let nodes = "<node><translate>99 199 0</translate><instance_geometry url=\"#g\"/></node>";
+        let last = parse(&dae(&asset, TRIANGLE, nodes)).triangle(0)[2];
+        assert!((last - Point3::from(expected)).norm() < 1e-12, "{up}: {last}");
+    }
+}
+
+#[test]
+fn transforms_apply_in_their_order_and_through_instances() {
+    let library = "<library_nodes><node id=\"n\"><scale>2 3 1</scale><instance_geometry url=\"#g\"/></node></library_nodes>";
+    let nodes = "<node><matrix>1 0 0 10  0 1 0 20  0 0 1 30  0 0 0 1</matrix>\
+                 <node><translate>1 0 0</translate><rotate>0 0 1 90</rotate><instance_node url=\"#n\"/></node></node>";
+    let text = dae(ASSET, TRIANGLE, nodes)
+        .replace("<library_visual_scenes>", &(library.to_owned() + "<library_visual_scenes>"));
+    let mesh = parse(&text);
+    // (1, 1, 0) scaled to (2, 3, 0), turned to (−3, 2, 0), moved.
+    assert!((mesh.triangle(0)[2] - Point3::new(8.0, 22.0, 30.0)).norm() < 1e-12);
+    let twice = parse(&dae(ASSET, TRIANGLE, &PLAIN.repeat(2)));
+    assert_eq!((twice.triangles().len(), twice.vertices().len()), (2, 6));
+}
+
+#[test]
+fn look_at_and_controllers() {
+    let nodes = "<node><lookat>5 0 0  5 0 -1  0 1 0</lookat><instance_controller url=\"#c\"/></node>";
+    let text = dae(ASSET, TRIANGLE, nodes).replace(
+        "<library_visual_scenes>",
+        "<library_controllers><controller id=\"c\"><skin source=\"#g\"/></controller></library_controllers><library_visual_scenes>",
+    );
+    assert_eq!(parse(&text).triangle(0)[1], Point3::new(6.0, 0.0, 0.0));
+}
+
+#[test]
+fn the_center_counts_a_corner_once_for_each_normal() {
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    // Two coplanar triangles share two corners: four vertices, though the mesh has other positions as well.
+    let flat = format!("<triangles>{input}<p>0 1 2 0 2 3</p></triangles>");
+    let center = Scene::parse("t.dae", dae(ASSET, &flat, PLAIN).as_bytes()).unwrap().center();
+    assert!((center - Vector3::new(0.5, 0.5, 0.0)).norm() < 1e-7);
+    // An upright triangle on the edge 0 1 has another normal: those two count again.
+    let bent = format!("<triangles>{input}<p>0 1 2 0 2 3 0 1 4</p></triangles>");
+    let center = Scene::parse("t.dae", dae(ASSET, &bent, PLAIN).as_bytes()).unwrap().center();
+    let expected = (Vector3::new(2.0, 2.0, 0.0) + Vector3::new(1.0, 0.0, 2.0)) / 7.0;
+    assert!((center - expected).norm() < 1e-6, "{center}");
+    // Normals of the file that agree join them.
+    let normals = r##"<source id="n"><float_array count="3">0 0 1</float_array></source>"##;
+    let smooth = format!(
+        "{normals}<triangles>{input}<input semantic=\"NORMAL\" source=\"#n\" offset=\"1\"/><p>0 0 1 0 2 0 0 0 2 0 3 0 0 0 1 0 4 0</p></triangles>"
+    );
+    let center = Scene::parse("t.dae", dae(ASSET, &smooth, PLAIN).as_bytes()).unwrap().center();
+    let expected = (Vector3::new(2.0, 2.0, 0.0) + Vector3::new(0.0, 0.0, 2.0)) / 5.0;
+    assert!((center - expected).norm() < 1e-6, "{center}");
+}
+
+#[test]
+fn floods_are_refused() {
+    let fails = |text: &str| parse_collada("t.dae", text.as_bytes()).unwrap_err();
+    let bomb = "<!DOCTYPE a [<!ENTITY b \"x\">]>\n<COLLADA>&b;</COLLADA>";
+    let e = fails(bomb);
+    assert!(e.remedy().unwrap().contains("DOCTYPE"), "{e}");
+    let itself = "<node id=\"a\"><instance_node url=\"#a\"/></node>";
+    assert_eq!(fails(&dae(ASSET, TRIANGLE, itself)).kind(), ErrorKind::TooLarge);
+    // Each node holds the next one ten times over: 10^20 triangles.
+    let mut nodes = String::new();
+    for i in 0..20 {
+        let next = format!("<instance_node url=\"#n{}\"/>", i + 1).repeat(10);
+        nodes += &format!("<node id=\"n{i}\">{next}</node>");
+    }
+    nodes += "<node id=\"n20\"><instance_geometry url=\"#g\"/></node>";
+    assert_eq!(fails(&dae(ASSET, TRIANGLE, &nodes)).kind(), ErrorKind::TooLarge);
+    let wide = format!("<COLLADA {}/>", (0..100_000).map(|i| format!("a{i}=\"\" ")).collect::<String>());
+    assert_eq!(fails(&wide).kind(), ErrorKind::TooLarge);
+    let spaces: String = (0..10_000).map(|i| format!("<a xmlns:n{i}=\"u\">")).collect();
+    assert_eq!(fails(&spaces).kind(), ErrorKind::TooLarge);
+    let deep = "<a>".repeat(300_000);
+    assert_eq!(fails(&deep).kind(), ErrorKind::Format);
+    let deep = format!("<COLLADA>{}{}</COLLADA>", "<node>".repeat(300_000), "</node>".repeat(300_000));
+    assert_eq!(fails(&deep).kind(), ErrorKind::Format);
+    let counts = TRIANGLE.replace("count=\"1\"", "count=\"99999999999\"");
+    assert!(fails(&dae(ASSET, &counts, PLAIN)).to_string().contains("expected 99999999999"));
+}
+
+#[test]
+fn places_are_right_whatever_the_line_ends() {
+    for ends in ["\n", "\r\n"] {
+        let text = dae(ASSET, &TRIANGLE.replace("<p>0 1 2</p>", "<p>0\n 1 8</p>"), PLAIN).replace('\n', ends);
+        let e = parse_collada("t.dae", text.as_bytes()).unwrap_err();
+        assert_eq!((e.line(), e.column()), (Some(9), Some(4)), "{e}");
+        assert_eq!(e.message(), "index 8 is out of range");
+    }
+}

@@ -1,0 +1,175 @@
+//! Wavefront OBJ: polygons. See `docs/formats/meshes.md`.
+
+use crate::error::{Error, ErrorKind};
+use crate::mesh::build;
+use crate::text::{Text, Token, clipped};
+use mp_geom::TriMesh;
+use nalgebra::Point3;
+
+/// Statements that are skipped: they carry no surface, or only its look.
+const SKIPPED: [&str; 21] = [
+    "vt",
+    "vn",
+    "vp",
+    "p",
+    "l",
+    "g",
+    "o",
+    "s",
+    "mg",
+    "usemtl",
+    "mtllib",
+    "usemap",
+    "maplib",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "ctech",
+    "stech",
+];
+
+/// Statements of curved surfaces, which would be missing from the mesh.
+const CURVED: [&str; 13] =
+    ["cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp", "con"];
+
+/// Reads `bytes`, the content of an OBJ file that errors call `file`: its vertices and polygons. All groups
+/// and objects become one mesh; texture, normals, materials, points and lines are skipped.
+///
+/// # Errors
+/// [`Error`] when it is not OBJ or has curved surfaces, with the line and column.
+pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
+    let text = Text::new(file, bytes)?;
+    // Faces may name vertices of later lines.
+    let total = text.lines().filter(|l| l.words().next().is_some_and(|w| w.text == "v")).count();
+    let mut vertices = Vec::with_capacity(total);
+    let mut corners: Vec<u32> = Vec::new();
+    let mut ends = Vec::new();
+    let mut lines = text.lines();
+    let mut words = Vec::new();
+    while let Some(line) = lines.next() {
+        statement(line, &mut lines, &mut words);
+        let Some(&keyword) = words.first() else { continue };
+        let values = &words[1..];
+        match keyword.text {
+            "v" => vertices.push(vertex(&text, line, values)?),
+            "f" | "fo" => {
+                if values.len() < 3 {
+                    return Err(text
+                        .error(line, format!("a face with {} corners", values.len()))
+                        .expected("three or more vertices: v, v/vt, v//vn or v/vt/vn"));
+                }
+                for value in values {
+                    corners.push(corner(&text, *value, vertices.len(), total)?);
+                }
+                ends.push(corners.len());
+            }
+            k if SKIPPED.contains(&k) => {}
+            k => {
+                let message = format!("`{}` is not a statement that is read here", clipped(k));
+                let e = text.error(keyword, message).expected("v, f, or a statement of OBJ without surface");
+                return Err(if CURVED.contains(&k) {
+                    e.with_kind(ErrorKind::Unsupported).help("export curved surfaces as polygons")
+                } else {
+                    e
+                });
+            }
+        }
+    }
+    let faces = ends.iter().enumerate().map(|(i, &end)| &corners[if i == 0 { 0 } else { ends[i - 1] }..end]);
+    build(file, vertices, faces)
+}
+
+/// The words of a statement: of this line, and of the next ones while a line ends with `\`.
+fn statement<'a>(line: Token<'a>, lines: &mut impl Iterator<Item = Token<'a>>, words: &mut Vec<Token<'a>>) {
+    words.clear();
+    let mut line = line;
+    loop {
+        let before_comment =
+            line.text.find('#').map_or(line, |i| Token { text: &line.text[..i], at: line.at });
+        let whole = before_comment.text.trim_end();
+        let goes_on = whole.strip_suffix('\\');
+        words.extend(Token { text: goes_on.unwrap_or(whole), at: line.at }.words());
+        match goes_on.and_then(|_| lines.next()) {
+            Some(next) => line = next,
+            None => return,
+        }
+    }
+}
+
+fn vertex(text: &Text<'_>, line: Token<'_>, values: &[Token<'_>]) -> Result<Point3<f64>, Error> {
+    let what = "x y z, then perhaps a weight or a colour";
+    // x y z, x y z w, x y z r g b, x y z r g b a
+    if !matches!(values.len(), 3 | 4 | 6 | 7) {
+        return Err(text.error(line, format!("a vertex with {} numbers", values.len())).expected(what));
+    }
+    let mut p = Point3::origin();
+    for (i, word) in values.iter().enumerate() {
+        let v = text.number(*word, what)?;
+        if i < 3 {
+            p[i] = v;
+        }
+    }
+    Ok(p)
+}
+
+/// The vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`: from 1, or backwards from −1, the last one so far.
+fn corner(text: &Text<'_>, word: Token<'_>, so_far: usize, total: usize) -> Result<u32, Error> {
+    let what = "v, v/vt, v//vn or v/vt/vn";
+    let mut parts = word.text.split('/');
+    let first = parts.next().unwrap_or_default();
+    let rest_is_fine = parts.clone().count() <= 2 && parts.all(|p| p.is_empty() || p.parse::<i64>().is_ok());
+    let (true, Ok(number)) = (rest_is_fine, first.parse::<i64>()) else {
+        return Err(text.error(word, format!("`{}` is not a corner", clipped(word.text))).expected(what));
+    };
+    let index = if number < 0 { number.checked_add_unsigned(so_far as u64) } else { number.checked_sub(1) };
+    let known = if number < 0 { so_far } else { total };
+    index.and_then(|i| u32::try_from(i).ok()).filter(|&i| (i as usize) < known).ok_or_else(|| {
+        let help = "indices of OBJ count from 1, negative ones back from the last vertex above";
+        text.error(word, format!("vertex {number} does not exist"))
+            .expected(format!("an index from 1 to {total}"))
+            .help(help)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> TriMesh {
+        parse_obj("t.obj", text.as_bytes()).unwrap()
+    }
+
+    #[test]
+    fn corners_of_all_forms() {
+        let mesh = parse(
+            "# c\nmtllib a.mtl\no box\nv 0 0 0 1.0\nv 1 0 0 0.5 0.5 0.5\nvt 0 0\nvn 0 0 1\ng side # x\nv 1 1 0\nv 0 1 0\n\
+             f 1/1/1 2//1 3/1\nf -4 -2 \\\n  -1\nusemtl m\ns off\nl 1 2\n",
+        );
+        assert_eq!(mesh.triangles(), [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn a_face_may_come_before_its_vertices_and_be_concave() {
+        let mesh = parse("f 1 2 3 4 5\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 2 1 0\nv 0 4 0\n");
+        assert_eq!(mesh.triangles().len(), 3);
+        let area: f64 = (0..3)
+            .map(|i| {
+                let [a, b, c] = mesh.triangle(i);
+                0.5 * (b - a).cross(&(c - a)).norm()
+            })
+            .sum();
+        assert!((area - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bad_corners() {
+        for bad in ["0", "4", "-4", "1/x", "1/1/1/1", "a", "99999999999999999999", "-9223372036854775808"] {
+            let e = parse_obj("t.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {bad}\n").as_bytes())
+                .unwrap_err();
+            assert_eq!((e.line(), e.column()), (Some(4), Some(7)), "{e}");
+        }
+    }
+}

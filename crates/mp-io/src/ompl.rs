@@ -1,0 +1,11 @@
+//! OMPL.app: its problem files, and the way to other planners' benchmarks. See `docs/formats/ompl-app.md`.
+
+mod config;
+mod export;
+mod load;
+#[cfg(test)]
+mod tests;
+
+pub use config::{OmplProblem, OmplState};
+pub use export::{OmplExport, export_ompl};
+pub(crate) use load::load;
