@@ -2,7 +2,7 @@
 
 use crate::{Attach, Attached, BuildError, Grown, Growth, Purpose, Selector, Tree, Tuning, Verify};
 use mp_cspace::{
-    Direction, Event, Extension, Hit, LocalPlanner, MotionCheck, NodeId, Observer, Reach, Space,
+    Direction, Event, Extension, Hit, LocalPlanner, MotionCheck, NodeId, Observer, Reach, Rng, Space,
 };
 use std::fmt;
 
@@ -166,15 +166,16 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         why: Purpose,
         steer: &mut Steer<'_, C, L>,
         growth: &mut G,
+        rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Grown {
-        self.select.select(steer.space, self.tree.states(), target, why, &mut self.candidates);
+        self.select.select(steer.space, self.tree.states(), target, why, rng, &mut self.candidates);
         for i in 0..self.candidates.len() {
             let Hit { id, distance } = self.candidates[i];
             if distance == 0.0 && self.tree.state(id) == target {
                 return Grown::Reached(id);
             }
-            let grown = growth.grow(id, &mut self.growing(target, steer, observer));
+            let grown = growth.grow(id, &mut self.growing(target, steer, rng, observer));
             let grew = grown != Grown::Trapped;
             self.select.feedback(id, why, grew);
             if grew {
@@ -191,13 +192,14 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         from: NodeId,
         target: &C::State,
         steer: &mut Steer<'_, C, L>,
+        rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Grown {
         if self.tree.state(from) == target {
             return Grown::Reached(from);
         }
         let extension = steer.extend(self.tree.state(from), target, self.tree.direction(), Reach::Full);
-        self.growing(target, steer, observer).settle(from, extension)
+        self.growing(target, steer, rng, observer).settle(from, extension)
     }
 
     /// Verifies the path between a root and `id`, edge by edge from the root; edges that passed
@@ -232,6 +234,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         &'a mut self,
         target: &'a C::State,
         steer: &'a mut Steer<'c, C, L>,
+        rng: &'a mut Rng,
         observer: &'a mut dyn Observer<C::State>,
     ) -> Growing<'a, 'c, C, L, Se, A> {
         Growing {
@@ -241,6 +244,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
             attach: &mut self.attach,
             target,
             steer,
+            rng,
             observer,
         }
     }
@@ -254,6 +258,7 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     attach: &'a mut A,
     target: &'a C::State,
     steer: &'a mut Steer<'c, C, L>,
+    rng: &'a mut Rng,
     observer: &'a mut dyn Observer<C::State>,
 }
 
@@ -273,6 +278,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
     /// The local planner and its settings.
     pub fn steer(&mut self) -> &mut Steer<'c, C, L> {
         self.steer
+    }
+
+    /// The random numbers.
+    pub fn rng(&mut self) -> &mut Rng {
+        self.rng
     }
 
     /// The distance from a node to the target.

@@ -18,11 +18,13 @@ pub fn planners() -> &'static [PlannerInfo] {
 /// # Errors
 /// When there is none, with the names there are.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().find(|info| info.name == name).ok_or_else(|| {
-        let known: Vec<_> = planners().iter().map(|info| info.name).collect();
-        let suggestion = closest(name, known.iter().copied());
-        BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
-    })
+    planners().iter().find(|info| info.name == name).ok_or_else(|| unknown(name))
+}
+
+fn unknown(name: &str) -> BuildError {
+    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
+    let suggestion = closest(name, known.iter().copied());
+    BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
 }
 
 /// Makes the planner called `name`, with the nearest neighbours that suit the space.
@@ -59,10 +61,10 @@ where
     L: LocalPlanner<C::State> + 'c,
     N: NearestNeighbors<C> + Clone + 'c,
 {
-    let info = planner(name)?;
-    let tuning = settings.tuning(info)?;
-    match info.name {
-        "rrt-connect" => Ok(Box::new(RrtConnect::with_index(problem, index, tuning)?)),
-        _ => Ok(Box::new(Rrt::with_index(problem, index, tuning)?)),
-    }
+    let tuning = settings.tuning(planner(name)?)?;
+    Ok(match name {
+        "rrt" => Box::new(Rrt::with_index(problem, index, tuning)?),
+        "rrt-connect" => Box::new(RrtConnect::with_index(problem, index, tuning)?),
+        _ => return Err(unknown(name)),
+    })
 }

@@ -1,6 +1,6 @@
 //! Slot: which nodes to grow from.
 
-use mp_cspace::{Hit, NearestNeighbors, NodeId, Space};
+use mp_cspace::{Hit, NearestNeighbors, NodeId, Rng, Space};
 
 /// Why a tree is asked to grow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -18,7 +18,15 @@ pub enum Purpose {
 pub trait Selector<C: Space> {
     /// The candidates to try in order, into `out` (cleared first), with their distances to
     /// `target`. None at all means that this target is refused.
-    fn select(&mut self, space: &C, points: &[C::State], target: &C::State, why: Purpose, out: &mut Vec<Hit>);
+    fn select(
+        &mut self,
+        space: &C,
+        points: &[C::State],
+        target: &C::State,
+        why: Purpose,
+        rng: &mut Rng,
+        out: &mut Vec<Hit>,
+    );
     /// All nodes within `radius` of `q` (inclusive), in order of distance, into `out` (cleared
     /// first).
     fn near(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>);
@@ -36,7 +44,15 @@ pub struct Nearest<N>(pub N);
 
 impl<C: Space, N: NearestNeighbors<C>> Selector<C> for Nearest<N> {
     #[inline]
-    fn select(&mut self, space: &C, points: &[C::State], target: &C::State, _: Purpose, out: &mut Vec<Hit>) {
+    fn select(
+        &mut self,
+        space: &C,
+        points: &[C::State],
+        target: &C::State,
+        _: Purpose,
+        _: &mut Rng,
+        out: &mut Vec<Hit>,
+    ) {
         out.clear();
         out.extend(self.0.nearest(space, points, target));
     }

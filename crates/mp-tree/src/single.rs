@@ -62,6 +62,7 @@ where
     fn begin(
         &mut self,
         start: C::State,
+        rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         let root = self.branch.add_root(self.steer.space(), start, observer);
@@ -69,7 +70,7 @@ where
             return self.candidate(root, observer);
         }
         for i in 0..self.goals.listed().len() {
-            let grown = self.branch.leap(root, &self.goals.listed()[i], &mut self.steer, observer);
+            let grown = self.branch.leap(root, &self.goals.listed()[i], &mut self.steer, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate(id, observer) {
                 return Some(path);
@@ -112,7 +113,7 @@ where
     ) -> Option<Path<C::State, L::Edge>> {
         self.iterations += 1;
         if let Some(start) = self.start.take()
-            && let Some(path) = self.begin(start, observer)
+            && let Some(path) = self.begin(start, rng, observer)
         {
             return Some(path);
         }
@@ -125,7 +126,7 @@ where
         });
         observer.on(Event::Sampled(&target));
         let before = self.branch.tree().len();
-        let grown = self.branch.toward(&target, why, &mut self.steer, &mut self.growth, observer);
+        let grown = self.branch.toward(&target, why, &mut self.steer, &mut self.growth, rng, observer);
         if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
             return self.candidate(id, observer);
         }

@@ -82,6 +82,7 @@ where
     fn begin(
         &mut self,
         start: C::State,
+        rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         let space = self.steer.space();
@@ -90,13 +91,15 @@ where
         if arrived {
             return Some(self.trees[0].tree().path(root));
         }
-        for i in 0..self.goals.listed().len() {
-            let goal = self.goals.listed()[i].clone();
-            if self.trees[1].knows(space, &goal) {
-                continue;
+        for goal in self.goals.listed() {
+            if !self.trees[1].knows(space, goal) {
+                self.trees[1].add_root(space, goal.clone(), observer);
             }
-            let goal_root = self.trees[1].add_root(space, goal, observer);
-            let grown = self.trees[0].leap(root, &self.goals.listed()[i], &mut self.steer, observer);
+        }
+        for goal_root in 0..self.trees[1].tree().len() as NodeId {
+            let [forward, backward] = &mut self.trees;
+            let goal = backward.tree().state(goal_root);
+            let grown = forward.leap(root, goal, &mut self.steer, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate([id, goal_root], observer) {
                 return Some(path);
@@ -162,7 +165,7 @@ where
     ) -> Option<Path<C::State, L::Edge>> {
         self.iterations += 1;
         if let Some(start) = self.start.take()
-            && let Some(path) = self.begin(start, observer)
+            && let Some(path) = self.begin(start, rng, observer)
         {
             return Some(path);
         }
@@ -176,9 +179,10 @@ where
         let (points, select) = a.parts();
         let target = self.propose.propose(rng, self.steer.space(), points, select);
         observer.on(Event::Sampled(&target));
-        let grown = a.toward(&target, Purpose::Explore, &mut self.steer, &mut self.explore, observer);
+        let grown = a.toward(&target, Purpose::Explore, &mut self.steer, &mut self.explore, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
-        let joined = b.toward(a.tree().state(i), Purpose::Join, &mut self.steer, &mut self.join, observer);
+        let joined =
+            b.toward(a.tree().state(i), Purpose::Join, &mut self.steer, &mut self.join, rng, observer);
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, observer)
     }
