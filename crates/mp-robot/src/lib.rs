@@ -1,1 +1,44 @@
 //! Robots: what a configuration places where, and when it is free.
+//!
+//! | robot | its configurations | moves |
+//! |---|---|---|
+//! | [`FreeFlyer`] | `Isometry3<f64>`, in SE(3) | a mesh, freely in space |
+//! | [`PlanarFlyer`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a mesh, in the plane z = 0, turning about Z |
+//! | [`PointRobot`] | `Vector3<f64>`, in R³ | a point |
+//!
+//! All are a [`RigidBody`] among obstacles that stand still. It answers the questions of planners:
+//! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
+//! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; and of people:
+//! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] proves
+//! finished paths by other means.
+//!
+//! ```
+//! use mp_cspace::{Certified, MotionValidity, Se3, Validity};
+//! use mp_geom::primitives::cuboid;
+//! use mp_robot::{FreeFlyer, Verifier};
+//! use nalgebra::Isometry3;
+//!
+//! let wall = ("wall".to_owned(), cuboid(1e-4, 4.0, 4.0)?, Isometry3::identity());
+//! let mut robot = FreeFlyer::new(&cuboid(0.2, 0.2, 0.2)?, [wall])?;
+//! let (left, right) = (Isometry3::translation(-1.0, 0.0, 0.0), Isometry3::translation(1.0, 0.0, 0.0));
+//! assert!(robot.is_valid(&left) && robot.is_valid(&right));
+//!
+//! let space = Se3::new([-2.0; 3], [2.0; 3])?;
+//! let mut verifier = Verifier::new(&space, &robot)?;
+//! let tolerance = robot.tolerance();
+//! let mut planners = Certified::new(&space, robot, tolerance)?;
+//! assert!(!planners.check_motion(&left, &right).is_free());
+//! assert!(!verifier.check_motion(&left, &right).is_free());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod bounds;
+mod explain;
+mod placement;
+mod rigid;
+mod solid;
+mod verify;
+
+pub use placement::{Placement, Planar, Point, Shape, Spatial};
+pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
+pub use verify::Verifier;

@@ -1,0 +1,249 @@
+//! Where configurations put a rigid body, and how far they move it.
+
+use mp_cspace::{Metric, Se2State, So2, rotation_angle};
+use mp_geom::{TriMesh, six_from_pose};
+use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
+use std::fmt::Debug;
+
+/// What motion bounds know of the shape of a body. Lengths in metres, about the origin of its frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// The largest distance of a point from the origin.
+    pub radius: f64,
+    /// The largest distance of a point from the Z axis.
+    pub radius_about_z: f64,
+    /// The corners of a box around it.
+    pub corners: [Point3<f64>; 8],
+}
+
+impl Shape {
+    /// The shape of `mesh`.
+    #[must_use]
+    pub fn of(mesh: &TriMesh) -> Self {
+        let from_z = mesh.vertices().iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
+        Self {
+            radius: mesh.radius_about(&Point3::origin()),
+            radius_about_z: from_z,
+            corners: mesh.obb().corners(),
+        }
+    }
+
+    /// An upper bound on the distance of a point of the body from the line through the origin along the
+    /// unit vector `axis`.
+    #[must_use]
+    pub fn arm(&self, axis: &Vector3<f64>) -> f64 {
+        // The distance from a line is convex: over a box it is largest at a corner.
+        let square = self.corners.iter().map(|c| c.coords.cross(axis).norm_squared()).fold(0.0, f64::max);
+        square.sqrt().min(self.radius)
+    }
+}
+
+/// How configurations of a kind place a rigid body in the world.
+pub trait Placement: Copy + Debug + Default + Send + Sync + 'static {
+    /// A configuration.
+    type State: Clone + Debug;
+
+    /// The pose of the body in the world.
+    fn pose(q: &Self::State) -> Isometry3<f64>;
+
+    /// The configuration nearest to a pose: what of it the robot cannot do is left out.
+    fn configuration(pose: &Isometry3<f64>) -> Self::State;
+
+    /// An upper bound (m) on the length of the way of any point of `shape`, from `from` to `to` along the
+    /// interpolation of the space: translation on a straight line, rotation about a fixed axis by the
+    /// shorter way, both at constant speed.
+    fn travel(shape: &Shape, from: &Self::State, to: &Self::State) -> f64;
+
+    /// World axes along which it can move.
+    const MOVES: &'static [usize];
+    /// World axes about which it can turn.
+    const TURNS: &'static [usize];
+}
+
+/// Bounds are enlarged by this factor against rounding.
+const ROUND_UP: f64 = 1.0 + 1e-12;
+
+/// Anywhere in space, turned anyhow: SE(3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Spatial;
+
+impl Placement for Spatial {
+    type State = Isometry3<f64>;
+
+    #[inline]
+    fn pose(q: &Isometry3<f64>) -> Isometry3<f64> {
+        *q
+    }
+    #[inline]
+    fn configuration(pose: &Isometry3<f64>) -> Isometry3<f64> {
+        *pose
+    }
+
+    /// At any moment a point at distance `d` from the axis through the origin moves with the velocity `v` of
+    /// the origin plus `θ·d` across the axis; with `v` split along and across the axis,
+    /// `√(v∥² + (v⊥ + θ·d)²)` bounds its speed. With `d` at most the radius this is at most the customary
+    /// `‖Δp‖ + radius·θ`.
+    fn travel(shape: &Shape, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        let velocity = to.translation.vector - from.translation.vector;
+        let angle = rotation_angle(&from.rotation, &to.rotation);
+        // Along the axis of the turn, in the frame of the body; its length is the sine of half the angle.
+        let turn = (from.rotation.inverse() * to.rotation).imag();
+        let sine = turn.norm();
+        if sine < 1e-6 {
+            return (velocity.norm() + shape.radius * angle) * ROUND_UP;
+        }
+        let axis = turn / sine;
+        // The axis is known to 1e-16/sine rad; what that moves an arm by is added.
+        let arm = shape.arm(&axis) + shape.radius * 1e-9;
+        let along = velocity.dot(&(from.rotation * axis));
+        let across = (velocity.norm_squared() - along * along).max(0.0).sqrt() + velocity.norm() * 1e-9;
+        along.hypot(across + arm * angle) * ROUND_UP
+    }
+
+    const MOVES: &'static [usize] = &[0, 1, 2];
+    const TURNS: &'static [usize] = &[0, 1, 2];
+}
+
+/// In the plane z = 0, turned about Z: SE(2), as planar problems of 3D meshes are set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Planar;
+
+impl Placement for Planar {
+    type State = Se2State;
+
+    #[inline]
+    fn pose(q: &Se2State) -> Isometry3<f64> {
+        q.to_isometry3(0.0)
+    }
+    #[inline]
+    fn configuration(pose: &Isometry3<f64>) -> Se2State {
+        let [x, y, _, yaw, _, _] = six_from_pose(pose);
+        Se2State::new(x, y, yaw)
+    }
+    #[inline]
+    fn travel(shape: &Shape, from: &Se2State, to: &Se2State) -> f64 {
+        let angle = So2.distance(&from.angle, &to.angle);
+        ((to.translation - from.translation).norm() + shape.radius_about_z * angle) * ROUND_UP
+    }
+
+    const MOVES: &'static [usize] = &[0, 1];
+    const TURNS: &'static [usize] = &[2];
+}
+
+/// Anywhere in space, never turned: R³.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Point;
+
+impl Placement for Point {
+    type State = Vector3<f64>;
+
+    #[inline]
+    fn pose(q: &Vector3<f64>) -> Isometry3<f64> {
+        Isometry3::from_parts(Translation3::from(*q), UnitQuaternion::identity())
+    }
+    #[inline]
+    fn configuration(pose: &Isometry3<f64>) -> Vector3<f64> {
+        pose.translation.vector
+    }
+    #[inline]
+    fn travel(_: &Shape, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
+        (to - from).norm() * ROUND_UP
+    }
+
+    const MOVES: &'static [usize] = &[0, 1, 2];
+    const TURNS: &'static [usize] = &[];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_cspace::{Rn, Se2, Se3, Space};
+    use mp_geom::pose_from_six;
+    use proptest::prelude::*;
+
+    const STEPS: usize = 60;
+
+    /// Compares the bound with the polygonal ways of all vertices, over the whole motion and over a part.
+    fn check<P: Placement, C: Space<State = P::State>>(
+        space: &C,
+        mesh: &TriMesh,
+        from: &P::State,
+        to: &P::State,
+    ) -> Result<f64, TestCaseError> {
+        let bound = P::travel(&Shape::of(mesh), from, to);
+        let poses: Vec<_> =
+            (0..=STEPS).map(|i| P::pose(&space.interpolate(from, to, i as f64 / STEPS as f64))).collect();
+        let mut longest = 0.0_f64;
+        for p in mesh.vertices() {
+            let steps: Vec<f64> = poses.windows(2).map(|w| (w[0] * p - w[1] * p).norm()).collect();
+            longest = longest.max(steps.iter().sum());
+            // Constant speed: no part is faster than its share.
+            let fastest = steps.iter().copied().fold(0.0, f64::max) * STEPS as f64;
+            prop_assert!(fastest <= bound + 1e-9, "{} {}", fastest, bound);
+        }
+        prop_assert!(longest <= bound + 1e-12, "{} {}", longest, bound);
+        Ok(longest / bound.max(1e-300))
+    }
+
+    fn mesh() -> impl Strategy<Value = TriMesh> {
+        prop::collection::vec(prop::array::uniform3(-2.0..2.0_f64), 3..10).prop_map(|v| {
+            let n = v.len() as u32;
+            let triangles = (0..n - 2).map(|i| [i, i + 1, i + 2]).collect();
+            TriMesh::new(v.into_iter().map(Point3::from).collect(), triangles).unwrap()
+        })
+    }
+
+    fn pose() -> impl Strategy<Value = Isometry3<f64>> {
+        prop::array::uniform6(-3.1..3.1_f64).prop_map(pose_from_six)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+        #[test]
+        fn no_point_travels_farther_in_space(mesh in mesh(), a in pose(), b in pose(), small in -9.0..0.0_f64) {
+            let space = Se3::new([-5.0; 3], [5.0; 3]).unwrap();
+            check::<Spatial, _>(&space, &mesh, &a, &b)?;
+            let near = a.lerp_slerp(&b, 10.0_f64.powf(small));
+            check::<Spatial, _>(&space, &mesh, &a, &near)?;
+            let customary = |p: &Isometry3<f64>, q: &Isometry3<f64>| {
+                (p.translation.vector - q.translation.vector).norm()
+                    + Shape::of(&mesh).radius * rotation_angle(&p.rotation, &q.rotation)
+            };
+            prop_assert!(Spatial::travel(&Shape::of(&mesh), &a, &b) <= customary(&a, &b) * (1.0 + 1e-8));
+        }
+
+        #[test]
+        fn no_point_travels_farther_in_the_plane(mesh in mesh(), a in prop::array::uniform3(-3.1..3.1_f64), b in prop::array::uniform3(-3.1..3.1_f64)) {
+            let space = Se2::new([-5.0; 2], [5.0; 2]).unwrap();
+            let [a, b] = [a, b].map(|[x, y, t]| Se2State::new(x, y, t));
+            check::<Planar, _>(&space, &mesh, &a, &b)?;
+        }
+
+        #[test]
+        fn configurations_and_poses_agree(pose in pose(), planar in prop::array::uniform3(-3.1..3.1_f64)) {
+            prop_assert_eq!(Spatial::configuration(&Spatial::pose(&pose)), pose);
+            let q = Se2State::new(planar[0], planar[1], planar[2]);
+            let back = Planar::configuration(&Planar::pose(&q));
+            prop_assert!((back.translation - q.translation).norm() < 1e-14 && (back.angle - q.angle).abs() < 1e-14);
+            let v = pose.translation.vector;
+            prop_assert_eq!(Point::configuration(&Point::pose(&v)), v);
+        }
+    }
+
+    /// The bound is reached where it can be, and a thin rod turning about itself hardly travels.
+    #[test]
+    fn the_bound_is_tight() {
+        let rod = mp_geom::primitives::cuboid(4.0, 0.02, 0.02).unwrap();
+        let space = Se3::new([-5.0; 3], [5.0; 3]).unwrap();
+        let turn = |six| (Isometry3::identity(), pose_from_six(six));
+        let (a, b) = turn([0.0, 0.0, 0.0, 2.0, 0.0, 0.0]);
+        assert!(check::<Spatial, _>(&space, &rod, &a, &b).unwrap() > 0.999);
+        let (a, b) = turn([0.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
+        assert!(Spatial::travel(&Shape::of(&rod), &a, &b) < 0.03);
+        let (a, b) = turn([3.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert!((Spatial::travel(&Shape::of(&rod), &a, &b) - 3.0).abs() < 1e-11);
+        let line = Rn::<3>::new([0.0; 3], [1.0; 3]).unwrap();
+        let (a, b) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(1.0, 0.0, 0.0));
+        assert!(check::<Point, _>(&line, &rod, &a, &b).unwrap() > 0.999);
+    }
+}

@@ -1,0 +1,74 @@
+//! Whether a point is inside a closed mesh.
+
+use mp_geom::{Aabb, TriMesh};
+use nalgebra::Point3;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A closed, consistently oriented obstacle in the world.
+#[derive(Clone, Debug)]
+pub(crate) struct Solid {
+    pub(crate) name: String,
+    mesh: Arc<TriMesh>,
+    bounds: Aabb,
+}
+
+impl Solid {
+    /// `mesh`, in the world, if it is a solid: closed and oriented, outside out.
+    pub(crate) fn new(name: &str, mesh: &TriMesh) -> Option<Self> {
+        let topology = mesh.topology();
+        let solid = topology.closed && topology.oriented && mesh.signed_volume() > 0.0;
+        solid.then(|| Self { name: name.to_owned(), mesh: Arc::new(mesh.clone()), bounds: mesh.aabb() })
+    }
+
+    /// Whether `p` is inside: its winding number is that of the inside. Points within rounding of the
+    /// surface may go either way.
+    pub(crate) fn contains(&self, p: &Point3<f64>) -> bool {
+        self.bounds.contains(p) && winding_number(&self.mesh, p) > 0.5
+    }
+}
+
+/// How often the surface winds around `p`: the solid angle it takes up, over 4π, summed by triangles as in
+/// A. van Oosterom and J. Strackee, "The solid angle of a plane triangle", 1983.
+fn winding_number(mesh: &TriMesh, p: &Point3<f64>) -> f64 {
+    let angle: f64 = (0..mesh.triangles().len())
+        .map(|i| {
+            let [a, b, c] = mesh.triangle(i).map(|v| v - p);
+            let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+            let scale = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+            2.0 * a.dot(&b.cross(&c)).atan2(scale)
+        })
+        .sum();
+    angle / (4.0 * PI)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_geom::primitives::{cuboid, torus};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn inside_a_torus_is_known_by_its_equation(p in prop::array::uniform3(-3.0..3.0_f64)) {
+            let solid = Solid::new("ring", &torus(2.0, 0.7, 96, 48).unwrap()).unwrap();
+            let from_tube = (p[0].hypot(p[1]) - 2.0).hypot(p[2]);
+            // The mesh is inscribed.
+            prop_assume!(!(0.69..=0.7).contains(&from_tube));
+            prop_assert_eq!(solid.contains(&Point3::from(p)), from_tube < 0.7);
+        }
+    }
+
+    #[test]
+    fn rooms_and_sheets_are_no_solids() {
+        let cube = cuboid(1.0, 1.0, 1.0).unwrap();
+        assert!(Solid::new("cube", &cube).is_some());
+        assert!(Solid::new("room", &cube.reversed()).is_none());
+        let sheet = TriMesh::new(cube.vertices().to_vec(), cube.triangles()[..4].to_vec()).unwrap();
+        assert!(Solid::new("sheet", &sheet).is_none());
+        // A hollow one has its cavity.
+        let hollow = TriMesh::merged([&cube, &cuboid(0.5, 0.5, 0.5).unwrap().reversed()]).unwrap();
+        let hollow = Solid::new("hollow", &hollow).unwrap();
+        assert!(!hollow.contains(&Point3::origin()) && hollow.contains(&Point3::new(0.3, 0.3, 0.3)));
+    }
+}
