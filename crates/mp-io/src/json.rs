@@ -24,21 +24,28 @@ impl PathFile {
     /// [`Error`] when it is not JSON or has no path, with the line and column.
     pub fn parse_json(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let what = "an object with a member `path`, a list of six-tuples [x, y, z, α, β, γ]";
+        let what = "{\"path\": [[x, y, z, α, β, γ], …]}";
         let read: HasPath = serde_json::from_str(text).map_err(|e| {
             let at = offset(text, e.line(), e.column());
             let shown = e.to_string();
-            let message = shown.split(" at line ").next().unwrap_or(&shown).to_owned();
-            Error::at(ErrorKind::Format, file, text, at, 1, message).expected(what)
+            let shown = shown.split(" at line ").next().unwrap_or(&shown);
+            let message = match shown.split_once(", expected") {
+                Some((found, _)) => found.to_owned(),
+                None => format!("this is not JSON: {shown}"),
+            };
+            Error::at(ErrorKind::Format, file, text, at, 1, message)
+                .expected(what)
+                .help("the format is described in docs/formats/path.md")
         })?;
+        let content = |message: &str| {
+            Error::at(ErrorKind::Content, file, text, 0, 1, message.to_owned())
+                .expected(what)
+                .help("a result that is not solved has no path")
+        };
         match read.path {
             Some(configurations) if !configurations.is_empty() => Ok(Self { configurations }),
-            Some(_) => {
-                Err(Error::new(ErrorKind::Content, file, "the path has no configurations").expected(what))
-            }
-            None => Err(Error::new(ErrorKind::Content, file, "there is no path in this file")
-                .expected(what)
-                .help("a result that is not solved has no path")),
+            Some(_) => Err(content("the path has no configurations")),
+            None => Err(content("there is no path in this file")),
         }
     }
 

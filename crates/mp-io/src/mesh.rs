@@ -30,7 +30,8 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<TriMesh, Error> {
         Some(MeshFormat::Obj) => parse_obj(&file, &bytes),
         Some(MeshFormat::Collada) => parse_collada(&file, &bytes),
         None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a mesh format that is read here")
-            .expected("a file .off, .txt (GEMPA), .stl, .obj or .dae")),
+            .expected("a file .off, .txt (GEMPA), .stl, .obj or .dae")
+            .help("convert the mesh to one of these")),
     }
 }
 

@@ -41,7 +41,7 @@ const CURVED: [&str; 13] =
 /// # Errors
 /// [`Error`] when it is not OBJ or has curved surfaces, with the line and column.
 pub fn parse_obj(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    let text = Text::new(file, bytes)?;
+    let text = Text::new(file, bytes, "meshes.md")?;
     // Faces may name vertices of later lines.
     let total = text.lines().filter(|l| l.words().next().is_some_and(|w| w.text == "v")).count();
     let mut vertices = Vec::with_capacity(total);

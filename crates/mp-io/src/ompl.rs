@@ -9,3 +9,6 @@ mod tests;
 pub use config::{OmplProblem, OmplState};
 pub use export::{OmplExport, export_ompl};
 pub(crate) use load::load;
+
+/// The page that describes the format.
+pub(crate) const GUIDE: &str = "ompl-app.md";

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind};
 use crate::gempa::environment::{self, Environment};
 use crate::mesh::read_mesh;
 use crate::ompl;
-use crate::source::{MAX_TEXT_BYTES, read_file};
+use crate::source::{MAX_TEXT_BYTES, decode, read_file};
 use crate::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::{Isometry3, Point3};
@@ -107,10 +107,12 @@ impl Problem {
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let (file, bytes) = (path.display().to_string(), read_file(path, MAX_TEXT_BYTES)?);
-        let text = Text::new(&file, &bytes)?;
-        match ProblemFormat::of(path, text.text) {
-            Some(ProblemFormat::Gempa) => Self::from_environment(path, &text),
-            Some(ProblemFormat::OmplApp) => ompl::load(path, &text),
+        let text = decode(&file, &bytes)?;
+        match ProblemFormat::of(path, text) {
+            Some(ProblemFormat::Gempa) => {
+                Self::from_environment(path, &Text { file: &file, text, guide: environment::GUIDE })
+            }
+            Some(ProblemFormat::OmplApp) => ompl::load(path, &Text { file: &file, text, guide: ompl::GUIDE }),
             None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
                 .expected("a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)")
                 .help(

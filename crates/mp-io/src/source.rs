@@ -65,14 +65,22 @@ fn missing_help(path: &Path) -> String {
 /// `bytes` as UTF-8, without a byte order mark.
 pub(crate) fn decode<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Error> {
     let body = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    std::str::from_utf8(body).map_err(|e| {
+    let text = std::str::from_utf8(body).map_err(|e| {
         let good = std::str::from_utf8(&body[..e.valid_up_to()]).unwrap_or_default();
         let byte = body.get(e.valid_up_to()).copied().unwrap_or_default();
         let end = good.len();
         Error::at(ErrorKind::Format, file, good, end, 0, format!("byte 0x{byte:02x} is not UTF-8 text"))
             .expected("a text file")
             .help("save the file as UTF-8; a binary or UTF-16 file cannot be read here")
-    })
+    })?;
+    match text.find('\0') {
+        None => Ok(text),
+        Some(at) => {
+            Err(Error::at(ErrorKind::Format, file, text, at, 1, "a zero byte: this is not UTF-8 text".into())
+                .expected("a text file")
+                .help("save the file as UTF-8; a binary or UTF-16 file cannot be read here"))
+        }
+    }
 }
 
 /// Writes `content` to `path` in one step: to a temporary file in the same folder, then renamed, so that a

@@ -24,7 +24,7 @@ pub fn parse_stl(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
     let soup = if binary_size(bytes) == Some(bytes.len() as u64) || !begins_with_solid(bytes) {
         binary(file, bytes)?
     } else {
-        text(&Text::new(file, bytes)?)?
+        text(&Text::new(file, bytes, "meshes.md")?)?
     };
     TriMesh::from_soup(&soup).map_err(|e| mesh_error(file, &e))
 }
@@ -46,7 +46,8 @@ fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
     let bad = |message: String| Error::new(ErrorKind::Format, file, message);
     let Some(size) = binary_size(bytes) else {
         return Err(bad(format!("the file has {} bytes and does not begin with `solid`", bytes.len()))
-            .expected("text STL, or binary STL with a header of 84 bytes"));
+            .expected("text STL, or binary STL with a header of 84 bytes")
+            .help("the file may be cut short, or be of another format: export it again"));
     };
     if size != bytes.len() as u64 {
         let triangles = (size - HEAD as u64) / TRIANGLE as u64;

@@ -7,6 +7,8 @@ use crate::error::{Error, ErrorKind};
 pub(crate) struct Text<'a> {
     pub(crate) file: &'a str,
     pub(crate) text: &'a str,
+    /// The page that describes the format: the remedy of errors that have no better one.
+    pub(crate) guide: &'static str,
 }
 
 /// A word of the text and where it begins, in bytes.
@@ -17,13 +19,14 @@ pub(crate) struct Token<'a> {
 }
 
 impl<'a> Text<'a> {
-    pub(crate) fn new(file: &'a str, bytes: &'a [u8]) -> Result<Self, Error> {
-        Ok(Self { file, text: crate::source::decode(file, bytes)? })
+    pub(crate) fn new(file: &'a str, bytes: &'a [u8], guide: &'static str) -> Result<Self, Error> {
+        Ok(Self { file, text: crate::source::decode(file, bytes)?, guide })
     }
 
     /// An error at a token.
     pub(crate) fn error(&self, token: Token<'_>, message: impl Into<String>) -> Error {
         Error::at(ErrorKind::Format, self.file, self.text, token.at, token.text.len(), message.into())
+            .help(format!("the format is described in docs/formats/{}", self.guide))
     }
 
     /// `file:line:column` of a token.
@@ -35,6 +38,12 @@ impl<'a> Text<'a> {
     /// An error where the text ends.
     pub(crate) fn error_at_end(&self, expected: impl Into<String>) -> Error {
         let at = self.text.trim_end().len();
+        if at == 0 {
+            let message = "the file is empty".to_owned();
+            return Error::at(ErrorKind::Format, self.file, self.text, 0, 0, message)
+                .expected(expected)
+                .help("an export may have failed: write the file again");
+        }
         Error::at(ErrorKind::Format, self.file, self.text, at, 0, "the file ends too early".into())
             .expected(expected)
             .help("the file may be cut short: copy or export it again")
@@ -66,8 +75,9 @@ impl<'a> Text<'a> {
     /// A count or an index from 0.
     pub(crate) fn count(&self, token: Token<'_>, expected: &str) -> Result<usize, Error> {
         token.text.parse::<usize>().map_err(|_| {
-            let shown = clipped(token.text);
-            self.error(token, format!("`{shown}` is not a count")).expected(expected)
+            let digits = token.text.bytes().all(|b| b.is_ascii_digit());
+            let what = if digits { "is too large a count" } else { "is not a count" };
+            self.error(token, format!("`{}` {what}", clipped(token.text))).expected(expected)
         })
     }
 }
@@ -197,7 +207,7 @@ mod tests {
 
     #[test]
     fn words_lines_and_comments() {
-        let text = Text { file: "f", text: "OFF# x\r\n 1\t2 # two\r\r3#\n" };
+        let text = Text { guide: "f.md", file: "f", text: "OFF# x\r\n 1\t2 # two\r\r3#\n" };
         let mut lexer = Lexer::new(&text);
         assert_eq!(lexer.next().unwrap().text, "OFF");
         assert_eq!(lexer.next_on_line(), None);
@@ -214,7 +224,7 @@ mod tests {
 
     #[test]
     fn numbers() {
-        let text = Text { file: "f", text: "1 -.5e3 nan 1e999 1,5 x" };
+        let text = Text { guide: "f.md", file: "f", text: "1 -.5e3 nan 1e999 1,5 x" };
         let got: Vec<_> = text.lines().next().unwrap().words().map(|w| text.number(w, "x")).collect();
         assert_eq!(got[0].as_ref().unwrap(), &1.0);
         assert_eq!(got[1].as_ref().unwrap(), &-500.0);

@@ -57,7 +57,7 @@ impl<'a> Document<'a> {
                 ids.entry(id).or_insert(node);
             }
         }
-        let document = Self { text: Text { file, text }, root, ids };
+        let document = Self { text: Text { file, text, guide: "meshes.md" }, root, ids };
         if root.tag_name().name() != "COLLADA" {
             let message = format!("the document is <{}>", clipped(root.tag_name().name()));
             return Err(document.error(root, message).expected("<COLLADA>"));
@@ -69,7 +69,7 @@ impl<'a> Document<'a> {
     pub(super) fn error(&self, node: Node<'_, '_>, message: impl Into<String>) -> Error {
         let at = node.range().start;
         let name = node.tag_name().name().len();
-        Error::at(ErrorKind::Format, self.text.file, self.text.text, at, name + 1, message.into())
+        self.text.error(Token { text: &self.text.text[at..at + name + 1], at }, message)
     }
 
     /// The element that the attribute `key` of `node` refers to, as in `url="#id"`.
@@ -202,7 +202,7 @@ pub(super) fn xml_error(file: &str, text: &str, error: &roxmltree::Error) -> Err
     if matches!(error, roxmltree::Error::DtdDetected) {
         return e.help("remove the <!DOCTYPE …>: document types and entities are not read");
     }
-    e
+    e.help("the file is cut short or no COLLADA: export it again")
 }
 
 /// Refuses what would take the XML reader time or memory out of proportion: thousands of attributes in one

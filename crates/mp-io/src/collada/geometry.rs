@@ -226,11 +226,8 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
         };
         if let Some(n) = stated.filter(|&n| n != found) {
             let tag = self.primitive.tag_name().name();
-            let message = format!("<{tag}> has {found} of what it counts");
-            return Err(self
-                .document
-                .error(self.primitive, message)
-                .expected(format!("{n}, as its count says")));
+            let message = format!("<{tag} count=\"{n}\"> has {found}");
+            return Err(self.document.error(self.primitive, message).expected("as many as it counts"));
         }
         self.geometry.groups.push(Group {
             polygons: first..self.geometry.ends.len(),

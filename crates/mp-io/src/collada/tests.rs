@@ -155,7 +155,7 @@ fn floods_are_refused() {
     let deep = format!("<COLLADA>{}{}</COLLADA>", "<node>".repeat(300_000), "</node>".repeat(300_000));
     assert_eq!(fails(&deep).kind(), ErrorKind::Format);
     let counts = TRIANGLE.replace("count=\"1\"", "count=\"99999999999\"");
-    assert!(fails(&dae(ASSET, &counts, PLAIN)).to_string().contains("expected 99999999999"));
+    assert!(fails(&dae(ASSET, &counts, PLAIN)).to_string().contains("count=\"99999999999\""));
 }
 
 #[test]

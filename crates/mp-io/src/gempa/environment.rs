@@ -48,6 +48,8 @@ pub(crate) struct Places<'a> {
     pub(crate) bounds: Option<Token<'a>>,
 }
 
+/// The page that describes the format.
+pub(crate) const GUIDE: &str = "gempa-environment.md";
 const SIX: &str = "six numbers: x y z α β γ";
 
 impl Environment {
@@ -65,7 +67,7 @@ impl Environment {
     /// # Errors
     /// [`Error`] when it is not an environment file, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        Ok(parse(&Text::new(file, bytes)?)?.0)
+        Ok(parse(&Text::new(file, bytes, GUIDE)?)?.0)
     }
 
     /// The text of the file. Numbers have the fewest digits that read back to the same bits.
@@ -167,8 +169,11 @@ fn extension<'a>(
     }
     let mut words = line.words();
     let key = words.next().unwrap_or(line);
-    let twice = |seen: bool| {
-        if seen { Err(text.error(line, format!("`{}` is given twice", key.text))) } else { Ok(()) }
+    let twice = |seen: bool| match seen {
+        true => {
+            Err(text.error(line, format!("`{}` is given twice", key.text)).help("remove one of the lines"))
+        }
+        false => Ok(()),
     };
     if key.text.eq_ignore_ascii_case("Space") {
         twice(env.space.is_some())?;
@@ -180,7 +185,10 @@ fn extension<'a>(
                 return Err(text.error(extra, "one word too many").expected("`Space SE2` or `Space SE3`"));
             }
             _ => {
-                let message = format!("`{}` is not a space", clipped(kind.text));
+                let message = match kind.text {
+                    "" => "`Space` names no space".to_owned(),
+                    other => format!("`{}` is not a space", clipped(other)),
+                };
                 return Err(text.error(kind, message).expected("`Space SE2` or `Space SE3`"));
             }
         });

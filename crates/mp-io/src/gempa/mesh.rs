@@ -18,7 +18,7 @@ use std::path::Path;
 /// # Errors
 /// [`Error`] when it is not such a mesh, with the line and column.
 pub fn parse_gempa_mesh(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
-    let text = Text::new(file, bytes)?;
+    let text = Text::new(file, bytes, "gempa-mesh.md")?;
     let mut lexer = Lexer::new(&text);
     let what = "the number of triangles";
     let first = lexer.next().ok_or_else(|| text.error_at_end(what))?;

@@ -47,7 +47,7 @@ impl PathFile {
     /// # Errors
     /// [`Error`] when it is not a configuration file, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let text = Text::new(file, bytes)?;
+        let text = Text::new(file, bytes, "path.md")?;
         let what = "the number of configurations, alone on the first line";
         let mut lines = text.lines();
         let first = lines.next().ok_or_else(|| text.error_at_end(what))?;
@@ -66,7 +66,7 @@ impl PathFile {
             if configurations.len() == n {
                 return Err(text
                     .error(line, format!("`{}` follows the last configuration", clipped(line.text)))
-                    .expected(format!("{n} configurations, as line 1 says"))
+                    .expected(format!("the end of the file, as the count is {n}"))
                     .help("correct the count on the first line, or remove what follows"));
             }
             let subject = format!("configuration {} of {n}", configurations.len() + 1);

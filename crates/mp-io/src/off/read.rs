@@ -32,7 +32,7 @@ impl OffDocument {
     /// [`Error`] when it is not OFF, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         refuse_binary(file, bytes)?;
-        let text = Text::new(file, bytes)?;
+        let text = Text::new(file, bytes, "off.md")?;
         Reader { text, lexer: Lexer::new(&text) }.document()
     }
 

@@ -80,7 +80,7 @@ impl OmplProblem {
     /// # Errors
     /// [`Error`] when it is not an OMPL.app problem, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        Ok(parse(&Text::new(file, bytes)?)?.0)
+        Ok(parse(&Text::new(file, bytes, super::GUIDE)?)?.0)
     }
 }
 
