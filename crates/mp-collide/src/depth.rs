@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Vector3};
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
 use crate::query::Query;
-use crate::tree::Tree;
+use crate::wide::Tree;
 
 /// The first step of the search along a direction is this part of the way that surely separates.
 const FIRST_STEP: f64 = 1.0 / 4096.0;
@@ -93,7 +93,7 @@ impl Query {
 
 /// How far the outermost box of a placed mesh reaches along `direction`, from the origin of the world.
 fn reach(tree: &Tree, pose: &Isometry3<f64>, direction: Vector3<f64>) -> f64 {
-    let obb = &tree.nodes[0].obb;
+    let obb = &tree.bounding;
     let direction_local = pose.rotation.inverse_transform_vector(&direction);
     let half: f64 =
         obb.axes.iter().zip(obb.half.iter()).map(|(axis, h)| (axis.dot(&direction_local) * h).abs()).sum();
@@ -102,10 +102,10 @@ fn reach(tree: &Tree, pose: &Isometry3<f64>, direction: Vector3<f64>) -> f64 {
 
 fn directions(a: &Tree, pose_wa: &Isometry3<f64>, b: &Tree, pose_wb: &Isometry3<f64>) -> Vec<Vector3<f64>> {
     let mut directions = Vec::with_capacity(40);
-    let join = pose_wa * a.nodes[0].obb.center - pose_wb * b.nodes[0].obb.center;
+    let join = pose_wa * a.bounding.center - pose_wb * b.bounding.center;
     directions.extend(join.try_normalize(0.0));
     for (tree, pose) in [(b, pose_wb), (a, pose_wa)] {
-        directions.extend(tree.nodes[0].obb.axes.iter().flat_map(|axis| [pose * axis, -(pose * axis)]));
+        directions.extend(tree.bounding.axes.iter().flat_map(|axis| [pose * axis, -(pose * axis)]));
     }
     for x in [-1.0, 0.0, 1.0] {
         for y in [-1.0, 0.0, 1.0] {

@@ -5,24 +5,11 @@ use nalgebra::{Isometry3, Point3};
 use crate::mesh::CollisionMesh;
 use crate::pose::{Relative, to_world};
 use crate::query::{Query, Separation};
-use crate::tree::Tree;
+use crate::simd::run;
 use crate::triangle::{Closest, closest_within, crossing};
-
-/// Two nodes whose boxes are at least `bound` apart.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
-    bound: f64,
-    a: u32,
-    b: u32,
-}
-
-/// What a search found.
-pub(crate) struct Nearest {
-    /// The nearest points (in the frame of `a`) and triangles (positions in the trees), if near enough.
-    pub(crate) witness: Option<(Closest, usize, usize)>,
-    /// Everything not looked at is at least this far away.
-    skipped: f64,
-}
+use crate::wide::Tree;
+use crate::wide::frames::Frames;
+use crate::wide::nearest::Nearest;
 
 impl Query {
     /// The distance of the meshes with nearest points, in the world.
@@ -46,7 +33,7 @@ impl Query {
             return Separation { distance: 0.0, point_a: point, point_b: point };
         }
         let nearest = self.nearest(a.tree(), b.tree(), &relative, f64::INFINITY, 0.0);
-        let closest = nearest.witness.map_or(Closest::NONE, |(closest, ..)| closest);
+        let closest = nearest.map_or(Closest::NONE, |(closest, ..)| closest);
         Separation {
             distance: positive(closest.squared.sqrt()),
             point_a: to_world(pose_wa, &closest.on_a),
@@ -97,7 +84,7 @@ impl Query {
         if self.colliding_pair(a, b, &relative).is_some() {
             return true;
         }
-        tolerance > 0.0 && self.nearest(a, b, &relative, tolerance.next_up(), tolerance).witness.is_some()
+        tolerance > 0.0 && self.nearest(a, b, &relative, tolerance.next_up(), tolerance).is_some()
     }
 
     /// [`Query::clearance`], and the triangle of `b` (its position in the tree) that is nearest, if looked
@@ -118,86 +105,53 @@ impl Query {
             return (0.0, Some(j));
         }
         let nearest = self.nearest(a, b, relative, enough, 0.0);
-        match nearest.witness {
+        match nearest {
             Some((closest, _, j)) => (positive(closest.squared.sqrt()), Some(j)),
-            None => (positive(nearest.skipped.max(enough)), None),
+            None => (positive(bound.max(enough)), None),
         }
     }
 
     /// A lower bound on the distance from the boxes at the roots.
     fn bound(&mut self, a: &Tree, b: &Tree, relative: &Relative) -> f64 {
         self.counters.box_tests += 1;
-        a.nodes[0].obb.distance_bound(&relative.obb(&b.nodes[0].obb), relative.slack)
+        a.bounding.distance_bound(&relative.obb(&b.bounding), relative.slack)
     }
 
-    /// The nearest points of meshes that do not intersect, when nearer than `enough`. The search may end
-    /// with any points no further apart than `accept`.
-    pub(crate) fn nearest(
+    /// The nearest points of meshes that do not intersect (in the frame of `a`) and their triangles
+    /// (positions in the trees), when nearer than `enough`. The search may end with any points no further
+    /// apart than `accept`.
+    fn nearest(
         &mut self,
         a: &Tree,
         b: &Tree,
         relative: &Relative,
         enough: f64,
         accept: f64,
-    ) -> Nearest {
-        let slack = relative.slack;
-        let mut best = enough.max(0.0);
-        let mut result = Nearest { witness: None, skipped: f64::INFINITY };
-        let root = Pair { bound: self.bound(a, b, relative), a: 0, b: 0 };
-        self.pairs.clear();
-        self.pairs.push(root);
-        while let Some(pair) = self.pairs.pop() {
-            if pair.bound >= best {
-                result.skipped = result.skipped.min(pair.bound);
-                continue;
-            }
-            let (node_a, node_b) = (&a.nodes[pair.a as usize], &b.nodes[pair.b as usize]);
-            if node_a.is_leaf() && node_b.is_leaf() {
-                for l in node_b.triangles() {
-                    let triangle_b = relative.triangle(&b.triangles[l]);
-                    for k in node_a.triangles() {
-                        self.counters.triangle_tests += 1;
-                        if let Some(closest) = closest_within(&a.triangles[k], &triangle_b, best * best) {
-                            best = closest.squared.sqrt();
-                            result.witness = Some((closest, k, l));
-                            if best <= accept {
-                                return result;
-                            }
-                        }
-                    }
-                }
-                result.skipped = result.skipped.min(best);
-                continue;
-            }
-            self.counters.box_tests += 2;
-            let children =
-                if node_b.is_leaf() || (!node_a.is_leaf() && node_a.obb.size() >= node_b.obb.size()) {
-                    let obb_b = relative.obb(&node_b.obb);
-                    [node_a.first, node_a.first + 1].map(|child| Pair {
-                        bound: a.nodes[child as usize].obb.distance_bound(&obb_b, slack),
-                        a: child,
-                        b: pair.b,
-                    })
-                } else {
-                    [node_b.first, node_b.first + 1].map(|child| Pair {
-                        bound: node_a.obb.distance_bound(&relative.obb(&b.nodes[child as usize].obb), slack),
-                        a: pair.a,
-                        b: child,
-                    })
-                };
-            // The nearer on top of the stack.
-            let [near, far] =
-                if children[0].bound <= children[1].bound { children } else { [children[1], children[0]] };
-            for child in [far, near] {
-                if child.bound < best {
-                    self.pairs.push(child);
-                } else {
-                    result.skipped = result.skipped.min(child.bound);
-                }
+    ) -> Option<(Closest, usize, usize)> {
+        let frames = Frames::new(a, b, relative);
+        let enough = enough.max(0.0);
+        if !frames.fits_f32(a, b) {
+            return nearest_of_all(a, b, &frames, enough);
+        }
+        let (scratch, counters) = (&mut self.scratch, &mut self.counters);
+        run(self.isa, Nearest { a, b, frames: &frames, enough, accept, scratch, counters })
+    }
+}
+
+/// Every pair of triangles, for sizes that do not fit the lanes.
+fn nearest_of_all(a: &Tree, b: &Tree, frames: &Frames, enough: f64) -> Option<(Closest, usize, usize)> {
+    let mut squared = enough * enough;
+    let mut witness = None;
+    for (j, triangle) in b.triangles.iter().enumerate() {
+        let single = frames.exact.triangle(triangle);
+        for (i, other) in a.triangles.iter().enumerate() {
+            if let Some(closest) = closest_within(other, &single, squared) {
+                squared = closest.squared;
+                witness = Some((closest, i, j));
             }
         }
-        result
     }
+    witness
 }
 
 /// Meshes that do not intersect are never at distance 0, whatever rounding says.

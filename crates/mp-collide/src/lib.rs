@@ -54,7 +54,8 @@ mod obb;
 mod pose;
 mod query;
 mod scene;
-mod tree;
+mod simd;
+mod wide;
 
 pub mod reference;
 pub mod triangle;
@@ -62,3 +63,4 @@ pub mod triangle;
 pub use mesh::CollisionMesh;
 pub use query::{Counters, Query, Separation};
 pub use scene::{Body, BodyId, Contact, Scene, SceneError};
+pub use simd::Isa;

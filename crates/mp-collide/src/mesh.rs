@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use mp_geom::TriMesh;
 
-use crate::tree::Tree;
 use crate::triangle::Triangle;
+use crate::wide::Tree;
 
 /// A mesh with its tree of oriented boxes: built once, immutable, cheap to clone, shared between threads.
 #[derive(Clone, Debug)]
@@ -17,13 +17,13 @@ impl CollisionMesh {
     /// Builds the tree of `mesh`: O(n log² n) for n triangles.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
-        let triangles = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
+        let triangles: Vec<Triangle> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
         Self::from_triangles(triangles)
     }
 
     /// `triangles`: at least one, at most `u32::MAX`, finite.
     pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
-        Self { tree: Arc::new(Tree::build(triangles)) }
+        Self { tree: Arc::new(Tree::build(&triangles)) }
     }
 
     /// How many triangles there are.

@@ -1,4 +1,4 @@
-//! The oriented bounding box: fitting, the separating-axis test, a lower bound on distance.
+//! The box around a whole mesh, in `f64`: fitting, a lower bound on distance.
 //!
 //! Gottschalk, Lin, Manocha, *OBBTree: A Hierarchical Structure for Rapid Interference Detection*,
 //! SIGGRAPH 1996.
@@ -17,15 +17,11 @@ pub(crate) struct Obb {
 
 impl Obb {
     /// A small box around `triangles`: the one of least surface among several frames (the axes of the
-    /// mesh, `parent`'s, the principal axes of the surface, the largest triangle's).
-    pub(crate) fn fit<'a>(
-        triangles: impl Iterator<Item = &'a Triangle> + Clone,
-        parent: &[Vector3<f64>; 3],
-    ) -> Self {
+    /// mesh, the principal axes of the surface, the largest triangle's).
+    pub(crate) fn fit<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> Self {
         let frames = [
             principal_axes(triangles.clone()),
             largest_triangle_axes(triangles.clone()),
-            *parent,
             [Vector3::x(), Vector3::y(), Vector3::z()],
         ];
         let mut best = Self::around(triangles.clone(), frames[0]);
@@ -57,54 +53,9 @@ impl Obb {
         h.x * h.y + h.y * h.z + h.z * h.x
     }
 
-    /// A measure of size, to choose the larger of two boxes to open.
-    pub(crate) fn size(&self) -> f64 {
-        self.half.norm_squared()
-    }
-
     /// Half extents of the axis-aligned box around this one.
     pub(crate) fn aligned_half(&self) -> Vector3<f64> {
         self.axes[0].abs() * self.half.x + self.axes[1].abs() * self.half.y + self.axes[2].abs() * self.half.z
-    }
-
-    /// The separating-axis test on 15 axes, the cheap ones first: `true` only when the boxes (both in the
-    /// same frame) are further apart than `slack` can explain.
-    ///
-    /// The nine axes that are cross products are not normalised; for nearly parallel edges both sides of
-    /// the comparison vanish and `slack` keeps the test from separating.
-    pub(crate) fn disjoint(&self, other: &Self, slack: f64) -> bool {
-        let d = other.center - self.center;
-        let (ha, hb) = (&self.half, &other.half);
-        let mut t = [0.0; 3];
-        let mut r = [[0.0; 3]; 3];
-        let mut q = [[0.0; 3]; 3];
-        for i in 0..3 {
-            t[i] = self.axes[i].dot(&d);
-            for j in 0..3 {
-                r[i][j] = self.axes[i].dot(&other.axes[j]);
-                q[i][j] = f64::abs(r[i][j]);
-            }
-            if t[i].abs() > ha[i] + (hb[0] * q[i][0] + hb[1] * q[i][1] + hb[2] * q[i][2]) + slack {
-                return true;
-            }
-        }
-        for j in 0..3 {
-            let gap = f64::abs(t[0] * r[0][j] + t[1] * r[1][j] + t[2] * r[2][j]);
-            if gap > hb[j] + (ha[0] * q[0][j] + ha[1] * q[1][j] + ha[2] * q[2][j]) + slack {
-                return true;
-            }
-        }
-        for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-            for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-                let gap = f64::abs(t[i2] * r[i1][j] - t[i1] * r[i2][j]);
-                let reach_a = ha[i1] * q[i2][j] + ha[i2] * q[i1][j];
-                let reach_b = hb[j1] * q[i][j2] + hb[j2] * q[i][j1];
-                if gap > reach_a + reach_b + slack {
-                    return true;
-                }
-            }
-        }
-        false
     }
 
     /// A lower bound on the distance of two boxes (both in the same frame), less `slack`; at least 0.

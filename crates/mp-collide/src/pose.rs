@@ -18,8 +18,8 @@ const SLACK: f64 = 1e-13;
 /// The pose of mesh `b` in the frame of mesh `a`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Relative {
-    rotation: Matrix3<f64>,
-    translation: Vector3<f64>,
+    pub(crate) rotation: Matrix3<f64>,
+    pub(crate) translation: Vector3<f64>,
     /// What to add to boxes (metres) so that rounding never makes them miss.
     pub(crate) slack: f64,
 }
@@ -59,6 +59,12 @@ impl Relative {
     /// A triangle of `b` in the frame of `a`.
     pub(crate) fn triangle(&self, triangle: &Triangle) -> Triangle {
         [self.point(&triangle[0]), self.point(&triangle[1]), self.point(&triangle[2])]
+    }
+
+    /// The pose of `a` in the frame of `b`, to rounding.
+    pub(crate) fn inverse(&self) -> Self {
+        let rotation = self.rotation.transpose();
+        Self { rotation, translation: -(rotation * self.translation), slack: self.slack }
     }
 
     /// A box of `b` in the frame of `a`.

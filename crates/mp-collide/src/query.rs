@@ -4,8 +4,12 @@ use nalgebra::{Isometry3, Point3};
 
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
-use crate::tree::Tree;
+use crate::simd::{Isa, run};
 use crate::triangle::intersect;
+use crate::wide::Tree;
+use crate::wide::frames::Frames;
+use crate::wide::intersect::Intersect;
+use crate::wide::nearest::Scratch;
 
 /// How much work queries have done: the same for the same queries, on any machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -42,15 +46,29 @@ pub struct Separation {
 /// All queries are between mesh `a` at `pose_wa` and mesh `b` at `pose_wb` (poses in the world); answers
 /// depend on nothing else, and nothing is allocated once the scratch has grown. The contract, with what
 /// happens to bad input, is in the [crate documentation](crate).
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Query {
     /// What was done so far; set to `Counters::default()` to start over.
     pub counters: Counters,
     pub(crate) stack: Vec<(u32, u32)>,
-    pub(crate) pairs: Vec<crate::distance::Pair>,
+    pub(crate) scratch: Scratch,
+    pub(crate) isa: Isa,
+}
+
+impl Default for Query {
+    fn default() -> Self {
+        Self::with_isa(Isa::detect())
+    }
 }
 
 impl Query {
+    /// A query on a given instruction set (on the widest this CPU has where it lacks it). Answers are the
+    /// same on all; for tests and benchmarks.
+    #[must_use]
+    pub fn with_isa(isa: Isa) -> Self {
+        Self { counters: Counters::default(), stack: Vec::new(), scratch: Scratch::default(), isa }
+    }
+
     /// Whether the meshes have a point in common. Touching counts.
     pub fn intersects(
         &mut self,
@@ -102,43 +120,75 @@ impl Query {
         b: &Tree,
         relative: &Relative,
     ) -> Option<(usize, usize)> {
-        let slack = relative.slack;
-        self.stack.clear();
-        self.counters.box_tests += 1;
-        if a.nodes[0].obb.disjoint(&relative.obb(&b.nodes[0].obb), slack) {
+        let frames = Frames::new(a, b, relative);
+        if frames.apart > (a.radius_center + b.radius_center) * (1.0 + 1e-12) {
             return None;
         }
-        self.stack.push((0, 0));
-        while let Some((i, j)) = self.stack.pop() {
-            let (node_a, node_b) = (&a.nodes[i as usize], &b.nodes[j as usize]);
-            if node_a.is_leaf() && node_b.is_leaf() {
-                for l in node_b.triangles() {
-                    let triangle_b = relative.triangle(&b.triangles[l]);
-                    for k in node_a.triangles() {
-                        self.counters.triangle_tests += 1;
-                        if intersect(&a.triangles[k], &triangle_b) {
-                            return Some((k, l));
-                        }
-                    }
-                }
-                continue;
-            }
-            self.counters.box_tests += 2;
-            if node_b.is_leaf() || (!node_a.is_leaf() && node_a.obb.size() >= node_b.obb.size()) {
-                let obb_b = relative.obb(&node_b.obb);
-                for child in [node_a.first + 1, node_a.first] {
-                    if !a.nodes[child as usize].obb.disjoint(&obb_b, slack) {
-                        self.stack.push((child, j));
-                    }
-                }
-            } else {
-                for child in [node_b.first + 1, node_b.first] {
-                    if !node_a.obb.disjoint(&relative.obb(&b.nodes[child as usize].obb), slack) {
-                        self.stack.push((i, child));
-                    }
-                }
+        if !frames.fits_f32(a, b) {
+            return any_of_all(a, b, &frames);
+        }
+        let kernel =
+            Intersect { a, b, frames: &frames, stack: &mut self.stack, counters: &mut self.counters };
+        run(self.isa, kernel)
+    }
+}
+
+/// Every pair of triangles, for sizes that do not fit the lanes.
+fn any_of_all(a: &Tree, b: &Tree, frames: &Frames) -> Option<(usize, usize)> {
+    b.triangles.iter().enumerate().find_map(|(l, triangle)| {
+        let single = frames.exact.triangle(triangle);
+        a.triangles.iter().position(|other| intersect(other, &single)).map(|k| (k, l))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_geom::primitives;
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    fn poses(count: usize, reach: f64) -> impl Iterator<Item = Isometry3<f64>> {
+        let mut state = 7u64;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
+        };
+        (0..count).map(move |_| {
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::new(next(), next(), next()) * 3.0);
+            Isometry3::from_parts(Vector3::new(next() * reach, next() * reach, next() * reach).into(), turn)
+        })
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_answers() {
+        let a = CollisionMesh::new(&primitives::torus(1.0, 0.3, 40, 20).unwrap());
+        let b = CollisionMesh::new(&primitives::sphere(0.4, 2).unwrap());
+        let here = Isometry3::identity();
+        let mut scalar = Query::with_isa(Isa::Scalar);
+        for isa in Isa::available() {
+            let mut query = Query::with_isa(isa);
+            for pose in poses(400, 1.5) {
+                let hit = scalar.intersects(&a, &here, &b, &pose);
+                assert_eq!(query.intersects(&a, &here, &b, &pose), hit, "{isa:?} {pose}");
+                let (got, expected) =
+                    (query.distance(&a, &here, &b, &pose), scalar.distance(&a, &here, &b, &pose));
+                assert_eq!(got.distance.to_bits(), expected.distance.to_bits(), "{isa:?} {pose}");
+                assert_eq!(expected.distance == 0.0, hit);
             }
         }
-        None
+    }
+
+    #[test]
+    fn sizes_that_do_not_fit_the_lanes_are_decided_all_the_same() {
+        for scale in [1e-30, 1e-12, 1e12, 1e30] {
+            let ball = |r: f64| CollisionMesh::new(&primitives::sphere(r * scale, 1).unwrap());
+            let (a, b) = (ball(1.0), ball(0.5));
+            let at = |x: f64| Isometry3::translation(x * scale, 0.0, 0.0);
+            let mut query = Query::default();
+            assert!(query.intersects(&a, &at(0.0), &b, &at(1.2)));
+            assert!(!query.intersects(&a, &at(0.0), &b, &at(1.7)));
+            let distance = query.distance(&a, &at(0.0), &b, &at(2.5)).distance;
+            assert!((distance / scale - 1.0).abs() < 0.1, "{distance}");
+        }
     }
 }

@@ -463,7 +463,7 @@ impl Nearest<'_> {
 /// `None` when mesh or pose are beyond the limits.
 fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Bounds> {
     let relative = Relative::between(&Isometry3::identity(), 0.0, pose, mesh.radius())?;
-    let obb = relative.obb(&mesh.tree().nodes[0].obb);
+    let obb = relative.obb(&mesh.tree().bounding);
     let half = obb.aligned_half().add_scalar(relative.slack);
     let (min, max) = (obb.center - half, obb.center + half);
     Some(Bounds { min, max })

@@ -1,0 +1,120 @@
+//! One box against eight: the separating-axis test (Gottschalk, Lin, Manocha 1996) in lanes.
+
+use super::Node;
+use super::frames::Placed;
+use crate::simd::Lanes;
+
+/// Bit `i` is set unless child `i` of `node` is surely farther than `margin` from `q`.
+///
+/// Six axes always; the nine products of edges too when `EDGES`. `margin` must hold the rounding error
+/// (`Frames::pad`). A product of unit edges is no longer than 1, so its gap is a lower bound as well.
+#[inline(always)]
+pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed, margin: f32) -> u32 {
+    let d: [L; 3] = [
+        L::splat(q.frame[0][0]).sub(L::load(&node.center[0])),
+        L::splat(q.frame[1][0]).sub(L::load(&node.center[1])),
+        L::splat(q.frame[2][0]).sub(L::load(&node.center[2])),
+    ];
+    let zero = L::splat(0.0);
+    let pad = L::splat(margin);
+    let h: [L; 3] = [L::splat(q.half[0]), L::splat(q.half[1]), L::splat(q.half[2])];
+    let mut t = [zero; 3];
+    let mut m = [[zero; 3]; 3];
+    let mut am = [[zero; 3]; 3];
+    let mut e = [zero; 3];
+    let mut mask = !0;
+    for k in 0..3 {
+        let u = [L::load(&node.axes[k][0]), L::load(&node.axes[k][1]), L::load(&node.axes[k][2])];
+        t[k] = dot(&u, &d);
+        e[k] = L::load(&node.half[k]);
+        let mut reach = e[k].add(pad);
+        for j in 0..3 {
+            let a = [q.frame[0][j + 1], q.frame[1][j + 1], q.frame[2][j + 1]];
+            m[k][j] = u[0].mul_add(L::splat(a[0]), u[1].mul_add(L::splat(a[1]), u[2].mul(L::splat(a[2]))));
+            am[k][j] = m[k][j].abs();
+            reach = am[k][j].mul_add(h[j], reach);
+        }
+        mask &= t[k].abs().le(reach);
+    }
+    if mask == 0 {
+        return 0;
+    }
+    for j in 0..3 {
+        let p = t[0].mul_add(m[0][j], t[1].mul_add(m[1][j], t[2].mul(m[2][j])));
+        let reach = e[0].mul_add(am[0][j], e[1].mul_add(am[1][j], e[2].mul_add(am[2][j], h[j].add(pad))));
+        mask &= p.abs().le(reach);
+    }
+    if !EDGES || mask == 0 {
+        return mask;
+    }
+    for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+        for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let p = t[i2].mul_sub(m[i1][j], t[i1].mul(m[i2][j]));
+            let reach = e[i1].mul_add(
+                am[i2][j],
+                e[i2].mul_add(am[i1][j], am[i][j2].mul_add(h[j1], am[i][j1].mul_add(h[j2], pad))),
+            );
+            mask &= p.abs().le(reach);
+        }
+    }
+    mask
+}
+
+/// Squared lower bounds on the distances of `q` from the children of `node`, `pad` (metres) taken off each
+/// gap: the larger of two distances, from each box to the box around the other that is aligned with it.
+/// Infinite in lanes not used.
+#[inline(always)]
+pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed, pad: f32) -> L {
+    let d: [L; 3] = [
+        L::splat(q.frame[0][0]).sub(L::load(&node.center[0])),
+        L::splat(q.frame[1][0]).sub(L::load(&node.center[1])),
+        L::splat(q.frame[2][0]).sub(L::load(&node.center[2])),
+    ];
+    let zero = L::splat(0.0);
+    let pad = L::splat(pad);
+    let mut t = [zero; 3];
+    let mut m = [[zero; 3]; 3];
+    let mut from_node = zero;
+    let mut reach_q: [L; 3] =
+        [L::splat(q.half[0]).add(pad), L::splat(q.half[1]).add(pad), L::splat(q.half[2]).add(pad)];
+    for k in 0..3 {
+        let u = [L::load(&node.axes[k][0]), L::load(&node.axes[k][1]), L::load(&node.axes[k][2])];
+        t[k] = dot(&u, &d);
+        let e = L::load(&node.half[k]);
+        let mut reach = e.add(pad);
+        for j in 0..3 {
+            m[k][j] = dot(&u, &q.axis(j));
+            let am = m[k][j].abs();
+            reach = am.mul_add(L::splat(q.half[j]), reach);
+            reach_q[j] = e.mul_add(am, reach_q[j]);
+        }
+        let gap = t[k].abs().sub(reach).max(zero);
+        from_node = gap.mul_add(gap, from_node);
+    }
+    let mut from_q = zero;
+    for j in 0..3 {
+        let p = t[0].mul_add(m[0][j], t[1].mul_add(m[1][j], t[2].mul(m[2][j])));
+        let gap = p.abs().sub(reach_q[j]).max(zero);
+        from_q = gap.mul_add(gap, from_q);
+    }
+    from_node.max(from_q).mul(L::splat(1.0 - 1e-5))
+}
+
+#[inline(always)]
+pub(crate) fn dot<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2].mul(b[2])))
+}
+
+#[inline(always)]
+pub(crate) fn sub<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
+    [a[0].sub(b[0]), a[1].sub(b[1]), a[2].sub(b[2])]
+}
+
+#[inline(always)]
+pub(crate) fn cross<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> [L; 3] {
+    [
+        a[1].mul_sub(b[2], a[2].mul(b[1])),
+        a[2].mul_sub(b[0], a[0].mul(b[2])),
+        a[0].mul_sub(b[1], a[1].mul(b[0])),
+    ]
+}

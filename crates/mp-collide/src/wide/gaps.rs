@@ -1,0 +1,187 @@
+//! The distance of one triangle from eight, in lanes, with an error margin.
+//!
+//! Nine pairs of edges (Ericson 2005, *Real-Time Collision Detection*, §5.1.9) and six corners against
+//! faces. Triangles that intersect are not recognised here.
+
+use super::Leaf;
+use super::boxes::{cross, dot, sub};
+use super::leaves::corners;
+use crate::simd::Lanes;
+use crate::triangle::Triangle;
+
+/// Keeps quotients finite where an edge or a triangle has no extent.
+const TINY: f32 = 1e-37;
+
+/// The triangles of a leaf, ready to be compared with one after another.
+pub(crate) struct Gaps<L> {
+    v: [[L; 3]; 3],
+    f: [[L; 3]; 3],
+    /// Squared lengths of the edges, and their inverses.
+    ff: [L; 3],
+    inverse: [L; 3],
+    n: [L; 3],
+    nn: L,
+    /// In the plane, across each edge, inward.
+    inward: [[L; 3]; 3],
+    lo: [L; 3],
+    hi: [L; 3],
+    all: u32,
+    center: [f64; 3],
+    magnitude: f32,
+    edge: f32,
+}
+
+impl<L: Lanes> Gaps<L> {
+    #[inline(always)]
+    pub(crate) fn new(leaf: &Leaf) -> Self {
+        let v = corners::<L>(leaf);
+        let f = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
+        let n = cross(&f[0], &f[1]);
+        let tiny = L::splat(TINY);
+        let ff = [dot(&f[0], &f[0]), dot(&f[1], &f[1]), dot(&f[2], &f[2])];
+        let one = L::splat(1.0);
+        Self {
+            ff,
+            inverse: [one.div(ff[0].max(tiny)), one.div(ff[1].max(tiny)), one.div(ff[2].max(tiny))],
+            nn: dot(&n, &n),
+            inward: [cross(&n, &f[0]), cross(&n, &f[1]), cross(&n, &f[2])],
+            lo: std::array::from_fn(|d| v[0][d].min(v[1][d]).min(v[2][d])),
+            hi: std::array::from_fn(|d| v[0][d].max(v[1][d]).max(v[2][d])),
+            all: (1 << leaf.count) - 1,
+            center: leaf.center,
+            magnitude: leaf.magnitude,
+            edge: leaf.edge,
+            v,
+            f,
+            n,
+        }
+    }
+
+    /// The lanes whose squared distance from `triangle` (in the frame of the mesh) may be at most `best`;
+    /// for these, squared bounds: `near` ≤ distance² ≤ `far`.
+    #[inline(always)]
+    pub(crate) fn between(
+        &self,
+        triangle: &Triangle,
+        best: f32,
+        near: &mut [f32; 8],
+        far: &mut [f32; 8],
+    ) -> u32 {
+        let c = &self.center;
+        let p: [[f32; 3]; 3] = std::array::from_fn(|k| {
+            [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
+        });
+        let mut g = self.magnitude;
+        for corner in &p {
+            g = g.max(corner[0].abs()).max(corner[1].abs()).max(corner[2].abs());
+        }
+        let zero = L::splat(0.0);
+        // A coordinate is wrong by u·g.
+        let wrong = 3e-7 * g;
+        let mut gap = zero;
+        for d in 0..3 {
+            let lo = p[0][d].min(p[1][d]).min(p[2][d]) - wrong;
+            let hi = p[0][d].max(p[1][d]).max(p[2][d]) + wrong;
+            let apart = self.lo[d].sub(L::splat(hi)).max(L::splat(lo).sub(self.hi[d])).max(zero);
+            gap = apart.mul_add(apart, gap);
+        }
+        let limit = L::splat(best * (1.0 + 1e-4));
+        let mut mask = self.all & gap.le(limit);
+        if mask == 0 {
+            return 0;
+        }
+        let s: [[L; 3]; 3] =
+            std::array::from_fn(|k| [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
+        // All of the one on one side of the planes of the eight: height² / |n|² bounds. Errors of a height
+        // are as in `leaves::Block`.
+        let edge = self.edge;
+        let error = L::splat(g * edge * (1.5e-6 * g + 2e-6 * edge));
+        let h: [L; 3] = std::array::from_fn(|k| dot(&self.n, &sub(&s[k], &self.v[0])));
+        mask &= one_sided(&h).sub(error).max(zero).square().le(self.nn.mul(limit).add(error.square()));
+        if mask == 0 {
+            return 0;
+        }
+        let e: [[f32; 3]; 3] = std::array::from_fn(|k| {
+            let (a, b) = (&p[k], &p[(k + 1) % 3]);
+            [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+        });
+        let ee = e.map(|e| e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+        let own = ee[0].max(ee[1]).max(ee[2]).sqrt();
+        let m = cross_scalar(&e[0], &e[1]);
+        let mm = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+        let n = [L::splat(m[0]), L::splat(m[1]), L::splat(m[2])];
+        let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
+        let w: [L; 3] = std::array::from_fn(|k| dot(&n, &sub(&self.v[k], &s[0])));
+        mask &= one_sided(&w).sub(error).max(zero).square().le(L::splat(mm).mul(limit).add(error.square()));
+        if mask == 0 {
+            return 0;
+        }
+        let mut squared = L::splat(f32::INFINITY);
+        for i in 0..3 {
+            let ei = [L::splat(e[i][0]), L::splat(e[i][1]), L::splat(e[i][2])];
+            let inverse = L::splat(1.0 / ee[i].max(TINY));
+            for j in 0..3 {
+                let between = self.edges(&s[i], &ei, L::splat(ee[i]), inverse, j);
+                squared = between.min(squared);
+            }
+        }
+        // A corner whose foot is inside the face: height² / |n|². Outside, a penalty rules it out.
+        let penalty = L::splat(-1e30);
+        let inverse = L::splat(1.0).div(self.nn.max(L::splat(TINY)));
+        for k in 0..3 {
+            let inside = |j: usize| dot(&self.inward[j], &sub(&s[k], &self.v[j]));
+            let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
+            squared = h[k].square().mul_add(inverse, outside).min(squared);
+        }
+        let inverse = L::splat(1.0 / mm.max(TINY));
+        let across =
+            e.map(|e| cross_scalar(&m, &e)).map(|u| [L::splat(u[0]), L::splat(u[1]), L::splat(u[2])]);
+        for k in 0..3 {
+            let inside = |j: usize| dot(&across[j], &sub(&self.v[k], &s[j]));
+            let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
+            squared = w[k].square().mul_add(inverse, outside).min(squared);
+        }
+        // The points compared are points of the triangles, so only their rounding can make the result too
+        // small; that nearly parallel edges are not met at the best place makes it too large, by no more
+        // than some 1e-6 of the squared edges.
+        let size = own.max(edge);
+        let rounding = L::splat(1e-9 * g * g);
+        let low = squared.mul_sub(L::splat(0.998), rounding.add(L::splat(1e-5 * size * size))).max(zero);
+        low.store(near);
+        squared.mul_add(L::splat(1.002), rounding).store(far);
+        mask & low.le(L::splat(best))
+    }
+
+    /// Squared distance of an edge (from `p` along `d`, of squared length `dd`) and edges `j` of the eight.
+    #[inline(always)]
+    fn edges(&self, p: &[L; 3], d: &[L; 3], dd: L, inverse: L, j: usize) -> L {
+        let (q, f, ff) = (&self.v[j], &self.f[j], self.ff[j]);
+        let r = sub(p, q);
+        let (c, b, y) = (dot(d, &r), dot(d, f), dot(f, &r));
+        let product = dd.mul(ff);
+        let determinant = product.sub(b.square()).max(product.mul(L::splat(1e-7))).max(L::splat(TINY));
+        let s = unit(b.mul_sub(y, c.mul(ff)).div(determinant));
+        let t = unit(b.mul_add(s, y).mul(self.inverse[j]));
+        let s = unit(b.mul_sub(t, c).mul(inverse));
+        let at = |k: usize| d[k].mul_add(s, r[k]).sub(f[k].mul(t));
+        let w = [at(0), at(1), at(2)];
+        dot(&w, &w)
+    }
+}
+
+#[inline(always)]
+fn unit<L: Lanes>(x: L) -> L {
+    x.max(L::splat(0.0)).min(L::splat(1.0))
+}
+
+/// How far three heights of one sign are from zero; at most 0 when they are on both sides.
+#[inline(always)]
+fn one_sided<L: Lanes>(h: &[L; 3]) -> L {
+    let (lo, hi) = (h[0].min(h[1]).min(h[2]), h[0].max(h[1]).max(h[2]));
+    lo.max(L::splat(0.0).sub(hi))
+}
+
+#[inline(always)]
+fn cross_scalar(a: &[f32; 3], b: &[f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}

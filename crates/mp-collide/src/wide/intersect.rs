@@ -1,0 +1,146 @@
+//! Do two trees meet?
+
+use super::boxes::touching;
+use super::frames::{Frame, Frames};
+use super::leaves::{Block, near_box};
+use super::{LEAF, Leaf, Node, Tree};
+use crate::query::Counters;
+use crate::simd::{Kernel, Lanes, prefetch};
+use crate::triangle::intersect;
+
+/// Depth-first over pairs of nodes; the larger box is opened.
+pub(crate) struct Intersect<'q> {
+    pub(crate) a: &'q Tree,
+    pub(crate) b: &'q Tree,
+    pub(crate) frames: &'q Frames,
+    pub(crate) stack: &'q mut Vec<(u32, u32)>,
+    pub(crate) counters: &'q mut Counters,
+}
+
+impl Kernel for Intersect<'_> {
+    /// Two triangles that meet, as positions in the trees.
+    type Output = Option<(usize, usize)>;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self) -> Self::Output {
+        let Self { a, b, frames, stack, counters } = self;
+        let pad = frames.pad;
+        let (far_a, far_b) = (a.is_large(), b.is_large());
+        let mut tests = 0;
+        stack.clear();
+        stack.push((a.root, b.root));
+        let mut found = None;
+        while let Some((x, y)) = stack.pop() {
+            if x & y & LEAF != 0 {
+                let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
+                tests += 2;
+                found = leaf_pair::<L>(a, i, b, j, frames, counters);
+                if found.is_some() {
+                    break;
+                }
+                continue;
+            }
+            tests += 1;
+            let open_a = x & LEAF == 0 && (y & LEAF != 0 || a.own(x).size >= b.own(y).size);
+            if open_a {
+                let node = &a.nodes[x as usize];
+                push::<L>(a, far_a, node, &frames.into_a, b.own(y), pad, |child| stack.push((child, y)));
+            } else {
+                let node = &b.nodes[y as usize];
+                push::<L>(b, far_b, node, &frames.into_b, a.own(x), pad, |child| stack.push((x, child)));
+            }
+        }
+        counters.box_tests += tests;
+        found
+    }
+}
+
+/// Calls `push` for every child of `node` (of `tree`) that may touch `other`.
+#[inline(always)]
+fn push<L: Lanes>(
+    tree: &Tree,
+    far: bool,
+    node: &Node,
+    frame: &Frame,
+    other: &super::Obb,
+    pad: f32,
+    mut push: impl FnMut(u32),
+) {
+    let mut mask = touching::<L, EDGES>(node, &frame.place(other), pad);
+    while mask != 0 {
+        let child = node.child[mask.trailing_zeros() as usize & 7];
+        mask &= mask - 1;
+        if far {
+            ahead(tree, child);
+        }
+        push(child);
+    }
+}
+const EDGES: bool = true;
+
+#[inline(always)]
+fn ahead(tree: &Tree, reference: u32) {
+    if reference & LEAF != 0 {
+        prefetch::<Leaf>(&tree.leaves[(reference & !LEAF) as usize]);
+    } else {
+        prefetch::<Node>(&tree.nodes[reference as usize]);
+    }
+    prefetch(tree.own(reference));
+}
+
+#[inline(always)]
+fn leaf_pair<L: Lanes>(
+    a: &Tree,
+    i: usize,
+    b: &Tree,
+    j: usize,
+    frames: &Frames,
+    counters: &mut Counters,
+) -> Option<(usize, usize)> {
+    let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
+    let mask_a = near_box::<L>(a, leaf_a, &frames.into_a.place(&b.leaf_boxes[j]), frames.pad);
+    if mask_a == 0 {
+        return None;
+    }
+    let mask_b = near_box::<L>(b, leaf_b, &frames.into_b.place(&a.leaf_boxes[i]), frames.pad);
+    if mask_b == 0 {
+        return None;
+    }
+    // The fewer, one by one, against the more at once.
+    if mask_b.count_ones() <= mask_a.count_ones() {
+        let block = Block::<L>::new(leaf_a);
+        let mut singles = mask_b;
+        while singles != 0 {
+            let l = leaf_b.first as usize + singles.trailing_zeros() as usize;
+            singles &= singles - 1;
+            let single = frames.exact.triangle(&b.triangles[l]);
+            counters.triangle_tests += 1;
+            let mut meet = block.may_meet(&single, mask_a);
+            while meet != 0 {
+                let k = leaf_a.first as usize + meet.trailing_zeros() as usize;
+                meet &= meet - 1;
+                if intersect(&a.triangles[k], &single) {
+                    return Some((k, l));
+                }
+            }
+        }
+    } else {
+        let block = Block::<L>::new(leaf_b);
+        let mut singles = mask_a;
+        while singles != 0 {
+            let k = leaf_a.first as usize + singles.trailing_zeros() as usize;
+            singles &= singles - 1;
+            let single = frames.back.triangle(&a.triangles[k]);
+            counters.triangle_tests += 1;
+            let mut meet = block.may_meet(&single, mask_b);
+            while meet != 0 {
+                let l = leaf_b.first as usize + meet.trailing_zeros() as usize;
+                meet &= meet - 1;
+                if intersect(&a.triangles[k], &frames.exact.triangle(&b.triangles[l])) {
+                    return Some((k, l));
+                }
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,114 @@
+//! The engine: trees of oriented boxes with eight children, tested eight at a time in `f32` with error
+//! margins, and triangles eight at a time; what is too close to call is decided in `f64`.
+
+#![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.
+
+pub(crate) mod boxes;
+pub(crate) mod build;
+pub(crate) mod fit;
+pub(crate) mod frames;
+pub(crate) mod gaps;
+pub(crate) mod intersect;
+pub(crate) mod leaves;
+pub(crate) mod nearest;
+
+use crate::triangle::Triangle;
+use nalgebra::Point3;
+
+/// Boxes and triangles per node, and lanes per vector.
+pub(crate) const WIDTH: usize = 8;
+
+/// Set in a reference to a leaf; the other bits are its index.
+pub(crate) const LEAF: u32 = 1 << 31;
+
+/// One value per lane.
+pub(crate) type Lane = [f32; WIDTH];
+
+/// A box, alone, in the centred frame of its tree. 64 bytes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Obb {
+    /// `frame[d]`: coordinate `d` of the centre, then of the three axes.
+    pub(crate) frame: [[f32; 4]; 3],
+    pub(crate) half: [f32; 3],
+    /// The larger of two boxes is opened first.
+    pub(crate) size: f32,
+}
+
+/// The boxes of up to eight children, each with its own orientation. 512 bytes.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Node {
+    pub(crate) center: [Lane; 3],
+    /// Negative in lanes not used, so that nothing touches them.
+    pub(crate) half: [Lane; 3],
+    /// `axes[k][d]`: coordinate `d` of axis `k`.
+    pub(crate) axes: [[Lane; 3]; 3],
+    pub(crate) child: [u32; WIDTH],
+}
+
+/// Up to eight triangles, relative to a centre of their own. 384 bytes.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Leaf {
+    /// `corner[k][d]`: coordinate `d` of corner `k`. Lanes not used repeat the last triangle.
+    pub(crate) corner: [[Lane; 3]; 3],
+    /// The centre, in the frame of the mesh.
+    pub(crate) center: [f64; 3],
+    /// The largest coordinate of a corner in magnitude.
+    pub(crate) magnitude: f32,
+    /// The longest edge.
+    pub(crate) edge: f32,
+    /// The first triangle's position in [`Tree::triangles`], and how many.
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+}
+
+/// The tree of a mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct Tree {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) leaves: Vec<Leaf>,
+    /// The box around each node and around each leaf.
+    pub(crate) node_boxes: Vec<Obb>,
+    pub(crate) leaf_boxes: Vec<Obb>,
+    pub(crate) root: u32,
+    /// The box around everything, in `f64`, in the frame of the mesh.
+    pub(crate) bounding: crate::obb::Obb,
+    /// In the order of the leaves.
+    pub(crate) triangles: Vec<Triangle>,
+    /// The index of each triangle in the mesh it came from.
+    pub(crate) ids: Vec<u32>,
+    /// The origin of boxes, in the frame of the mesh.
+    pub(crate) center: Point3<f64>,
+    /// The largest distance of a corner from `center`, rounded up.
+    pub(crate) radius_center: f64,
+    /// The largest distance of a corner from the origin of the mesh, rounded up.
+    pub(crate) radius: f64,
+}
+
+impl Tree {
+    /// The box around a node or leaf.
+    #[inline(always)]
+    pub(crate) fn own(&self, reference: u32) -> &Obb {
+        if reference & LEAF != 0 {
+            &self.leaf_boxes[(reference & !LEAF) as usize]
+        } else {
+            &self.node_boxes[reference as usize]
+        }
+    }
+
+    /// Whether the tree is too large for the caches near the core, so that it pays to fetch ahead.
+    fn is_large(&self) -> bool {
+        size_of_val(&self.nodes[..]) + size_of_val(&self.leaves[..]) > 1 << 18
+    }
+
+    pub(crate) fn memory(&self) -> usize {
+        size_of_val(&self.nodes[..])
+            + size_of_val(&self.leaves[..])
+            + size_of_val(&self.node_boxes[..])
+            + size_of_val(&self.leaf_boxes[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.ids[..])
+    }
+}
