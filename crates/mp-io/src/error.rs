@@ -67,11 +67,15 @@ struct Excerpt {
 
 impl Error {
     pub(crate) fn new(kind: ErrorKind, file: impl Display, message: impl Into<String>) -> Self {
+        let mut message = message.into();
+        if message.contains(char::is_control) {
+            message = message.replace(char::is_control, "\u{fffd}");
+        }
         Self(Box::new(Inner {
             kind,
             file: file.to_string(),
             position: None,
-            message: message.into(),
+            message,
             expected: None,
             help: None,
             excerpt: None,

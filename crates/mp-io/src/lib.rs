@@ -12,6 +12,7 @@
 
 mod collada;
 mod error;
+pub mod fuzz;
 mod gempa;
 mod json;
 mod mesh;

@@ -1,0 +1,107 @@
+//! Entry points for fuzzing: one function for each format, to be called with any bytes at all.
+//!
+//! Each reads the bytes, and when they are good checks that writing and reading again gives the same. None
+//! may panic, whatever the bytes. The test `fuzz` of this crate calls them with mutated files, as many as
+//! `MP_FUZZ_ITERATIONS` says; `docs/fuzzing.md` tells how to call them from a coverage-guided fuzzer.
+
+use crate::collada::Scene;
+use crate::{Environment, Error, OffDocument, OmplProblem, PathFile};
+use crate::{gempa_mesh_text, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
+use mp_geom::TriMesh;
+
+/// Reads bytes that may be anything; tells whether they were good.
+pub type Target = fn(&[u8]) -> bool;
+
+/// The formats: a name, and the function to call.
+pub const TARGETS: [(&str, Target); 9] = [
+    ("off", off),
+    ("gempa-mesh", gempa_mesh),
+    ("gempa-environment", gempa_environment),
+    ("gempa-path", gempa_path),
+    ("json-path", json_path),
+    ("stl", stl),
+    ("obj", obj),
+    ("collada", collada),
+    ("ompl-app", ompl_app),
+];
+
+/// OFF documents.
+pub fn off(bytes: &[u8]) -> bool {
+    let Some(document) = good(OffDocument::parse("f.off", bytes)) else { return false };
+    let again = good(OffDocument::parse("f.off", document.to_text().as_bytes()));
+    assert_eq!(again.as_ref(), Some(&document));
+    good(document.to_mesh("f.off")).is_some()
+}
+
+/// GEMPA `.txt` meshes.
+pub fn gempa_mesh(bytes: &[u8]) -> bool {
+    let Some(mesh) = good(parse_gempa_mesh("f.txt", bytes)) else { return false };
+    same_triangles(&mesh, good(parse_gempa_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes())));
+    true
+}
+
+/// GEMPA environments.
+pub fn gempa_environment(bytes: &[u8]) -> bool {
+    let Some(environment) = good(Environment::parse("f.env", bytes)) else { return false };
+    assert_eq!(good(Environment::parse("f.env", environment.to_text().as_bytes())), Some(environment));
+    true
+}
+
+/// GEMPA configuration files.
+pub fn gempa_path(bytes: &[u8]) -> bool {
+    let Some(path) = good(PathFile::parse("f.txt", bytes)) else { return false };
+    assert_eq!(good(PathFile::parse("f.txt", path.to_text().as_bytes())), Some(path));
+    true
+}
+
+/// Paths in JSON.
+pub fn json_path(bytes: &[u8]) -> bool {
+    let Some(path) = good(PathFile::parse_json("f.json", bytes)) else { return false };
+    assert_eq!(good(PathFile::parse_json("f.json", path.to_json().as_bytes())), Some(path));
+    true
+}
+
+/// STL, text and binary.
+pub fn stl(bytes: &[u8]) -> bool {
+    let Some(mesh) = good(parse_stl("f.stl", bytes)) else { return false };
+    same_triangles(&mesh, good(parse_stl("f.stl", stl_text(&mesh).as_bytes())));
+    true
+}
+
+/// OBJ.
+pub fn obj(bytes: &[u8]) -> bool {
+    good(parse_obj("f.obj", bytes)).is_some()
+}
+
+/// COLLADA.
+pub fn collada(bytes: &[u8]) -> bool {
+    let Some(scene) = good(Scene::parse("f.dae", bytes)) else { return false };
+    let _ = scene.center();
+    good(scene.to_mesh("f.dae")).is_some()
+}
+
+/// OMPL.app problems.
+pub fn ompl_app(bytes: &[u8]) -> bool {
+    good(OmplProblem::parse("f.cfg", bytes)).is_some()
+}
+
+/// What was read. An error must be fit to be shown: one line, a place inside the file, a remedy.
+fn good<T>(read: Result<T, Error>) -> Option<T> {
+    let error = match read {
+        Ok(value) => return Some(value),
+        Err(error) => error,
+    };
+    let line = error.to_string();
+    assert!(!line.contains('\n') && line.len() < 2000, "{line}");
+    assert!(error.line().is_none_or(|l| l > 0) && error.column().is_none_or(|c| c > 0));
+    assert!(error.remedy().is_some(), "{line}");
+    let mut picture = String::new();
+    let shown = miette::GraphicalReportHandler::new().render_report(&mut picture, &error);
+    assert!(shown.is_ok() && !picture.is_empty());
+    None
+}
+
+fn same_triangles(mesh: &TriMesh, again: Option<TriMesh>) {
+    let all = |m: &TriMesh| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>();
+    assert_eq!(again.map(|m| all(&m)), Some(all(mesh)));
+}
