@@ -13,6 +13,9 @@ use std::path::Path;
 
 /// The most corners of a polygon that is cut into triangles; the time grows with their square.
 pub const MAX_CORNERS: usize = 4096;
+/// The largest sum of the squares of the corners of all polygons of a mesh, those up to 16 left out: about a
+/// minute.
+const MAX_CUTTING: usize = 1_000_000_000;
 
 /// Reads the mesh `path`: OFF, GEMPA `.txt`, STL, OBJ or COLLADA. The extension decides; a name that tells
 /// nothing is decided by the content.
@@ -92,9 +95,17 @@ pub(crate) fn build<'a>(
     vertices: Vec<Point3<f64>>,
     faces: impl Iterator<Item = &'a [u32]> + Clone,
 ) -> Result<TriMesh, Error> {
-    if let Some(face) = faces.clone().find(|f| f.len() > MAX_CORNERS) {
-        let message = format!("a polygon has {} corners, more than the {MAX_CORNERS} allowed", face.len());
-        return Err(Error::new(ErrorKind::TooLarge, file, message).help("cut the polygon into triangles"));
+    let too_large =
+        |message: String| Error::new(ErrorKind::TooLarge, file, message).help("export the mesh as triangles");
+    let mut cutting = 0;
+    for n in faces.clone().map(<[u32]>::len) {
+        if n > MAX_CORNERS {
+            return Err(too_large(format!("a polygon has {n} corners, more than the {MAX_CORNERS} allowed")));
+        }
+        cutting += if n > 16 { n * n } else { 0 };
+        if cutting > MAX_CUTTING {
+            return Err(too_large("the polygons take too long to be cut into triangles".to_owned()));
+        }
     }
     TriMesh::from_polygons(vertices, faces).map_err(|e| mesh_error(file, &e))
 }
@@ -104,5 +115,35 @@ pub(crate) fn mesh_error(file: &str, e: &MeshError) -> Error {
     match e {
         MeshError::Empty => error.help("a body needs at least one triangle"),
         _ => error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn polygons_that_would_take_hours_are_refused() {
+        let circle = |n: u32| {
+            let angle = |i| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
+            (0..n).map(|i| Point3::new(angle(i).cos(), angle(i).sin(), 0.0)).collect::<Vec<_>>()
+        };
+        let face: Vec<u32> = (0..200).collect();
+        let some = build("m", circle(200), std::iter::repeat_n(face.as_slice(), 3)).unwrap();
+        assert_eq!(some.triangles().len(), 3 * 198);
+        let e = build("m", circle(200), std::iter::repeat_n(face.as_slice(), 1_000_000)).unwrap_err();
+        assert_eq!(e.kind(), ErrorKind::TooLarge);
+    }
+
+    #[test]
+    fn formats_are_told_by_name_or_content() {
+        let of = |name: &str, bytes: &[u8]| MeshFormat::of(Path::new(name), bytes);
+        assert_eq!(of("a.OFF", b""), Some(MeshFormat::Off));
+        assert_eq!(of("a.txt", b"12\n"), Some(MeshFormat::Gempa));
+        assert_eq!(of("a.txt", b"\n COFF # x"), Some(MeshFormat::Off));
+        assert_eq!(of("a", b"OFF 1 2 3"), Some(MeshFormat::Off));
+        assert_eq!(of("a", b"solid x\n facet normal 0 0 1"), Some(MeshFormat::Stl));
+        assert_eq!(of("a.xml", b"<?xml?><COLLADA"), Some(MeshFormat::Collada));
+        assert_eq!(of("a.step", b"ISO-10303-21;"), None);
     }
 }

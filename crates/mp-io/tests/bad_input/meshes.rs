@@ -123,7 +123,7 @@ fn off_files() {
         off(
             &("OFF\n5000 1 0\n".to_owned() + &"0 0 0\n".repeat(5000) + "5000" + &" 0".repeat(5000) + "\n"),
             "m.off: a polygon has 5000 corners, more than the 4096 allowed",
-            "cut the polygon into triangles",
+            "export the mesh as triangles",
         ),
     ]);
 }
