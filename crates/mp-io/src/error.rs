@@ -238,15 +238,23 @@ impl Excerpt {
         }
         let limit = floor_boundary(text, (wrong.start + AFTER).min(text.len()));
         let to = (wrong.start..limit).find(|&i| matches!(bytes[i], b'\n' | b'\r')).unwrap_or(limit);
+        let end = wrong.end.clamp(wrong.start, to);
+        let before = printable(&text[from..wrong.start]);
+        let inside = printable(&text[wrong.start..end]);
         Self {
             name: name.to_owned(),
-            text: text[from..to].to_owned(),
-            start: wrong.start - from,
-            len: wrong.end.min(to) - wrong.start,
+            start: before.len(),
+            len: inside.len(),
+            text: before + &inside + &printable(&text[end..to]),
             line,
             column,
         }
     }
+}
+
+/// Without control characters, which could do anything to a terminal.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\t' { '\u{fffd}' } else { c }).collect()
 }
 
 impl SourceCode for Excerpt {
@@ -318,6 +326,13 @@ mod tests {
            ╰────
           help: write a number
         ");
+    }
+
+    #[test]
+    fn control_characters_are_not_shown() {
+        let e = Error::at(ErrorKind::Format, "f", "a\u{1b}[31m bad", 7, 3, "\u{1b}[2J".into());
+        assert!(!shown(e.clone()).contains('\u{1b}') && !e.to_string().contains('\u{1b}'));
+        assert!(shown(e).contains("bad"));
     }
 
     #[test]

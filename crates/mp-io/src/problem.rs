@@ -122,7 +122,8 @@ impl Problem {
     }
 
     /// Where the origin of the robot may be: [`bounds`](Self::bounds), or, when the file says nothing, a box
-    /// around all obstacles, start and goal with room for the robot to go around them.
+    /// around all obstacles, start and goal, enlarged on every side by the diameter of the robot about its
+    /// origin or a tenth of the diagonal of the box, whichever is more, so that it can go around everything.
     #[must_use]
     pub fn position_bounds(&self) -> Aabb {
         self.bounds.unwrap_or_else(|| {
@@ -132,7 +133,9 @@ impl Problem {
                 .iter()
                 .map(|o| o.mesh.transformed(&o.pose).aabb())
                 .fold(Aabb::of_points(&ends), |all, b| all.union(&b));
-            all.enlarged(2.0 * self.robot.mesh.radius_about(&Point3::origin()))
+            let diameter = 2.0 * self.robot.mesh.radius_about(&Point3::origin());
+            let margin = diameter.max(0.1 * all.diagonal());
+            all.enlarged(if margin > 0.0 { margin } else { 1.0 })
         })
     }
 

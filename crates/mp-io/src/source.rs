@@ -100,10 +100,25 @@ pub fn write_atomic(path: &Path, content: &[u8]) -> Result<(), Error> {
             _ => error,
         }
     };
-    if path.is_dir() {
-        return Err(Error::new(ErrorKind::Io, path.display(), "cannot write the file: this is a folder")
-            .help("name a file inside it"));
+    match std::fs::metadata(path) {
+        Ok(m) if m.is_dir() => {
+            return Err(Error::new(ErrorKind::Io, path.display(), "cannot write the file: this is a folder")
+                .help("name a file inside it"));
+        }
+        // Renaming would replace the device or pipe itself.
+        Ok(m) if !m.is_file() => {
+            let message = "cannot write the file: this is a device or a pipe";
+            return Err(Error::new(ErrorKind::Io, path.display(), message).help("name a regular file"));
+        }
+        _ => {}
     }
+    // Through a link, not in place of it.
+    let target = if path.is_symlink() {
+        std::fs::canonicalize(path).map_err(|e| fail("write the file", &e))?
+    } else {
+        path.to_owned()
+    };
+    let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".mp-").suffix(".tmp");
     #[cfg(unix)]
@@ -115,7 +130,7 @@ pub fn write_atomic(path: &Path, content: &[u8]) -> Result<(), Error> {
     let mut file = builder.tempfile_in(folder).map_err(|e| fail("write the file", &e))?;
     file.write_all(content).map_err(|e| fail("write the file", &e))?;
     file.as_file().sync_all().map_err(|e| fail("write the file", &e))?;
-    file.persist(path).map_err(|e| fail("write the file", &e.error))?;
+    file.persist(&target).map_err(|e| fail("write the file", &e.error))?;
     Ok(())
 }
 
@@ -135,6 +150,21 @@ mod tests {
         assert!(e.remedy().unwrap().starts_with("create the folder"));
         assert_eq!(write_atomic(dir.path(), b"x").unwrap_err().kind(), ErrorKind::Io);
         assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn links_stay_links_and_devices_stay_devices() {
+        let dir = tempfile::tempdir().unwrap();
+        let (file, link) = (dir.path().join("a.txt"), dir.path().join("link"));
+        std::fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write_atomic(&link, b"new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(std::fs::read(&file).unwrap(), b"new");
+        std::os::unix::fs::symlink("/dev/null", dir.path().join("null")).unwrap();
+        let e = write_atomic(&dir.path().join("null"), b"x").unwrap_err();
+        assert!(e.message().contains("device"));
     }
 
     #[test]

@@ -131,6 +131,25 @@ fn the_center_counts_a_corner_once_for_each_normal() {
 }
 
 #[test]
+fn normals_of_vertices_count_too() {
+    // Eight normals, one for each position: 0 and 4 lie on each other once moved down, and differ in them.
+    let normals = r##"<source id="n"><float_array count="24">0 0 1 0 0 1 0 0 1 0 0 1 0 0 -1 0 0 -1 0 0 -1 0 0 -1</float_array></source>"##;
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    let text = dae(ASSET, &format!("{normals}<triangles>{input}<p>0 1 2 0 2 1 4 5 6</p></triangles>"), PLAIN)
+        .replace(
+            "<input semantic=\"POSITION\" source=\"#p\"/>",
+            "<input semantic=\"POSITION\" source=\"#p\"/><input semantic=\"NORMAL\" source=\"#n\"/>",
+        )
+        .replace("0 0 2  1 0 2  1 1 2", "0 0 0  1 0 0  1 1 0");
+    let center = Scene::parse("t.dae", text.as_bytes()).unwrap().center();
+    // Both sides of the first triangle share three vertices; the second has three of its own in the same places.
+    assert!((center - Vector3::new(2.0 / 3.0, 1.0 / 3.0, 0.0)).norm() < 1e-6, "{center}");
+    let uneven = text.replace("<p>0 1 2 0 2 1 4 5 6</p>", "<p>0 1 2 0 2 1 4 1 2</p>");
+    let center = Scene::parse("t.dae", uneven.as_bytes()).unwrap().center();
+    assert!((center - Vector3::new(0.5, 0.25, 0.0)).norm() < 1e-6, "{center}");
+}
+
+#[test]
 fn floods_are_refused() {
     let fails = |text: &str| parse_collada("t.dae", text.as_bytes()).unwrap_err();
     let bomb = "<!DOCTYPE a [<!ENTITY b \"x\">]>\n<COLLADA>&b;</COLLADA>";
