@@ -308,10 +308,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
     /// Adds the end of an extension from a node, unless it leads to a node that exists already.
     #[inline]
     pub fn settle(&mut self, from: NodeId, extension: Extension<C::State, L::Edge>) -> Grown {
-        let (motion, reached) = match extension {
-            Extension::Trapped => return Grown::Trapped,
-            Extension::Advanced(motion) => (motion, false),
-            Extension::Reached(motion) => (motion, true),
+        let reached = matches!(extension, Extension::Reached(_));
+        let (Extension::Advanced(motion) | Extension::Reached(motion)) = extension else {
+            return Grown::Trapped;
         };
         let distrusts = self.steer.distrusts();
         if distrusts && !self.steer.verify_motion(self.tree, from, &motion.edge, &motion.end).is_free() {

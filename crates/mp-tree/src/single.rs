@@ -79,6 +79,28 @@ where
         None
     }
 
+    /// Grows toward `target`, which is a goal when the purpose is to join.
+    fn grow(
+        &mut self,
+        target: &C::State,
+        why: Purpose,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        observer.on(Event::Sampled(target));
+        let before = self.branch.tree().len();
+        let grown = self.branch.toward(target, why, &mut self.steer, &mut self.growth, rng, observer);
+        if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
+            return self.candidate(id, observer);
+        }
+        if self.goals.has_region() {
+            let mut new = before as NodeId..self.branch.tree().len() as NodeId;
+            let entered = new.find(|&id| self.goals.reached(self.branch.tree().state(id)))?;
+            return self.candidate(entered, observer);
+        }
+        None
+    }
+
     /// The path to `id` if it passes verification; otherwise its bad part is pruned.
     fn candidate(
         &mut self,
@@ -117,25 +139,15 @@ where
         {
             return Some(path);
         }
-        let aim =
-            if self.goal_bias > 0.0 && rng.random_bool(self.goal_bias) { self.goals.aim(rng) } else { None };
-        let why = if aim.is_some() { Purpose::Join } else { Purpose::Explore };
-        let target = aim.unwrap_or_else(|| {
-            let (points, select) = self.branch.parts();
-            self.propose.propose(rng, self.steer.space(), points, select)
-        });
-        observer.on(Event::Sampled(&target));
-        let before = self.branch.tree().len();
-        let grown = self.branch.toward(&target, why, &mut self.steer, &mut self.growth, rng, observer);
-        if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
-            return self.candidate(id, observer);
+        if self.goal_bias > 0.0
+            && rng.random_bool(self.goal_bias)
+            && let Some(goal) = self.goals.aim(rng)
+        {
+            return self.grow(&goal, Purpose::Join, rng, observer);
         }
-        if self.goals.has_region() {
-            let new = before as NodeId..self.branch.tree().len() as NodeId;
-            let entered = new.into_iter().find(|&id| self.goals.reached(self.branch.tree().state(id)))?;
-            return self.candidate(entered, observer);
-        }
-        None
+        let (points, select) = self.branch.parts();
+        let target = self.propose.propose(rng, self.steer.space(), points, select);
+        self.grow(&target, Purpose::Explore, rng, observer)
     }
 
     fn progress(&self) -> Progress {

@@ -23,8 +23,14 @@ use mp_cspace::{Direction, Motion, NodeId, Path};
 pub struct Tree<S, E> {
     direction: Direction,
     states: Vec<S>,
-    links: Vec<Option<Link<E>>>,
-    costs: Vec<f64>,
+    nodes: Vec<Node<E>>,
+}
+
+/// What there is to a node beside its state.
+#[derive(Clone, Debug)]
+struct Node<E> {
+    cost: f64,
+    link: Option<Link<E>>,
 }
 
 /// How a node hangs on its parent.
@@ -39,7 +45,7 @@ impl<S, E> Tree<S, E> {
     /// An empty tree that grows in `direction`.
     #[must_use]
     pub fn new(direction: Direction) -> Self {
-        Self { direction, states: Vec::new(), links: Vec::new(), costs: Vec::new() }
+        Self { direction, states: Vec::new(), nodes: Vec::new() }
     }
 
     /// Which way the tree grows.
@@ -78,52 +84,57 @@ impl<S, E> Tree<S, E> {
     /// The parent of a node, `None` for a root.
     #[must_use]
     pub fn parent(&self, id: NodeId) -> Option<NodeId> {
-        self.links[id as usize].as_ref().map(|link| link.parent)
+        self.link(id).map(|link| link.parent)
     }
 
     /// The edge between a node and its parent, in forward time; `None` for a root.
     #[must_use]
     pub fn edge(&self, id: NodeId) -> Option<&E> {
-        self.links[id as usize].as_ref().map(|link| &link.edge)
+        self.link(id).map(|link| &link.edge)
     }
 
     /// The cost of the path between a node and its root.
     #[must_use]
     pub fn cost(&self, id: NodeId) -> f64 {
-        self.costs[id as usize]
+        self.nodes[id as usize].cost
     }
 
     /// Whether the edge of a node has passed verification. Roots have none to fail.
     #[must_use]
     pub fn is_verified(&self, id: NodeId) -> bool {
-        self.links[id as usize].as_ref().is_none_or(|link| link.verified)
+        self.link(id).is_none_or(|link| link.verified)
     }
 
     /// Notes that the edge of a node has passed verification.
     pub fn set_verified(&mut self, id: NodeId) {
-        if let Some(link) = &mut self.links[id as usize] {
+        if let Some(link) = &mut self.nodes[id as usize].link {
             link.verified = true;
         }
     }
 
     /// Adds a root.
     pub fn add_root(&mut self, state: S) -> NodeId {
-        self.insert(state, None, 0.0)
+        self.insert(state, Node { cost: 0.0, link: None })
     }
 
     /// Adds the end of `motion` under `parent`.
+    #[inline]
     pub fn push(&mut self, parent: NodeId, motion: Motion<S, E>) -> NodeId {
-        let cost = self.costs[parent as usize] + motion.cost;
+        let cost = self.cost(parent) + motion.cost;
         let link = Link { parent, edge: motion.edge, verified: false };
-        self.insert(motion.end, Some(link), cost)
+        self.insert(motion.end, Node { cost, link: Some(link) })
     }
 
-    fn insert(&mut self, state: S, link: Option<Link<E>>, cost: f64) -> NodeId {
+    #[inline]
+    fn insert(&mut self, state: S, node: Node<E>) -> NodeId {
         let id = self.states.len() as NodeId;
         self.states.push(state);
-        self.links.push(link);
-        self.costs.push(cost);
+        self.nodes.push(node);
         id
+    }
+
+    fn link(&self, id: NodeId) -> Option<&Link<E>> {
+        self.nodes[id as usize].link.as_ref()
     }
 
     /// The nodes from `id` up to its root, both included.
@@ -163,9 +174,8 @@ impl<S, E> Tree<S, E> {
             }
         }
         keep(&mut self.states, &doomed);
-        keep(&mut self.links, &doomed);
-        keep(&mut self.costs, &doomed);
-        for link in self.links.iter_mut().flatten() {
+        keep(&mut self.nodes, &doomed);
+        for link in self.nodes.iter_mut().filter_map(|node| node.link.as_mut()) {
             link.parent = renamed[link.parent as usize];
         }
         survivors
