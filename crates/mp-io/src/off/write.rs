@@ -2,6 +2,7 @@
 
 use super::{OffColor, OffDocument};
 use crate::error::Error;
+use crate::number::Row;
 use crate::source::write_atomic;
 use mp_geom::TriMesh;
 use std::fmt::Write as _;
@@ -24,15 +25,15 @@ impl OffDocument {
         let edges = self.edges.map_or_else(String::new, |e| format!(" {e}"));
         let _ = writeln!(out, "{} {}{edges}", self.vertices.len(), self.faces.len());
         for (i, v) in self.vertices.iter().enumerate() {
-            let _ = write!(out, "{} {} {}", v.x, v.y, v.z);
+            let _ = write!(out, "{}", Row(v.coords.as_slice()));
             if let Some(n) = self.normals.get(i) {
-                let _ = write!(out, " {} {} {}", n.x, n.y, n.z);
+                let _ = write!(out, " {}", Row(n.as_slice()));
             }
             if let Some(c) = self.colors.get(i) {
                 write_color(&mut out, *c);
             }
-            if let Some([s, t]) = self.texture.get(i) {
-                let _ = write!(out, " {s} {t}");
+            if let Some(st) = self.texture.get(i) {
+                let _ = write!(out, " {}", Row(st));
             }
             out.push('\n');
         }
@@ -67,7 +68,7 @@ pub fn off_text(mesh: &TriMesh) -> String {
     let mut out = String::with_capacity(40 * (mesh.vertices().len() + mesh.triangles().len()));
     let _ = writeln!(out, "OFF\n{} {} 0", mesh.vertices().len(), mesh.triangles().len());
     for v in mesh.vertices() {
-        let _ = writeln!(out, "{} {} {}", v.x, v.y, v.z);
+        let _ = writeln!(out, "{}", Row(v.coords.as_slice()));
     }
     for [a, b, c] in mesh.triangles() {
         let _ = writeln!(out, "3 {a} {b} {c}");
@@ -81,4 +82,18 @@ pub fn off_text(mesh: &TriMesh) -> String {
 /// [`Error`] when the file cannot be written; then nothing is left of it.
 pub fn write_off(path: impl AsRef<Path>, mesh: &TriMesh) -> Result<(), Error> {
     write_atomic(path.as_ref(), off_text(mesh).as_bytes())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    #[test]
+    fn text() {
+        let corners = [[0.0, -0.0, 1e-9], [0.1, 1e300, 0.0], [10.0, 1.0 / 3.0, 2.0]].map(Point3::from);
+        let mesh = TriMesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
+        assert_eq!(off_text(&mesh), "OFF\n3 1 0\n0 -0 1e-9\n0.1 1e300 0\n10 0.3333333333333333 2\n3 0 1 2\n");
+        assert_eq!(OffDocument::from_mesh(&mesh).to_text(), off_text(&mesh).replace("3 1 0\n", "3 1\n"));
+    }
 }
