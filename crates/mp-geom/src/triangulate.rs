@@ -7,6 +7,8 @@
 
 use nalgebra::{Point2, Point3, Vector3};
 use robust::{Coord, orient2d};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
 
 /// Newell's normal of a closed polygon: twice its area long, right also when it is concave.
 pub(crate) fn newell_normal(corners: &[Point3<f64>]) -> Vector3<f64> {
@@ -34,81 +36,149 @@ pub(crate) fn triangulate(corners: &[Point3<f64>]) -> Vec<[usize; 3]> {
     triangulate_ccw(&flat)
 }
 
-/// As [`triangulate`], for a counter-clockwise polygon of the plane.
+/// As [`triangulate`], for a counter-clockwise polygon of the plane. O(n log n) on ordinary polygons, O(n²)
+/// on contrived ones.
 pub(crate) fn triangulate_ccw(corners: &[Point2<f64>]) -> Vec<[usize; 3]> {
-    let mut ring: Vec<usize> = (0..corners.len()).collect();
-    let mut triangles = Vec::with_capacity(ring.len().saturating_sub(2));
-    let mut quality: Vec<Option<f64>> = (0..ring.len()).map(|k| ear_quality(corners, &ring, k)).collect();
-    while ring.len() > 3 {
-        let mut best = best_ear(&quality);
-        if best.is_none() {
-            quality = (0..ring.len()).map(|k| ear_quality(corners, &ring, k)).collect();
-            best = best_ear(&quality);
-        }
-        // Only a polygon that is not simple has no ear.
-        let k = best.unwrap_or_else(|| flattest(corners, &ring));
-        triangles.push(around(&ring, k));
-        ring.remove(k);
-        quality.remove(k);
-        let n = ring.len();
-        for neighbour in [(k + n - 1) % n, k % n] {
-            quality[neighbour] = ear_quality(corners, &ring, neighbour);
-        }
+    let mut ring = Ring::new(corners);
+    let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
+    let mut ears: BinaryHeap<Ear> = (0..corners.len()).filter_map(|k| ring.ear(k)).collect();
+    while ring.left > 3 {
+        let ear = loop {
+            match ears.pop() {
+                Some(ear) if ear.around == ring.around(ear.corner) && ring.alive[ear.corner] => {
+                    break Some(ear);
+                }
+                Some(_) => {}
+                None => break None,
+            }
+        };
+        let corner = match ear {
+            Some(ear) => ear.corner,
+            // Cutting may have freed others; if not, the polygon is not simple.
+            None => {
+                ears.extend(ring.corners_left().filter_map(|k| ring.ear(k)));
+                match ears.peek() {
+                    Some(ear) => ear.corner,
+                    None => ring.flattest(),
+                }
+            }
+        };
+        let cut = ring.around(corner);
+        triangles.push(cut);
+        ring.cut(corner);
+        ears.extend([cut[0], cut[2]].into_iter().filter_map(|k| ring.ear(k)));
     }
-    if let [a, b, c] = ring[..] {
-        triangles.push([a, b, c]);
-    }
+    triangles.extend(ring.corners_left().next().filter(|_| ring.left == 3).map(|k| ring.around(k)));
     triangles
 }
 
-fn around(ring: &[usize], k: usize) -> [usize; 3] {
-    let n = ring.len();
-    [ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]]
+/// A corner that can be cut, given its neighbours, and how well shaped its triangle is: area over the
+/// longest side squared.
+#[derive(PartialEq)]
+struct Ear {
+    quality: f64,
+    corner: usize,
+    around: [usize; 3],
 }
 
-fn best_ear(quality: &[Option<f64>]) -> Option<usize> {
-    let mut best: Option<(usize, f64)> = None;
-    for (k, q) in quality.iter().enumerate() {
-        if let Some(q) = *q
-            && best.is_none_or(|(_, b)| q > b)
-        {
-            best = Some((k, q));
-        }
+impl Eq for Ear {}
+impl PartialOrd for Ear {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
     }
-    best.map(|(k, _)| k)
+}
+impl Ord for Ear {
+    fn cmp(&self, other: &Self) -> Ordering {
+        // Of equals the first corner.
+        self.quality.total_cmp(&other.quality).then(other.corner.cmp(&self.corner))
+    }
 }
 
-/// The corner of a ring without ears to cut: the one whose triangle is least turned the wrong way.
-fn flattest(corners: &[Point2<f64>], ring: &[usize]) -> usize {
-    let turn = |k: usize| turn(around(ring, k).map(|i| corners[i]));
-    (0..ring.len()).min_by(|&a, &b| turn(a).abs().total_cmp(&turn(b).abs())).unwrap_or(0)
+/// What is left of a polygon while it is cut down.
+struct Ring<'p> {
+    corners: &'p [Point2<f64>],
+    previous: Vec<usize>,
+    next: Vec<usize>,
+    alive: Vec<bool>,
+    left: usize,
+    /// The corners in order of x and of y.
+    sorted: [Vec<usize>; 2],
+}
+
+impl<'p> Ring<'p> {
+    fn new(corners: &'p [Point2<f64>]) -> Self {
+        let n = corners.len();
+        let sorted = [0, 1].map(|axis| {
+            let mut order: Vec<usize> = (0..n).collect();
+            order.sort_by(|&i, &j| corners[i][axis].total_cmp(&corners[j][axis]));
+            order
+        });
+        let previous = (0..n).map(|i| (i + n - 1) % n).collect();
+        let next = (0..n).map(|i| (i + 1) % n).collect();
+        Self { corners, previous, next, alive: vec![true; n], left: n, sorted }
+    }
+
+    fn around(&self, k: usize) -> [usize; 3] {
+        [self.previous[k], k, self.next[k]]
+    }
+
+    fn corners_left(&self) -> impl Iterator<Item = usize> {
+        (0..self.alive.len()).filter(|&k| self.alive[k])
+    }
+
+    fn cut(&mut self, k: usize) {
+        let [before, _, after] = self.around(k);
+        (self.next[before], self.previous[after]) = (after, before);
+        self.alive[k] = false;
+        self.left -= 1;
+    }
+
+    /// The corner of a ring without ears to cut: the one whose triangle is flattest.
+    fn flattest(&self) -> usize {
+        let flatness = |k: usize| turn(self.around(k).map(|i| self.corners[i])).abs();
+        self.corners_left().min_by(|&a, &b| flatness(a).total_cmp(&flatness(b))).unwrap_or(0)
+    }
+
+    /// Corner `k` as an ear, when it is one: convex, and no other corner in its closed triangle.
+    fn ear(&self, k: usize) -> Option<Ear> {
+        let around = self.around(k);
+        let [a, b, c] = around.map(|i| self.corners[i]);
+        let area = turn([a, b, c]);
+        if area <= 0.0 {
+            return None;
+        }
+        let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
+        // Whichever axis leaves fewer corners to look at.
+        let [in_x, in_y] = [0, 1].map(|axis| {
+            let order = &self.sorted[axis];
+            let from = order.partition_point(|&i| self.corners[i][axis] < low[axis]);
+            let to = order.partition_point(|&i| self.corners[i][axis] <= high[axis]);
+            &order[from..to]
+        });
+        let near = if in_x.len() <= in_y.len() { in_x } else { in_y };
+        let blocked = near.iter().any(|&i| {
+            let p = self.corners[i];
+            self.alive[i]
+                && low.x <= p.x
+                && p.x <= high.x
+                && low.y <= p.y
+                && p.y <= high.y
+                && p != a
+                && p != b
+                && p != c
+                && turn([a, b, p]) >= 0.0
+                && turn([b, c, p]) >= 0.0
+                && turn([c, a, p]) >= 0.0
+        });
+        let longest = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
+        (!blocked).then_some(Ear { quality: area / longest, corner: k, around })
+    }
 }
 
 /// Twice the signed area of a triangle, with the exact sign.
 fn turn([a, b, c]: [Point2<f64>; 3]) -> f64 {
     let coord = |p: Point2<f64>| Coord { x: p.x, y: p.y };
     orient2d(coord(a), coord(b), coord(c))
-}
-
-/// Whether corner `k` of the ring is an ear, and how well shaped: area over the longest side squared.
-fn ear_quality(corners: &[Point2<f64>], ring: &[usize], k: usize) -> Option<f64> {
-    let ear = around(ring, k).map(|i| corners[i]);
-    let area = turn(ear);
-    if area <= 0.0 {
-        return None;
-    }
-    let [a, b, c] = ear;
-    let blocked = ring.iter().any(|&i| {
-        let p = corners[i];
-        p != a
-            && p != b
-            && p != c
-            && turn([a, b, p]) >= 0.0
-            && turn([b, c, p]) >= 0.0
-            && turn([c, a, p]) >= 0.0
-    });
-    let longest = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
-    (!blocked).then_some(area / longest)
 }
 
 /// Whether the closed polygon is simple: at least three corners, no two equal, no two sides touching but
@@ -229,6 +299,24 @@ mod tests {
             let triangles = triangulate(&corners);
             prop_assert_eq!(triangles.len(), corners.len() - 2);
             prop_assert!(triangles.iter().flatten().all(|&i| i < corners.len()));
+        }
+    }
+
+    /// Ten thousand corners, convex and jagged, in no time.
+    #[test]
+    fn large_polygons() {
+        for depth in [0.0, 0.3] {
+            let polygon: Vec<_> = (0..10_000)
+                .map(|i| {
+                    let (s, c) = (std::f64::consts::TAU * f64::from(i) / 1e4).sin_cos();
+                    Point2::new(c, s) * (1.0 - depth * f64::from(i % 3))
+                })
+                .collect();
+            let triangles = triangulate_ccw(&polygon);
+            assert_eq!(triangles.len(), 9_998);
+            let total: f64 = triangles.iter().map(|t| turn(t.map(|i| polygon[i])) * 0.5).sum();
+            assert!(triangles.iter().all(|t| turn(t.map(|i| polygon[i])) > 0.0));
+            assert!((total - area(&polygon)).abs() < 1e-9);
         }
     }
 
