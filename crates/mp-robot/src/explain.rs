@@ -24,7 +24,7 @@ impl<P: Placement> RigidBody<P> {
         if shared.shape.radius == 0.0 {
             // A point inside a solid touches nothing, but is as deep as the surface is far.
             let p = Point3::from(pose.translation.vector);
-            for (body, solid) in &shared.solids {
+            for (body, solid) in shared.solids() {
                 if let Some(obstacle) = shared.scene.body(*body)
                     && contacts.iter().all(|c| c.body != *body)
                     && solid.contains(&p)
@@ -49,7 +49,7 @@ impl<P: Placement> RigidBody<P> {
     #[must_use]
     pub fn enclosing(&self, q: &P::State) -> Vec<&str> {
         let vertex = P::pose(q) * self.shared.robot_mesh.vertices()[0];
-        let around = self.shared.solids.iter().filter(|(_, solid)| solid.contains(&vertex));
+        let around = self.shared.solids().iter().filter(|(_, solid)| solid.contains(&vertex));
         around.map(|(_, solid)| solid.name.as_str()).collect()
     }
 

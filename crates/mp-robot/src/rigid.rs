@@ -21,6 +21,14 @@ pub enum RobotError {
     /// A mesh that is none.
     #[error(transparent)]
     Mesh(#[from] MeshError),
+    /// More triangles than trees can name.
+    #[error("robot and obstacles have {count} triangles; at most {max} can be handled")]
+    TooManyTriangles {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        max: usize,
+    },
     /// The robot is too large to compute with.
     #[error("the robot is too large: {radius:e} m from its origin; at most {max:e} m can be handled")]
     TooLarge {
@@ -58,12 +66,26 @@ pub(crate) struct Shared {
     pub(crate) robot: CollisionMesh,
     pub(crate) shape: Shape,
     pub(crate) scene: Scene,
-    pub(crate) solids: Vec<(BodyId, Solid)>,
-    /// All obstacles in the world.
-    pub(crate) world_mesh: Option<TriMesh>,
+    /// Made when first asked for.
+    solids: OnceLock<Vec<(BodyId, Solid)>>,
+    /// Every obstacle in the world.
+    pub(crate) placed: Vec<(BodyId, Arc<TriMesh>)>,
     pub(crate) world_bounds: Aabb,
     /// For verifiers, made when the first one is.
     pub(crate) reference: OnceLock<Reference>,
+}
+
+impl Shared {
+    /// The obstacles that are solids.
+    pub(crate) fn solids(&self) -> &[(BodyId, Solid)] {
+        self.solids.get_or_init(|| {
+            let named = self.placed.iter().filter_map(|(id, mesh)| {
+                let name = self.scene.body(*id)?.name();
+                Some((*id, Solid::new(name, mesh)?))
+            });
+            named.collect()
+        })
+    }
 }
 
 /// Robot and obstacles as verifiers see them.
@@ -102,6 +124,9 @@ pub type PlanarFlyer = RigidBody<Planar>;
 /// (closed, consistently oriented, triangles facing outward). Rooms, whose triangles face inward, and
 /// open sheets are surfaces as for all robots: there only certified motion checks are of use.
 pub type PointRobot = RigidBody<Point>;
+
+/// Most triangles: what a reference mesh can hold.
+const MAX_TRIANGLES: usize = 1 << 30;
 
 /// Largest robot, metres.
 const MAX_RADIUS: f64 = 1e75;
@@ -162,24 +187,26 @@ impl<P: Placement> RigidBody<P> {
             return Err(RobotError::TooLarge { radius: shape.radius, max: MAX_RADIUS });
         }
         let mut scene = Scene::new();
-        let (mut placed, mut solids) = (Vec::new(), Vec::new());
+        let mut placed = Vec::new();
+        let mut count = robot.triangles().len();
         for (name, mesh, pose) in obstacles {
-            let in_world = mesh.transformed(&pose);
-            let solid = Solid::new(&name, &in_world);
+            count = count.saturating_add(mesh.triangles().len());
+            if count > MAX_TRIANGLES {
+                return Err(RobotError::TooManyTriangles { count, max: MAX_TRIANGLES });
+            }
+            let in_world = Arc::new(mesh.transformed(&pose));
             let id = scene.insert(name, CollisionMesh::new(&mesh), pose)?;
-            solids.extend(solid.map(|s| (id, s)));
-            placed.push(in_world);
+            placed.push((id, in_world));
         }
         scene.merge_static();
-        let world_mesh = TriMesh::merged(&placed);
         let shared = Shared {
             robot_mesh: robot.clone(),
             robot: CollisionMesh::new(robot),
             shape,
             scene,
-            solids,
-            world_bounds: placed.iter().map(TriMesh::aabb).fold(Aabb::empty(), |a, b| a.union(&b)),
-            world_mesh,
+            solids: OnceLock::new(),
+            world_bounds: placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b)),
+            placed,
             reference: OnceLock::new(),
         };
         Ok(Self {
@@ -257,7 +284,7 @@ impl<P: Placement> RigidBody<P> {
     fn point_inside(&self, pose: &Isometry3<f64>) -> bool {
         self.shared.shape.radius == 0.0 && {
             let p = pose.translation.vector.into();
-            self.shared.solids.iter().any(|(_, solid)| solid.contains(&p))
+            self.shared.solids().iter().any(|(_, solid)| solid.contains(&p))
         }
     }
 

@@ -15,10 +15,10 @@ pub(crate) struct Solid {
 
 impl Solid {
     /// `mesh`, in the world, if it is a solid: closed and oriented, outside out.
-    pub(crate) fn new(name: &str, mesh: &TriMesh) -> Option<Self> {
+    pub(crate) fn new(name: &str, mesh: &Arc<TriMesh>) -> Option<Self> {
         let topology = mesh.topology();
         let solid = topology.closed && topology.oriented && mesh.signed_volume() > 0.0;
-        solid.then(|| Self { name: name.to_owned(), mesh: Arc::new(mesh.clone()), bounds: mesh.aabb() })
+        solid.then(|| Self { name: name.to_owned(), mesh: Arc::clone(mesh), bounds: mesh.aabb() })
     }
 
     /// Whether `p` is inside: its winding number is that of the inside. Points within rounding of the
@@ -48,10 +48,14 @@ mod tests {
     use mp_geom::primitives::{cuboid, torus};
     use proptest::prelude::*;
 
+    fn solid(mesh: TriMesh) -> Option<Solid> {
+        Solid::new("it", &Arc::new(mesh))
+    }
+
     proptest! {
         #[test]
         fn inside_a_torus_is_known_by_its_equation(p in prop::array::uniform3(-3.0..3.0_f64)) {
-            let solid = Solid::new("ring", &torus(2.0, 0.7, 96, 48).unwrap()).unwrap();
+            let solid = solid(torus(2.0, 0.7, 96, 48).unwrap()).unwrap();
             let from_tube = (p[0].hypot(p[1]) - 2.0).hypot(p[2]);
             // The mesh is inscribed.
             prop_assume!(!(0.69..=0.7).contains(&from_tube));
@@ -62,13 +66,13 @@ mod tests {
     #[test]
     fn rooms_and_sheets_are_no_solids() {
         let cube = cuboid(1.0, 1.0, 1.0).unwrap();
-        assert!(Solid::new("cube", &cube).is_some());
-        assert!(Solid::new("room", &cube.reversed()).is_none());
+        assert!(solid(cube.clone()).is_some());
+        assert!(solid(cube.reversed()).is_none());
         let sheet = TriMesh::new(cube.vertices().to_vec(), cube.triangles()[..4].to_vec()).unwrap();
-        assert!(Solid::new("sheet", &sheet).is_none());
+        assert!(solid(sheet).is_none());
         // A hollow one has its cavity.
         let hollow = TriMesh::merged([&cube, &cuboid(0.5, 0.5, 0.5).unwrap().reversed()]).unwrap();
-        let hollow = Solid::new("hollow", &hollow).unwrap();
+        let hollow = solid(hollow).unwrap();
         assert!(!hollow.contains(&Point3::origin()) && hollow.contains(&Point3::new(0.3, 0.3, 0.3)));
     }
 }

@@ -5,6 +5,7 @@ use crate::solid::Solid;
 use crate::{Placement, RigidBody};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space};
+use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::collections::VecDeque;
 use std::marker::PhantomData;
@@ -70,9 +71,10 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         let shared = &robot.shared;
         let reference = shared.reference.get_or_init(|| Reference {
             robot: Arc::new(RefMesh::new(&shared.robot_mesh)),
-            world: shared.world_mesh.as_ref().map(|mesh| Arc::new(RefMesh::new(mesh))),
+            world: TriMesh::merged(shared.placed.iter().map(|(_, mesh)| &**mesh))
+                .map(|mesh| Arc::new(RefMesh::new(&mesh))),
         });
-        let solids = if shared.shape.radius == 0.0 { shared.solids.as_slice() } else { &[] };
+        let solids = if shared.shape.radius == 0.0 { shared.solids() } else { &[] };
         let from_origin = |p: &Point3<f64>| p.coords.norm();
         Ok(Self {
             space,
