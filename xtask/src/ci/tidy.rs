@@ -1,0 +1,201 @@
+//! What the compiler does not check: that the crates depend on each other as `ARCHITECTURE.md` says, that the
+//! paths it names exist, that files stay short, and that every algorithm has an example and a test.
+
+use miette::{IntoDiagnostic, Result, WrapErr};
+use std::collections::BTreeSet;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A file longer than this is worth a look.
+const LONG: usize = 500;
+/// A file longer than this is an error.
+const TOO_LONG: usize = 800;
+
+/// Something untidy.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Finding {
+    pub(crate) is_error: bool,
+    what: String,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", if self.is_error { "error" } else { "warning" }, self.what)
+    }
+}
+
+fn error(what: String) -> Finding {
+    Finding { is_error: true, what }
+}
+
+/// All findings in the workspace at `root`.
+pub(crate) fn check(root: &Path) -> Result<Vec<Finding>> {
+    let architecture = read(&root.join("ARCHITECTURE.md"))?;
+    let mut findings = arrows(root, &architecture)?;
+    findings.extend(missing_paths(root, &architecture));
+    let mut paths = Vec::new();
+    for folder in ["crates", "xtask"] {
+        rust_files(&root.join(folder), &mut paths)?;
+    }
+    paths.sort();
+    let sources = paths.into_iter().map(|p| read(&p).map(|text| (p, text))).collect::<Result<Vec<_>>>()?;
+    for (path, text) in &sources {
+        let shown = path.strip_prefix(root).unwrap_or(path).display();
+        let lines = text.lines().count();
+        if lines > LONG {
+            let what = format!("{shown} has {lines} lines, more than {LONG}");
+            findings.push(Finding { is_error: lines > TOO_LONG, what });
+        }
+        findings.extend(algorithm(&sources, path).map(|lack| error(format!("{shown} has no {lack}"))));
+    }
+    Ok(findings)
+}
+
+fn read(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot read {}", path.display()))
+}
+
+fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) -> Result<()> {
+    let entries = std::fs::read_dir(folder)
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot list {}", folder.display()))?;
+    for entry in entries {
+        let path = entry.into_diagnostic()?.path();
+        if path.is_dir() && !path.ends_with("target") {
+            rust_files(&path, out)?;
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            out.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Rows of the code map, `| crate | … | what it depends on |`: crate and dependencies.
+fn code_map(architecture: &str) -> Vec<(String, BTreeSet<String>)> {
+    let words = |cell: &str| -> BTreeSet<String> {
+        let separators = |c: char| !(c.is_ascii_alphanumeric() || c == '-');
+        cell.split(separators).filter(|w| *w == "mp" || w.starts_with("mp-")).map(str::to_owned).collect()
+    };
+    let rows = architecture.lines().filter(|line| line.starts_with("| `"));
+    rows.filter_map(|row| {
+        let cells: Vec<&str> = row.trim().trim_matches('|').split('|').collect();
+        let name = cells.first()?.trim().trim_matches('`').to_owned();
+        Some((name, words(cells.last()?)))
+    })
+    .collect()
+}
+
+/// The workspace's crates among the `[dependencies]` of a manifest.
+fn dependencies(manifest: &str) -> BTreeSet<String> {
+    let mut section = "";
+    let mut out = BTreeSet::new();
+    for line in manifest.lines().map(str::trim) {
+        if line.starts_with('[') {
+            section = line;
+        } else if section == "[dependencies]"
+            && let Some((name, _)) = line.split_once(['=', '.'])
+        {
+            let name = name.trim();
+            if name == "mp" || name.starts_with("mp-") {
+                out.insert(name.to_owned());
+            }
+        }
+    }
+    out
+}
+
+fn arrows(root: &Path, architecture: &str) -> Result<Vec<Finding>> {
+    let map = code_map(architecture);
+    let mut findings = Vec::new();
+    let mut folders = vec![root.join("xtask")];
+    let crates = root.join("crates");
+    for entry in std::fs::read_dir(&crates).into_diagnostic().wrap_err("cannot list crates")? {
+        folders.push(entry.into_diagnostic()?.path());
+    }
+    folders.sort();
+    for folder in folders.iter().filter(|f| f.join("Cargo.toml").is_file()) {
+        let name = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let real = dependencies(&read(&folder.join("Cargo.toml"))?);
+        match map.iter().find(|(n, _)| *n == name) {
+            None => findings.push(error(format!("{name} is missing in the code map of ARCHITECTURE.md"))),
+            Some((_, said)) if *said != real => {
+                findings.push(error(format!("{name} depends on {real:?}, but ARCHITECTURE.md says {said:?}")))
+            }
+            Some(_) => {}
+        }
+    }
+    let known = |name: &str| folders.iter().any(|f| f.file_name().is_some_and(|n| n == name));
+    let gone = map.iter().filter(|(name, _)| !known(name));
+    findings.extend(
+        gone.map(|(name, _)| error(format!("ARCHITECTURE.md names the crate {name}: there is none"))),
+    );
+    Ok(findings)
+}
+
+/// Paths in backticks that do not exist.
+fn missing_paths(root: &Path, architecture: &str) -> Vec<Finding> {
+    let quoted = architecture.split('`').skip(1).step_by(2);
+    let paths = quoted.filter(|q| {
+        q.contains('/')
+            && q.chars().all(|c| c.is_ascii_alphanumeric() || "/._-".contains(c))
+            && !q.starts_with('/')
+    });
+    let missing = paths.filter(|p| !root.join(p).exists());
+    missing.map(|p| error(format!("ARCHITECTURE.md names {p}, which does not exist"))).collect()
+}
+
+/// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one called
+/// so, or in one that names it).
+fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str> {
+    if !path.parent().is_some_and(|p| p.ends_with("src/algo")) || path.ends_with("mod.rs") {
+        return None;
+    }
+    let name = path.file_name()?;
+    let word = format!("\"{}\"", path.file_stem()?.to_string_lossy().replace('_', "-"));
+    let within = |s: &Path, folder: &str| s.parent().is_some_and(|p| p.ends_with(folder));
+    if !sources.iter().any(|(s, _)| s.file_name() == Some(name) && within(s, "examples")) {
+        return Some("example of its name");
+    }
+    let tests = |(s, text): &(PathBuf, String)| {
+        (s == path && text.contains("#[cfg(test)]"))
+            || (within(s, "tests") && (s.file_name() == Some(name) || text.contains(&word)))
+    };
+    if sources.iter().any(tests) { None } else { Some("test") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_workspace_is_tidy() {
+        let findings = check(&crate::scenes::root()).unwrap();
+        let errors: Vec<_> = findings.iter().filter(|f| f.is_error).map(ToString::to_string).collect();
+        assert!(errors.is_empty(), "{errors:#?}");
+    }
+
+    #[test]
+    fn code_maps_and_manifests_are_understood() {
+        let map = code_map(
+            "| crate | x |\n|---|---|\n| `mp-a` | text with mp-z | `mp-b`, mp-c |\n| `mp-b` | t | nalgebra |\n",
+        );
+        let set = |names: &[&str]| names.iter().map(|s| (*s).to_owned()).collect::<BTreeSet<_>>();
+        assert_eq!(map, [("mp-a".into(), set(&["mp-b", "mp-c"])), ("mp-b".into(), set(&[]))]);
+        let manifest = "[package]\nname = \"x\"\n[dependencies]\nmp-b = { workspace = true }\nmp-c.workspace = true\nserde = \"1\"\n[dev-dependencies]\nmp-d = \"1\"\n";
+        assert_eq!(dependencies(manifest), set(&["mp-b", "mp-c"]));
+    }
+
+    #[test]
+    fn an_algorithm_needs_an_example_and_a_test() {
+        let file = PathBuf::from("crates/mp-x/src/algo/fast.rs");
+        let mut sources = vec![(file.clone(), String::new())];
+        assert_eq!(algorithm(&sources, &file), Some("example of its name"));
+        sources.push(("crates/mp/examples/fast.rs".into(), String::new()));
+        assert_eq!(algorithm(&sources, &file), Some("test"));
+        sources.push(("crates/mp-x/tests/all.rs".into(), "run(\"fast\")".into()));
+        assert_eq!(algorithm(&sources, &file), None);
+        assert_eq!(algorithm(&sources, Path::new("crates/mp-x/src/other.rs")), None);
+    }
+}

@@ -1,0 +1,229 @@
+//! The command line.
+
+use crate::plan::metrics;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Args, Parser, Subcommand};
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Motion planning on the command line.
+///
+/// Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version, max_term_width = 110)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Plan on a scene: solve, shorten, verify, and write the path and a picture.
+    Plan(Box<Plan>),
+    /// Verify a path with the independent checker: exit 0 only if it is certified free.
+    Check(Check),
+    /// Say what is in a mesh, scene or path file.
+    Info(Info),
+    /// Draw a scene, and a path through it, with no display.
+    Render(Render),
+    /// Formatting, lints, tests, documentation and tidiness: what CI runs.
+    Ci(Ci),
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Plan {
+    /// Scene files, or names of shipped scenes (default: the shipped sample).
+    #[arg(value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Which planner.
+    #[arg(long, value_name = "NAME", default_value = "rrt-connect",
+          value_parser = PossibleValuesParser::new(planners()))]
+    pub(crate) planner: String,
+    /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
+    #[arg(long, value_name = "NAME", default_value = metrics::DEFAULT,
+          value_parser = PossibleValuesParser::new(metrics::values()))]
+    pub(crate) metric: String,
+    /// All randomness flows from this number.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Stop after this many seconds.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    pub(crate) time: f64,
+    /// Stop after this many iterations.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) iterations: Option<u64>,
+    /// Longest edge of a tree: a distance of the metric, or a percentage of the extent of the space
+    /// [default: 20%].
+    #[arg(long, value_name = "ε")]
+    pub(crate) step: Option<Length>,
+    /// How motions are checked: `certified` (no wall is ever missed) or `discrete:R`, at steps of R (a
+    /// distance of the metric, or a percentage of the extent). What is written is certified either way.
+    #[arg(long, value_name = "CHECK", default_value = "certified")]
+    pub(crate) motion: Motion,
+    /// Plan this often, with seeds N, N + 1, …, and print a table.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) runs: u32,
+    /// How many runs at once; results do not depend on it.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
+    /// Set a parameter of the planner.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Where the path goes: a GEMPA configuration file, or JSON if it ends in `.json`. `{scene}` and
+    /// `{seed}` stand for their names.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Where the picture goes (`.png`). `{scene}` and `{seed}` stand for their names.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Print one JSON object on standard output, and write only the files asked for.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Leave the path as the planner found it.
+    #[arg(long)]
+    pub(crate) no_shorten: bool,
+    /// Also write each scene to this folder as one JSON and two OFF files, for other planners.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) export: Option<PathBuf>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Check {
+    /// A scene file, or the name of a shipped scene.
+    pub(crate) scene: PathBuf,
+    /// A path: GEMPA configuration file or `.json`.
+    pub(crate) path: PathBuf,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Info {
+    /// A mesh, scene or path file.
+    pub(crate) file: PathBuf,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Render {
+    /// A scene file, or the name of a shipped scene.
+    pub(crate) scene: PathBuf,
+    /// A path: GEMPA configuration file or `.json`.
+    pub(crate) path: Option<PathBuf>,
+    /// Where the picture goes (`.png`).
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: PathBuf,
+    /// Width and height in pixels.
+    #[arg(long, value_name = "W×H", default_value = "1280x960", value_parser = pixels)]
+    pub(crate) size: (usize, usize),
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Ci {
+    /// Leave the tests out.
+    #[arg(long)]
+    pub(crate) no_tests: bool,
+}
+
+/// A distance of the metric, or a share of the extent of the space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Length {
+    /// In the unit of the metric.
+    Absolute(f64),
+    /// Of the extent, 1 being all of it.
+    Fraction(f64),
+}
+
+/// As it is given on the command line.
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absolute(length) => write!(f, "{length}"),
+            Self::Fraction(fraction) => write!(f, "{}%", 100.0 * fraction),
+        }
+    }
+}
+
+impl FromStr for Length {
+    type Err = String;
+    fn from_str(s: &str) -> Result<Self, String> {
+        match s.strip_suffix('%') {
+            Some(percent) => match positive(percent)? {
+                p if p <= 100.0 => Ok(Self::Fraction(p / 100.0)),
+                _ => Err("more than 100% of the extent".into()),
+            },
+            None => positive(s).map(Self::Absolute),
+        }
+    }
+}
+
+/// How motions are checked.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Motion {
+    /// Clearance against motion bounds: nothing is missed.
+    Certified,
+    /// At steps of this length.
+    Discrete(Length),
+}
+
+impl FromStr for Motion {
+    type Err = String;
+    fn from_str(s: &str) -> Result<Self, String> {
+        match (s, s.strip_prefix("discrete:")) {
+            ("certified", _) => Ok(Self::Certified),
+            (_, Some(resolution)) => resolution.parse().map(Self::Discrete),
+            ("discrete", _) => Err("give the resolution, such as discrete:1% or discrete:0.05".into()),
+            _ => Err("expected `certified` or `discrete:R`, such as discrete:1%".into()),
+        }
+    }
+}
+
+/// The planners by name.
+fn planners() -> Vec<PossibleValue> {
+    mp::tree::planners().iter().map(|p| PossibleValue::new(p.name).help(p.summary)).collect()
+}
+
+/// A finite number above zero.
+fn positive(s: &str) -> Result<f64, String> {
+    match s.trim().parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(_) => Err("must be a finite number above zero".into()),
+        Err(_) => Err("not a number".into()),
+    }
+}
+
+/// `WxH`, both from 64 to 8192.
+fn pixels(s: &str) -> Result<(usize, usize), String> {
+    let sides = s.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match sides {
+        Some((w, h)) if (64..=8192).contains(&w) && (64..=8192).contains(&h) => Ok((w, h)),
+        Some(_) => Err("each side must be from 64 to 8192".into()),
+        None => Err("expected WIDTHxHEIGHT, such as 1280x960".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn lengths_and_motions() {
+        assert_eq!("20%".parse(), Ok(Length::Fraction(0.2)));
+        assert_eq!("0.5".parse(), Ok(Length::Absolute(0.5)));
+        assert_eq!("discrete:1%".parse(), Ok(Motion::Discrete(Length::Fraction(0.01))));
+        for bad in ["", "0", "-1", "nan", "inf", "101%", "0%", "%", "x"] {
+            assert!(bad.parse::<Length>().is_err(), "{bad}");
+            assert!(format!("discrete:{bad}").parse::<Motion>().is_err(), "{bad}");
+        }
+    }
+}

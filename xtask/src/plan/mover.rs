@@ -1,0 +1,52 @@
+//! What differs between robots in the plane and in space.
+
+use miette::{IntoDiagnostic, Result};
+use mp::cspace::{Factored, MaxDisplacement, MetricOn, ScaledEuclidean, Se2, Se3, Space};
+use mp::geom::{Aabb, TriMesh};
+use mp::robot::{Placement, Planar, Spatial};
+use nalgebra::{Point2, Point3};
+use std::fmt::Debug;
+
+/// A kind of rigid body.
+pub(crate) trait Mover: Placement {
+    type Space: Space<State = Self::State> + Factored + Clone + Debug + Send + Sync;
+    type Displacement: MetricOn<Self::Space>;
+
+    /// The space of configurations with the origin within `bounds`.
+    fn space(bounds: &Aabb) -> Result<Self::Space>;
+    /// The Euclidean metric with radians times `radius`.
+    fn scaled(space: &Self::Space, radius: f64) -> Result<ScaledEuclidean>;
+    /// How far the point of the robot moves that moves farthest.
+    fn displacement(robot: &TriMesh) -> Result<Self::Displacement>;
+}
+
+impl Mover for Spatial {
+    type Space = Se3;
+    type Displacement = MaxDisplacement<Point3<f64>>;
+
+    fn space(bounds: &Aabb) -> Result<Se3> {
+        Se3::new(bounds.min.coords, bounds.max.coords).into_diagnostic()
+    }
+    fn scaled(space: &Se3, radius: f64) -> Result<ScaledEuclidean> {
+        ScaledEuclidean::new(space, [1.0, 1.0, 1.0, radius]).into_diagnostic()
+    }
+    fn displacement(robot: &TriMesh) -> Result<Self::Displacement> {
+        MaxDisplacement::new(robot.vertices().to_vec()).into_diagnostic()
+    }
+}
+
+impl Mover for Planar {
+    type Space = Se2;
+    type Displacement = MaxDisplacement<Point2<f64>>;
+
+    fn space(bounds: &Aabb) -> Result<Se2> {
+        Se2::new(bounds.min.coords.xy(), bounds.max.coords.xy()).into_diagnostic()
+    }
+    fn scaled(space: &Se2, radius: f64) -> Result<ScaledEuclidean> {
+        ScaledEuclidean::new(space, [1.0, 1.0, radius]).into_diagnostic()
+    }
+    fn displacement(robot: &TriMesh) -> Result<Self::Displacement> {
+        let points: Vec<_> = robot.vertices().iter().map(Point3::xy).collect();
+        MaxDisplacement::planar(points).into_diagnostic()
+    }
+}

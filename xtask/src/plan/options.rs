@@ -1,0 +1,50 @@
+//! What the command line asks for, checked.
+
+use super::metrics;
+use crate::cli::{self, Motion};
+use miette::{IntoDiagnostic, Result, miette};
+use mp::tree::{PlannerInfo, Settings};
+use std::time::Duration;
+
+/// How to plan.
+#[derive(Clone, Debug)]
+pub(crate) struct Options {
+    pub(crate) planner: &'static PlannerInfo,
+    pub(crate) settings: Settings,
+    pub(crate) metric: metrics::Kind,
+    pub(crate) metric_name: String,
+    pub(crate) motion: Motion,
+    pub(crate) time: Duration,
+    pub(crate) iterations: Option<u64>,
+    pub(crate) shorten: bool,
+}
+
+impl Options {
+    pub(crate) fn new(args: &cli::Plan) -> Result<Self> {
+        let planner = mp::tree::planner(&args.planner).into_diagnostic()?;
+        let mut settings = Settings::default();
+        if let Some(step) = args.step {
+            settings.set("step", &step.to_string());
+        }
+        for text in &args.set {
+            match text.split_once('=') {
+                Some((key, value)) if !key.trim().is_empty() => settings.set(key.trim(), value.trim()),
+                _ => return Err(miette!(help = "write KEY=VALUE", "cannot read the setting `{text}`")),
+            }
+        }
+        settings.tuning(planner).into_diagnostic()?;
+        let metric =
+            metrics::named(&args.metric).ok_or_else(|| miette!("there is no metric `{}`", args.metric))?;
+        let time = Duration::try_from_secs_f64(args.time).unwrap_or(Duration::MAX);
+        Ok(Self {
+            planner,
+            settings,
+            metric,
+            metric_name: args.metric.clone(),
+            motion: args.motion,
+            time,
+            iterations: args.iterations,
+            shorten: !args.no_shorten,
+        })
+    }
+}

@@ -1,0 +1,140 @@
+//! Layers of samples, in linear light, and how they become pixels.
+
+/// Linear red, green and blue, 0 to 1.
+pub(crate) type Colour = [f32; 3];
+
+/// The linear colour of an sRGB one.
+pub(crate) fn srgb(hex: u32) -> Colour {
+    [16, 8, 0].map(|shift| {
+        let v = ((hex >> shift) & 255) as f32 / 255.0;
+        if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+    })
+}
+
+/// `a` for `t` = 0, `b` for `t` = 1.
+pub(crate) fn mix(a: Colour, b: Colour, t: f32) -> Colour {
+    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t)
+}
+
+/// `c` times `f`.
+pub(crate) fn scaled(c: Colour, f: f32) -> Colour {
+    c.map(|v| v * f)
+}
+
+/// What is seen at each sample, and how near it is.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    pub(crate) colour: Vec<Colour>,
+    pub(crate) key: Vec<f32>,
+}
+
+impl Layer {
+    pub(crate) fn new(samples: usize) -> Self {
+        Self { colour: vec![[0.0; 3]; samples], key: vec![f32::INFINITY; samples] }
+    }
+
+    /// Puts `colour` at sample `i` when it is nearer than what is there.
+    #[inline]
+    pub(crate) fn put(&mut self, i: usize, key: f32, colour: Colour) {
+        if key < self.key[i] {
+            self.key[i] = key;
+            self.colour[i] = colour;
+        }
+    }
+}
+
+/// Translucent things in front of a [`Layer`], in any order: their colours are averaged by weight, and each
+/// takes its share of the light from behind (weighted blended transparency, McGuire and Bavoil 2013).
+#[derive(Clone, Debug)]
+pub(crate) struct Veil {
+    sum: Vec<Colour>,
+    weight: Vec<f32>,
+    through: Vec<f32>,
+}
+
+impl Veil {
+    pub(crate) fn new(samples: usize) -> Self {
+        Self { sum: vec![[0.0; 3]; samples], weight: vec![0.0; samples], through: vec![1.0; samples] }
+    }
+
+    /// Adds something of opacity `alpha` whose colour counts `weight` times.
+    #[inline]
+    pub(crate) fn add(&mut self, i: usize, colour: Colour, alpha: f32, weight: f32) {
+        let w = alpha * weight;
+        for (sum, c) in self.sum[i].iter_mut().zip(colour) {
+            *sum += w * c;
+        }
+        self.weight[i] += w;
+        self.through[i] *= 1.0 - alpha;
+    }
+
+    /// Lays the veil over `behind`. No more than `most` of what is behind is hidden.
+    pub(crate) fn over(&self, behind: &mut [Colour], most: f32) {
+        for (i, b) in behind.iter_mut().enumerate() {
+            if self.weight[i] > 0.0 {
+                *b = mix(*b, scaled(self.sum[i], 1.0 / self.weight[i]), (1.0 - self.through[i]).min(most));
+            }
+        }
+    }
+}
+
+/// Averages `factor` × `factor` samples per pixel, in linear light, into 8-bit sRGB.
+pub(crate) fn resolve(samples: &[Colour], (width, height): (usize, usize), factor: usize) -> image::RgbImage {
+    let (w, h) = (width / factor, height / factor);
+    // The inverse of the sRGB curve on a grid: exact to well under one step of 8 bits.
+    const GRID: usize = 4096;
+    let curve: Vec<u8> = (0..=GRID)
+        .map(|i| {
+            let v = i as f32 / GRID as f32;
+            let s = if v <= 0.003_130_8 { v * 12.92 } else { 1.055 * v.powf(1.0 / 2.4) - 0.055 };
+            (s * 255.0 + 0.5) as u8
+        })
+        .collect();
+    let share = 1.0 / (factor * factor) as f32;
+    image::RgbImage::from_fn(w as u32, h as u32, |x, y| {
+        let mut sum = [0.0; 3];
+        for dy in 0..factor {
+            let row = (y as usize * factor + dy) * width + x as usize * factor;
+            for c in &samples[row..row + factor] {
+                for (s, c) in sum.iter_mut().zip(c) {
+                    *s += c.clamp(0.0, 1.0);
+                }
+            }
+        }
+        image::Rgb(sum.map(|s| curve[(s * share * GRID as f32 + 0.5) as usize]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_round_trips() {
+        for hex in [0x00_00_00, 0xff_ff_ff, 0x12_34_56, 0xc0_ff_ee] {
+            let pixel = resolve(&[srgb(hex); 4], (2, 2), 2);
+            let [r, g, b] = pixel.get_pixel(0, 0).0.map(u32::from);
+            let wanted = [(hex >> 16) & 255, (hex >> 8) & 255, hex & 255];
+            for (got, want) in [r, g, b].into_iter().zip(wanted) {
+                assert!(got.abs_diff(want) <= 1, "{hex:06x}: {got} {want}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_order_of_a_veil_does_not_matter() {
+        let (red, blue) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+        let (mut a, mut b) = (Veil::new(1), Veil::new(1));
+        for c in [red, blue] {
+            a.add(0, c, 0.5, 1.0);
+        }
+        for c in [blue, red] {
+            b.add(0, c, 0.5, 1.0);
+        }
+        let (mut over_a, mut over_b) = ([[1.0; 3]], [[1.0; 3]]);
+        a.over(&mut over_a, 1.0);
+        b.over(&mut over_b, 1.0);
+        assert_eq!(over_a, over_b);
+        assert!((over_a[0][1] - 0.25).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,205 @@
+//! Background, floor grid, outlines, shading of corners, and lettering.
+
+use super::camera::Camera;
+use super::canvas::{Layer, Veil, mix, scaled, srgb};
+use super::model::Model;
+use super::raster::line;
+use super::{GOAL, INK, OBSTACLES, Placed, START, Subject, corners, gradient, text};
+use nalgebra::{Isometry3, Point3};
+
+/// Whether a line at `key` lies on or before a surface at `surface`: lines get a little head start.
+pub(crate) fn nearer(key: f32, surface: f32) -> bool {
+    key - 2e-3 * key.abs() < surface
+}
+
+pub(crate) fn background(layer: &mut Layer, (width, height): (usize, usize)) {
+    let (top, bottom) = (srgb(0xffffff), srgb(0xe9edf2));
+    for (y, row) in layer.colour.chunks_mut(width).enumerate() {
+        row.fill(mix(top, bottom, y as f32 / height as f32));
+    }
+}
+
+/// Darkens what lies in creases: samples whose neighbours around stand nearer to the eye.
+pub(crate) fn shade_corners(layer: &mut Layer, camera: &Camera, extent: f64) {
+    const PAIRS: usize = 6;
+    let (w, h) = (camera.width as isize, camera.height as isize);
+    let reach = 0.02 * extent as f32;
+    let depth: Vec<f32> = layer.key.iter().map(|&k| camera.depth(k)).collect();
+    // Spirals by the golden angle, turned for each of 4 × 4 samples so that no pattern shows.
+    let spirals: Vec<[(f32, f32); PAIRS]> = (0..16)
+        .map(|turn| {
+            std::array::from_fn(|k| {
+                let r = (k as f32 + 0.25 + 0.5 * ((turn * 7 % 16) as f32 / 16.0)) / PAIRS as f32;
+                let angle = 2.4 * k as f32 + std::f32::consts::TAU * (turn as f32 / 16.0);
+                (r * angle.cos(), r * angle.sin())
+            })
+        })
+        .collect();
+    for y in 0..h {
+        for x in 0..w {
+            let i = (y * w + x) as usize;
+            if layer.key[i] == f32::INFINITY {
+                continue;
+            }
+            let z = depth[i];
+            let radius = reach / camera.sample_size(z);
+            // Opposite taps together: on a slanted plane they cancel.
+            let lift = |tx: isize, ty: isize| {
+                if tx < 0
+                    || ty < 0
+                    || tx >= w
+                    || ty >= h
+                    || layer.key[(ty * w + tx) as usize] == f32::INFINITY
+                {
+                    return 0.0;
+                }
+                let lift = (z - depth[(ty * w + tx) as usize]) / reach;
+                if lift > 2.0 { 0.3 } else { lift.clamp(-1.0, 1.0) }
+            };
+            let mut sum = 0.0;
+            for (dx, dy) in &spirals[((y & 3) * 4 + (x & 3)) as usize] {
+                let (dx, dy) = ((dx * radius) as isize, (dy * radius) as isize);
+                sum += (lift(x + dx, y + dy) + lift(x - dx, y - dy)).max(0.0);
+            }
+            let shade = 1.0 - (0.55 * sum / PAIRS as f32).clamp(0.0, 0.4);
+            layer.colour[i] = scaled(layer.colour[i], shade);
+        }
+    }
+}
+
+/// Dark lines along the edges of what is in `layer`.
+pub(crate) fn outline(
+    layer: &mut Layer,
+    camera: &Camera,
+    model: &Model,
+    pose: &Isometry3<f64>,
+    strength: f32,
+) {
+    let ink = srgb(INK);
+    model.edges(camera, pose, 0.6, |i, key, coverage| {
+        if nearer(key, layer.key[i]) {
+            layer.colour[i] = mix(layer.colour[i], ink, strength * coverage);
+        }
+    });
+}
+
+/// The edges of obstacles: dark where they stand, faint where they were opened.
+pub(crate) fn outlines(
+    layer: &mut Layer,
+    ghosts: &mut Veil,
+    camera: &Camera,
+    obstacles: &[Placed<'_>],
+    cut: &[f32],
+) {
+    let ink = srgb(INK);
+    for (n, o) in obstacles.iter().enumerate() {
+        // Fine meshes have more lines than there is room for.
+        let strength = 0.5 * (4000.0 / o.model.edge_count().max(1) as f32).clamp(0.25, 1.0);
+        let faint = scaled(srgb(OBSTACLES[n % OBSTACLES.len()]), 0.4);
+        o.model.edges(camera, &o.pose, 0.6, |i, key, coverage| {
+            if key < cut[i] {
+                ghosts.add(i, faint, 0.5 * strength * coverage, 2.0);
+            } else if nearer(key, layer.key[i]) {
+                layer.colour[i] = mix(layer.colour[i], ink, strength * coverage);
+            }
+        });
+    }
+}
+
+/// A round number of metres, about `length`.
+fn round_length(length: f64) -> f64 {
+    let power = 10f64.powf(length.log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|d| d * power).find(|d| *d <= length).unwrap_or(power)
+}
+
+/// A grid under everything.
+pub(crate) fn floor(layer: &mut Layer, camera: &Camera, frame: &[Point3<f64>]) {
+    let (lo, hi) = corners(frame);
+    let size = (hi.x - lo.x).max(hi.y - lo.y);
+    if size <= 0.0 {
+        return;
+    }
+    let cell = round_length(size / 6.0);
+    let z = lo.z - 1e-3 * size;
+    let cells = |lo: f64, hi: f64| (lo / cell).floor() as i64..=(hi / cell).ceil() as i64;
+    let (xs, ys) = (cells(lo.x, hi.x), cells(lo.y, hi.y));
+    let at = |i: i64, j: i64| camera.pose_cw * Point3::new(i as f64 * cell, j as f64 * cell, z);
+    let mut lines = Vec::new();
+    lines.extend(xs.clone().map(|i| (at(i, *ys.start()), at(i, *ys.end()))));
+    lines.extend(ys.clone().map(|j| (at(*xs.start(), j), at(*xs.end(), j))));
+    let ink = srgb(0x9aa5b3);
+    for (a, b) in lines {
+        line(camera, &a, &b, 0.6, |i, key, coverage| {
+            if key < layer.key[i] {
+                layer.colour[i] = mix(layer.colour[i], ink, 0.5 * coverage);
+            }
+        });
+    }
+}
+
+/// The bounds of a planar scene.
+pub(crate) fn border(layer: &mut Layer, camera: &Camera, lo: &Point3<f64>, hi: &Point3<f64>) {
+    let rim = [(lo.x, lo.y), (hi.x, lo.y), (hi.x, hi.y), (lo.x, hi.y)];
+    let ink = srgb(0x9aa5b3);
+    for k in 0..4 {
+        let [a, b] = [rim[k], rim[(k + 1) % 4]].map(|(x, y)| camera.pose_cw * Point3::new(x, y, lo.z));
+        line(camera, &a, &b, 1.0, |i, key, coverage| {
+            if key < layer.key[i] {
+                layer.colour[i] = mix(layer.colour[i], ink, 0.8 * coverage);
+            }
+        });
+    }
+}
+
+/// Title at the top, what the colours mean at the bottom.
+pub(crate) fn labels(layer: &mut Layer, size: (usize, usize), subject: &Subject<'_>) {
+    let (w, h) = (size.0 as f32, size.1 as f32);
+    let unit = h / 960.0;
+    let mut write = |words: &str, x: f32, y: f32, height: f32, bold: f32, colour| {
+        text::write(size, words, (x, y), height, bold, |i, coverage| {
+            layer.colour[i] = mix(layer.colour[i], colour, coverage);
+        });
+    };
+    let (ink, grey) = (srgb(INK), srgb(0x66717f));
+    write(&subject.title, 28.0 * unit, 44.0 * unit, 19.0 * unit, 1.25, ink);
+    write(&subject.subtitle, 28.0 * unit, 70.0 * unit, 11.5 * unit, 1.0, grey);
+    let (y, cap) = (h - 26.0 * unit, 11.5 * unit);
+    let bar = 120.0 * unit;
+    let has_path = !subject.path.is_empty();
+    let words = [text::width("start", cap), text::width("goal", cap)];
+    let gap = 10.0 * unit;
+    let total = words[0] + words[1] + 2.0 * gap + bar;
+    let left = w - 28.0 * unit - total;
+    write("start", left, y, cap, 1.0, ink);
+    write("goal", left + words[0] + 2.0 * gap + bar, y, cap, 1.0, ink);
+    let x0 = left + words[0] + gap;
+    let (top, bottom) = ((y - cap) as usize, y as usize);
+    for column in 0..bar as usize {
+        let t = column as f32 / bar;
+        let colour = match (has_path, t) {
+            (true, t) => gradient(t),
+            (false, t) if t < 0.15 => srgb(START),
+            (false, t) if t > 0.85 => srgb(GOAL),
+            _ => continue,
+        };
+        for row in top..bottom {
+            let i = row * size.0 + x0 as usize + column;
+            if let Some(c) = layer.colour.get_mut(i) {
+                *c = colour;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_rounded_down_to_one_two_or_five() {
+        for (given, round) in [(1.0, 1.0), (1.99, 1.0), (2.1, 2.0), (7.0, 5.0), (0.034, 0.02), (640.0, 500.0)]
+        {
+            assert!((round_length(given) - round).abs() < 1e-12 * round, "{given}");
+        }
+    }
+}

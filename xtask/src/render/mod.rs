@@ -1,0 +1,171 @@
+//! Pictures of a scene and a path through it, made on the CPU: no window, no driver, the same pixels
+//! everywhere.
+
+mod camera;
+mod canvas;
+mod command;
+mod cutaway;
+mod decorate;
+mod model;
+mod raster;
+mod sweep;
+mod text;
+mod view;
+
+pub(crate) use command::{SIZE, run, subject, wanted, write};
+
+use camera::Camera;
+use canvas::{Colour, Layer, Veil, mix, scaled, srgb};
+use model::{Lights, Model};
+use mp::geom::TriMesh;
+use nalgebra::{Isometry3, Point3};
+
+/// Samples per pixel in each direction.
+const SUPERSAMPLING: usize = 2;
+/// What the margins leave free on the left, top, right and bottom, as fractions of the picture.
+const MARGINS: [f64; 4] = [0.04, 0.1, 0.04, 0.09];
+/// How opaque an obstacle is where it has been opened.
+const GHOST: f32 = 0.07;
+const OBSTACLES: [u32; 6] = [0xb4bdc9, 0xc9bda9, 0xacbfb3, 0xc2b2bd, 0xa9bcc4, 0xcdc7ae];
+const START: u32 = 0x2e9e5b;
+const MIDDLE: u32 = 0xe6b422;
+const GOAL: u32 = 0xcf3a3a;
+const INK: u32 = 0x2b3440;
+
+/// What to draw.
+#[derive(Clone, Debug)]
+pub(crate) struct Subject<'a> {
+    /// Written large.
+    pub(crate) title: String,
+    /// Written small below it.
+    pub(crate) subtitle: String,
+    /// Seen from above, as a map.
+    pub(crate) planar: bool,
+    pub(crate) robot: &'a TriMesh,
+    pub(crate) obstacles: Vec<(&'a TriMesh, Isometry3<f64>)>,
+    pub(crate) start: Isometry3<f64>,
+    pub(crate) goal: Isometry3<f64>,
+    /// Poses of the robot, in order; empty when there is no path.
+    pub(crate) path: Vec<Isometry3<f64>>,
+    /// Bounds of the robot's position, where there are any.
+    pub(crate) bounds: Option<(Point3<f64>, Point3<f64>)>,
+}
+
+/// A model somewhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed<'a> {
+    model: &'a Model,
+    pose: Isometry3<f64>,
+}
+
+/// The colour of the path at fraction `t` of it.
+fn gradient(t: f32) -> Colour {
+    let (start, middle, goal) = (srgb(START), srgb(MIDDLE), srgb(GOAL));
+    if t < 0.5 { mix(start, middle, 2.0 * t) } else { mix(middle, goal, 2.0 * t - 1.0) }
+}
+
+/// Draws `subject` in `width` × `height` pixels.
+pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> image::RgbImage {
+    let size = (width * SUPERSAMPLING, height * SUPERSAMPLING);
+    let robot = Model::new(subject.robot);
+    let models: Vec<Model> = subject.obstacles.iter().map(|(mesh, _)| Model::new(mesh)).collect();
+    let obstacles: Vec<Placed<'_>> = models
+        .iter()
+        .zip(&subject.obstacles)
+        .map(|(model, (_, pose))| Placed { model, pose: *pose })
+        .collect();
+    let copies = sweep::copies(&robot, &subject.path);
+    let mut shown: Vec<Isometry3<f64>> = vec![subject.start, subject.goal];
+    shown.extend(&copies);
+
+    let frame = frame(subject, &obstacles, &robot, &shown);
+    let (camera, half_angle) = if subject.planar {
+        (Camera::top(&frame, size, MARGINS), 0.4)
+    } else {
+        let view = view::choose(&frame, &obstacles, &robot, &shown);
+        // The less of the path is in sight the wider it is opened, but a level floor stays.
+        let half_angle = (view.elevation - 0.1) * (1.0 - 0.5 * view.visible);
+        (Camera::three_quarter(&frame, view.azimuth, view.elevation, size, MARGINS), half_angle)
+    };
+    let lights = Lights::of(&camera);
+    let samples = size.0 * size.1;
+
+    // Where the path is nearest to the eye, and what must give way to it.
+    let mut nearest = vec![f32::INFINITY; samples];
+    for pose in &shown {
+        robot.faces(&camera, pose, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
+    }
+    let slack = 0.02 * robot.radius as f32;
+    let cut = cutaway::thresholds(&camera, &nearest, 1.0 / half_angle.tan() as f32, slack);
+    drop(nearest);
+
+    let mut layer = Layer::new(samples);
+    decorate::background(&mut layer, size);
+    let mut ghosts = Veil::new(samples);
+    for (n, o) in obstacles.iter().enumerate() {
+        let colour = srgb(OBSTACLES[n % OBSTACLES.len()]);
+        o.model.faces(&camera, &o.pose, &lights, |i, key, light| {
+            if key < cut[i] {
+                ghosts.add(i, scaled(colour, light), GHOST, 1.0);
+            } else {
+                layer.put(i, key, scaled(colour, light));
+            }
+        });
+    }
+    for (pose, colour) in [(&subject.start, srgb(START)), (&subject.goal, srgb(GOAL))] {
+        robot.faces(&camera, pose, &lights, |i, key, light| layer.put(i, key, scaled(colour, light)));
+    }
+    decorate::shade_corners(&mut layer, &camera, extent(&frame));
+    decorate::outlines(&mut layer, &mut ghosts, &camera, &obstacles, &cut);
+    for pose in [&subject.start, &subject.goal] {
+        decorate::outline(&mut layer, &camera, &robot, pose, 0.55);
+    }
+    if !subject.planar {
+        decorate::floor(&mut layer, &camera, &frame);
+    } else if let Some((lo, hi)) = &subject.bounds {
+        decorate::border(&mut layer, &camera, lo, hi);
+    }
+    sweep::draw(&mut layer, &camera, &lights, &robot, &copies);
+    sweep::trace(&mut layer, &camera, &subject.path);
+    ghosts.over(&mut layer.colour, 0.4);
+    decorate::labels(&mut layer, size, subject);
+    canvas::resolve(&layer.colour, size, SUPERSAMPLING)
+}
+
+/// The points that the picture must hold.
+fn frame(
+    subject: &Subject<'_>,
+    obstacles: &[Placed<'_>],
+    robot: &Model,
+    shown: &[Isometry3<f64>],
+) -> Vec<Point3<f64>> {
+    let mut points: Vec<Point3<f64>> =
+        shown.iter().flat_map(|pose| robot.points().iter().map(move |p| pose * p)).collect();
+    let placed = |o: &Placed<'_>| o.model.points().iter().map(|p| o.pose * p).collect::<Vec<_>>();
+    points.extend(obstacles.iter().flat_map(placed));
+    // Vast obstacles (a floor that never ends) are shown only near the path.
+    let (lo, hi) = corners(&points[..shown.len() * robot.points().len()]);
+    let reach = 3.0 * (hi - lo).norm();
+    let (lo, hi) = subject.bounds.map_or((lo, hi), |(a, b)| (lo.inf(&a), hi.sup(&b)));
+    if let (true, Some((lo, hi))) = (subject.planar, subject.bounds) {
+        points.extend([lo, hi]);
+    }
+    for p in &mut points {
+        for k in 0..3 {
+            p[k] = p[k].clamp(lo[k] - reach, hi[k] + reach);
+        }
+    }
+    points
+}
+
+/// The box around `points`.
+fn corners(points: &[Point3<f64>]) -> (Point3<f64>, Point3<f64>) {
+    let first = points.first().copied().unwrap_or_else(Point3::origin);
+    points.iter().fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)))
+}
+
+/// The diagonal of the box around `points`, metres.
+fn extent(points: &[Point3<f64>]) -> f64 {
+    let (lo, hi) = corners(points);
+    (hi - lo).norm()
+}

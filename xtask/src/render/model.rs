@@ -1,0 +1,202 @@
+//! A mesh made ready to be drawn: smooth normals and the edges worth a line.
+
+use super::camera::Camera;
+use super::raster::{Corner, line, triangle};
+use mp::geom::TriMesh;
+use nalgebra::{Isometry3, Point3, Vector3};
+use std::collections::HashMap;
+
+/// Faces that meet at less than this angle are shaded as one smooth surface (cosine of 35°).
+const SMOOTH: f64 = 0.82;
+
+/// A mesh with what drawing it again and again needs.
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    points: Vec<Point3<f64>>,
+    triangles: Vec<[u32; 3]>,
+    /// Per corner of each triangle.
+    normals: Vec<[Vector3<f64>; 3]>,
+    /// Rims, and edges where faces meet at an angle.
+    edges: Vec<[u32; 2]>,
+    /// Distance of the farthest point from the origin, metres.
+    pub(crate) radius: f64,
+}
+
+impl Model {
+    pub(crate) fn new(mesh: &TriMesh) -> Self {
+        // Soups repeat their vertices: join equal ones, so that neighbours are known.
+        let mut ids = HashMap::new();
+        let mut points: Vec<Point3<f64>> = Vec::new();
+        let welded: Vec<u32> = mesh
+            .vertices()
+            .iter()
+            .map(|p| {
+                *ids.entry([p.x, p.y, p.z].map(|c| (c + 0.0).to_bits())).or_insert_with(|| {
+                    points.push(*p);
+                    points.len() as u32 - 1
+                })
+            })
+            .collect();
+        let triangles: Vec<[u32; 3]> =
+            mesh.triangles().iter().map(|t| t.map(|v| welded[v as usize])).collect();
+        let faces: Vec<Vector3<f64>> = triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|v| points[v as usize]);
+                (b - a).cross(&(c - a))
+            })
+            .collect();
+        let normals = smooth_normals(points.len(), &triangles, &faces);
+        let edges = feature_edges(&triangles, &faces);
+        let radius = points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        Self { points, triangles, normals, edges, radius }
+    }
+
+    /// Its points.
+    pub(crate) fn points(&self) -> &[Point3<f64>] {
+        &self.points
+    }
+
+    /// How many edges [`edges`](Model::edges) draws.
+    pub(crate) fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// Calls `fragment(sample, key, light)` for its triangles at `pose` (in the world).
+    pub(crate) fn faces(
+        &self,
+        camera: &Camera,
+        pose: &Isometry3<f64>,
+        lights: &Lights,
+        mut fragment: impl FnMut(usize, f32, f32),
+    ) {
+        let pose_cm = camera.pose_cw * pose;
+        let seen: Vec<Point3<f64>> = self.points.iter().map(|p| pose_cm * p).collect();
+
+        let lights = lights.seen_from(pose);
+        for (t, normals) in self.triangles.iter().zip(&self.normals) {
+            let at = t.map(|v| seen[v as usize]);
+            let middle = self.points[t[0] as usize];
+            let face = (self.points[t[1] as usize] - middle).cross(&(self.points[t[2] as usize] - middle));
+            // Both sides are lit: which way a soup's triangles turn is anybody's guess.
+            let toward = pose.inverse_transform_vector(&camera.toward_eye(&(pose * middle)));
+            let side = if face.dot(&toward) < 0.0 { -1.0 } else { 1.0 };
+            let corners: [Corner; 3] =
+                std::array::from_fn(|i| Corner { at: at[i], light: lights.on(&(normals[i] * side)) });
+            triangle(camera, corners, &mut fragment);
+        }
+    }
+
+    /// Calls `fragment(sample, key, coverage)` for its feature edges at `pose` (in the world).
+    pub(crate) fn edges(
+        &self,
+        camera: &Camera,
+        pose: &Isometry3<f64>,
+        half: f32,
+        mut fragment: impl FnMut(usize, f32, f32),
+    ) {
+        let pose_cm = camera.pose_cw * pose;
+        for e in &self.edges {
+            let [a, b] = e.map(|v| pose_cm * self.points[v as usize]);
+            line(camera, &a, &b, half, &mut fragment);
+        }
+    }
+}
+
+fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 3]> {
+    let mut around: Vec<Vec<u32>> = vec![Vec::new(); points];
+    for (f, t) in triangles.iter().enumerate() {
+        for &v in t {
+            around[v as usize].push(f as u32);
+        }
+    }
+    let unit = |n: &Vector3<f64>| n.try_normalize(0.0).unwrap_or_else(Vector3::z);
+    let units: Vec<_> = faces.iter().map(unit).collect();
+    triangles
+        .iter()
+        .enumerate()
+        .map(|(f, t)| {
+            t.map(|v| {
+                let near = around[v as usize].iter().map(|&g| g as usize);
+                let sum: Vector3<f64> =
+                    near.filter(|&g| units[g].dot(&units[f]) > SMOOTH).map(|g| faces[g]).sum();
+                unit(&sum)
+            })
+        })
+        .collect()
+}
+
+fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[u32; 2]> {
+    let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(triangles.len() * 3);
+    for (f, t) in triangles.iter().enumerate() {
+        for i in 0..3 {
+            let (a, b) = (t[i], t[(i + 1) % 3]);
+            sides.push(([a.min(b), a.max(b)], f as u32));
+        }
+    }
+    sides.sort_unstable();
+    let mut edges = Vec::new();
+    for group in sides.chunk_by(|a, b| a.0 == b.0) {
+        let [a, b] = group[0].0;
+        let sharp = match group {
+            [x, y] => {
+                let (n, m) = (faces[x.1 as usize], faces[y.1 as usize]);
+                // The sign of the product is left out: neighbours may turn opposite ways.
+                n.dot(&m).abs() < SMOOTH * n.norm() * m.norm()
+            }
+            _ => true,
+        };
+        if sharp && a != b {
+            edges.push([a, b]);
+        }
+    }
+    edges
+}
+
+/// A key light over the viewer's shoulder, a weak one from the other side, and the sky.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lights {
+    key: Vector3<f64>,
+    fill: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
+impl Lights {
+    /// Lights that go with the camera.
+    pub(crate) fn of(camera: &Camera) -> Self {
+        let from = |x: f64, y: f64, z: f64| {
+            camera.pose_cw.inverse_transform_vector(&Vector3::new(x, y, z)).normalize()
+        };
+        Self { key: from(-0.75, -0.55, -0.75), fill: from(0.9, -0.1, -0.45), up: Vector3::z() }
+    }
+
+    /// The same lights in the frame of a body at `pose`.
+    fn seen_from(&self, pose: &Isometry3<f64>) -> Self {
+        let turn = |v: &Vector3<f64>| pose.inverse_transform_vector(v);
+        Self { key: turn(&self.key), fill: turn(&self.fill), up: turn(&self.up) }
+    }
+
+    fn on(&self, normal: &Vector3<f64>) -> f32 {
+        let lambert = |l: &Vector3<f64>| normal.dot(l).max(0.0);
+        let sky = 0.5 + 0.5 * normal.dot(&self.up);
+        (0.16 + 0.62 * lambert(&self.key) + 0.14 * lambert(&self.fill) + 0.26 * sky) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_has_twelve_edges_and_flat_faces() {
+        // Eight corners as a soup: every triangle with vertices of its own.
+        let corner = |i: u32| Point3::new(f64::from(i & 1), f64::from((i >> 1) & 1), f64::from(i >> 2));
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let soup: Vec<_> =
+            quads.iter().flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).map(corner).collect();
+        let triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let model = Model::new(&TriMesh::new(soup, triangles).unwrap());
+        assert_eq!((model.points.len(), model.edges.len()), (8, 12));
+        assert!(model.normals.iter().flatten().all(|n| (n.amax() - 1.0).abs() < 1e-12));
+    }
+}

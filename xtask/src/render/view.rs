@@ -1,0 +1,71 @@
+//! From where a scene shows its path best.
+
+use super::Placed;
+use super::camera::Camera;
+use super::model::{Lights, Model};
+use nalgebra::{Isometry3, Point3};
+
+/// A coarse picture is enough to judge a view.
+const COARSE: (usize, usize) = (160, 120);
+
+/// The view chosen and how much of the path it shows, 0 to 1.
+pub(crate) struct View {
+    pub(crate) azimuth: f64,
+    pub(crate) elevation: f64,
+    pub(crate) visible: f64,
+}
+
+/// Tries views all around and takes the one with the most of `path` in sight and the widest on the picture;
+/// the customary one, from the front right, when others are hardly better.
+pub(crate) fn choose(
+    frame: &[Point3<f64>],
+    obstacles: &[Placed<'_>],
+    robot: &Model,
+    path: &[Isometry3<f64>],
+) -> View {
+    let marks: Vec<Point3<f64>> = path
+        .iter()
+        .flat_map(|pose| {
+            let every = robot.points().len().div_ceil(12);
+            robot.points().iter().step_by(every.max(1)).map(move |p| pose * p)
+        })
+        .collect();
+    let mut best: Option<(f64, View)> = None;
+    // Never along an axis: walls would be seen edge on.
+    let azimuths = [-60.0f64, -30.0, 30.0, 60.0, 120.0, 150.0, 210.0, 240.0];
+    for (e, elevation) in [32.0f64, 50.0].map(f64::to_radians).into_iter().enumerate() {
+        for (a, azimuth) in azimuths.map(f64::to_radians).into_iter().enumerate() {
+            let camera = Camera::three_quarter(frame, azimuth, elevation, COARSE, [0.05; 4]);
+            let (visible, spread) = judge(&camera, obstacles, &marks);
+            let habit = if a == 0 { 0.06 } else { 0.0 } + if e == 0 { 0.03 } else { 0.0 };
+            let score = visible + 0.6 * spread + habit;
+            if best.as_ref().is_none_or(|(s, _)| score > *s + 1e-9) {
+                best = Some((score, View { azimuth, elevation, visible }));
+            }
+        }
+    }
+    best.map_or(View { azimuth: -1.0, elevation: 0.55, visible: 1.0 }, |(_, view)| view)
+}
+
+/// The share of `marks` in sight, and the share of the picture's diagonal that they span.
+fn judge(camera: &Camera, obstacles: &[Placed<'_>], marks: &[Point3<f64>]) -> (f64, f64) {
+    let mut nearest = vec![f32::INFINITY; camera.width * camera.height];
+    let lights = Lights::of(camera);
+    for o in obstacles {
+        o.model.faces(camera, &o.pose, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
+    }
+    let (mut seen, mut lo, mut hi) = (0usize, [f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
+    for p in marks {
+        let p = camera.project(&(camera.pose_cw * p));
+        (lo, hi) = ([lo[0].min(p.x), lo[1].min(p.y)], [hi[0].max(p.x), hi[1].max(p.y)]);
+        let (x, y) = (p.x.max(0.0) as usize, p.y.max(0.0) as usize);
+        if x < camera.width && y < camera.height && p.key <= nearest[y * camera.width + x] {
+            seen += 1;
+        }
+    }
+    if marks.is_empty() {
+        return (0.0, 0.0);
+    }
+    let spread = f64::from((hi[0] - lo[0]).hypot(hi[1] - lo[1])) / f64::from(COARSE.0 as u32);
+    (seen as f64 / marks.len() as f64, spread.min(1.0))
+}

@@ -1,0 +1,178 @@
+//! Bad input: exit code 2, an error that says what to do, and no file written.
+
+mod common;
+
+use common::{Dir, xtask};
+
+/// Command lines that make no sense, and words of the error.
+const COMMANDS: &[(&[&str], &[&str])] = &[
+    (&[], &["Usage"]),
+    (&["plann"], &["plan"]),
+    (&["plan", "window.env", "--planner", "rrt-conect"], &["rrt-conect", "'rrt-connect'"]),
+    (&["plan", "window.env", "--planner", "dijkstra"], &["dijkstra", "rrt", "rrt-connect"]),
+    (&["plan", "window.env", "--metric", "euclidian"], &["'euclidean'"]),
+    (&["plan", "window.env", "--motion", "discreet"], &["certified", "discrete:R"]),
+    (&["plan", "window.env", "--motion", "discrete"], &["resolution", "discrete:1%"]),
+    (&["plan", "window.env", "--motion", "discrete:0"], &["above zero"]),
+    (&["plan", "window.env", "--motion", "discrete:1e-30"], &["resolution"]),
+    (&["plan", "window.env", "--time", "0"], &["--time", "above zero"]),
+    (&["plan", "window.env", "--time=-1"], &["--time", "above zero"]),
+    (&["plan", "window.env", "--time", "nan"], &["--time", "finite"]),
+    (&["plan", "window.env", "--time", "inf"], &["--time", "finite"]),
+    (&["plan", "window.env", "--time", "soon"], &["--time", "not a number"]),
+    (&["plan", "window.env", "--iterations", "0"], &["--iterations"]),
+    (&["plan", "window.env", "--iterations=-5"], &["--iterations"]),
+    (&["plan", "window.env", "--step", "0"], &["--step", "above zero"]),
+    (&["plan", "window.env", "--step", "200%"], &["--step", "100%"]),
+    (&["plan", "window.env", "--step", "1e9"], &["step", "extent"]),
+    (&["plan", "window.env", "--runs", "0"], &["--runs"]),
+    (&["plan", "window.env", "--threads", "0"], &["--threads"]),
+    (&["plan", "window.env", "--seed=-1"], &["--seed"]),
+    (&["plan", "window.env", "--seed", "18446744073709551615", "--runs", "2"], &["seeds", "too large"]),
+    (&["plan", "window.env", "--set", "goal-bias"], &["goal-bias", "KEY=VALUE"]),
+    (&["plan", "window.env", "--set", "goal_bias=0.5"], &["goal_bias", "goal-bias"]),
+    (&["plan", "window.env", "--set", "goal-bias=2"], &["goal-bias", "2", "[0, 1]"]),
+    (&["plan", "window.env", "--set", "patience=-1"], &["patience"]),
+    (&["plan", "window.env", "--picture", "p.svg"], &["p.svg", ".png"]),
+    (&["plan", "window.env", "--picture", "p.gif"], &["p.gif", ".png"]),
+    (&["plan", "window.env", "--picture", "p"], &[".png"]),
+    (&["plan", "window.env", "--out", "robot.off/p.txt"], &["robot.off", "not a folder"]),
+    (&["plan", "window.env", "--out", "."], &["folder"]),
+    (&["plan", "window.env", "--runs", "2", "--out", "p.txt"], &["--out", "{seed}"]),
+    (&["plan", "window.env", "plane.env", "--out", "p.txt"], &["--out", "{scene}"]),
+    (&["plan", "window.env", "./window.env", "--out", "{scene}.txt"], &["twice"]),
+    (&["plan", "windo"], &["no scene windo", "window"]),
+    (&["plan", "robot.off"], &["robot.off"]),
+    (&["plan", "."], &["folder"]),
+    (&["check", "window.env"], &["PATH"]),
+    (&["check", "window.env", "missing.txt"], &["missing.txt", "no such file"]),
+    (&["check", "window.env", "robot.off"], &["robot.off"]),
+    (&["info", "missing.off"], &["missing.off"]),
+    (&["info", "."], &["not a file"]),
+    (&["render", "window.env", "--picture", "p.bmp"], &["p.bmp", ".png"]),
+    (&["render", "window.env", "--picture", "p.png", "--size", "10x10"], &["64"]),
+    (&["render", "window.env", "--picture", "p.png", "--size", "big"], &["WIDTHxHEIGHT"]),
+];
+
+#[test]
+fn commands() {
+    let dir = Dir::new();
+    let before = dir.entries(".");
+    for (args, words) in COMMANDS {
+        let run = xtask(&dir, args);
+        assert_eq!(run.code, 2, "{args:?}: {run:?}");
+        assert!(run.stdout.is_empty(), "{args:?}: {run:?}");
+        // Messages are wrapped to the width of the screen.
+        let told = run.stderr.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
+        for word in *words {
+            assert!(told.contains(word), "{args:?} does not say {word:?}: {told}");
+        }
+        assert!(!told.contains("panicked"), "{args:?}: {told}");
+    }
+    assert_eq!(dir.entries("."), before, "nothing is written");
+}
+
+const OFF: &str = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+/// Scene files that make no sense, and words of the error.
+fn scenes() -> Vec<(&'static str, Vec<u8>, &'static [&'static str])> {
+    let good = "Robot\nrobot.off\n-2 0 1 0 0 0\n2 0 1 0 0 0\nObstacle #1\nside.off\n0 0 1 0 0 0\nEnd\n";
+    let with = |from: &str, to: &str| good.replacen(from, to, 1).into_bytes();
+    vec![
+        ("empty.env", Vec::new(), &["empty.env"]),
+        ("binary.env", vec![0xff, 0xfe, 0x00, 0x80], &["binary.env"]),
+        ("latin.env", b"Robot\nrobot\xe9.off\n".to_vec(), &["2", "UTF-8"]),
+        ("truncated.env", good.as_bytes()[..30].to_vec(), &["truncated.env"]),
+        ("no-end.env", with("End\n", ""), &["no-end.env", "End"]),
+        ("word.env", with("-2 0 1", "-2 zero 1"), &["word.env:3:", "zero"]),
+        ("nan.env", with("-2 0 1", "-2 nan 1"), &["nan.env:3:"]),
+        ("inf.env", with("2 0 1 0 0 0\nOb", "2 0 1e999 0 0 0\nOb"), &["inf.env:4:"]),
+        ("five.env", with("-2 0 1 0 0 0", "-2 0 1 0 0"), &["five.env:3:"]),
+        ("far.env", with("-2 0 1", "-2e30 0 1"), &["far.env:3:"]),
+        ("robot-gone.env", with("robot.off", "gone.off"), &["robot-gone.env:2:", "gone.off"]),
+        ("wall-gone.env", with("side.off", "gone.off"), &["wall-gone.env:6:", "gone.off"]),
+        ("bad-mesh.env", with("side.off", "bad.off"), &["bad.off", "bad-mesh.env:6"]),
+        ("empty-mesh.env", with("side.off", "none.off"), &["none.off"]),
+        ("outside.env", with("End\n", "End\nBounds -1 -1 -1 3 1 2\n"), &["outside.env:3:", "out of bounds"]),
+        ("bounds.env", with("End\n", "End\nBounds 3 -1 -1 -3 1 2\n"), &["bounds.env"]),
+        ("space.env", with("End\n", "End\nSpace SE4\n"), &["space.env:9:", "SE3"]),
+        (
+            "tilted.env",
+            with("-2 0 1 0 0 0", "-2 0 0 0 0.2 0").into_iter().chain(*b"Space SE2\n").collect(),
+            &["plane"],
+        ),
+    ]
+}
+
+#[test]
+fn scene_files() {
+    let dir = Dir::new();
+    dir.write("bad.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 9\n");
+    dir.write("none.off", "OFF\n0 0 0\n");
+    let scenes = scenes();
+    for (name, text, _) in &scenes {
+        dir.write(name, text);
+    }
+    let before = dir.entries(".");
+    for (name, _, words) in &scenes {
+        for args in [&["plan", name, "--out", "p.txt"][..], &["info", name], &["check", name, "p.txt"]] {
+            let run = xtask(&dir, args);
+            assert_eq!(run.code, 2, "{args:?}: {run:?}");
+            let told = run.stderr.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
+            for word in *words {
+                assert!(told.contains(word), "{name} does not say {word:?}: {told}");
+            }
+            assert!(!told.contains("panicked"), "{name}: {told}");
+        }
+    }
+    assert_eq!(dir.entries("."), before, "nothing is written");
+}
+
+/// Start and goal in collision: the bodies, the depth and the nearest free configuration are named, and it is free.
+#[test]
+fn ends_in_collision() {
+    let dir = Dir::new();
+    let good = dir.read("window.env");
+    for (end, line, moved) in
+        [("start", "-2 1.4 0.2 0 0 0", "-0.2 1.5 1 0 0 0"), ("goal", "2 1.3 1.8 0.7 0 0", "0.3 -1.5 1 0 0 0")]
+    {
+        dir.write("hit.env", good.replace(line, moved));
+        let run = xtask(&dir, &["plan", "hit.env", "--out", "p.txt"]);
+        assert_eq!(run.code, 2, "{run:?}");
+        let told = run.stderr.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
+        let body = if end == "start" { "Obstacle #1" } else { "Obstacle #2" };
+        assert!(told.contains(&format!("the {end} is in collision with {body} (0.")), "{told}");
+        let free = told.split("free configuration found is ").nth(1).unwrap_or_else(|| panic!("{told}"));
+        dir.write("freed.env", good.replace(line, free.trim()));
+        let run = xtask(&dir, &["plan", "freed.env", "--json"]);
+        assert_eq!(run.code, 0, "{run:?}");
+    }
+    assert!(!dir.exists("p.txt"));
+    dir.write("touch.env", good.replace("-2 1.4 0.2 0 0 0", "-0.50000001 1.4 0.2 0 0 0"));
+    let run = xtask(&dir, &["plan", "touch.env"]);
+    assert!(run.code == 2 && run.stderr.contains("from contact"), "{run:?}");
+}
+
+#[test]
+fn meshes_and_paths() {
+    let dir = Dir::new();
+    let files: [(&str, &[u8]); 8] = [
+        ("cut.off", &OFF.as_bytes()[..20]),
+        ("words.off", b"OFF\n3 1 0\na b c\n"),
+        ("huge.off", b"OFF\n4000000000 4000000000 0\n"),
+        ("binary.off", &[0, 159, 146, 150]),
+        ("count.txt", b"3\n0 0 0 0 0 0\n"),
+        ("zero.txt", b"0\n"),
+        ("words.json", b"{\"path\": \"none\"}"),
+        ("cut.json", b"{\"path\": [[0, 0, 0"),
+    ];
+    for (name, bytes) in files {
+        dir.write(name, bytes);
+        let run = xtask(&dir, &["info", name]);
+        assert_eq!(run.code, 2, "{name}: {run:?}");
+        assert!(run.stderr.contains(name), "{name}: {run:?}");
+        if !name.ends_with(".off") {
+            assert_eq!(xtask(&dir, &["check", "window.env", name]).code, 2, "{name}");
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The command line from outside: exit codes, JSON, files, bad input.
+
+mod common;
+
+use common::{Dir, xtask};
+use serde_json::Value;
+
+/// Every field of the JSON of one run, and whether it may be null.
+const FIELDS: [(&str, bool); 24] = [
+    ("scene", false),
+    ("scene_file", false),
+    ("space", false),
+    ("solved", false),
+    ("verified", false),
+    ("stopped_by", true),
+    ("planner", false),
+    ("metric", false),
+    ("motion", false),
+    ("seed", false),
+    ("iterations", false),
+    ("nodes", false),
+    ("motion_checks", false),
+    ("collision_checks", false),
+    ("rejected", false),
+    ("time_s", false),
+    ("finish_s", false),
+    ("path_length_found", true),
+    ("path_length", true),
+    ("clearance", true),
+    ("shortened", false),
+    ("path_file", true),
+    ("picture_file", true),
+    ("path", true),
+];
+
+fn assert_fields(report: &Value, solved: bool) {
+    let object = report.as_object().unwrap();
+    for (name, may_be_null) in FIELDS {
+        let value = object.get(name).unwrap_or_else(|| panic!("no {name} in {report}"));
+        assert!(may_be_null || !value.is_null(), "{name} is null");
+    }
+    assert_eq!(object.len(), FIELDS.len(), "{report}");
+    assert_eq!(report["solved"], solved);
+    assert_eq!(report["verified"], solved);
+    assert_eq!(report["stopped_by"].is_null(), solved);
+    assert_eq!(report["path"].is_array(), solved);
+}
+
+#[test]
+fn plan_solves_verifies_and_writes() {
+    let dir = Dir::new();
+    let run = xtask(&dir, &["plan", "window.env", "--json", "--out", "a/p.txt", "--picture", "a/p.png"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let report = run.json();
+    assert_fields(&report, true);
+    assert_eq!((&report["scene"], &report["planner"]), (&"window".into(), &"rrt-connect".into()));
+    assert!(report["path_length"].as_f64() <= report["path_length_found"].as_f64());
+    assert!(report["clearance"].as_f64().unwrap() > 0.0);
+    let text = dir.read("a/p.txt");
+    assert_eq!(text.lines().next(), Some(report["path"].as_array().unwrap().len().to_string().as_str()));
+    assert!(dir.bytes("a/p.png").starts_with(b"\x89PNG"));
+    assert_eq!(dir.entries("a"), ["p.png", "p.txt"], "no leftovers");
+
+    let check = xtask(&dir, &["check", "window.env", "a/p.txt", "--json"]);
+    assert_eq!((check.code, &check.json()["free"]), (0, &true.into()), "{check:?}");
+}
+
+#[test]
+fn without_json_a_person_gets_a_summary_and_files() {
+    let dir = Dir::new();
+    let run = xtask(&dir, &["plan", "plane.env"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    for words in ["plane: solved in", "nodes", "collision queries", "shortened and verified", "clearance"] {
+        assert!(run.stdout.contains(words), "{words}: {}", run.stdout);
+    }
+    assert_eq!(dir.entries("out"), ["plane.path.txt", "plane.png"]);
+    assert_eq!(xtask(&dir, &["check", "plane", "out/plane.path.txt"]).code, 0);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
+    let dir = Dir::new();
+    let runs = |threads: &str, folder: &str, time: &str| {
+        let out = format!("{folder}/{{scene}}-{{seed}}.txt");
+        let args = ["plan", "window.env", "plane.env", "--runs", "2", "--seed", "3", "--json"];
+        let run = xtask(&dir, &[&args[..], &["--threads", threads, "--out", &out, "--time", time]].concat());
+        assert_eq!(run.code, 0, "{run:?}");
+        run.json()
+    };
+    let (one, two) = (runs("1", "one", "100"), runs("2", "two", "200"));
+    let names = dir.entries("one");
+    assert_eq!(names, ["plane-3.txt", "plane-4.txt", "window-3.txt", "window-4.txt"]);
+    for name in names {
+        assert_eq!(dir.read(&format!("one/{name}")), dir.read(&format!("two/{name}")), "{name}");
+    }
+    assert_ne!(dir.read("one/window-3.txt"), dir.read("one/window-4.txt"), "seeds differ");
+    for (a, b) in one["runs"].as_array().unwrap().iter().zip(two["runs"].as_array().unwrap()) {
+        assert_fields(a, true);
+        for field in
+            ["seed", "scene", "iterations", "nodes", "motion_checks", "collision_checks", "path", "clearance"]
+        {
+            assert_eq!(a[field], b[field], "{field}");
+        }
+    }
+    assert_eq!(one["solved"], 4);
+    assert_eq!(one["medians"][0]["scene"], "window");
+    assert_eq!(one["medians"][1]["runs"], 2);
+}
+
+#[test]
+fn what_cannot_be_solved_is_not_and_nothing_is_written() {
+    let dir = Dir::new();
+    for planner in ["rrt", "rrt-connect"] {
+        for motion in ["certified", "discrete:1%"] {
+            let args = ["plan", "closed.env", "--iterations", "2000", "--json", "--out", "p.txt"];
+            let run = xtask(&dir, &[&args[..], &["--planner", planner, "--motion", motion]].concat());
+            assert_eq!(run.code, 1, "{run:?}");
+            assert_fields(&run.json(), false);
+            assert_eq!(run.json()["stopped_by"], "iterations");
+            assert_eq!(run.json()["iterations"], 2000);
+        }
+    }
+    let run = xtask(&dir, &["plan", "closed.env", "--time", "0.2"]);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(run.stdout.contains("not solved") && run.stdout.contains("--time"), "{}", run.stdout);
+    assert!(!dir.exists("p.txt") && !dir.exists("out"));
+}
+
+#[test]
+fn every_planner_metric_and_motion_check_gives_a_certified_path() {
+    let dir = Dir::new();
+    let metrics = ["default", "euclidean", "scaled", "manhattan", "max-displacement"];
+    let cases = metrics.map(|m| (m, "rrt-connect", "certified"));
+    let more = [("default", "rrt", "certified"), ("default", "rrt-connect", "discrete:2%")];
+    for (metric, planner, motion) in cases.into_iter().chain(more) {
+        for scene in ["window.env", "plane.env"] {
+            let args = ["plan", scene, "--json", "--out", "p.json", "--metric", metric, "--planner", planner];
+            let run = xtask(&dir, &[&args[..], &["--motion", motion]].concat());
+            assert_eq!(run.code, 0, "{metric} {planner} {motion}: {run:?}");
+            assert_eq!(run.json()["metric"], metric);
+            assert_eq!(xtask(&dir, &["check", scene, "p.json"]).code, 0);
+        }
+    }
+}
+
+#[test]
+fn a_path_that_touches_something_is_refused_with_the_place() {
+    let dir = Dir::new();
+    dir.write("through.txt", "2\n-2 1.4 0.2 0 0 0\n2 1.3 1.8 0.7 0 0\n");
+    let run = xtask(&dir, &["check", "window.env", "through.txt"]);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(run.stdout.contains("hits Obstacle #"), "{}", run.stdout);
+    assert!(run.stdout.contains("between configurations 1 and 2"), "{}", run.stdout);
+
+    dir.write("elsewhere.txt", "2\n-2 1.4 0.2 0 0 0\n-2 1 1 0 0 0\n");
+    let run = xtask(&dir, &["check", "window.env", "elsewhere.txt", "--json"]);
+    assert_eq!((run.code, &run.json()["free"]), (1, &false.into()));
+    assert!(run.stdout.contains("does not end at the goal"), "{}", run.stdout);
+
+    dir.write("tilted.txt", "2\n-2 0 0 0 0.1 0\n2 0 0 0 0 0\n");
+    let run = xtask(&dir, &["check", "plane.env", "tilted.txt"]);
+    assert!(run.code == 1 && run.stdout.contains("leaves the plane"), "{run:?}");
+}
+
+#[test]
+fn info_tells_meshes_scenes_and_paths_apart() {
+    let dir = Dir::new();
+    dir.write("p.txt", "2\n0 0 0 0 0 0\n1 0 0 0 0 0\n");
+    for (file, kind) in [("robot.off", "mesh"), ("window.env", "scene"), ("p.txt", "path")] {
+        let run = xtask(&dir, &["info", file, "--json"]);
+        assert_eq!((run.code, &run.json()["kind"]), (0, &kind.into()), "{run:?}");
+        assert!(xtask(&dir, &["info", file]).stdout.starts_with(file));
+    }
+    let mesh = xtask(&dir, &["info", "robot.off", "--json"]).json();
+    assert_eq!((&mesh["triangles"], &mesh["watertight"]), (&12.into(), &true.into()));
+    let scene = xtask(&dir, &["info", "window.env", "--json"]).json();
+    assert_eq!(scene["obstacles"].as_array().unwrap().len(), 4);
+    assert_eq!(xtask(&dir, &["info", "p.txt", "--json"]).json()["length"], 1.0);
+}
+
+#[test]
+fn pictures_are_the_same_twice() {
+    let dir = Dir::new();
+    dir.write("p.txt", "3\n-2 0 1 0 0 0\n0 0 1 0.3 0 0\n2 0 1 0.7 0 0\n");
+    for name in ["a.png", "b.png"] {
+        let run = xtask(&dir, &["render", "window.env", "p.txt", "--picture", name, "--size", "320x240"]);
+        assert_eq!(run.code, 0, "{run:?}");
+    }
+    let picture = dir.bytes("a.png");
+    assert_eq!(picture, dir.bytes("b.png"));
+    let image = image::load_from_memory(&picture).unwrap().into_rgb8();
+    assert_eq!(image.dimensions(), (320, 240));
+    let some = |f: fn(&[u8; 3]) -> bool| image.pixels().filter(|p| f(&p.0)).count();
+    assert!(some(|[r, g, b]| *g > 90 && *r < 80 && *b < 110) > 50, "the start is green");
+    assert!(some(|[r, g, b]| *r > 120 && *g < 90 && *b < 90) > 50, "the goal is red");
+}
+
+#[test]
+fn scenes_are_exported_for_other_planners() {
+    let dir = Dir::new();
+    let run = xtask(&dir, &["plan", "window.env", "plane.env", "--export", "other", "--json"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let window: Value = serde_json::from_str(&dir.read("other/window.json")).unwrap();
+    assert_eq!((&window["space"], &window["resolution_fraction"]), (&"SE3".into(), &0.01.into()));
+    for mesh in [&window["robot"]["mesh"], &window["env"]["mesh"]] {
+        assert!(dir.read(&format!("other/{}", mesh.as_str().unwrap())).starts_with("OFF"));
+    }
+    assert!(dir.exists("other/plane.json"));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_stops_at_once_and_says_so() {
+    let dir = Dir::new();
+    let child = common::start(&dir, &["plan", "closed.env", "--json", "--out", "p.txt"]);
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    let id = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    let run = common::finish(child);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert_eq!(run.json()["stopped_by"], "interrupted");
+    assert!(run.json()["iterations"].as_u64().unwrap() > 0);
+    assert!(!dir.exists("p.txt"));
+}
