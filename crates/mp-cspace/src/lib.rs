@@ -20,7 +20,7 @@ mod goal;
 mod local;
 mod metric;
 mod motion;
-mod nn;
+pub mod nn;
 mod observer;
 mod path;
 mod planner;
@@ -40,7 +40,7 @@ pub use metric::{
     WithMetric,
 };
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
-pub use nn::{DefaultNn, Hit, Linear, NearestNeighbors, NodeId};
+pub use nn::{DefaultNn, Embed, EmbedFactors, Hit, KdTree, Layout, Linear, NearestNeighbors, NnOn, NodeId};
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};

@@ -162,7 +162,7 @@ impl ScaledEuclidean {
     }
 
     #[inline]
-    fn weight(&self, factor: usize) -> f64 {
+    pub(crate) fn weight(&self, factor: usize) -> f64 {
         self.weights.get(factor).copied().unwrap_or(1.0)
     }
 }

@@ -4,6 +4,8 @@ use super::{Hit, NodeId};
 
 /// Receives states in the order a search meets them, and says how far the search must look.
 pub(super) trait Collector {
+    /// Whether offering a state again is harmless.
+    const MAY_REPEAT: bool;
     /// States farther than this are of no interest; at this distance they may be.
     fn limit(&self) -> f64;
     /// Takes one state into account; `false` when it was of no interest.
@@ -25,6 +27,8 @@ impl One {
 }
 
 impl Collector for One {
+    const MAY_REPEAT: bool = true;
+
     #[inline]
     fn limit(&self) -> f64 {
         self.0.distance
@@ -88,6 +92,8 @@ impl<'a> Nearest<'a> {
 }
 
 impl Collector for Nearest<'_> {
+    const MAY_REPEAT: bool = false;
+
     #[inline]
     fn limit(&self) -> f64 {
         if self.out.len() < self.k {
@@ -138,6 +144,8 @@ impl<'a> Within<'a> {
 }
 
 impl Collector for Within<'_> {
+    const MAY_REPEAT: bool = false;
+
     #[inline]
     fn limit(&self) -> f64 {
         self.radius

@@ -3,13 +3,23 @@
 //! | index | for | how |
 //! |---|---|---|
 //! | [`Linear`] | any space | looks at every state; the oracle of the others |
+//! | [`KdTree`] | metrics bounded by coordinates: R^n, tori, SO, SE, products | a bucketed k-d tree that grows |
 //!
 //! A planner that leaves the choice to the space asks for `C::Nn` of [`DefaultNn`].
 
 mod collect;
+mod embed;
+mod growth;
+mod kd;
 mod linear;
+mod metrics;
+mod spaces;
 
+pub use embed::{Embed, EmbedFactors, Layout};
+pub use growth::grow;
+pub use kd::KdTree;
 pub use linear::Linear;
+pub use metrics::NnOn;
 
 use crate::Space;
 

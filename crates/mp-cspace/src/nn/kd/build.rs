@@ -1,0 +1,162 @@
+//! Building a subtree from its states.
+
+use super::super::NodeId;
+use super::insert::company;
+use super::leaf::{CAP, Extra};
+use super::{Inner, KdTree, MAX_DIM, Ref};
+use crate::Embed;
+
+/// States per leaf of a new subtree, leaving room to grow.
+const FILL: usize = CAP * 3 / 4;
+
+/// The states to build a subtree from.
+#[derive(Debug)]
+pub(super) struct Items {
+    dim: usize,
+    /// `dim` coordinates each.
+    rows: Vec<f64>,
+    ids: Vec<NodeId>,
+    extras: Vec<Option<Box<Extra>>>,
+}
+
+impl Items {
+    pub(super) fn new(dim: usize) -> Self {
+        Self { dim, rows: Vec::new(), ids: Vec::new(), extras: Vec::new() }
+    }
+
+    pub(super) fn push(&mut self, x: &[f64; MAX_DIM], id: NodeId, extra: Option<Box<Extra>>) {
+        self.rows.extend_from_slice(&x[..self.dim]);
+        self.ids.push(id);
+        self.extras.push(extra);
+    }
+
+    #[inline]
+    fn at(&self, item: u32, d: usize) -> f64 {
+        self.rows[item as usize * self.dim + d]
+    }
+
+    /// Splits `order` in two parts, neither empty, as evenly as equal coordinates allow: the
+    /// coordinate, the value, and the length of the first part.
+    fn split(&self, order: &mut [u32]) -> Option<(usize, f64, usize)> {
+        let mut widths = [(0.0, 0); MAX_DIM];
+        for (d, width) in widths[..self.dim].iter_mut().enumerate() {
+            let (low, high) = order.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &i| {
+                (low.min(self.at(i, d)), high.max(self.at(i, d)))
+            });
+            *width = (high - low, d);
+        }
+        let widths = &mut widths[..self.dim];
+        widths.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut best: Option<(usize, f64, usize)> = None;
+        for &(_, d) in widths.iter().take_while(|(width, _)| *width > 0.0) {
+            let half = order.len() / 2;
+            let (_, &mut median, _) =
+                order.select_nth_unstable_by(half, |&a, &b| self.at(a, d).total_cmp(&self.at(b, d)));
+            let median = self.at(median, d);
+            // Equal coordinates stay together: cut below the median's, or above them.
+            let (mut below, mut above) = (f64::NEG_INFINITY, f64::INFINITY);
+            let (mut less, mut more) = (0, 0);
+            for &i in order.iter() {
+                let x = self.at(i, d);
+                if x < median {
+                    (less, below) = (less + 1, below.max(x));
+                } else if x > median {
+                    (more, above) = (more + 1, above.min(x));
+                }
+            }
+            let (a, b, first) =
+                if less >= more { (below, median, less) } else { (median, above, order.len() - more) };
+            let middle = 0.5 * a + 0.5 * b;
+            let value = if a <= middle && middle < b { middle } else { a };
+            let balance = |first: usize| first.min(order.len() - first);
+            if best.is_none_or(|(_, _, other)| balance(first) > balance(other)) {
+                best = Some((d, value, first));
+            }
+            if balance(first) >= order.len() / 4 {
+                break;
+            }
+        }
+        let (d, value, _) = best?;
+        let mut first = 0;
+        for i in 0..order.len() {
+            if self.at(order[i], d) <= value {
+                order.swap(i, first);
+                first += 1;
+            }
+        }
+        Some((d, value, first))
+    }
+}
+
+impl<const K: usize> KdTree<K> {
+    /// Moves the states below `r` into `items` and frees its nodes.
+    pub(super) fn gather<C: Embed>(&mut self, space: &C, points: &[C::State], r: Ref, items: &mut Items) {
+        match r.get() {
+            Ok(i) => {
+                for child in self.inner[i].children {
+                    self.gather(space, points, child, items);
+                }
+                self.free_inner.push(i);
+            }
+            Err(leaf) => {
+                let mut extra = self.leaves.get_mut(leaf).extra.take();
+                let head = self.leaves.get(leaf);
+                for &id in &head.ids[..head.len] {
+                    items.push(&self.shape.embed(space, &points[id as usize]), id, extra.take());
+                }
+                self.leaves.free(leaf);
+            }
+        }
+    }
+
+    /// A subtree of `items`, which is emptied.
+    pub(super) fn build<S: PartialEq>(&mut self, points: &[S], items: &mut Items) -> Ref {
+        let mut order: Vec<u32> = (0..items.ids.len() as u32).collect();
+        self.build_part(points, items, &mut order)
+    }
+
+    fn build_part<S: PartialEq>(&mut self, points: &[S], items: &mut Items, order: &mut [u32]) -> Ref {
+        // Only lane 0 of a leaf may stand for more states than one.
+        let heavy = order.iter().filter(|&&i| items.extras[i as usize].is_some()).count();
+        if order.len() > FILL || heavy > 1 {
+            if let Some((d, split, first)) = items.split(order) {
+                let (left, right) = order.split_at_mut(first);
+                let children = [self.build_part(points, items, left), self.build_part(points, items, right)];
+                let leaves = children.iter().map(|&c| self.leaves_below(c)).sum();
+                return self.new_inner(Inner { split, children, dim: d as u32, leaves, built: leaves });
+            }
+            if order.len() > CAP || heavy > 1 {
+                return self.build_lump(points, items, order);
+            }
+        }
+        order.sort_by_key(|&i| items.extras[i as usize].is_none());
+        let leaf = self.leaves.alloc(items.dim);
+        for &i in order.iter() {
+            self.leaves.push(leaf, items.dim, items.ids[i as usize], |d| items.at(i, d) as f32);
+        }
+        self.leaves.get_mut(leaf).extra = order.first().and_then(|&i| items.extras[i as usize].take());
+        Ref::leaf(leaf)
+    }
+
+    /// A leaf for any number of states with the same coordinates.
+    fn build_lump<S: PartialEq>(&mut self, points: &[S], items: &mut Items, order: &[u32]) -> Ref {
+        let mut ids = Vec::new();
+        let mut same = true;
+        for &i in order {
+            ids.push(items.ids[i as usize]);
+            if let Some(extra) = items.extras[i as usize].take() {
+                ids.extend(extra.ids);
+                same &= extra.same;
+            }
+        }
+        let first = ids.iter().copied().min().unwrap_or(0);
+        let state = &points[first as usize];
+        same &= order.iter().all(|&i| points[items.ids[i as usize] as usize] == *state);
+        let leaf = self.leaves.alloc(items.dim);
+        if let Some(&i) = order.first() {
+            self.leaves.push(leaf, items.dim, first, |d| items.at(i, d) as f32);
+        }
+        self.leaves.get_mut(leaf).extra = company(first, ids, same);
+        Ref::leaf(leaf)
+    }
+}

@@ -1,0 +1,199 @@
+//! Insertion.
+
+use super::super::NodeId;
+use super::build::Items;
+use super::leaf::{CAP, Extra};
+use super::shape::Shape;
+use super::{Inner, KdTree, MAX_DIM, Ref};
+use crate::Embed;
+
+impl<const K: usize> KdTree<K> {
+    pub(super) fn insert<C: Embed>(&mut self, space: &C, points: &[C::State], id: NodeId) {
+        let state = &points[id as usize];
+        if self.root.is_none() {
+            self.shape = Shape::new(space, K, state);
+        }
+        let dim = self.dim();
+        let x = self.shape.embed(space, state);
+        let [low, high] = &mut self.bounds;
+        low.iter_mut().zip(&x).for_each(|(low, x)| *low = low.min(*x));
+        high.iter_mut().zip(&x).for_each(|(high, x)| *high = high.max(*x));
+        let root = match self.root {
+            Some(root) => root,
+            None => *self.root.insert(Ref::leaf(self.leaves.alloc(dim))),
+        };
+        let leaf = self.descend(root, &x);
+        let joined = self.leaves.get(leaf).extra.is_some() && self.join(space, points, leaf, id, &x);
+        if joined {
+            return;
+        }
+        if self.leaves.get(leaf).len < CAP {
+            self.leaves.push(leaf, dim, id, |d| x[d] as f32);
+        } else {
+            self.split(space, points, leaf, id, &x);
+            self.rebalance(space, points);
+        }
+    }
+
+    /// The leaf of `x`; the way there is left in `path`.
+    fn descend(&mut self, root: Ref, x: &[f64; MAX_DIM]) -> usize {
+        self.path.clear();
+        let mut r = root;
+        loop {
+            match r.get() {
+                Err(leaf) => return leaf,
+                Ok(i) => {
+                    let node = &self.inner[i];
+                    let side = usize::from(x[node.dim as usize] > node.split);
+                    self.path.push((i, side));
+                    r = node.children[side];
+                }
+            }
+        }
+    }
+
+    /// Puts a state with the coordinates of a leaf's lane 0 beside those that could not be split
+    /// from it; `false` when it is no such state.
+    fn join<C: Embed>(
+        &mut self,
+        space: &C,
+        points: &[C::State],
+        leaf: usize,
+        id: NodeId,
+        x: &[f64; MAX_DIM],
+    ) -> bool {
+        let first = self.leaves.get(leaf).ids[0] as usize;
+        if self.shape.embed(space, &points[first]) != *x {
+            return false;
+        }
+        let leaf = self.leaves.get_mut(leaf);
+        let Some(extra) = &mut leaf.extra else { return false };
+        extra.same &= points[first] == points[id as usize];
+        // Lane 0 has the smallest id.
+        let id = if id < leaf.ids[0] { std::mem::replace(&mut leaf.ids[0], id) } else { id };
+        let at = extra.ids.partition_point(|&other| other < id);
+        extra.ids.insert(at, id);
+        true
+    }
+
+    /// Splits a full leaf and adds a state to one of the halves.
+    fn split<C: Embed>(
+        &mut self,
+        space: &C,
+        points: &[C::State],
+        leaf: usize,
+        id: NodeId,
+        x: &[f64; MAX_DIM],
+    ) {
+        let r = match self.halve(leaf, id, x) {
+            Some(r) => r,
+            None => {
+                let mut items = Items::new(self.dim());
+                self.gather(space, points, Ref::leaf(leaf), &mut items);
+                items.push(x, id, None);
+                self.build(points, &mut items)
+            }
+        };
+        self.replace_at(self.path.len(), r);
+        let added = self.leaves_below(r) as i64 - 1;
+        self.count(self.path.len(), added);
+    }
+
+    /// The fast way to split: at the median of the widest coordinate, all in `f32`.
+    fn halve(&mut self, leaf: usize, id: NodeId, x: &[f64; MAX_DIM]) -> Option<Ref> {
+        let dim = self.dim();
+        let lanes = self.leaves.lanes(leaf, dim);
+        let (mut widest, mut width) = (0, 0.0);
+        for d in 0..dim {
+            let row = &lanes[d * CAP..][..CAP];
+            let low = row.iter().fold(f32::INFINITY, |a, &b| a.min(b));
+            let high = row.iter().fold(f32::NEG_INFINITY, |a, &b| a.max(b));
+            if high - low > width {
+                (widest, width) = (d, high - low);
+            }
+        }
+        let row: &[f32; CAP] = lanes[widest * CAP..].first_chunk()?;
+        let mut sorted = *row;
+        sorted.sort_unstable_by(f32::total_cmp);
+        let (a, b) = (sorted[CAP / 2 - 1], sorted[CAP / 2]);
+        if a >= b {
+            return None;
+        }
+        // States go where their `f64` coordinate would: above `split` means `b` or more in `f32`.
+        let middle = 0.5 * (f64::from(a) + f64::from(b));
+        let split = if middle as f32 >= b { middle.next_down() } else { middle };
+        let (row, lanes) = (*row, lanes.to_vec());
+        let right = self.leaves.alloc(dim);
+        let old = std::mem::take(self.leaves.get_mut(leaf));
+        for lane in 0..CAP {
+            let to = if row[lane] >= b { right } else { leaf };
+            self.leaves.push(to, dim, old.ids[lane], |d| lanes[d * CAP + lane]);
+        }
+        // Lane 0 stayed lane 0 on its side.
+        self.leaves.get_mut(if row[0] >= b { right } else { leaf }).extra = old.extra;
+        let to = if x[widest] > split { right } else { leaf };
+        self.leaves.push(to, dim, id, |d| x[d] as f32);
+        Some(self.new_inner(Inner {
+            split,
+            children: [Ref::leaf(leaf), Ref::leaf(right)],
+            dim: widest as u32,
+            leaves: 2,
+            built: 2,
+        }))
+    }
+
+    pub(super) fn new_inner(&mut self, node: Inner) -> Ref {
+        if let Some(i) = self.free_inner.pop() {
+            self.inner[i] = node;
+            return Ref::inner(i);
+        }
+        self.inner.push(node);
+        Ref::inner(self.inner.len() - 1)
+    }
+
+    pub(super) fn leaves_below(&self, r: Ref) -> u32 {
+        r.get().map_or(1, |i| self.inner[i].leaves)
+    }
+
+    /// Makes `r` the node at depth `depth` of the path.
+    fn replace_at(&mut self, depth: usize, r: Ref) {
+        match depth.checked_sub(1).map(|parent| self.path[parent]) {
+            Some((parent, side)) => self.inner[parent].children[side] = r,
+            None => self.root = Some(r),
+        }
+    }
+
+    /// Adds `change` to the number of leaves below the first `depth` nodes of the path.
+    fn count(&mut self, depth: usize, change: i64) {
+        for &(i, _) in &self.path[..depth] {
+            let leaves = &mut self.inner[i].leaves;
+            *leaves = (i64::from(*leaves) + change) as u32;
+        }
+    }
+
+    /// Rebuilds the highest node of the path that is out of balance, if it has grown enough since
+    /// it was built to pay for it.
+    fn rebalance<C: Embed>(&mut self, space: &C, points: &[C::State]) {
+        let lopsided = |&(i, _): &(usize, usize)| {
+            let node = &self.inner[i];
+            let most = node.children.map(|c| self.leaves_below(c)).into_iter().fold(0, u32::max);
+            node.leaves > node.built + node.built / 2 + 6 && most > node.leaves - node.leaves / 4
+        };
+        let Some(depth) = self.path.iter().position(lopsided) else { return };
+        let (i, _) = self.path[depth];
+        let before = i64::from(self.inner[i].leaves);
+        let mut items = Items::new(self.dim());
+        self.gather(space, points, Ref::inner(i), &mut items);
+        let r = self.build(points, &mut items);
+        self.replace_at(depth, r);
+        let after = i64::from(self.leaves_below(r));
+        self.count(depth, after - before);
+    }
+}
+
+/// Makes lane 0's company of `ids`, which it may be among.
+pub(super) fn company(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Box<Extra>> {
+    ids.retain(|&id| id != first);
+    ids.sort_unstable();
+    (!ids.is_empty()).then(|| Box::new(Extra { ids, same }))
+}

@@ -1,0 +1,136 @@
+//! A bucketed k-d tree that grows while it is queried.
+
+mod build;
+mod insert;
+mod leaf;
+mod search;
+mod shape;
+
+use super::collect::{Nearest, One, Within};
+use super::{Embed, Hit, NearestNeighbors, NodeId};
+use leaf::Leaves;
+use shape::Shape;
+
+/// The most coordinates a tree looks at; a layout's later ones only enter the exact distances.
+const MAX_DIM: usize = 16;
+
+/// A reference to a node: the index of an inner node, or that of a leaf with the top bit set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Ref(u32);
+
+impl Ref {
+    const LEAF: u32 = 1 << 31;
+
+    fn leaf(index: usize) -> Self {
+        Self(index as u32 | Self::LEAF)
+    }
+
+    fn inner(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// `Ok` an inner node, `Err` a leaf.
+    #[inline]
+    fn get(self) -> Result<usize, usize> {
+        if self.0 & Self::LEAF == 0 { Ok(self.0 as usize) } else { Err((self.0 & !Self::LEAF) as usize) }
+    }
+}
+
+/// Splits space: coordinate `dim` is ≤ `split` in the first child and ≥ `split` in the second.
+#[derive(Clone, Copy, Debug)]
+struct Inner {
+    split: f64,
+    children: [Ref; 2],
+    dim: u32,
+    /// Leaves below.
+    leaves: u32,
+    /// Leaves below when this node was made.
+    built: u32,
+}
+
+/// An exact index for spaces whose metric has a lower bound in coordinates ([`Embed`]): the
+/// fastest there is for R^n, SO(2), SO(3), SE(2), SE(3), tori and their products.
+///
+/// A k-d tree (Bentley 1975, *Multidimensional binary search trees used for associative
+/// searching*) with buckets (Friedman, Bentley, Finkel 1977) that split at the median of their
+/// widest coordinate. Unbalanced subtrees are rebuilt as in a scapegoat tree (Galperin, Rivest
+/// 1993), so insertion takes amortised O(log² n) whatever the order of the states. The search
+/// descends depth first with incremental distances to the cells (Arya, Mount 1993). Buckets hold
+/// `f32` coordinates, structure of arrays, that serve as a filter with a conservative margin; what
+/// passes is decided by the metric itself, in `f64`. Hence answers are those of
+/// [`Linear`](super::Linear), to the bit. Symmetries (periods, q ~ −q) are met by searching for
+/// the images of the query.
+///
+/// `K`, where known at compile time, is the layout's number of coordinates and makes the search
+/// faster; 0 reads it from the layout. With more coordinates than `K` or 16 the index looks at the
+/// first ones only. Queries allocate nothing.
+#[derive(Clone, Debug)]
+pub struct KdTree<const K: usize = 0> {
+    shape: Shape,
+    root: Option<Ref>,
+    inner: Vec<Inner>,
+    free_inner: Vec<usize>,
+    leaves: Leaves,
+    /// Bounds of all coordinates, relative to the origin.
+    bounds: [[f64; MAX_DIM]; 2],
+    /// The inner nodes on the way to the last leaf, and which child was taken.
+    path: Vec<(usize, usize)>,
+}
+
+impl<const K: usize> Default for KdTree<K> {
+    fn default() -> Self {
+        Self {
+            shape: Shape::default(),
+            root: None,
+            inner: Vec::new(),
+            free_inner: Vec::new(),
+            leaves: Leaves::default(),
+            bounds: [[f64::INFINITY; MAX_DIM], [f64::NEG_INFINITY; MAX_DIM]],
+            path: Vec::new(),
+        }
+    }
+}
+
+impl<const K: usize> KdTree<K> {
+    /// An empty index.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The number of coordinates looked at.
+    #[inline]
+    fn dim(&self) -> usize {
+        if K == 0 { self.shape.dim } else { K.min(MAX_DIM) }
+    }
+}
+
+impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
+    fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId) {
+        self.insert(space, points, id);
+    }
+
+    fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
+        let mut one = One::new();
+        self.search(space, points, q, &mut one);
+        one.get()
+    }
+
+    fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
+        let mut nearest = Nearest::new(k, out);
+        if k > 0 {
+            self.search(space, points, q, &mut nearest);
+        }
+        nearest.finish();
+    }
+
+    fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
+        let mut within = Within::new(radius, out);
+        self.search(space, points, q, &mut within);
+        within.finish();
+    }
+}

@@ -1,0 +1,251 @@
+//! Nearest neighbours: every index agrees with the linear scan, to the bit, on friendly and on
+//! unfriendly data, and does little work on either.
+
+use mp_cspace::testkit::check_nearest_neighbors;
+use mp_cspace::{
+    DefaultNn, Embed, Euclidean, Hit, KdTree, Layout, Linear, Manhattan, Metric, NearestNeighbors, Product,
+    Rn, RnDyn, Rng, ScaledEuclidean, Se2, Se3, So2, So3, Space, Torus, WithMetric,
+};
+use nalgebra::{DVector, SVector, Vector2};
+use proptest::prelude::*;
+use rand::RngExt;
+use std::cell::Cell;
+
+fn agrees_on<C: DefaultNn>(space: C) {
+    check_nearest_neighbors(&space, &mut C::Nn::default(), 700, 1);
+}
+
+#[test]
+fn default_index_of_every_space() {
+    agrees_on(Rn::<1>::new([0.0], [1.0]).unwrap());
+    agrees_on(Rn::<2>::new([0.0; 2], [1.0, 30.0]).unwrap());
+    agrees_on(Rn::<3>::new([1e6; 3], [1e6 + 1.0; 3]).unwrap());
+    agrees_on(Rn::<6>::new([-1.0; 6], [1.0; 6]).unwrap());
+    agrees_on(Rn::<19>::new([-1.0; 19], [1.0; 19]).unwrap());
+    agrees_on(RnDyn::new(vec![0.0; 5], vec![1.0; 5]).unwrap());
+    agrees_on(RnDyn::new(vec![0.0; 20], vec![1.0; 20]).unwrap());
+    agrees_on(So2);
+    agrees_on(So3);
+    agrees_on(Torus::<2>);
+    agrees_on(Torus::<7>);
+    agrees_on(Se2::new([0.0; 2], [10.0; 2]).unwrap());
+    agrees_on(Se2::new([0.0; 2], [1.0; 2]).unwrap().with_rotation_weight(3.0).unwrap());
+    agrees_on(se3());
+    agrees_on(se3().with_rotation_weight(1e-3).unwrap());
+    agrees_on(Product::new(se3(), 2.0, Torus::<2>, 0.1).unwrap());
+    agrees_on(Product::new(So3, 1.0, Product::new(So3, 0.3, So2, 2.0).unwrap(), 1.0).unwrap());
+}
+
+#[test]
+fn default_index_under_other_metrics() {
+    agrees_on(WithMetric::new(Rn::<4>::new([0.0; 4], [1.0; 4]).unwrap(), Manhattan));
+    agrees_on(WithMetric::new(se3(), Manhattan));
+    agrees_on(WithMetric::new(se3(), Euclidean));
+    agrees_on(WithMetric::new(Product::new(So3, 1.0, Torus::<3>, 1.0).unwrap(), Euclidean));
+    let weights = ScaledEuclidean::new(&se3(), [1.0, 10.0, 0.1, 3.0]).unwrap();
+    agrees_on(WithMetric::new(se3(), weights));
+}
+
+fn se3() -> Se3 {
+    Se3::new([0.0; 3], [1.0; 3]).unwrap()
+}
+
+/// The linear scan, and how `index` compares with it after each of `states`.
+fn agrees_along<C: Space, N: NearestNeighbors<C>>(
+    space: &C,
+    mut index: N,
+    states: &[C::State],
+    queries: &[C::State],
+) {
+    let mut linear = Linear::new();
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for n in 1..=states.len() {
+        let states = &states[..n];
+        index.inserted(space, states, n as u32 - 1);
+        linear.inserted(space, states, n as u32 - 1);
+        if n > 40 && n % 149 != 0 && n != states.len() {
+            continue;
+        }
+        for q in queries.iter().chain(&states[n.saturating_sub(3)..]) {
+            let nearest = index.nearest(space, states, q);
+            assert_eq!(nearest, linear.nearest(space, states, q), "{n} states, {q:?}");
+            for k in [1, 40] {
+                index.k_nearest(space, states, q, k, &mut a);
+                linear.k_nearest(space, states, q, k, &mut b);
+                assert_eq!(a, b, "{k} nearest of {n} states, {q:?}");
+            }
+            for radius in [0.0, a.get(a.len() / 3).map_or(1.0, |hit| hit.distance), f64::INFINITY] {
+                index.within(space, states, q, radius, &mut a);
+                linear.within(space, states, q, radius, &mut b);
+                assert_eq!(a, b, "within {radius} of {n} states, {q:?}");
+            }
+        }
+    }
+}
+
+type P3 = SVector<f64, 3>;
+
+/// Unfriendly data in R³.
+fn unfriendly() -> Vec<(&'static str, Vec<P3>)> {
+    let mut rng = Rng::seed(5);
+    let mut random = move || P3::from_fn(|_, _| rng.random::<f64>() - 0.5);
+    let n = 900;
+    let line: Vec<P3> = (0..n).map(|i| P3::new(1.0, 2.0, -1.0) * f64::from(i)).collect();
+    let cluster = |scale: f64, random: &mut dyn FnMut() -> P3| -> Vec<P3> {
+        (0..n).map(|i| P3::repeat(f64::from(i % 3)) + random() * scale).collect()
+    };
+    vec![
+        ("identical", vec![P3::new(0.1, 0.2, 0.3); n as usize]),
+        ("identical but two", {
+            let mut all = vec![P3::zeros(); n as usize];
+            (all[300], all[700]) = (P3::x(), -P3::y());
+            all
+        }),
+        ("sorted", line.clone()),
+        ("sorted backwards", line.iter().rev().copied().collect()),
+        ("toward a limit", (0..n).map(|i| P3::repeat(0.99f64.powi(i))).collect()),
+        ("from both ends", (0..n).map(|i| P3::x() * f64::from(if i % 2 == 0 { i } else { -i })).collect()),
+        ("clustered", cluster(1e-2, &mut random)),
+        ("tightly clustered", cluster(1e-9, &mut random)),
+        ("clustered to the last bit", cluster(1e-16, &mut random)),
+        ("lattice", (0..n).map(|i| P3::new((i % 3).into(), (i / 3 % 3).into(), (i % 7).into())).collect()),
+        ("star", (0..n).map(|i| P3::ith(i as usize % 3, f64::from(i / 3))).collect()),
+        ("far away", (0..n).map(|_| P3::repeat(1e9) + random()).collect()),
+        ("huge", (0..n).map(|_| random() * 1e160).collect()),
+        ("tiny", (0..n).map(|_| random() * 1e-100).collect()),
+        ("copies", (0..n).map(|i| P3::repeat(0.1) * f64::from(i % 40)).collect()),
+    ]
+}
+
+fn everywhere() -> Rn<3> {
+    Rn::new([-1e3; 3], [1e3; 3]).unwrap()
+}
+
+#[test]
+fn kd_tree_on_unfriendly_data() {
+    for (name, states) in unfriendly() {
+        let queries = [P3::zeros(), P3::new(0.3, -0.4, 0.5), states[states.len() / 2] * 1.001];
+        let run = || agrees_along(&everywhere(), KdTree::<3>::new(), &states, &queries);
+        assert!(std::panic::catch_unwind(run).is_ok(), "on {name} data");
+    }
+}
+
+#[test]
+fn states_that_are_no_numbers_are_never_found() {
+    let nan = P3::repeat(f64::NAN);
+    let mut states = vec![nan; 40];
+    states.extend([P3::repeat(f64::INFINITY), P3::zeros(), nan, P3::x()]);
+    states.extend(vec![nan; 40]);
+    agrees_along(&everywhere(), KdTree::<3>::new(), &states, &[P3::y(), P3::repeat(f64::INFINITY), nan]);
+}
+
+#[test]
+fn wrong_number_of_coordinates_is_only_slower() {
+    check_nearest_neighbors(&se3(), &mut KdTree::<2>::new(), 300, 1);
+    check_nearest_neighbors(&se3(), &mut KdTree::<5>::new(), 300, 1);
+    check_nearest_neighbors(&se3(), &mut KdTree::<12>::new(), 300, 1);
+    check_nearest_neighbors(&Torus::<3>, &mut KdTree::<99>::new(), 300, 1);
+}
+
+/// Counts how often the metric is asked.
+struct Counting<C> {
+    space: C,
+    calls: Cell<u64>,
+}
+
+impl<C: Space> Metric<C::State> for Counting<C> {
+    fn distance(&self, from: &C::State, to: &C::State) -> f64 {
+        self.calls.set(self.calls.get() + 1);
+        self.space.distance(from, to)
+    }
+}
+impl<C: Space> Space for Counting<C> {
+    type State = C::State;
+    fn dim(&self) -> usize {
+        self.space.dim()
+    }
+    fn extent(&self) -> f64 {
+        self.space.extent()
+    }
+    fn interpolate_into(&self, from: &C::State, to: &C::State, t: f64, out: &mut C::State) {
+        self.space.interpolate_into(from, to, t, out);
+    }
+    fn unit_cube_to_state(&self, u: &[f64]) -> C::State {
+        self.space.unit_cube_to_state(u)
+    }
+    fn sample_uniform(&self, rng: &mut Rng) -> C::State {
+        self.space.sample_uniform(rng)
+    }
+    fn contains(&self, q: &C::State) -> bool {
+        self.space.contains(q)
+    }
+}
+impl<C: Embed> Embed for Counting<C> {
+    fn layout(&self) -> Layout {
+        self.space.layout()
+    }
+    fn embed(&self, state: &C::State, out: &mut [f64]) -> usize {
+        self.space.embed(state, out)
+    }
+}
+
+/// Distances computed per query while `states` are inserted one by one, each searched for first.
+fn distances_per_query<C: Space, N: NearestNeighbors<Counting<C>>>(
+    space: C,
+    mut index: N,
+    states: &[C::State],
+) -> f64 {
+    let space = Counting { space, calls: Cell::new(0) };
+    for n in 0..states.len() {
+        let _: Option<Hit> = index.nearest(&space, &states[..n], &states[n]);
+        index.inserted(&space, &states[..=n], n as u32);
+    }
+    space.calls.get() as f64 / states.len() as f64
+}
+
+#[test]
+fn kd_tree_asks_the_metric_rarely() {
+    let uniform = |n: usize| -> Vec<_> {
+        let mut rng = Rng::seed(3);
+        (0..n).map(|_| se3().sample_uniform(&mut rng)).collect()
+    };
+    let asked = distances_per_query(se3(), KdTree::<7>::new(), &uniform(20_000));
+    assert!(asked < 3.0, "{asked} distances per query in SE(3)");
+    for (name, states) in unfriendly() {
+        let asked = distances_per_query(everywhere(), KdTree::<3>::new(), &states);
+        // Coordinates that differ by their rounding only, or are out of range, cannot be told
+        // apart; the metric has to.
+        let limit = match name {
+            "huge" => 500.0,
+            "clustered to the last bit" => 100.0,
+            "tightly clustered" | "tiny" => 50.0,
+            _ => 12.0,
+        };
+        assert!(asked < limit, "{asked} distances per query on {name} data");
+    }
+}
+
+proptest! {
+    #[test]
+    fn kd_tree_agrees_on_small_integers(
+        points in prop::collection::vec((-3i8..4, -3i8..4), 1..200),
+        queries in prop::collection::vec((-4i8..5, -4i8..5), 1..5),
+    ) {
+        let plane = Rn::<2>::new([-9.0; 2], [9.0; 2]).unwrap();
+        let vector = |&(x, y): &(i8, i8)| Vector2::new(f64::from(x), f64::from(y));
+        let points: Vec<_> = points.iter().map(vector).collect();
+        let queries: Vec<_> = queries.iter().map(vector).collect();
+        agrees_along(&plane, KdTree::<2>::new(), &points, &queries);
+        agrees_along(&WithMetric::new(plane, Manhattan), KdTree::<0>::new(), &points, &queries);
+    }
+
+    #[test]
+    fn kd_tree_agrees_on_any_numbers(
+        points in prop::collection::vec(prop::collection::vec(prop::num::f64::ANY, 3), 1..120),
+        query in prop::collection::vec(prop::num::f64::ANY, 3),
+    ) {
+        let space = RnDyn::new(vec![-1.0; 3], vec![1.0; 3]).unwrap();
+        let points: Vec<_> = points.into_iter().map(DVector::from_vec).collect();
+        agrees_along(&space, KdTree::<0>::new(), &points, &[DVector::from_vec(query)]);
+    }
+}
