@@ -1,6 +1,10 @@
 //! The engine against brute force, exact arithmetic, the reference implementation and parry.
 
+mod bad_input;
 mod common;
 mod meshes;
+mod parry;
+mod properties;
 mod referee;
+mod scenes;
 mod triangles;

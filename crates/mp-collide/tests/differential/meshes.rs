@@ -3,9 +3,11 @@
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query};
 use mp_geom::TriMesh;
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, Point3, Translation3, Vector3};
+use rand::RngExt;
 
-use crate::common::{bumpy, cuboid, pose, rng, soup};
+use crate::common::{Pcg64, bumpy, cuboid, point, pose, rng, rotation, soup};
+use crate::referee::{self, Corner};
 
 /// Every triangle as a mesh of its own: the same arithmetic without a tree.
 fn pieces(mesh: &TriMesh) -> Vec<CollisionMesh> {
@@ -74,5 +76,144 @@ fn batches_find_the_first_collision() {
         let here = pose(&mut rng, 0.2);
         let expected = poses.iter().position(|p| query.intersects(&a, p, &b, &here));
         assert_eq!(query.first_collision(&a, &poses, &b, &here), expected);
+    }
+}
+
+/// A mesh of a few triangles on an integer grid, of all kinds of degeneracy.
+fn grid_mesh(rng: &mut Pcg64, size: i64) -> (TriMesh, Vec<[Corner; 3]>) {
+    let corners: Vec<Corner> =
+        (0..rng.random_range(3..7)).map(|_| [0; 3].map(|_| rng.random_range(-size..=size))).collect();
+    let count = corners.len() as u32;
+    let triangles: Vec<[u32; 3]> =
+        (0..rng.random_range(1..7)).map(|_| [0; 3].map(|_| rng.random_range(0..count))).collect();
+    let exact = triangles.iter().map(|t| t.map(|i| corners[i as usize])).collect();
+    let vertices = corners.iter().map(|p| Point3::from(p.map(|c| c as f64))).collect();
+    (TriMesh::new(vertices, triangles).unwrap(), exact)
+}
+
+#[test]
+fn meshes_on_grids_are_decided_exactly() {
+    let mut rng = rng(7);
+    let mut query = Query::default();
+    let mut hits = 0;
+    for i in 0..20_000 {
+        let size = [1, 3, 8, 1 << 20][i % 4];
+        let ((a, exact_a), (b, exact_b)) = (grid_mesh(&mut rng, size), grid_mesh(&mut rng, size));
+        let (a, b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
+        // Translations by whole numbers are exact, whatever the common rotation.
+        let shift: Corner = [0; 3].map(|_| rng.random_range(-size..=size));
+        let (place_a, place_b) = (Isometry3::identity(), Vector3::from(shift.map(|c| c as f64)));
+        let pose_wb = Isometry3::from(Translation3::from(place_b));
+        let shifted = |t: &[Corner; 3]| t.map(|p| [0, 1, 2].map(|k| p[k] + shift[k]));
+        let mut least = f64::INFINITY;
+        for t in exact_b.iter().map(shifted) {
+            for s in &exact_a {
+                if least > 0.0 {
+                    least = if referee::intersect(s, &t) {
+                        0.0
+                    } else if size <= referee::DISTANCE_LIMIT {
+                        least.min(referee::distance(s, &t))
+                    } else {
+                        least
+                    };
+                }
+            }
+        }
+        let hit = least == 0.0;
+        hits += u32::from(hit);
+        assert_eq!(query.intersects(&a, &place_a, &b, &pose_wb), hit, "{exact_a:?} {exact_b:?} {shift:?}");
+        // The other way round is as exact.
+        assert_eq!(query.intersects(&b, &pose_wb, &a, &place_a), hit);
+        if let Some((s, t)) = query.intersecting_triangles(&a, &place_a, &b, &pose_wb) {
+            assert!(referee::intersect(&exact_a[s], &shifted(&exact_b[t])));
+        }
+        let distance = query.distance(&a, &place_a, &b, &pose_wb).distance;
+        assert_eq!(distance == 0.0, hit);
+        if size <= referee::DISTANCE_LIMIT {
+            let error = 1e-14 * least + 8.0 * f64::EPSILON * size as f64;
+            assert!((distance - least).abs() <= error, "{distance} {least}");
+        }
+        assert_eq!(query.clearance(&a, &place_a, &b, &pose_wb, 0.5) == 0.0, hit);
+        assert_eq!(query.within(&a, &place_a, &b, &pose_wb, 0.0), hit);
+    }
+    assert!((4_000..16_000).contains(&hits), "{hits} hits");
+}
+
+#[test]
+fn touching_is_decided_to_the_last_place() {
+    let mut query = Query::default();
+    let cube = CollisionMesh::new(&cuboid(Vector3::new(1.0, 1.0, 1.0)));
+    let here = Isometry3::identity();
+    for direction in [[1.0, 0.0, 0.0], [1.0, -1.0, 0.0], [-1.0, 1.0, 1.0]] {
+        let direction = Vector3::from(direction);
+        for (scale, touches) in [(2.0, true), (2.0_f64.next_up(), false), (2.0_f64.next_down(), true)] {
+            let apart = Isometry3::from(Translation3::from(direction * scale));
+            assert_eq!(query.intersects(&cube, &here, &cube, &apart), touches, "{direction} {scale}");
+            let distance = query.distance(&cube, &here, &cube, &apart).distance;
+            assert_eq!(distance == 0.0, touches);
+            assert!(distance < 1e-15);
+        }
+    }
+    // Equal poses are not rounded at all: a face laid on a face, turned together by anything.
+    let mut rng = rng(8);
+    let lower = CollisionMesh::new(&cuboid(Vector3::new(1.0, 1.0, 1.0)));
+    let upper = cuboid(Vector3::new(0.3, 0.2, 0.1));
+    for (height, touches) in [(1.1_f64, true), (1.1 + 1e-15, false)] {
+        let raised: Vec<Point3<f64>> = upper
+            .vertices()
+            .iter()
+            .map(|p| Point3::new(p.x, p.y, if p.z < 0.0 { 1.0 + (height - 1.1) } else { 1.2 }))
+            .collect();
+        let upper = CollisionMesh::new(&TriMesh::new(raised, upper.triangles().to_vec()).unwrap());
+        for _ in 0..100 {
+            let at = pose(&mut rng, 1e3);
+            assert_eq!(query.intersects(&lower, &at, &upper, &at), touches);
+        }
+    }
+}
+
+#[test]
+fn boxes_never_miss_far_from_the_origin_or_at_odd_scales() {
+    let mut rng = rng(9);
+    let mut query = Query::default();
+    let (mut hits, mut total) = (0, 0);
+    for round in 0..120 {
+        let (offset, scale) =
+            [(0.0, 1e-9), (1e6, 1.0), (1e9, 1.0), (1e3, 1e-6), (0.0, 1e12), (1e14, 1.0)][round % 6];
+        let centre = point(&mut rng, 1.0).coords * offset;
+        let place = |mesh: TriMesh| {
+            let moved = mesh.vertices().iter().map(|p| p * scale + centre).collect();
+            TriMesh::new(moved, mesh.triangles().to_vec()).unwrap()
+        };
+        let (a, b) = (place(soup(&mut rng, 12, 1.0, 0.5)), place(soup(&mut rng, 12, 1.0, 0.5)));
+        let (tree_a, tree_b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
+        let (pieces_a, pieces_b) = (pieces(&a), pieces(&b));
+        for _ in 0..10 {
+            let turn = Isometry3::rotation_wrt_point(rotation(&mut rng), centre.into());
+            let here = Isometry3::identity();
+            let pairs = || pieces_a.iter().flat_map(|p| pieces_b.iter().map(move |q| (p, q)));
+            let hit = pairs().any(|(p, q)| query.intersects(p, &here, q, &turn));
+            assert_eq!(query.intersects(&tree_a, &here, &tree_b, &turn), hit, "{offset} {scale}");
+            hits += u32::from(hit);
+            total += 1;
+        }
+    }
+    assert!(hits > total / 10 && hits < total * 9 / 10, "{hits} of {total}");
+}
+
+#[test]
+fn answers_do_not_depend_on_earlier_queries() {
+    let mut rng = rng(10);
+    let (a, b) = (CollisionMesh::new(&bumpy(9, 0.5, 0.2)), CollisionMesh::new(&soup(&mut rng, 90, 0.6, 0.2)));
+    let mut used = Query::default();
+    for _ in 0..60 {
+        let (pose_wa, pose_wb) = (pose(&mut rng, 0.8), pose(&mut rng, 0.8));
+        let before = used.counters;
+        let from_used = used.distance(&a, &pose_wa, &b, &pose_wb);
+        let mut fresh = Query::default();
+        assert_eq!(fresh.distance(&a, &pose_wa, &b, &pose_wb), from_used);
+        assert_eq!(fresh.counters.box_tests, used.counters.box_tests - before.box_tests);
+        assert_eq!(fresh.counters.triangle_tests, used.counters.triangle_tests - before.triangle_tests);
+        assert_eq!(fresh.counters.queries, 1);
     }
 }
