@@ -121,7 +121,7 @@ impl Query {
         relative: &Relative,
     ) -> Option<(usize, usize)> {
         let frames = Frames::new(a, b, relative);
-        if frames.apart > (a.radius_center + b.radius_center) * (1.0 + 1e-12) {
+        if frames.apart > (a.radius_center + b.radius_center) * (1.0 + 1e-12) + relative.slack {
             return None;
         }
         if !frames.fits_f32(a, b) {

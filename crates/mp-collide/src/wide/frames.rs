@@ -63,8 +63,11 @@ pub(crate) struct Frames {
     /// From centred `b` to centred `a`, and back.
     pub(crate) into_a: Frame,
     pub(crate) into_b: Frame,
-    /// Boxes are apart only when the gap exceeds this (metres): see [`PAD`].
+    /// Boxes are apart only when the gap exceeds this (metres): [`PAD`], and the rounding of the triangles
+    /// themselves in `f64`, which outweighs it far from the origin of a mesh.
     pub(crate) pad: f32,
+    /// That rounding alone (metres), for triangles carried by `back`.
+    pub(crate) slack: f32,
     /// Distance of the two centres.
     pub(crate) apart: f64,
 }
@@ -84,13 +87,14 @@ impl Frames {
         let back = exact.inverse();
         let shift_back = r.tr_mul(&shift) * -1.0;
         let apart = shift.norm();
-        let pad = PAD * (a.radius_center + b.radius_center + apart);
+        let pad = PAD * (a.radius_center + b.radius_center + apart) + exact.slack;
         Self {
             exact: *exact,
             back,
             into_a: Frame::new(&r, &shift),
             into_b: Frame::new(&r.transpose(), &shift_back),
-            pad: pad as f32,
+            pad: (pad * (1.0 + 1e-6)) as f32,
+            slack: (exact.slack * (1.0 + 1e-6)) as f32,
             apart,
         }
     }

@@ -12,6 +12,15 @@ use crate::triangle::Triangle;
 /// Keeps quotients finite where an edge or a triangle has no extent.
 const TINY: f32 = 1e-37;
 
+/// A normal is used only when no more than 1e-4 wrong in direction. From corners wrong by u·`g` (u = 2⁻²⁴)
+/// and edges up to `e` it is wrong by 6u·e·(g + e); squared, with what is lost to underflow on top:
+/// |n|² is to be at least `SOUND` · e² (g² + e²) + `SOUND_AT_LEAST`.
+const SOUND: f32 = 2.6e-5;
+const SOUND_AT_LEAST: f32 = 1e-30;
+
+/// Below this size (metres) products of four lengths are lost to underflow.
+const SMALL: f32 = 1e-7;
+
 /// The triangles of a leaf, ready to be compared with one after another.
 pub(crate) struct Gaps<L> {
     v: [[L; 3]; 3],
@@ -21,6 +30,8 @@ pub(crate) struct Gaps<L> {
     inverse: [L; 3],
     n: [L; 3],
     nn: L,
+    /// Infinite for triangles whose normal is lost in rounding, 0 for the others.
+    flat: L,
     /// In the plane, across each edge, inward.
     inward: [[L; 3]; 3],
     lo: [L; 3],
@@ -40,10 +51,16 @@ impl<L: Lanes> Gaps<L> {
         let tiny = L::splat(TINY);
         let ff = [dot(&f[0], &f[0]), dot(&f[1], &f[1]), dot(&f[2], &f[2])];
         let one = L::splat(1.0);
+        let nn = dot(&n, &n);
+        let longest = ff[0].max(ff[1]).max(ff[2]);
+        let square = L::splat(leaf.magnitude * leaf.magnitude).add(longest);
+        let least = L::splat(SOUND).mul(longest).mul_add(square, L::splat(SOUND_AT_LEAST));
+        let huge = L::splat(1e38);
         Self {
+            flat: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
             ff,
             inverse: [one.div(ff[0].max(tiny)), one.div(ff[1].max(tiny)), one.div(ff[2].max(tiny))],
-            nn: dot(&n, &n),
+            nn,
             inward: [cross(&n, &f[0]), cross(&n, &f[1]), cross(&n, &f[2])],
             lo: std::array::from_fn(|d| v[0][d].min(v[1][d]).min(v[2][d])),
             hi: std::array::from_fn(|d| v[0][d].max(v[1][d]).max(v[2][d])),
@@ -85,7 +102,8 @@ impl<L: Lanes> Gaps<L> {
             let apart = self.lo[d].sub(L::splat(hi)).max(L::splat(lo).sub(self.hi[d])).max(zero);
             gap = apart.mul_add(apart, gap);
         }
-        let limit = L::splat(best * (1.0 + 1e-4));
+        // Finite: nothing is farther away, and 0 · ∞ would lose triangles without area.
+        let limit = L::splat((best * (1.0 + 1e-4)).min(1e30));
         let mut mask = self.all & gap.le(limit);
         if mask == 0 {
             return 0;
@@ -101,14 +119,18 @@ impl<L: Lanes> Gaps<L> {
         if mask == 0 {
             return 0;
         }
+        // Edges from the unrounded corners: for a small triangle far away those of `p` would be mostly noise.
         let e: [[f32; 3]; 3] = std::array::from_fn(|k| {
-            let (a, b) = (&p[k], &p[(k + 1) % 3]);
-            [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+            let d = triangle[(k + 1) % 3] - triangle[k];
+            [d.x as f32, d.y as f32, d.z as f32]
         });
         let ee = e.map(|e| e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
         let own = ee[0].max(ee[1]).max(ee[2]).sqrt();
         let m = cross_scalar(&e[0], &e[1]);
         let mm = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
+        let longest = own * own;
+        let sound = mm >= SOUND * longest * longest + SOUND_AT_LEAST && own.max(edge) >= SMALL;
+        let flat = L::splat(if sound { 0.0 } else { f32::INFINITY });
         let n = [L::splat(m[0]), L::splat(m[1]), L::splat(m[2])];
         let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
         let w: [L; 3] = std::array::from_fn(|k| dot(&n, &sub(&self.v[k], &s[0])));
@@ -125,13 +147,14 @@ impl<L: Lanes> Gaps<L> {
                 squared = between.min(squared);
             }
         }
-        // A corner whose foot is inside the face: height² / |n|². Outside, a penalty rules it out.
+        // A corner whose foot is inside the face: height² / |n|². Outside, a penalty rules it out, and so
+        // where the normal is not sound.
         let penalty = L::splat(-1e30);
         let inverse = L::splat(1.0).div(self.nn.max(L::splat(TINY)));
         for k in 0..3 {
             let inside = |j: usize| dot(&self.inward[j], &sub(&s[k], &self.v[j]));
             let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
-            squared = h[k].square().mul_add(inverse, outside).min(squared);
+            squared = h[k].mul(inverse).mul_add(h[k], outside.add(self.flat)).min(squared);
         }
         let inverse = L::splat(1.0 / mm.max(TINY));
         let across =
@@ -139,14 +162,16 @@ impl<L: Lanes> Gaps<L> {
         for k in 0..3 {
             let inside = |j: usize| dot(&across[j], &sub(&self.v[k], &s[j]));
             let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
-            squared = w[k].square().mul_add(inverse, outside).min(squared);
+            squared = w[k].mul(inverse).mul_add(w[k], outside.add(flat)).min(squared);
         }
-        // The points compared are points of the triangles, so only their rounding can make the result too
-        // small; that nearly parallel edges are not met at the best place makes it too large, by no more
-        // than some 1e-6 of the squared edges.
+        // Points of edges are points of the triangles, so only their rounding can make the result too small;
+        // that nearly parallel edges are not met at the best place makes it too large, by no more than some
+        // 1e-6 of the squared edges. A height is wrong by 1e-4 of the edges either way. Where a face was left
+        // out, the gap of the boxes is all that is known from below.
         let size = own.max(edge);
-        let rounding = L::splat(1e-9 * g * g);
-        let low = squared.mul_sub(L::splat(0.998), rounding.add(L::splat(1e-5 * size * size))).max(zero);
+        let rounding = L::splat(1e-9 * g * g + 1e-5 * size * size);
+        let below = squared.mul_sub(L::splat(0.998), rounding).sub(self.flat.add(flat));
+        let low = below.max(gap.mul(L::splat(1.0 - 1e-5)));
         low.store(near);
         squared.mul_add(L::splat(1.002), rounding).store(far);
         mask & low.le(L::splat(best))

@@ -115,7 +115,7 @@ fn leaf_pair<L: Lanes>(
             singles &= singles - 1;
             let single = frames.exact.triangle(&b.triangles[l]);
             counters.triangle_tests += 1;
-            let mut meet = block.may_meet(&single, mask_a);
+            let mut meet = block.may_meet(&single, mask_a, 0.0);
             while meet != 0 {
                 let k = leaf_a.first as usize + meet.trailing_zeros() as usize;
                 meet &= meet - 1;
@@ -132,7 +132,7 @@ fn leaf_pair<L: Lanes>(
             singles &= singles - 1;
             let single = frames.back.triangle(&a.triangles[k]);
             counters.triangle_tests += 1;
-            let mut meet = block.may_meet(&single, mask_b);
+            let mut meet = block.may_meet(&single, mask_b, frames.slack);
             while meet != 0 {
                 let l = leaf_b.first as usize + meet.trailing_zeros() as usize;
                 meet &= meet - 1;

@@ -6,6 +6,12 @@ use super::{Leaf, Tree};
 use crate::simd::Lanes;
 use crate::triangle::Triangle;
 
+/// Added to every margin: products of lengths so small that they underflow decide nothing.
+const TINY: f32 = 1e-34;
+
+/// The inverse of u = 2⁻²⁴, the relative rounding of `f32`.
+const INVERSE_U: f32 = 16_777_216.0;
+
 /// The triangles of `leaf` (of `tree`) that may come within `margin` of box `q`: axes of the box, then
 /// the normals of the triangles.
 #[inline(always)]
@@ -30,7 +36,7 @@ pub(crate) fn near_box<L: Lanes>(tree: &Tree, leaf: &Leaf, q: &Placed, margin: f
     // The normal is no longer than edge², and wrong by about 4u·(edge + magnitude)·edge.
     let edge = leaf.edge;
     let size = leaf.magnitude + q.half[0] + q.half[1] + q.half[2] + margin;
-    let mut reach = L::splat(edge * (edge * margin + 2e-6 * (edge + leaf.magnitude) * size));
+    let mut reach = L::splat(edge * (edge * margin + 2e-6 * (edge + leaf.magnitude) * size) + TINY);
     for k in 0..3 {
         let u = q.axis::<L>(k);
         reach = dot(&n, &u).abs().mul_add(L::splat(q.half[k]), reach);
@@ -67,14 +73,15 @@ impl<L: Lanes> Block<L> {
         Self { v, f, n, center: leaf.center, magnitude: leaf.magnitude, edge: leaf.edge }
     }
 
-    /// The triangles of the block that may meet `triangle`, given in the frame of the block's mesh.
+    /// The triangles of the block that may meet `triangle`, given in the frame of the block's mesh and wrong
+    /// by up to `slack` (metres) there.
     ///
     /// Planes first, then the nine signed volumes of pairs of edges. With corners wrong by u·`g` (`g` the
     /// largest coordinate, u = 2⁻²⁴) and edges no longer than `e` and `f`, a volume
     /// (p − v)·(e × f) is wrong by at most 2u·g·w·(e + f) + 4u·g·e·f for the corners, with
     /// w ≤ 2√3·g the distance of the corners, and 6u·w·e·f for the arithmetic.
     #[inline(always)]
-    pub(crate) fn may_meet(&self, triangle: &Triangle, mask: u32) -> u32 {
+    pub(crate) fn may_meet(&self, triangle: &Triangle, mask: u32, slack: f32) -> u32 {
         let c = &self.center;
         let p: [[f32; 3]; 3] = std::array::from_fn(|k| {
             [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
@@ -83,11 +90,13 @@ impl<L: Lanes> Block<L> {
         for corner in &p {
             g = g.max(corner[0].abs()).max(corner[1].abs()).max(corner[2].abs());
         }
+        // A corner wrong by `slack` too is as wrong as one rounded at this size.
+        g += slack * INVERSE_U;
         let s: [[L; 3]; 3] =
             std::array::from_fn(|k| [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
         // Corners of the one against the planes of the eight.
         let edge = self.edge;
-        let wrong = g * edge * (1.5e-6 * g + 2e-6 * edge);
+        let wrong = g * edge * (1.5e-6 * g + 2e-6 * edge) + TINY;
         let h: [L; 3] = std::array::from_fn(|k| dot(&self.n, &sub(&s[k], &self.v[0])));
         let mut mask = mask
             & h[0].min(h[1]).min(h[2]).le(L::splat(wrong))
@@ -108,14 +117,14 @@ impl<L: Lanes> Block<L> {
             e[0][0] * e[1][1] - e[0][1] * e[1][0],
         ];
         let n = [L::splat(n[0]), L::splat(n[1]), L::splat(n[2])];
-        let wrong = g * own * (1.5e-6 * g + 2e-6 * own);
+        let wrong = g * own * (1.5e-6 * g + 2e-6 * own) + TINY;
         let h: [L; 3] = std::array::from_fn(|k| dot(&n, &sub(&self.v[k], &s[0])));
         mask &= h[0].min(h[1]).min(h[2]).le(L::splat(wrong)) & L::splat(-wrong).le(h[0].max(h[1]).max(h[2]));
         if mask == 0 {
             return 0;
         }
         // Edges against edges: they meet only if for some edge of one all three volumes may agree.
-        let wrong = g * (5e-7 * g * (own + edge) + 2e-6 * own * edge);
+        let wrong = g * (5e-7 * g * (own + edge) + 2e-6 * own * edge) + TINY;
         let (above, below) = (L::splat(-wrong), L::splat(wrong));
         let mut positive = [[0u32; 3]; 3];
         let mut negative = [[0u32; 3]; 3];
