@@ -203,6 +203,15 @@ fn what_is_refused() {
     let bad = ("bad".to_owned(), cube.clone(), Isometry3::translation(f64::NAN, 0.0, 0.0));
     let refused = FreeFlyer::new(&cube, [bad]);
     assert!(matches!(&refused, Err(RobotError::Obstacle(e)) if e.to_string().contains("bad")), "{refused:?}");
+    // Sizes beyond single precision are handled.
+    for size in [1e15, 1e40, 1e70] {
+        let far = ("far".to_owned(), primitives::sphere(size, 2).unwrap(), Isometry3::identity());
+        let mut robot = FreeFlyer::new(&cube, [far]).unwrap();
+        assert!(robot.is_valid(&Isometry3::identity()));
+        assert!(!robot.is_valid(&Isometry3::translation(0.0, 0.0, robot.obstacle_bounds().max.z)));
+        let clearance = robot.clearance(&Isometry3::identity(), f64::INFINITY);
+        assert!(clearance > 0.9 * size && clearance < size, "{clearance:e}");
+    }
     let huge = primitives::cuboid(1e80, 1.0, 1.0).unwrap();
     assert!(matches!(FreeFlyer::new(&huge, []), Err(RobotError::TooLarge { .. })));
     let far = ("far".to_owned(), huge, Isometry3::identity());

@@ -316,8 +316,9 @@ fn choose(binary: &[Binary]) -> Vec<Choice> {
             continue;
         }
         let (l, r) = (b.children, b.children + 1);
-        // Cheapest division of k + 1 roots, k ≥ 1, between the children.
-        let mut divided = [(f64::INFINITY, 0u8); WIDTH + 1];
+        // Cheapest division of k + 1 roots, k ≥ 1, between the children: some division too where all costs
+        // have overflowed.
+        let mut divided = [(f64::INFINITY, 1u8); WIDTH + 1];
         for (k, best) in divided.iter_mut().enumerate().skip(1).take(WIDTH - 1) {
             for left in 0..k {
                 let cost = choices[l].cost[left] + choices[r].cost[k - 1 - left];
