@@ -18,6 +18,10 @@ const TINY: f32 = 1e-37;
 const SOUND: f32 = 2.6e-5;
 const SOUND_AT_LEAST: f32 = 1e-30;
 
+/// A normal wrong by the angle δ makes a height wrong by ε = δ·e, and (h + ε)² ≤ 1.002 h² + 501 ε²; δ² is
+/// 1e-8 of what `SOUND` asks for over |n|².
+const TILT: f32 = 5.1e-6;
+
 /// Below this size (metres) products of four lengths are lost to underflow.
 const SMALL: f32 = 1e-7;
 
@@ -32,6 +36,8 @@ pub(crate) struct Gaps<L> {
     nn: L,
     /// Infinite for triangles whose normal is lost in rounding, 0 for the others.
     flat: L,
+    /// How wrong a squared height may be beyond 0.1%, for the normal's error in direction.
+    tilt: L,
     /// In the plane, across each edge, inward.
     inward: [[L; 3]; 3],
     lo: [L; 3],
@@ -58,6 +64,7 @@ impl<L: Lanes> Gaps<L> {
         let huge = L::splat(1e38);
         Self {
             flat: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
+            tilt: L::splat(TILT).mul(longest).mul(least.div(nn.max(L::splat(SOUND_AT_LEAST)))),
             ff,
             inverse: [one.div(ff[0].max(tiny)), one.div(ff[1].max(tiny)), one.div(ff[2].max(tiny))],
             nn,
@@ -138,42 +145,48 @@ impl<L: Lanes> Gaps<L> {
         if mask == 0 {
             return 0;
         }
-        let mut squared = L::splat(f32::INFINITY);
+        let mut edges = L::splat(f32::INFINITY);
         for i in 0..3 {
             let ei = [L::splat(e[i][0]), L::splat(e[i][1]), L::splat(e[i][2])];
             let inverse = L::splat(1.0 / ee[i].max(TINY));
             for j in 0..3 {
                 let between = self.edges(&s[i], &ei, L::splat(ee[i]), inverse, j);
-                squared = between.min(squared);
+                edges = between.min(edges);
             }
         }
         // A corner whose foot is inside the face: height² / |n|². Outside, a penalty rules it out, and so
         // where the normal is not sound.
         let penalty = L::splat(-1e30);
+        let mut faces = L::splat(f32::INFINITY);
         let inverse = L::splat(1.0).div(self.nn.max(L::splat(TINY)));
         for k in 0..3 {
             let inside = |j: usize| dot(&self.inward[j], &sub(&s[k], &self.v[j]));
             let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
-            squared = h[k].mul(inverse).mul_add(h[k], outside.add(self.flat)).min(squared);
+            faces = h[k].mul(inverse).mul_add(h[k], outside.add(self.flat)).min(faces);
         }
         let inverse = L::splat(1.0 / mm.max(TINY));
         let across =
             e.map(|e| cross_scalar(&m, &e)).map(|u| [L::splat(u[0]), L::splat(u[1]), L::splat(u[2])]);
+        let mut face = L::splat(f32::INFINITY);
         for k in 0..3 {
             let inside = |j: usize| dot(&across[j], &sub(&self.v[k], &s[j]));
             let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
-            squared = w[k].mul(inverse).mul_add(w[k], outside.add(flat)).min(squared);
+            face = w[k].mul(inverse).mul_add(w[k], outside.add(flat)).min(face);
         }
         // Points of edges are points of the triangles, so only their rounding can make the result too small;
         // that nearly parallel edges are not met at the best place makes it too large, by no more than some
-        // 1e-6 of the squared edges. A height is wrong by 1e-4 of the edges either way. Where a face was left
-        // out, the gap of the boxes is all that is known from below.
+        // 1e-6 of the squared edges. A height is wrong by at most 1e-4 of the edges either way. Where a face
+        // was left out, the gap of the boxes is all that is known from below.
         let size = own.max(edge);
-        let rounding = L::splat(1e-9 * g * g + 1e-5 * size * size);
-        let below = squared.mul_sub(L::splat(0.998), rounding).sub(self.flat.add(flat));
+        let rounding = L::splat(1e-9 * g * g);
+        let squared = faces.min(face).min(edges);
+        let below = squared.mul_sub(L::splat(0.998), rounding.add(L::splat(1e-5 * size * size)));
+        let below = below.sub(self.flat.add(flat));
         let low = below.max(gap.mul(L::splat(1.0 - 1e-5)));
         low.store(near);
-        squared.mul_add(L::splat(1.002), rounding).store(far);
+        let tilt = TILT * longest * (SOUND * longest * longest + SOUND_AT_LEAST) / mm.max(SOUND_AT_LEAST);
+        let above = faces.add(self.tilt).min(face.add(L::splat(tilt))).min(edges);
+        above.mul_add(L::splat(1.002), rounding).store(far);
         mask & low.le(L::splat(best))
     }
 
