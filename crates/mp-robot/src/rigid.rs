@@ -131,9 +131,6 @@ const MAX_TRIANGLES: usize = 1 << 30;
 /// Largest robot, metres.
 const MAX_RADIUS: f64 = 1e75;
 
-/// Poses taken at a time by [`Validity::first_invalid`].
-const BATCH: usize = 8;
-
 impl FreeFlyer {
     /// `robot`, in its own frame, among obstacles: name, mesh and pose in the world each.
     ///
@@ -310,10 +307,6 @@ impl<P: Placement> Validity<P::State> for RigidBody<P> {
         let tested = hit.map_or(states.len(), |i| i + 1);
         self.counters.collision_checks += tested as u64;
         self.poses[..tested].iter().position(|pose| self.point_inside(pose)).or(hit)
-    }
-
-    fn batch_size(&self) -> usize {
-        BATCH
     }
 }
 
