@@ -14,6 +14,10 @@ use std::sync::atomic::Ordering;
 /// Which stream of random numbers shortening draws from: planning draws from another.
 const STREAM: u64 = 1;
 
+/// Shortcuts keep this many tolerances away from obstacles, where planning may go as near as one: a path that
+/// grazes every corner is of no use to anybody.
+const ROOM: f64 = 20.0;
+
 /// A path that the verifier passed as it will be read.
 #[derive(Clone, Debug)]
 pub(crate) struct Finished {
@@ -50,8 +54,8 @@ pub(crate) fn finish<M: Mover>(
     cancel: &Cancel,
 ) -> Result<Option<Finished>> {
     if shorten {
-        let certified =
-            Certified::new(&setting.space, setting.robot.clone(), setting.tolerance).into_diagnostic()?;
+        let certified = Certified::new(&setting.space, setting.robot.clone(), ROOM * setting.tolerance)
+            .into_diagnostic()?;
         let mut check = Until(certified, cancel);
         let mut rng = Rng::stream(seed, STREAM);
         let short = simplify(&setting.space, &mut check, found, Effort::default(), &mut rng);

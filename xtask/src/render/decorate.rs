@@ -98,7 +98,7 @@ pub(crate) fn outlines(
         let faint = scaled(srgb(OBSTACLES[n % OBSTACLES.len()]), 0.4);
         o.model.edges(camera, &o.pose, 0.6, |i, key, coverage| {
             if key < cut[i] {
-                ghosts.add(i, faint, 0.5 * strength * coverage, 2.0);
+                ghosts.add(i, faint, 0.9 * strength * coverage, 3.0);
             } else if nearer(key, layer.key[i]) {
                 layer.colour[i] = mix(layer.colour[i], ink, strength * coverage);
             }

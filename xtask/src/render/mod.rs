@@ -25,7 +25,7 @@ const SUPERSAMPLING: usize = 2;
 /// What the margins leave free on the left, top, right and bottom, as fractions of the picture.
 const MARGINS: [f64; 4] = [0.04, 0.1, 0.04, 0.09];
 /// How opaque an obstacle is where it has been opened.
-const GHOST: f32 = 0.07;
+const GHOST: f32 = 0.09;
 const OBSTACLES: [u32; 6] = [0xb4bdc9, 0xc9bda9, 0xacbfb3, 0xc2b2bd, 0xa9bcc4, 0xcdc7ae];
 const START: u32 = 0x2e9e5b;
 const MIDDLE: u32 = 0xe6b422;
@@ -84,7 +84,7 @@ pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> im
     } else {
         let view = view::choose(&frame, &obstacles, &robot, &shown);
         // The less of the path is in sight the wider it is opened, but a level floor stays.
-        let half_angle = (view.elevation - 0.1) * (1.0 - 0.5 * view.visible);
+        let half_angle = (view.elevation - 0.1) * (1.0 - 0.7 * view.visible);
         (Camera::three_quarter(&frame, view.azimuth, view.elevation, size, MARGINS), half_angle)
     };
     let lights = Lights::of(&camera);
@@ -96,7 +96,10 @@ pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> im
         robot.faces(&camera, pose, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
     }
     let slack = 0.02 * robot.radius as f32;
-    let cut = cutaway::thresholds(&camera, &nearest, 1.0 / half_angle.tan() as f32, slack);
+    let cut = match subject.planar {
+        true => vec![f32::NEG_INFINITY; samples],
+        false => cutaway::thresholds(&camera, &nearest, 1.0 / half_angle.tan() as f32, slack),
+    };
     drop(nearest);
 
     let mut layer = Layer::new(samples);
@@ -104,6 +107,8 @@ pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> im
     let mut ghosts = Veil::new(samples);
     for (n, o) in obstacles.iter().enumerate() {
         let colour = srgb(OBSTACLES[n % OBSTACLES.len()]);
+        // From above nothing but the tops is seen, all equally light.
+        let colour = if subject.planar { scaled(colour, 0.6) } else { colour };
         o.model.faces(&camera, &o.pose, &lights, |i, key, light| {
             if key < cut[i] {
                 ghosts.add(i, scaled(colour, light), GHOST, 1.0);
@@ -127,7 +132,7 @@ pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> im
     }
     sweep::draw(&mut layer, &camera, &lights, &robot, &copies);
     sweep::trace(&mut layer, &camera, &subject.path);
-    ghosts.over(&mut layer.colour, 0.4);
+    ghosts.over(&mut layer.colour, 0.5);
     decorate::labels(&mut layer, size, subject);
     canvas::resolve(&layer.colour, size, SUPERSAMPLING)
 }

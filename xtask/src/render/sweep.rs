@@ -84,7 +84,7 @@ pub(crate) fn trace(layer: &mut Layer, camera: &Camera, path: &[Isometry3<f64>])
     let mut strength = vec![0.0f32; layer.key.len()];
     for w in path.windows(2) {
         let [a, b] = [&w[0], &w[1]].map(|p| camera.pose_cw * nalgebra::Point3::from(p.translation.vector));
-        line(camera, &a, &b, 1.5, |i, key, coverage| {
+        line(camera, &a, &b, 1.8, |i, key, coverage| {
             let seen = if nearer(key, layer.key[i]) { 0.95 } else { 0.3 };
             strength[i] = strength[i].max(seen * coverage);
         });
