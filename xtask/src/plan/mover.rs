@@ -1,7 +1,7 @@
 //! What differs between robots in the plane and in space.
 
 use miette::{IntoDiagnostic, Result};
-use mp::cspace::{Factored, MaxDisplacement, MetricOn, ScaledEuclidean, Se2, Se3, Space};
+use mp::cspace::{Embed, EmbedFactors, MaxDisplacement, MetricOn, ScaledEuclidean, Se2, Se3, Space};
 use mp::geom::{Aabb, TriMesh};
 use mp::robot::{Placement, Planar, Spatial};
 use nalgebra::{Point2, Point3};
@@ -9,7 +9,7 @@ use std::fmt::Debug;
 
 /// A kind of rigid body.
 pub(crate) trait Mover: Placement {
-    type Space: Space<State = Self::State> + Factored + Clone + Debug + Send + Sync;
+    type Space: Embed + EmbedFactors + Space<State = Self::State> + Clone + Debug + Send + Sync;
     type Displacement: MetricOn<Self::Space>;
 
     /// The space of configurations with the origin within `bounds`.

@@ -8,8 +8,9 @@ use super::setting::Setting;
 use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
-    Cancel, Certified, Deadline, Discrete, Euclidean, Iterations, Manhattan, MetricOn, MotionValidity,
-    Outcome, Path, Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Validity, WithMetric,
+    Cancel, Certified, Deadline, Discrete, Euclidean, Iterations, KdTree, Linear, Manhattan, MetricOn,
+    MotionValidity, NearestNeighbors, Outcome, Path, Progress, Resolution, Rng, Space, Stop, StopReason,
+    Straight, Validity, WithMetric,
 };
 use mp::tree::{Goals, Problem, build_with};
 use std::time::{Duration, Instant};
@@ -35,12 +36,15 @@ pub(crate) fn search<M: Mover>(
     let run = Run { setting, options, seed, cancel };
     let space = &setting.space;
     match options.metric {
-        metrics::Kind::Default => run.on(space, line),
-        metrics::Kind::Euclidean => run.on(&with(space, Euclidean), line),
-        metrics::Kind::Manhattan => run.on(&with(space, Manhattan), line),
-        metrics::Kind::Scaled => run.on(&with(space, M::scaled(space, setting.radius)?), line),
+        metrics::Kind::Default => run.on(space, <KdTree>::default(), line),
+        metrics::Kind::Euclidean => run.on(&with(space, Euclidean), <KdTree>::default(), line),
+        metrics::Kind::Manhattan => run.on(&with(space, Manhattan), <KdTree>::default(), line),
+        metrics::Kind::Scaled => {
+            run.on(&with(space, M::scaled(space, setting.radius)?), <KdTree>::default(), line)
+        }
         metrics::Kind::MaxDisplacement => {
-            run.on(&with(space, M::displacement(&setting.problem.robot.mesh)?), line)
+            let metric = M::displacement(&setting.problem.robot.mesh)?;
+            run.on(&with(space, metric), Linear::default(), line)
         }
     }
 }
@@ -73,7 +77,11 @@ struct Run<'a, M: Mover> {
 
 impl<M: Mover> Run<'_, M> {
     /// Plans in `space`, which differs from that of the setting in its metric only.
-    fn on<C: Space<State = M::State>>(&self, space: &C, line: &mut Line) -> Result<Search<M::State>> {
+    fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<M::State>>
+    where
+        C: Space<State = M::State>,
+        N: NearestNeighbors<C> + Clone + 'static,
+    {
         let Self { setting, options, .. } = self;
         let (mut robot, verifier) = (setting.robot.clone(), setting.verifier()?);
         let began = Instant::now();
@@ -95,8 +103,7 @@ impl<M: Mover> Run<'_, M> {
             let problem =
                 Problem::new(space, local, verifier, setting.start.clone(), goal).into_diagnostic()?;
             let mut planner =
-                build_with(options.planner.name, problem, mp::cspace::Linear::default(), &options.settings)
-                    .into_diagnostic()?;
+                build_with(options.planner.name, problem, index, &options.settings).into_diagnostic()?;
             let mut stop = self
                 .cancel
                 .clone()
