@@ -4,7 +4,7 @@
 #![allow(clippy::print_stdout)] // an example talks
 
 use mp_cspace::{
-    Discrete, FineDiscrete, Iterations, Linear, Outcome, Planner, Resolution, Rng, Se2, Se2State, Straight,
+    Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State, Straight,
 };
 use mp_tree::{Goals, Problem, Rrt, Step, Tuning};
 use nalgebra::Point2;
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let beyond = Goals::region(|q: &Se2State| q.translation.x > 1.5);
     let problem = Problem::new(&space, local, verifier, start, beyond)?;
     let tuning = Tuning { step: Step::Fraction(0.1), ..Tuning::default() };
-    let mut planner = Rrt::with_index(problem, Linear::new(), tuning)?;
+    let mut planner = Rrt::new(problem, tuning)?;
     match planner.solve(&mut Rng::seed(seed), &mut Iterations(50_000), &mut ()) {
         Outcome::Solved(path) => {
             for q in &path.states {

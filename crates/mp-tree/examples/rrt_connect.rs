@@ -4,7 +4,7 @@
 #![allow(clippy::print_stdout)] // an example talks
 
 use mp_cspace::{
-    Discrete, EventCounts, FineDiscrete, Iterations, Linear, Outcome, Planner, Resolution, Rn, Rng, Straight,
+    Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight,
 };
 use mp_tree::{Problem, RrtConnect, Step, Tuning};
 use nalgebra::Vector2;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
     let problem = Problem::new(&space, local, verifier, Vector2::new(0.5, 0.5), Vector2::new(0.05, 0.5))?;
     let tuning = Tuning { step: Step::Length(0.1), ..Tuning::default() };
-    let mut planner = RrtConnect::with_index(problem, Linear::new(), tuning)?;
+    let mut planner = RrtConnect::new(problem, tuning)?;
     let mut seen = EventCounts::default();
     match planner.solve(&mut Rng::seed(seed), &mut Iterations(50_000), &mut seen) {
         Outcome::Solved(path) => {

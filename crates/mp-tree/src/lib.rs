@@ -10,8 +10,8 @@
 //! one by name.
 //!
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Linear, Outcome, Resolution, Rn, Rng, Straight};
-//! use mp_tree::{Problem, Settings, build_with};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Problem, Settings, build};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
@@ -21,7 +21,7 @@
 //! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1))?;
 //!
 //! let settings = Settings::parse(["step=10%"])?;
-//! let mut planner = build_with("rrt-connect", problem, Linear::new(), &settings)?;
+//! let mut planner = build("rrt-connect", problem, &settings)?;
 //! match planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ()) {
 //!     Outcome::Solved(path) => assert!(path.states.len() > 2),
 //!     Outcome::Stopped(reason) => panic!("stopped: {reason:?}"),

@@ -3,12 +3,12 @@
 mod common;
 use common::*;
 use mp_cspace::*;
-use mp_tree::{Problem, Settings, Step, Tuning, build_with, planners};
+use mp_tree::{Problem, Settings, Step, Tuning, build, build_with, planners};
 use nalgebra::SVector;
 
 const SEEDS: u64 = 5;
 /// Iterations given to problems that have no solution.
-const HOPELESS: u64 = 10_000;
+const HOPELESS: u64 = 100_000;
 
 fn settings(step: f64) -> Settings {
     Settings::parse([format!("step={step}")]).unwrap()
@@ -31,7 +31,7 @@ fn solves<const N: usize>(
             for check in checks {
                 let local = Straight::new(space, check);
                 let problem = Problem::new(space, local, Exact(boxes.clone()), start, goal).unwrap();
-                let mut planner = build_with(info.name, problem, Linear::new(), &settings(step)).unwrap();
+                let mut planner = build(info.name, problem, &settings(step)).unwrap();
                 let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(iterations), &mut ());
                 let Outcome::Solved(path) = outcome else {
                     panic!("{} seed {seed}: {:?}", info.name, planner.progress())
@@ -51,7 +51,7 @@ fn empty_space_takes_one_motion() {
         let (start, goal) = ([0.1; 3].into(), [0.9; 3].into());
         let local = Straight::new(&space, check);
         let problem = Problem::new(&space, local, Exact(Boxes::default()), start, goal).unwrap();
-        let mut planner = build_with(info.name, problem, Linear::new(), &Settings::default()).unwrap();
+        let mut planner = build(info.name, problem, &Settings::default()).unwrap();
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
         assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] });
         assert_eq!(planner.progress().motions, 1);
@@ -89,7 +89,7 @@ fn thin_walls_are_never_crossed() {
             let check = Certified::new(&space, boxes.clone(), 1e-4).unwrap();
             let local = Straight::new(&space, check);
             let problem = Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap();
-            let mut planner = build_with(info.name, problem, Linear::new(), &settings(0.2)).unwrap();
+            let mut planner = build(info.name, problem, &settings(0.2)).unwrap();
             let mut counts = EventCounts::default();
             let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut counts);
             let Outcome::Solved(path) = outcome else { panic!("{}: {outcome:?}", info.name) };
@@ -99,17 +99,16 @@ fn thin_walls_are_never_crossed() {
     }
 }
 
-fn never_solves<C: Space, M: MotionValidity<C::State>, V: MotionValidity<C::State>>(
+fn never_solves<C: DefaultNn, M: MotionValidity<C::State>, V: MotionValidity<C::State>>(
     space: &C,
     check: impl Fn() -> M,
     verifier: impl Fn() -> V,
     [start, goal]: [C::State; 2],
-    index: impl NearestNeighbors<C> + Clone,
 ) {
     for info in planners() {
         let local = Straight::new(space, check());
         let problem = Problem::new(space, local, verifier(), start.clone(), goal.clone()).unwrap();
-        let mut planner = build_with(info.name, problem, index.clone(), &settings(0.2)).unwrap();
+        let mut planner = build(info.name, problem, &settings(0.2)).unwrap();
         let outcome = planner.solve(&mut Rng::seed(3), &mut Iterations(HOPELESS), &mut ());
         assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations), "{}", info.name);
         assert_eq!(planner.progress().iterations, HOPELESS);
@@ -122,7 +121,7 @@ fn a_closed_box_around_the_goal_is_never_solved_in_the_plane() {
     let boxes: Boxes<2> = hollow([0.7, 0.5], 0.1, 0.02, 0.0);
     let check = || Certified::new(&space, boxes.clone(), 1e-3).unwrap();
     let verifier = || Exact(boxes.clone());
-    never_solves(&space, check, verifier, [[0.1, 0.5].into(), [0.7, 0.5].into()], Linear::new());
+    never_solves(&space, check, verifier, [[0.1, 0.5].into(), [0.7, 0.5].into()]);
 }
 
 #[test]
@@ -131,7 +130,7 @@ fn a_closed_box_around_the_goal_is_never_solved_in_space() {
     let boxes: Boxes<3> = hollow([0.7, 0.5, 0.5], 0.1, 1e-4, 0.0);
     let check = || Certified::new(&space, boxes.clone(), 1e-3).unwrap();
     let verifier = || Exact(boxes.clone());
-    never_solves(&space, check, verifier, [[0.1; 3].into(), [0.7, 0.5, 0.5].into()], Linear::new());
+    never_solves(&space, check, verifier, [[0.1; 3].into(), [0.7, 0.5, 0.5].into()]);
 }
 
 /// The plane with a rod that must turn to pass.
@@ -149,7 +148,7 @@ fn a_rod_turns_to_pass_a_gap() {
             let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
             let verifier = FineDiscrete::new(&space, rod.clone(), Resolution::Length(1e-3)).unwrap();
             let problem = Problem::new(&space, local, verifier, start, goal).unwrap();
-            let mut planner = build_with(info.name, problem, Linear::new(), &settings(0.3)).unwrap();
+            let mut planner = build(info.name, problem, &settings(0.3)).unwrap();
             let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(40_000), &mut ());
             let Outcome::Solved(path) = outcome else { panic!("{} seed {seed}: {outcome:?}", info.name) };
             let mut rod = rod.clone();
@@ -164,7 +163,7 @@ fn a_rod_never_leaves_a_closed_box() {
     let check = || Certified::new(&space, rod.clone(), 1e-3).unwrap();
     let verifier = || FineDiscrete::new(&space, rod.clone(), Resolution::Length(1e-3)).unwrap();
     let ends = [Se2State::new(0.2, 0.5, 0.0), Se2State::new(0.7, 0.5, 0.0)];
-    never_solves(&space, check, verifier, ends, Linear::new());
+    never_solves(&space, check, verifier, ends);
 }
 
 /// The local planner skips over a thin wall; the verifier does not.

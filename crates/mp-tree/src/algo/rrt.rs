@@ -24,7 +24,7 @@
 //!
 //! A point goes around a disc to the far side of the unit square:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Linear, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Goals, Problem, Rrt, Tuning};
 //! use nalgebra::Vector2;
 //!
@@ -35,7 +35,7 @@
 //! let far_side = Goals::region(|q: &Vector2<f64>| q.x > 0.95);
 //!
 //! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.5), far_side)?;
-//! let mut planner = Rrt::with_index(problem, Linear::new(), Tuning::default())?;
+//! let mut planner = Rrt::new(problem, Tuning::default())?;
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
 //! assert!(path.states.last().unwrap().x > 0.95);

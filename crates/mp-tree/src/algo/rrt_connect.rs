@@ -23,7 +23,7 @@
 //!
 //! A point goes around a disc in the unit square:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Linear, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Problem, RrtConnect, Tuning};
 //! use nalgebra::Vector2;
 //!
@@ -34,7 +34,7 @@
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;
-//! let mut planner = RrtConnect::with_index(problem, Linear::new(), Tuning::default())?;
+//! let mut planner = RrtConnect::new(problem, Tuning::default())?;
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
 //! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
