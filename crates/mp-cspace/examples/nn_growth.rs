@@ -1,7 +1,7 @@
 //! Nodes per second of a tree that grows in an empty unit cube, by size, space and index.
 //!
 //! `cargo run --release -p mp-cspace --example nn_growth -- SPACE [INDEX] [NODES] [REPEATS]`
-//! with SPACE one of `r2 r3 r6 se2 se3 so3 t6`, INDEX one of `default dynamic linear`.
+//! with SPACE one of `r2 r3 r6 se2 se3 so3 t6`, INDEX one of `default dynamic metric linear`.
 //! Prints the average rate, by processor time, when the tree reaches 10³, 10⁴ … nodes: the median
 //! over the repeats, and the best.
 
@@ -9,7 +9,8 @@
 
 use mp_cspace::nn::grow;
 use mp_cspace::{
-    DefaultNn, Embed, KdTree, Linear, NearestNeighbors, Rn, Rng, Se2, Se3, So3, Space, SpaceError, Torus,
+    DefaultNn, Embed, KdTree, Linear, MetricTree, NearestNeighbors, Rn, Rng, Se2, Se3, So3, Space,
+    SpaceError, Torus, TrueMetric,
 };
 use rustix::time::{ClockId, clock_gettime};
 
@@ -26,9 +27,10 @@ struct Request {
 }
 
 impl Request {
-    fn run<C: DefaultNn + Embed>(&self, space: &C) {
+    fn run<C: DefaultNn + Embed + TrueMetric<C::State>>(&self, space: &C) {
         match self.index.as_str() {
             "dynamic" => self.time::<C, KdTree>(space),
+            "metric" => self.time::<C, MetricTree>(space),
             "linear" => self.time::<C, Linear>(space),
             _ => self.time::<C, C::Nn>(space),
         }

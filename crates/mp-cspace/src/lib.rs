@@ -40,7 +40,9 @@ pub use metric::{
     WithMetric,
 };
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
-pub use nn::{DefaultNn, Embed, EmbedFactors, Hit, KdTree, Layout, Linear, NearestNeighbors, NnOn, NodeId};
+pub use nn::{
+    DefaultNn, Embed, EmbedFactors, Hit, KdTree, Layout, Linear, MetricTree, NearestNeighbors, NnOn, NodeId,
+};
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};

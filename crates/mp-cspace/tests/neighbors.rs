@@ -3,16 +3,17 @@
 
 use mp_cspace::testkit::check_nearest_neighbors;
 use mp_cspace::{
-    DefaultNn, Embed, Euclidean, Hit, KdTree, Layout, Linear, Manhattan, Metric, NearestNeighbors, Product,
-    Rn, RnDyn, Rng, ScaledEuclidean, Se2, Se3, So2, So3, Space, Torus, WithMetric,
+    Bounded, DefaultNn, Embed, Euclidean, Hit, KdTree, Layout, Linear, Manhattan, MaxDisplacement, Metric,
+    MetricTree, NearestNeighbors, Product, Rn, RnDyn, Rng, ScaledEuclidean, Se2, Se3, So2, So3, Space, Torus,
+    TrueMetric, WithMetric,
 };
-use nalgebra::{DVector, SVector, Vector2};
+use nalgebra::{DVector, Point2, Point3, SVector, Vector2};
 use proptest::prelude::*;
 use rand::RngExt;
 use std::cell::Cell;
 
 fn agrees_on<C: DefaultNn>(space: C) {
-    check_nearest_neighbors(&space, &mut C::Nn::default(), 700, 1);
+    check_nearest_neighbors(&space, &mut C::Nn::default(), 500, 1);
 }
 
 #[test]
@@ -44,6 +45,23 @@ fn default_index_under_other_metrics() {
     agrees_on(WithMetric::new(Product::new(So3, 1.0, Torus::<3>, 1.0).unwrap(), Euclidean));
     let weights = ScaledEuclidean::new(&se3(), [1.0, 10.0, 0.1, 3.0]).unwrap();
     agrees_on(WithMetric::new(se3(), weights));
+    let corners = [[0.3, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.1, -0.5]].map(Point3::from);
+    agrees_on(WithMetric::new(se3(), MaxDisplacement::new(corners).unwrap()));
+    let rod = MaxDisplacement::planar([Point2::new(-1.0, 0.0), Point2::new(1.0, 0.0)]).unwrap();
+    agrees_on(WithMetric::new(Se2::new([0.0; 2], [10.0; 2]).unwrap(), rod));
+    agrees_on(WithMetric::new(So3, Bounded::new(So3, 4.0).unwrap()));
+}
+
+#[test]
+fn metric_tree_of_every_kind() {
+    check_nearest_neighbors(&square(), &mut MetricTree::new(), 500, 1);
+    check_nearest_neighbors(&se3(), &mut MetricTree::new(), 500, 2);
+    check_nearest_neighbors(&So2, &mut MetricTree::new(), 500, 3);
+    check_nearest_neighbors(&Torus::<5>, &mut MetricTree::new(), 500, 4);
+}
+
+fn square() -> Rn<2> {
+    Rn::new([0.0; 2], [1.0; 2]).unwrap()
 }
 
 fn se3() -> Se3 {
@@ -89,7 +107,7 @@ type P3 = SVector<f64, 3>;
 fn unfriendly() -> Vec<(&'static str, Vec<P3>)> {
     let mut rng = Rng::seed(5);
     let mut random = move || P3::from_fn(|_, _| rng.random::<f64>() - 0.5);
-    let n = 900;
+    let n = 600;
     let line: Vec<P3> = (0..n).map(|i| P3::new(1.0, 2.0, -1.0) * f64::from(i)).collect();
     let cluster = |scale: f64, random: &mut dyn FnMut() -> P3| -> Vec<P3> {
         (0..n).map(|i| P3::repeat(f64::from(i % 3)) + random() * scale).collect()
@@ -98,7 +116,7 @@ fn unfriendly() -> Vec<(&'static str, Vec<P3>)> {
         ("identical", vec![P3::new(0.1, 0.2, 0.3); n as usize]),
         ("identical but two", {
             let mut all = vec![P3::zeros(); n as usize];
-            (all[300], all[700]) = (P3::x(), -P3::y());
+            (all[300], all[500]) = (P3::x(), -P3::y());
             all
         }),
         ("sorted", line.clone()),
@@ -123,9 +141,18 @@ fn everywhere() -> Rn<3> {
 
 #[test]
 fn kd_tree_on_unfriendly_data() {
+    on_unfriendly_data(KdTree::<3>::new());
+}
+
+#[test]
+fn metric_tree_on_unfriendly_data() {
+    on_unfriendly_data(MetricTree::new());
+}
+
+fn on_unfriendly_data(index: impl NearestNeighbors<Rn<3>> + Clone + std::panic::RefUnwindSafe) {
     for (name, states) in unfriendly() {
         let queries = [P3::zeros(), P3::new(0.3, -0.4, 0.5), states[states.len() / 2] * 1.001];
-        let run = || agrees_along(&everywhere(), KdTree::<3>::new(), &states, &queries);
+        let run = || agrees_along(&everywhere(), index.clone(), &states, &queries);
         assert!(std::panic::catch_unwind(run).is_ok(), "on {name} data");
     }
 }
@@ -136,7 +163,9 @@ fn states_that_are_no_numbers_are_never_found() {
     let mut states = vec![nan; 40];
     states.extend([P3::repeat(f64::INFINITY), P3::zeros(), nan, P3::x()]);
     states.extend(vec![nan; 40]);
-    agrees_along(&everywhere(), KdTree::<3>::new(), &states, &[P3::y(), P3::repeat(f64::INFINITY), nan]);
+    let queries = [P3::y(), P3::repeat(f64::INFINITY), nan];
+    agrees_along(&everywhere(), KdTree::<3>::new(), &states, &queries);
+    agrees_along(&everywhere(), MetricTree::new(), &states, &queries);
 }
 
 #[test]
@@ -180,6 +209,7 @@ impl<C: Space> Space for Counting<C> {
         self.space.contains(q)
     }
 }
+impl<C: Space + TrueMetric<C::State>> TrueMetric<C::State> for Counting<C> {}
 impl<C: Embed> Embed for Counting<C> {
     fn layout(&self) -> Layout {
         self.space.layout()
@@ -205,11 +235,9 @@ fn distances_per_query<C: Space, N: NearestNeighbors<Counting<C>>>(
 
 #[test]
 fn kd_tree_asks_the_metric_rarely() {
-    let uniform = |n: usize| -> Vec<_> {
-        let mut rng = Rng::seed(3);
-        (0..n).map(|_| se3().sample_uniform(&mut rng)).collect()
-    };
-    let asked = distances_per_query(se3(), KdTree::<7>::new(), &uniform(20_000));
+    let mut rng = Rng::seed(3);
+    let uniform: Vec<_> = (0..20_000).map(|_| se3().sample_uniform(&mut rng)).collect();
+    let asked = distances_per_query(se3(), KdTree::<7>::new(), &uniform);
     assert!(asked < 3.0, "{asked} distances per query in SE(3)");
     for (name, states) in unfriendly() {
         let asked = distances_per_query(everywhere(), KdTree::<3>::new(), &states);
@@ -225,7 +253,26 @@ fn kd_tree_asks_the_metric_rarely() {
     }
 }
 
+#[test]
+fn metric_tree_asks_the_metric_rarely() {
+    let mut rng = Rng::seed(3);
+    let uniform: Vec<_> = (0..5000).map(|_| se3().sample_uniform(&mut rng)).collect();
+    let asked = distances_per_query(se3(), MetricTree::new(), &uniform);
+    assert!(asked < 500.0, "{asked} distances per query in SE(3)");
+    for (name, states) in unfriendly() {
+        let asked = distances_per_query(everywhere(), MetricTree::new(), &states);
+        let limit = match name {
+            "huge" => 500.0,
+            "clustered to the last bit" | "tightly clustered" | "tiny" => 120.0,
+            _ => 30.0,
+        };
+        assert!(asked < limit, "{asked} distances per query on {name} data");
+    }
+}
+
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
     #[test]
     fn kd_tree_agrees_on_small_integers(
         points in prop::collection::vec((-3i8..4, -3i8..4), 1..200),
@@ -236,6 +283,7 @@ proptest! {
         let points: Vec<_> = points.iter().map(vector).collect();
         let queries: Vec<_> = queries.iter().map(vector).collect();
         agrees_along(&plane, KdTree::<2>::new(), &points, &queries);
+        agrees_along(&plane, MetricTree::new(), &points, &queries);
         agrees_along(&WithMetric::new(plane, Manhattan), KdTree::<0>::new(), &points, &queries);
     }
 
@@ -246,6 +294,8 @@ proptest! {
     ) {
         let space = RnDyn::new(vec![-1.0; 3], vec![1.0; 3]).unwrap();
         let points: Vec<_> = points.into_iter().map(DVector::from_vec).collect();
-        agrees_along(&space, KdTree::<0>::new(), &points, &[DVector::from_vec(query)]);
+        let query = [DVector::from_vec(query)];
+        agrees_along(&space, KdTree::<0>::new(), &points, &query);
+        agrees_along(&space, MetricTree::new(), &points, &query);
     }
 }

@@ -1,7 +1,10 @@
 //! Coordinates and the default index of spaces under another metric.
 
-use super::{DefaultNn, Embed, EmbedFactors, KdTree, Layout, NearestNeighbors};
-use crate::{Euclidean, Manhattan, MetricOn, ScaledEuclidean, Space, WithMetric};
+use super::{DefaultNn, Embed, EmbedFactors, KdTree, Layout, MetricTree, NearestNeighbors};
+use crate::{
+    Bounded, Euclidean, Manhattan, MaxDisplacement, MetricOn, ScaledEuclidean, Space, TrueMetric,
+    TrueMetricOn, WithMetric,
+};
 
 /// A metric that names the index which serves a space under it best: what makes
 /// [`WithMetric`] a space with a [default index](DefaultNn).
@@ -69,4 +72,15 @@ impl<C: EmbedFactors> Embed for WithMetric<C, Manhattan> {
 }
 impl<C: EmbedFactors> NnOn<C> for Manhattan {
     type Nn = KdTree;
+}
+
+impl<C: Space, P> NnOn<C> for MaxDisplacement<P>
+where
+    Self: TrueMetricOn<C>,
+{
+    type Nn = MetricTree;
+}
+
+impl<C: Space, M: TrueMetric<C::State>> NnOn<C> for Bounded<M> {
+    type Nn = MetricTree;
 }

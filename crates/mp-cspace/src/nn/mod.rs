@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`Linear`] | any space | looks at every state; the oracle of the others |
 //! | [`KdTree`] | metrics bounded by coordinates: R^n, tori, SO, SE, products | a bucketed k-d tree that grows |
+//! | [`MetricTree`] | any [`TrueMetric`](crate::TrueMetric), such as maximum displacement | a vantage-point tree that grows |
 //!
 //! A planner that leaves the choice to the space asks for `C::Nn` of [`DefaultNn`].
 
@@ -11,14 +12,18 @@ mod collect;
 mod embed;
 mod growth;
 mod kd;
+mod leaf;
 mod linear;
+mod metric_tree;
 mod metrics;
+mod node;
 mod spaces;
 
 pub use embed::{Embed, EmbedFactors, Layout};
 pub use growth::grow;
 pub use kd::KdTree;
 pub use linear::Linear;
+pub use metric_tree::MetricTree;
 pub use metrics::NnOn;
 
 use crate::Space;

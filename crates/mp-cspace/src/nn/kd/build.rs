@@ -1,13 +1,9 @@
 //! Building a subtree from its states.
 
 use super::super::NodeId;
-use super::insert::company;
-use super::leaf::{CAP, Extra};
-use super::{Inner, KdTree, MAX_DIM, Ref};
+use super::super::leaf::{CAP, Extra, FILL};
+use super::{Inner, KdTree, MAX_DIM, Ref, Weight};
 use crate::Embed;
-
-/// States per leaf of a new subtree, leaving room to grow.
-const FILL: usize = CAP * 3 / 4;
 
 /// The states to build a subtree from.
 #[derive(Debug)]
@@ -123,7 +119,7 @@ impl<const K: usize> KdTree<K> {
                 let (left, right) = order.split_at_mut(first);
                 let children = [self.build_part(points, items, left), self.build_part(points, items, right)];
                 let leaves = children.iter().map(|&c| self.leaves_below(c)).sum();
-                return self.new_inner(Inner { split, children, dim: d as u32, leaves, built: leaves });
+                return self.new_inner(Inner { split, children, dim: d as u32, weight: Weight::new(leaves) });
             }
             if order.len() > CAP || heavy > 1 {
                 return self.build_lump(points, items, order);
@@ -156,7 +152,7 @@ impl<const K: usize> KdTree<K> {
         if let Some(&i) = order.first() {
             self.leaves.push(leaf, items.dim, first, |d| items.at(i, d) as f32);
         }
-        self.leaves.get_mut(leaf).extra = company(first, ids, same);
+        self.leaves.get_mut(leaf).extra = Extra::beside(first, ids, same);
         Ref::leaf(leaf)
     }
 }

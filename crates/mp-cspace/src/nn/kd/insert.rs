@@ -1,10 +1,10 @@
 //! Insertion.
 
 use super::super::NodeId;
+use super::super::leaf::CAP;
 use super::build::Items;
-use super::leaf::{CAP, Extra};
 use super::shape::Shape;
-use super::{Inner, KdTree, MAX_DIM, Ref};
+use super::{Inner, KdTree, MAX_DIM, Ref, Weight};
 use crate::Embed;
 
 impl<const K: usize> KdTree<K> {
@@ -69,10 +69,7 @@ impl<const K: usize> KdTree<K> {
         let leaf = self.leaves.get_mut(leaf);
         let Some(extra) = &mut leaf.extra else { return false };
         extra.same &= points[first] == points[id as usize];
-        // Lane 0 has the smallest id.
-        let id = if id < leaf.ids[0] { std::mem::replace(&mut leaf.ids[0], id) } else { id };
-        let at = extra.ids.partition_point(|&other| other < id);
-        extra.ids.insert(at, id);
+        leaf.ids[0] = extra.join(leaf.ids[0], id);
         true
     }
 
@@ -137,8 +134,7 @@ impl<const K: usize> KdTree<K> {
             split,
             children: [Ref::leaf(leaf), Ref::leaf(right)],
             dim: widest as u32,
-            leaves: 2,
-            built: 2,
+            weight: Weight::new(2),
         }))
     }
 
@@ -152,7 +148,7 @@ impl<const K: usize> KdTree<K> {
     }
 
     pub(super) fn leaves_below(&self, r: Ref) -> u32 {
-        r.get().map_or(1, |i| self.inner[i].leaves)
+        r.get().map_or(1, |i| self.inner[i].weight.leaves)
     }
 
     /// Makes `r` the node at depth `depth` of the path.
@@ -166,8 +162,7 @@ impl<const K: usize> KdTree<K> {
     /// Adds `change` to the number of leaves below the first `depth` nodes of the path.
     fn count(&mut self, depth: usize, change: i64) {
         for &(i, _) in &self.path[..depth] {
-            let leaves = &mut self.inner[i].leaves;
-            *leaves = (i64::from(*leaves) + change) as u32;
+            self.inner[i].weight.change(change);
         }
     }
 
@@ -176,12 +171,12 @@ impl<const K: usize> KdTree<K> {
     fn rebalance<C: Embed>(&mut self, space: &C, points: &[C::State]) {
         let lopsided = |&(i, _): &(usize, usize)| {
             let node = &self.inner[i];
-            let most = node.children.map(|c| self.leaves_below(c)).into_iter().fold(0, u32::max);
-            node.leaves > node.built + node.built / 2 + 6 && most > node.leaves - node.leaves / 4
+            node.weight
+                .is_lopsided(self.leaves_below(node.children[0]).max(self.leaves_below(node.children[1])))
         };
         let Some(depth) = self.path.iter().position(lopsided) else { return };
         let (i, _) = self.path[depth];
-        let before = i64::from(self.inner[i].leaves);
+        let before = i64::from(self.inner[i].weight.leaves);
         let mut items = Items::new(self.dim());
         self.gather(space, points, Ref::inner(i), &mut items);
         let r = self.build(points, &mut items);
@@ -189,11 +184,4 @@ impl<const K: usize> KdTree<K> {
         let after = i64::from(self.leaves_below(r));
         self.count(depth, after - before);
     }
-}
-
-/// Makes lane 0's company of `ids`, which it may be among.
-pub(super) fn company(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Box<Extra>> {
-    ids.retain(|&id| id != first);
-    ids.sort_unstable();
-    (!ids.is_empty()).then(|| Box::new(Extra { ids, same }))
 }

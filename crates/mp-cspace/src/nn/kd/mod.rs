@@ -2,39 +2,17 @@
 
 mod build;
 mod insert;
-mod leaf;
 mod search;
 mod shape;
 
 use super::collect::{Nearest, One, Within};
+use super::leaf::Leaves;
+use super::node::{Ref, Weight};
 use super::{Embed, Hit, NearestNeighbors, NodeId};
-use leaf::Leaves;
 use shape::Shape;
 
 /// The most coordinates a tree looks at; a layout's later ones only enter the exact distances.
 const MAX_DIM: usize = 16;
-
-/// A reference to a node: the index of an inner node, or that of a leaf with the top bit set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Ref(u32);
-
-impl Ref {
-    const LEAF: u32 = 1 << 31;
-
-    fn leaf(index: usize) -> Self {
-        Self(index as u32 | Self::LEAF)
-    }
-
-    fn inner(index: usize) -> Self {
-        Self(index as u32)
-    }
-
-    /// `Ok` an inner node, `Err` a leaf.
-    #[inline]
-    fn get(self) -> Result<usize, usize> {
-        if self.0 & Self::LEAF == 0 { Ok(self.0 as usize) } else { Err((self.0 & !Self::LEAF) as usize) }
-    }
-}
 
 /// Splits space: coordinate `dim` is ≤ `split` in the first child and ≥ `split` in the second.
 #[derive(Clone, Copy, Debug)]
@@ -42,10 +20,7 @@ struct Inner {
     split: f64,
     children: [Ref; 2],
     dim: u32,
-    /// Leaves below.
-    leaves: u32,
-    /// Leaves below when this node was made.
-    built: u32,
+    weight: Weight,
 }
 
 /// An exact index for spaces whose metric has a lower bound in coordinates ([`Embed`]): the

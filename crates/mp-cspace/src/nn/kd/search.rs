@@ -1,8 +1,8 @@
 //! The search.
 
 use super::super::collect::Collector;
+use super::super::leaf::{CAP, Extra, WIDE};
 use super::super::{Hit, NodeId};
-use super::leaf::{CAP, Extra, squares};
 use super::{Inner, KdTree, MAX_DIM, Ref};
 use crate::Embed;
 
@@ -281,4 +281,40 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
             dot < 0.0 || (dot == 0.0 && self.negated >> a & 1 == 1)
         })
     }
+}
+
+/// The squared distance of every lane from `q` over the coordinates `start..end`, each the short
+/// way round its period.
+#[inline(always)]
+fn squares(
+    lanes: &[f32],
+    q: &[f32; MAX_DIM],
+    period: &[f32; MAX_DIM],
+    (start, end): (usize, usize),
+    len: usize,
+) -> [f32; CAP] {
+    let mut out = [0.0; CAP];
+    for (w, out) in out.chunks_exact_mut(WIDE).enumerate() {
+        if w * WIDE >= len {
+            break;
+        }
+        let mut sum = [0.0f32; WIDE];
+        for d in start..end.min(MAX_DIM) {
+            let Some(row) = lanes[d * CAP + w * WIDE..].first_chunk::<WIDE>() else { break };
+            if period[d] == f32::INFINITY {
+                for (s, x) in sum.iter_mut().zip(row) {
+                    let t = x - q[d];
+                    *s += t * t;
+                }
+            } else {
+                for (s, x) in sum.iter_mut().zip(row) {
+                    let t = (x - q[d]).abs();
+                    let t = t.min(period[d] - t);
+                    *s += t * t;
+                }
+            }
+        }
+        out.copy_from_slice(&sum);
+    }
+    out
 }
