@@ -118,13 +118,7 @@ fn told<M: Mover>(setting: &Setting<M>, path: &Path<M::State>, fault: PathFault)
     let (from, to) = (&path.states[edge], path.states.get(edge + 1).unwrap_or(&path.states[edge]));
     let state = setting.space.interpolate(from, to, check.failed_at().unwrap_or(0.0));
     let at = mp::geom::six_from_pose(&M::pose(&state)).map(brief).join(" ");
-    let touching: Vec<String> = setting
-        .robot
-        .clone()
-        .explain(&state)
-        .iter()
-        .map(|contact| format!("{} ({} m deep)", contact.name, brief(contact.depth)))
-        .collect();
+    let touching = setting.touching(&state);
     let what = match (check, touching.is_empty()) {
         (MotionCheck::Undecided { .. }, _) | (_, true) => {
             format!("comes nearer to an obstacle than {} m", brief(setting.tolerance))

@@ -5,7 +5,7 @@ use miette::{Result, miette};
 use std::path::{Path, PathBuf};
 
 /// The scene planned on when none is named.
-pub(crate) const SAMPLE: &str = "gempa-3";
+pub(crate) const SAMPLE: &str = "cubicles";
 
 const ENDINGS: [&str; 3] = ["env", "txt", "cfg"];
 

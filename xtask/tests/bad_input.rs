@@ -139,6 +139,8 @@ fn ends_in_collision() {
         dir.write("hit.env", good.replace(line, moved));
         let run = xtask(&dir, &["plan", "hit.env", "--out", "p.txt"]);
         assert_eq!(run.code, 2, "{run:?}");
+        let info = xtask(&dir, &["info", "hit.env"]);
+        assert!(info.code == 0 && info.stdout.contains(&format!("the {end} is in collision")), "{info:?}");
         let told = run.stderr.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
         let body = if end == "start" { "Obstacle #1" } else { "Obstacle #2" };
         assert!(told.contains(&format!("the {end} is in collision with {body} (0.")), "{told}");

@@ -2,6 +2,7 @@
 
 use super::mesh::Shape;
 use super::{brief, count};
+use crate::plan::setting::Ready;
 use miette::Result;
 use mp::geom::six_from_pose;
 use mp::io::Problem;
@@ -63,18 +64,22 @@ impl Facts {
         if problem.start == problem.goal {
             warnings.push("start and goal are the same".into());
         }
+        let (name, space) = (problem.name.clone(), problem.space.to_string());
+        let (start, goal) = (six_from_pose(&problem.start), six_from_pose(&problem.goal));
+        let bounds = problem.bounds.map(|b| [b.min.coords.into(), b.max.coords.into()]);
+        warnings.extend(Ready::of(problem)?.overlaps());
         Ok(Self {
             kind: "scene",
             file: file.display().to_string(),
-            name: problem.name.clone(),
-            space: problem.space.to_string(),
+            name,
+            space,
             units: "metres and radians",
             triangles: obstacles.iter().map(|o| o.mesh.triangles).sum(),
             robot,
             obstacles,
-            start: six_from_pose(&problem.start),
-            goal: six_from_pose(&problem.goal),
-            bounds: problem.bounds.map(|b| [b.min.coords.into(), b.max.coords.into()]),
+            start,
+            goal,
+            bounds,
             warnings,
         })
     }

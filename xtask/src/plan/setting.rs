@@ -4,6 +4,7 @@ use super::mover::Mover;
 use crate::info::brief;
 use crate::output::note;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use mp::collide::Query;
 use mp::cspace::{Clearance, Space};
 use mp::geom::six_from_pose;
 use mp::io::{Problem, SpaceKind};
@@ -34,12 +35,23 @@ pub(crate) enum Ready {
 impl Ready {
     /// Reads the scene `file` and makes it ready.
     pub(crate) fn load(file: &Path) -> Result<Self> {
-        let problem = Problem::load(file)?;
-        let ready = match problem.space {
-            SpaceKind::Se3 => Setting::new(problem).map(|s| Self::Space(Box::new(s))),
-            SpaceKind::Se2 => Setting::new(problem).map(|s| Self::Plane(Box::new(s))),
-        };
-        ready.wrap_err_with(|| format!("cannot plan in {}", file.display()))
+        Self::of(Problem::load(file)?).wrap_err_with(|| format!("cannot plan in {}", file.display()))
+    }
+
+    /// Makes `problem` ready.
+    pub(crate) fn of(problem: Problem) -> Result<Self> {
+        Ok(match problem.space {
+            SpaceKind::Se3 => Self::Space(Box::new(Setting::new(problem)?)),
+            SpaceKind::Se2 => Self::Plane(Box::new(Setting::new(problem)?)),
+        })
+    }
+
+    /// What overlaps what: the robot at start and goal with obstacles, and obstacles with each other.
+    pub(crate) fn overlaps(&self) -> Vec<String> {
+        match self {
+            Self::Space(setting) => setting.overlaps(),
+            Self::Plane(setting) => setting.overlaps(),
+        }
     }
 
     /// An error when start or goal is not free: names the bodies in the way and the nearest free configuration.
@@ -79,6 +91,37 @@ impl<M: Mover> Setting<M> {
         Verifier::new(&self.space, &self.robot).into_diagnostic()
     }
 
+    fn overlaps(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        for (end, q) in [("start", &self.start), ("goal", &self.goal)] {
+            let touching = self.touching(q);
+            if !touching.is_empty() {
+                found.push(format!("the {end} is in collision with {}", touching.join(", ")));
+            }
+            let around = self.robot.enclosing(q);
+            if touching.is_empty() && !around.is_empty() {
+                found.push(format!("the {end} is inside of {}", around.join(", ")));
+            }
+        }
+        let scene = self.robot.scene();
+        let name = |id| scene.body(id).map_or("?", |body| body.name());
+        let pairs = scene.colliding_pairs(&mut Query::default());
+        let named: Vec<String> =
+            pairs.iter().take(5).map(|(a, b)| format!("{} and {}", name(*a), name(*b))).collect();
+        let more =
+            if pairs.len() > 5 { format!(" and {} more pairs", pairs.len() - 5) } else { String::new() };
+        if !named.is_empty() {
+            found.push(format!("obstacles touch each other: {}{more}", named.join(", ")));
+        }
+        found
+    }
+
+    /// The obstacles that the robot touches at `q`, and how deep.
+    pub(crate) fn touching(&self, q: &M::State) -> Vec<String> {
+        let contacts = self.robot.clone().explain(q);
+        contacts.iter().map(|c| format!("{} ({} m deep)", c.name, brief(c.depth))).collect()
+    }
+
     fn check_ends(&self) -> Result<()> {
         self.check_end("start", &self.start)?;
         self.check_end("goal", &self.goal)?;
@@ -107,11 +150,7 @@ impl<M: Mover> Setting<M> {
         if clearance >= self.tolerance {
             return Ok(());
         }
-        let touching: Vec<String> = robot
-            .explain(q)
-            .iter()
-            .map(|contact| format!("{} ({} m deep)", contact.name, brief(contact.depth)))
-            .collect();
+        let touching = self.touching(q);
         let what = match touching.is_empty() {
             true => format!(
                 "the {end} is {} m from contact: at least {} m is needed",
