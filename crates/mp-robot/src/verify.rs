@@ -101,13 +101,14 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         self.queries
     }
 
-    /// A lower bound on the distance to the obstacles (m), exact below `enough`.
-    fn clearance(&mut self, pose: &Isometry3<f64>, enough: f64) -> f64 {
+    /// A lower bound on the distance to the obstacles (m) of at least `enough`, or else the distance of
+    /// something nearer than that.
+    fn at_least(&mut self, pose: &Isometry3<f64>, enough: f64) -> Result<f64, f64> {
         self.queries += 1;
         match &self.world {
-            Some(world) => self.robot.clearance(pose, world, &Isometry3::identity(), enough),
-            None if pose.to_homogeneous().iter().all(|v| v.is_finite()) => f64::INFINITY,
-            None => 0.0,
+            Some(world) => self.robot.at_least(pose, world, &Isometry3::identity(), enough),
+            None if pose.to_homogeneous().iter().all(|v| v.is_finite()) => Ok(f64::INFINITY),
+            None => Err(0.0),
         }
     }
 
@@ -132,7 +133,7 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Veri
             return MotionCheck::Undecided { at: 0.0 };
         }
         for (at, end) in [(0.0, from), (1.0, to)] {
-            if self.clearance(&P::pose(end), self.tolerance) <= 0.0 {
+            if self.at_least(&P::pose(end), self.tolerance).is_err_and(|distance| distance <= 0.0) {
                 return MotionCheck::Collides { at };
             }
         }
@@ -151,17 +152,20 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Veri
             let middle = self.pose_at(from, to, at);
             let [to_a, to_b] = [a, b].map(|t| self.displacement(&middle, &self.pose_at(from, to, t)));
             let swept = to_a.max(to_b);
-            let clearance = self.clearance(&middle, swept + 2.0 * self.tolerance);
-            if clearance >= swept + self.tolerance {
-                least = least.min(clearance - swept);
-            } else if clearance >= 2.0 * self.tolerance && self.queries < limit {
-                // Ends when the parts are so short that the first condition holds.
-                parts.extend([[a, at], [at, b]]);
-            } else {
-                let hit = clearance <= 0.0;
-                verdict =
-                    Some(if hit { MotionCheck::Collides { at } } else { MotionCheck::Undecided { at } });
-                break;
+            if let Ok(clearance) = self.at_least(&middle, swept + self.tolerance) {
+                // The maximum is for rounding only.
+                least = least.min((clearance - swept).max(self.tolerance));
+                continue;
+            }
+            match self.at_least(&middle, 2.0 * self.tolerance) {
+                // Ends when the parts are so short that they can be proved.
+                Ok(_) if self.queries < limit => parts.extend([[a, at], [at, b]]),
+                found => {
+                    let hit = found.is_err_and(|distance| distance <= 0.0);
+                    verdict =
+                        Some(if hit { MotionCheck::Collides { at } } else { MotionCheck::Undecided { at } });
+                    break;
+                }
             }
         }
         self.parts = parts;

@@ -53,6 +53,29 @@ impl RefMesh {
         Self { balls, triangles, size }
     }
 
+    /// Whether the distance from this mesh at `pose_wa` to `other` at `pose_wb` is at least `enough` (metres):
+    /// `Ok` with a lower bound on it, or `Err` with the distance of some pair of triangles that are nearer (0
+    /// when they intersect or touch), the first found. Much sooner done than [`RefMesh::clearance`] when the
+    /// meshes are near.
+    ///
+    /// # Errors
+    /// That distance. Bad input gives `Err(0.0)`, where [`RefMesh::clearance`] gives 0.
+    pub fn at_least(
+        &self,
+        pose_wa: &Isometry3<f64>,
+        other: &RefMesh,
+        pose_wb: &Isometry3<f64>,
+        enough: f64,
+    ) -> Result<f64, f64> {
+        let Some(mut search) = self.search(pose_wa, other, pose_wb, enough) else { return Err(0.0) };
+        search.any = true;
+        let enough = search.best;
+        match search.run() {
+            found if found < enough => Err(found),
+            bound => Ok(bound),
+        }
+    }
+
     /// A lower bound on the distance from this mesh at `pose_wa` to `other` at `pose_wb` that is exact (up to
     /// rounding) when below `enough` (metres), and some value of at least `enough` otherwise; 0 when they
     /// intersect or touch.
@@ -67,24 +90,28 @@ impl RefMesh {
         pose_wb: &Isometry3<f64>,
         enough: f64,
     ) -> f64 {
+        self.search(pose_wa, other, pose_wb, enough).map_or(0.0, Search::run)
+    }
+
+    /// A search for what is nearer than `enough`; `None` on bad input.
+    fn search<'a>(
+        &'a self,
+        pose_wa: &Isometry3<f64>,
+        other: &'a RefMesh,
+        pose_wb: &Isometry3<f64>,
+        enough: f64,
+    ) -> Option<Search<'a>> {
         let pose_ab = pose_wa.inverse() * pose_wb;
         let scale = self.size + other.size + pose_ab.translation.vector.norm();
         let rigid = |pose: &Isometry3<f64>| (pose.rotation.quaternion().norm() - 1.0).abs() < 1e-6;
         if !(rigid(pose_wa) && rigid(pose_wb) && scale < 1e75) {
-            return 0.0;
+            return None;
         }
         let pose_ab = IsometryMatrix3::from_parts(pose_ab.translation, pose_ab.rotation.to_rotation_matrix());
         let touching = TOUCHING * scale;
         // Look a little further than asked, so that touching is always seen.
-        let enough = if enough.is_nan() { f64::INFINITY } else { enough.max(2.0 * touching) };
-        let mut search = Search { a: self, b: other, pose_ab, touching, best: enough };
-        let (root_a, root_b) = (self.balls.len() - 1, other.balls.len() - 1);
-        let bound = search.bound(root_a, root_b);
-        if bound >= enough {
-            return bound;
-        }
-        search.visit(root_a, root_b);
-        if search.best <= touching { 0.0 } else { search.best }
+        let best = if enough.is_nan() { f64::INFINITY } else { enough.max(2.0 * touching) };
+        Some(Search { a: self, b: other, pose_ab, touching, best, any: false })
     }
 }
 
@@ -96,9 +123,22 @@ struct Search<'a> {
     touching: f64,
     /// The smallest distance so far; at first, the distance that is enough.
     best: f64,
+    /// Whether the first that is nearer ends the search.
+    any: bool,
 }
 
 impl Search<'_> {
+    /// The distance found, 0 for touching; a bound when it is not below that to begin with.
+    fn run(mut self) -> f64 {
+        let (root_a, root_b) = (self.a.balls.len() - 1, self.b.balls.len() - 1);
+        let bound = self.bound(root_a, root_b);
+        if bound >= self.best {
+            return bound;
+        }
+        self.visit(root_a, root_b);
+        if self.best <= self.touching { 0.0 } else { self.best }
+    }
+
     /// A lower bound on the distance of what two balls hold.
     fn bound(&self, i: usize, j: usize) -> f64 {
         let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
@@ -117,13 +157,16 @@ impl Search<'_> {
     }
 
     /// Lowers `best` to the distance of what two balls hold, if that is smaller.
-    fn visit(&mut self, i: usize, j: usize) {
+    /// Returns whether the search is over.
+    fn visit(&mut self, i: usize, j: usize) -> bool {
         let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
         let pairs = match (ball_a.content, ball_b.content) {
             (Content::Triangle(k), Content::Triangle(l)) => {
                 let triangle_b = self.b.triangles[l].map(|p| self.pose_ab * p);
-                self.best = self.best.min(triangle_distance(&self.a.triangles[k], &triangle_b));
-                return;
+                let distance = triangle_distance(&self.a.triangles[k], &triangle_b);
+                let nearer = distance < self.best;
+                self.best = self.best.min(distance);
+                return self.best <= self.touching || (nearer && self.any);
             }
             (Content::Parts(parts), Content::Parts(_)) if ball_a.radius >= ball_b.radius => {
                 parts.map(|part| (part, j))
@@ -136,10 +179,11 @@ impl Search<'_> {
             bounds.swap(0, 1);
         }
         for (bound, k, l) in bounds {
-            if bound < self.best && self.best > self.touching {
-                self.visit(k, l);
+            if bound < self.best && self.visit(k, l) {
+                return true;
             }
         }
+        false
     }
 }
 

@@ -69,8 +69,8 @@ impl<L: Lanes> Gaps<L> {
             inverse: [one.div(ff[0].max(tiny)), one.div(ff[1].max(tiny)), one.div(ff[2].max(tiny))],
             nn,
             inward: [cross(&n, &f[0]), cross(&n, &f[1]), cross(&n, &f[2])],
-            lo: std::array::from_fn(|d| v[0][d].min(v[1][d]).min(v[2][d])),
-            hi: std::array::from_fn(|d| v[0][d].max(v[1][d]).max(v[2][d])),
+            lo: three!(d => v[0][d].min(v[1][d]).min(v[2][d])),
+            hi: three!(d => v[0][d].max(v[1][d]).max(v[2][d])),
             all: (1 << leaf.count) - 1,
             center: leaf.center,
             magnitude: leaf.magnitude,
@@ -92,7 +92,7 @@ impl<L: Lanes> Gaps<L> {
         far: &mut [f32; 8],
     ) -> u32 {
         let c = &self.center;
-        let p: [[f32; 3]; 3] = std::array::from_fn(|k| {
+        let p: [[f32; 3]; 3] = three!(k => {
             [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
         });
         let mut g = self.magnitude;
@@ -115,19 +115,18 @@ impl<L: Lanes> Gaps<L> {
         if mask == 0 {
             return 0;
         }
-        let s: [[L; 3]; 3] =
-            std::array::from_fn(|k| [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
+        let s: [[L; 3]; 3] = three!(k => [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
         // All of the one on one side of the planes of the eight: height² / |n|² bounds. Errors of a height
         // are as in `leaves::Block`.
         let edge = self.edge;
         let error = L::splat(g * edge * (1.5e-6 * g + 2e-6 * edge));
-        let h: [L; 3] = std::array::from_fn(|k| dot(&self.n, &sub(&s[k], &self.v[0])));
+        let h: [L; 3] = three!(k => dot(&self.n, &sub(&s[k], &self.v[0])));
         mask &= one_sided(&h).sub(error).max(zero).square().le(self.nn.mul(limit).add(error.square()));
         if mask == 0 {
             return 0;
         }
         // Edges from the unrounded corners: for a small triangle far away those of `p` would be mostly noise.
-        let e: [[f32; 3]; 3] = std::array::from_fn(|k| {
+        let e: [[f32; 3]; 3] = three!(k => {
             let d = triangle[(k + 1) % 3] - triangle[k];
             [d.x as f32, d.y as f32, d.z as f32]
         });
@@ -140,7 +139,7 @@ impl<L: Lanes> Gaps<L> {
         let flat = L::splat(if sound { 0.0 } else { f32::INFINITY });
         let n = [L::splat(m[0]), L::splat(m[1]), L::splat(m[2])];
         let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
-        let w: [L; 3] = std::array::from_fn(|k| dot(&n, &sub(&self.v[k], &s[0])));
+        let w: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
         mask &= one_sided(&w).sub(error).max(zero).square().le(L::splat(mm).mul(limit).add(error.square()));
         if mask == 0 {
             return 0;
@@ -160,17 +159,16 @@ impl<L: Lanes> Gaps<L> {
         let mut faces = L::splat(f32::INFINITY);
         let inverse = L::splat(1.0).div(self.nn.max(L::splat(TINY)));
         for k in 0..3 {
-            let inside = |j: usize| dot(&self.inward[j], &sub(&s[k], &self.v[j]));
-            let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
+            let inside = three!(j => dot(&self.inward[j], &sub(&s[k], &self.v[j])));
+            let outside = inside[0].min(inside[1]).min(inside[2]).min(zero).mul(penalty);
             faces = h[k].mul(inverse).mul_add(h[k], outside.add(self.flat)).min(faces);
         }
         let inverse = L::splat(1.0 / mm.max(TINY));
-        let across =
-            e.map(|e| cross_scalar(&m, &e)).map(|u| [L::splat(u[0]), L::splat(u[1]), L::splat(u[2])]);
+        let across = three!(k => { let u = cross_scalar(&m, &e[k]); [L::splat(u[0]), L::splat(u[1]), L::splat(u[2])] });
         let mut face = L::splat(f32::INFINITY);
         for k in 0..3 {
-            let inside = |j: usize| dot(&across[j], &sub(&self.v[k], &s[j]));
-            let outside = inside(0).min(inside(1)).min(inside(2)).min(zero).mul(penalty);
+            let inside = three!(j => dot(&across[j], &sub(&self.v[k], &s[j])));
+            let outside = inside[0].min(inside[1]).min(inside[2]).min(zero).mul(penalty);
             face = w[k].mul(inverse).mul_add(w[k], outside.add(flat)).min(face);
         }
         // Points of edges are points of the triangles, so only their rounding can make the result too small;
@@ -201,8 +199,7 @@ impl<L: Lanes> Gaps<L> {
         let s = unit(b.mul_sub(y, c.mul(ff)).div(determinant));
         let t = unit(b.mul_add(s, y).mul(self.inverse[j]));
         let s = unit(b.mul_sub(t, c).mul(inverse));
-        let at = |k: usize| d[k].mul_add(s, r[k]).sub(f[k].mul(t));
-        let w = [at(0), at(1), at(2)];
+        let w = three!(k => d[k].mul_add(s, r[k]).sub(f[k].mul(t)));
         dot(&w, &w)
     }
 }

@@ -16,7 +16,7 @@ const INVERSE_U: f32 = 16_777_216.0;
 /// the normals of the triangles.
 #[inline(always)]
 pub(crate) fn near_box<L: Lanes>(tree: &Tree, leaf: &Leaf, q: &Placed, margin: f32) -> u32 {
-    let c: [f32; 3] = std::array::from_fn(|i| q.frame[i][0] - (leaf.center[i] - tree.center[i]) as f32);
+    let c: [f32; 3] = three!(i => q.frame[i][0] - (leaf.center[i] - tree.center[i]) as f32);
     let c = [L::splat(c[0]), L::splat(c[1]), L::splat(c[2])];
     let v = corners::<L>(leaf);
     let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
@@ -83,7 +83,7 @@ impl<L: Lanes> Block<L> {
     #[inline(always)]
     pub(crate) fn may_meet(&self, triangle: &Triangle, mask: u32, slack: f32) -> u32 {
         let c = &self.center;
-        let p: [[f32; 3]; 3] = std::array::from_fn(|k| {
+        let p: [[f32; 3]; 3] = three!(k => {
             [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
         });
         let mut g = self.magnitude;
@@ -92,12 +92,11 @@ impl<L: Lanes> Block<L> {
         }
         // A corner wrong by `slack` too is as wrong as one rounded at this size.
         g += slack * INVERSE_U;
-        let s: [[L; 3]; 3] =
-            std::array::from_fn(|k| [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
+        let s: [[L; 3]; 3] = three!(k => [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
         // Corners of the one against the planes of the eight.
         let edge = self.edge;
         let wrong = g * edge * (1.5e-6 * g + 2e-6 * edge) + TINY;
-        let h: [L; 3] = std::array::from_fn(|k| dot(&self.n, &sub(&s[k], &self.v[0])));
+        let h: [L; 3] = three!(k => dot(&self.n, &sub(&s[k], &self.v[0])));
         let mut mask = mask
             & h[0].min(h[1]).min(h[2]).le(L::splat(wrong))
             & L::splat(-wrong).le(h[0].max(h[1]).max(h[2]));
@@ -105,7 +104,7 @@ impl<L: Lanes> Block<L> {
             return 0;
         }
         // Corners of the eight against the plane of the one.
-        let e: [[f32; 3]; 3] = std::array::from_fn(|k| {
+        let e: [[f32; 3]; 3] = three!(k => {
             let (a, b) = (&p[k], &p[(k + 1) % 3]);
             [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
         });
@@ -118,7 +117,7 @@ impl<L: Lanes> Block<L> {
         ];
         let n = [L::splat(n[0]), L::splat(n[1]), L::splat(n[2])];
         let wrong = g * own * (1.5e-6 * g + 2e-6 * own) + TINY;
-        let h: [L; 3] = std::array::from_fn(|k| dot(&n, &sub(&self.v[k], &s[0])));
+        let h: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
         mask &= h[0].min(h[1]).min(h[2]).le(L::splat(wrong)) & L::splat(-wrong).le(h[0].max(h[1]).max(h[2]));
         if mask == 0 {
             return 0;

@@ -3,6 +3,27 @@
 
 #![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.
 
+/// An array of three, for `k` 0, 1, 2. A closure would be compiled without the instruction set of the kernel
+/// around it unless it happens to be inlined.
+macro_rules! three {
+    ($k:ident => $value:expr) => {
+        [
+            {
+                let $k = 0;
+                $value
+            },
+            {
+                let $k = 1;
+                $value
+            },
+            {
+                let $k = 2;
+                $value
+            },
+        ]
+    };
+}
+
 pub(crate) mod boxes;
 pub(crate) mod build;
 pub(crate) mod fit;
