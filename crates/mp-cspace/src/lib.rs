@@ -53,4 +53,4 @@ pub use space::{
     rotation_angle, slerp, wrap_angle,
 };
 pub use stop::{Cancel, Deadline, Iterations, Motions, Nodes, Or, Progress, Stop, StopReason};
-pub use validity::{Clearance, KnownFree, MotionBound, MotionCheck, MotionValidity, Validity};
+pub use validity::{Clearance, KnownFree, MotionBound, MotionCheck, MotionValidity, Room, Stretch, Validity};

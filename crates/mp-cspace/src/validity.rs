@@ -41,6 +41,59 @@ pub trait Clearance<S> {
     fn in_contact(&mut self, q: &S) -> bool {
         self.clearance(q, f64::MIN_POSITIVE) <= 0.0
     }
+
+    /// What is known about the clearance over a stretch of a motion: the one question
+    /// [`Certified`](crate::Certified) asks.
+    ///
+    /// The default asks for the clearance in the middle and trusts no point to travel less than
+    /// the stretch's bound. May be overridden where more is known, such as how far each part of
+    /// the robot travels and whether toward the obstacle or along it.
+    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
+        let enough = stretch.travel.max(stretch.margin) + stretch.margin;
+        let clearance = self.clearance(stretch.middle, enough);
+        if clearance <= 0.0 {
+            Room::Contact
+        } else if clearance >= 2.0 * stretch.margin {
+            Room::Clear { clearance }
+        } else {
+            Room::Tight
+        }
+    }
+}
+
+/// A stretch of a motion, about a state in its middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch<'a, S> {
+    /// Where the whole motion starts.
+    pub from: &'a S,
+    /// Where the whole motion ends.
+    pub to: &'a S,
+    /// The state in the middle of the stretch.
+    pub middle: &'a S,
+    /// Half the stretch, as a fraction of the motion.
+    pub half: f64,
+    /// A bound (m) on how far any point of the robot travels over half the stretch.
+    pub travel: f64,
+    /// The clearance (m) to be kept.
+    pub margin: f64,
+}
+
+/// The clearance over a [`Stretch`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Room {
+    /// At least `margin` as far from the middle as no point travels more than `clearance - margin`
+    /// to either side; beyond the ends of the stretch too when that is farther. Returned whenever
+    /// the clearance in the middle is at least `travel + margin`.
+    Clear {
+        /// As good as this clearance (m) in the middle.
+        clearance: f64,
+    },
+    /// Nothing shown: a shorter stretch may be.
+    Near,
+    /// In the middle less than twice the margin: not worth a closer look.
+    Tight,
+    /// In contact in the middle.
+    Contact,
 }
 
 impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {
@@ -49,6 +102,9 @@ impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {
     }
     fn in_contact(&mut self, q: &S) -> bool {
         (**self).in_contact(q)
+    }
+    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
+        (**self).room(stretch)
     }
 }
 
