@@ -1,7 +1,7 @@
 //! What differs between robots in the plane and in space.
 
 use miette::{IntoDiagnostic, Result};
-use mp::cspace::{Embed, EmbedFactors, MaxDisplacement, MetricOn, ScaledEuclidean, Se2, Se3, Space};
+use mp::cspace::{Embed, EmbedFactors, MaxDisplacement, ScaledEuclidean, Se2, Se3, Space, TrueMetricOn};
 use mp::geom::{Aabb, TriMesh};
 use mp::robot::{Placement, Planar, Spatial};
 use nalgebra::{Point2, Point3};
@@ -10,7 +10,7 @@ use std::fmt::Debug;
 /// A kind of rigid body.
 pub(crate) trait Mover: Placement {
     type Space: Embed + EmbedFactors + Space<State = Self::State> + Clone + Debug + Send + Sync;
-    type Displacement: MetricOn<Self::Space>;
+    type Displacement: TrueMetricOn<Self::Space>;
 
     /// The space of configurations with the origin within `bounds`.
     fn space(bounds: &Aabb) -> Result<Self::Space>;

@@ -8,7 +8,7 @@ use super::setting::Setting;
 use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
-    Cancel, Certified, Deadline, Discrete, Euclidean, Iterations, KdTree, Linear, Manhattan, MetricOn,
+    Cancel, Certified, Deadline, Discrete, Euclidean, Iterations, KdTree, Manhattan, MetricOn, MetricTree,
     MotionValidity, NearestNeighbors, Outcome, Path, Progress, Resolution, Rng, Space, Stop, StopReason,
     Straight, Validity, WithMetric,
 };
@@ -44,7 +44,7 @@ pub(crate) fn search<M: Mover>(
         }
         metrics::Kind::MaxDisplacement => {
             let metric = M::displacement(&setting.problem.robot.mesh)?;
-            run.on(&with(space, metric), Linear::default(), line)
+            run.on(&with(space, metric), MetricTree::default(), line)
         }
     }
 }
