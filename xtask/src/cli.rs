@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Info(Info),
     /// Draw a scene, and a path through it, with no display.
     Render(Render),
+    /// Write the shipped scenes again, or check that they are as made here.
+    Assets(crate::assets::AssetsArgs),
     /// Formatting, lints, tests, documentation and tidiness: what CI runs.
     Ci(Ci),
 }

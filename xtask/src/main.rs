@@ -2,6 +2,7 @@
 //!
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
 
+mod assets;
 mod check;
 mod ci;
 mod cli;
@@ -23,6 +24,7 @@ fn main() -> ExitCode {
         .with_writer(std::io::stderr)
         .init();
     let outcome = match &cli.command {
+        Command::Assets(args) => assets::run(args),
         Command::Ci(args) => ci::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Check(args) => check::run(args),

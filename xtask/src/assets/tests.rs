@@ -1,0 +1,130 @@
+//! What is shipped is what is made here, and every scene is a sound problem.
+
+use super::generate;
+use mp::cspace::{Clearance, MotionValidity, Se2, Se2State, Se3, Space, Validity};
+use mp::geom::six_from_pose;
+use mp::io::{PathFile, Problem, SpaceKind};
+use mp::robot::{FreeFlyer, PlanarFlyer, Verifier};
+use nalgebra::Isometry3;
+use std::path::PathBuf;
+
+fn assets() -> PathBuf {
+    crate::scenes::root().join("assets")
+}
+
+fn scenes() -> Vec<Problem> {
+    let files = generate();
+    let scenes = files.keys().filter(|path| path.ends_with(".env"));
+    scenes.map(|path| Problem::load(assets().join(path)).expect(path)).collect()
+}
+
+fn obstacles(p: &Problem) -> Vec<(String, mp::geom::TriMesh, Isometry3<f64>)> {
+    p.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose)).collect()
+}
+
+fn space(p: &Problem) -> Se3 {
+    let b = p.bounds.expect("every scene has bounds");
+    Se3::new([b.min.x, b.min.y, b.min.z], [b.max.x, b.max.y, b.max.z]).unwrap()
+}
+
+#[test]
+fn committed_files_are_regenerated_bit_for_bit() {
+    let files = generate();
+    assert_eq!(files, generate());
+    for (path, bytes) in &files {
+        let found = std::fs::read(assets().join(path)).expect(path);
+        assert!(found == *bytes, "{path} differs: run `cargo xtask assets`");
+    }
+    let total: usize = files.values().map(Vec::len).sum();
+    assert!(total < 6_000_000, "{total} bytes");
+}
+
+#[test]
+fn nothing_else_is_shipped() {
+    let files = generate();
+    for folder in ["scenes", "meshes", "paths"] {
+        let mut pending = vec![assets().join(folder)];
+        while let Some(dir) = pending.pop() {
+            for entry in std::fs::read_dir(dir).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    pending.push(path);
+                } else {
+                    let inside = path.strip_prefix(assets()).unwrap().to_string_lossy().replace('\\', "/");
+                    assert!(files.contains_key(&inside), "{inside} is made by nobody");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn meshes_are_solid() {
+    for p in scenes() {
+        let meshes = p.obstacles.iter().map(|o| (&o.name, &o.mesh)).chain([(&p.robot.name, &p.robot.mesh)]);
+        for (name, mesh) in meshes {
+            let report = mesh.topology();
+            assert!(report.is_solid(), "{}: {name} is no solid", p.name);
+            assert!(report.degenerate.is_empty() && report.duplicates.is_empty(), "{}: {name}", p.name);
+            assert!(mesh.mass_properties().unwrap().volume > 0.0, "{}: {name} is inside out", p.name);
+        }
+    }
+}
+
+#[test]
+fn starts_and_goals_are_free_and_within_bounds() {
+    for p in scenes() {
+        let clearances = match p.space {
+            SpaceKind::Se2 => {
+                let b = p.bounds.unwrap();
+                let space = Se2::new([b.min.x, b.min.y], [b.max.x, b.max.y]).unwrap();
+                let mut robot = PlanarFlyer::new(&p.robot.mesh, obstacles(&p)).unwrap();
+                [&p.start, &p.goal].map(|pose| {
+                    let six = six_from_pose(pose);
+                    let q = Se2State::new(six[0], six[1], six[3]);
+                    assert!(space.contains(&q) && robot.is_valid(&q), "{}", p.name);
+                    robot.clearance(&q, 1.0)
+                })
+            }
+            _ => {
+                let mut robot = FreeFlyer::new(&p.robot.mesh, obstacles(&p)).unwrap();
+                [&p.start, &p.goal].map(|q| {
+                    assert!(space(&p).contains(q) && robot.is_valid(q), "{}", p.name);
+                    robot.clearance(q, 1.0)
+                })
+            }
+        };
+        assert!(clearances.iter().all(|&c| c > 0.05), "{}: {clearances:?}", p.name);
+    }
+}
+
+#[test]
+fn the_apartment_and_the_tubes_are_as_large_as_promised() {
+    for p in scenes() {
+        let triangles: usize = p.obstacles.iter().map(|o| o.mesh.triangles().len()).sum();
+        let robot = p.robot.mesh.triangles().len();
+        match p.name.as_str() {
+            "apartment" => assert!(triangles >= 20_000 && robot >= 2_000, "{triangles}, {robot}"),
+            "cubicles" => assert!((500..700).contains(&triangles) && (30..50).contains(&robot)),
+            name if name.starts_with("alpha") => assert!(triangles.min(robot) > 900, "{triangles}, {robot}"),
+            _ => {}
+        }
+    }
+}
+
+/// The path was made by hand, for all scales: the certified checker proves that the tubes come apart.
+#[test]
+fn the_alphas_come_apart() {
+    let path = PathFile::read(assets().join("paths/alpha.txt")).unwrap().poses();
+    let alphas: Vec<_> = scenes().into_iter().filter(|p| p.name.starts_with("alpha")).collect();
+    assert_eq!(alphas.len(), 6);
+    for p in alphas {
+        assert_eq!((path[0], path[path.len() - 1]), (p.start, p.goal), "{}", p.name);
+        let robot = FreeFlyer::new(&p.robot.mesh, obstacles(&p)).unwrap();
+        let space = space(&p);
+        let mut verifier = Verifier::new(&space, &robot).unwrap();
+        for (i, step) in path.windows(2).enumerate() {
+            assert!(verifier.check_motion(&step[0], &step[1]).is_free(), "{}: motion {i}", p.name);
+        }
+    }
+}
