@@ -2,7 +2,7 @@
 
 use crate::plan::metrics;
 use clap::builder::{PossibleValue, PossibleValuesParser};
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -29,6 +29,8 @@ pub(crate) enum Command {
     Render(Render),
     /// Write the shipped scenes again, or check that they are as made here.
     Assets(crate::assets::AssetsArgs),
+    /// Measure, beside other programs where they are given.
+    Bench(Bench),
     /// Formatting, lints, tests, documentation and tidiness: what CI runs.
     Ci(Ci),
 }
@@ -122,6 +124,38 @@ pub(crate) struct Render {
     /// Width and height in pixels.
     #[arg(long, value_name = "W×H", default_value = "1280x960", value_parser = pixels)]
     pub(crate) size: (usize, usize),
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Bench {
+    /// What to measure.
+    #[arg(value_name = "SUITE")]
+    pub(crate) suite: Suite,
+    /// A shorter run.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Runs (seeds) of each case.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) runs: Option<u32>,
+    /// Scenes to measure on (default: those of the suite).
+    #[arg(long = "scene", value_name = "SCENE")]
+    pub(crate) scenes: Vec<String>,
+    /// Seconds a run may take.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    pub(crate) time: f64,
+    /// Another program to measure beside ours, in turn; how it is called is in docs/benchmarks.md.
+    #[arg(long, value_name = "PROGRAM")]
+    pub(crate) peer: Option<PathBuf>,
+    /// The folder for results.
+    #[arg(long, value_name = "DIR", default_value = "out/bench")]
+    pub(crate) out: PathBuf,
+}
+
+/// A suite of measurements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Suite {
+    /// RRT-Connect on rigid bodies, to the first solution.
+    Rigid,
 }
 
 #[derive(Clone, Debug, Args)]

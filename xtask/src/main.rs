@@ -3,6 +3,7 @@
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
 
 mod assets;
+mod bench;
 mod check;
 mod ci;
 mod cli;
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
         .init();
     let outcome = match &cli.command {
         Command::Assets(args) => assets::run(args),
+        Command::Bench(args) => bench::run(args),
         Command::Ci(args) => ci::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Check(args) => check::run(args),

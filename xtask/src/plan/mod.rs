@@ -13,4 +13,6 @@ mod search;
 pub(crate) mod setting;
 pub(crate) mod tuples;
 
-pub(crate) use run::run;
+pub(crate) use options::Options;
+pub(crate) use run::{planned, run};
+pub(crate) use setting::Ready;

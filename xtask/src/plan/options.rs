@@ -47,4 +47,18 @@ impl Options {
             shorten: !args.no_shorten,
         })
     }
+
+    /// RRT-Connect as other programs have it, to be measured beside them.
+    pub(crate) fn comparable(motion: Motion, seconds: f64) -> Result<Self> {
+        Ok(Self {
+            planner: mp::tree::planner("rrt-connect").into_diagnostic()?,
+            settings: Settings::default(),
+            metric: metrics::Kind::Default,
+            metric_name: metrics::DEFAULT.to_owned(),
+            motion,
+            time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
+            iterations: None,
+            shorten: false,
+        })
+    }
 }

@@ -12,7 +12,6 @@ use crate::output::{note, print, write};
 use crate::{render, scenes};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use mp::cspace::{Cancel, Outcome};
-use mp::io::OmplExport;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -59,6 +58,32 @@ pub(crate) fn run(args: &cli::Plan) -> Result<bool> {
         note(&format!("interrupted: {missing} of {} runs were not begun", jobs.len()));
     }
     Ok(missing == 0 && reports.iter().all(|r| r.solved))
+}
+
+/// What a bare search came to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Planned {
+    pub(crate) solved: bool,
+    /// Until a verified path, or the end of the budget.
+    pub(crate) seconds: f64,
+    pub(crate) queries: u64,
+}
+
+/// Plans, and neither shortens nor writes.
+pub(crate) fn planned(ready: &Ready, options: &Options, seed: u64) -> Result<Planned> {
+    fn on<M: Mover>(setting: &super::setting::Setting<M>, options: &Options, seed: u64) -> Result<Planned> {
+        let mut line = Line::new(&setting.problem.name, options.time, false);
+        let search = search::search(setting, options, seed, &Cancel(interrupt::flag()), &mut line)?;
+        Ok(Planned {
+            solved: matches!(search.outcome, Outcome::Solved(_)),
+            seconds: search.time.as_secs_f64(),
+            queries: search.queries,
+        })
+    }
+    match ready {
+        Ready::Space(setting) => on(setting, options, seed),
+        Ready::Plane(setting) => on(setting, options, seed),
+    }
 }
 
 fn check_files(files: &Files, ready: &[Ready], jobs: &[(usize, u64)]) -> Result<()> {
@@ -226,8 +251,7 @@ fn export(folder: &Path, ready: &[Ready]) -> Result<()> {
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot make the folder {}", folder.display()))?;
     for scene in ready {
-        let file = mp::io::export_ompl(scene.problem(), folder, scene.name(), &OmplExport::default())?;
-        note(&format!("exported {}", file.display()));
+        note(&format!("exported {}", scene.export(folder)?.display()));
     }
     Ok(())
 }

@@ -70,6 +70,11 @@ impl Ready {
         }
     }
 
+    /// Writes the problem to `folder` as one JSON and two OFF files for other planners; returns the former.
+    pub(crate) fn export(&self, folder: &Path) -> Result<std::path::PathBuf> {
+        Ok(mp::io::export_ompl(self.problem(), folder, self.name(), &mp::io::OmplExport::default())?)
+    }
+
     pub(crate) fn name(&self) -> &str {
         &self.problem().name
     }

@@ -1,0 +1,89 @@
+//! `bench`: measurements, as Markdown on standard output and as CSV and JSON in a folder.
+
+mod rigid;
+
+use crate::cli;
+use crate::output::{note, print, write};
+use miette::Result;
+
+/// Runs a suite. True when it could be measured completely.
+pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
+    match args.suite {
+        cli::Suite::Rigid => rigid::run(args),
+    }
+}
+
+/// A table, to be printed and written.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    pub(crate) head: Vec<&'static str>,
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// In Markdown.
+    pub(crate) fn markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
+        let head: Vec<String> = self.head.iter().map(|h| (*h).to_owned()).collect();
+        let rule: Vec<String> = self.head.iter().map(|_| "---".to_owned()).collect();
+        let mut lines = vec![line(&head), line(&rule)];
+        lines.extend(self.rows.iter().map(|row| line(row)));
+        lines.join("\n")
+    }
+
+    /// As comma-separated values.
+    pub(crate) fn csv(&self) -> String {
+        let quote = |cell: &str| match cell.contains([',', '"', '\n']) {
+            true => format!("\"{}\"", cell.replace('"', "\"\"")),
+            false => cell.to_owned(),
+        };
+        let line = |cells: &mut dyn Iterator<Item = &str>| cells.map(quote).collect::<Vec<_>>().join(",");
+        let mut text = line(&mut self.head.iter().copied());
+        for row in &self.rows {
+            text.push('\n');
+            text.push_str(&line(&mut row.iter().map(String::as_str)));
+        }
+        text + "\n"
+    }
+}
+
+/// Prints `summary` and writes it with `each`, one line per run, to the folder for results.
+pub(crate) fn report(args: &cli::Bench, name: &str, summary: &Table, each: &Table) -> Result<()> {
+    print(&summary.markdown())?;
+    let markdown = args.out.join(format!("{name}.md"));
+    write(&markdown, (summary.markdown() + "\n").as_bytes())?;
+    let csv = args.out.join(format!("{name}.csv"));
+    write(&csv, each.csv().as_bytes())?;
+    note(&format!("written: {}, {}", markdown.display(), csv.display()));
+    Ok(())
+}
+
+/// The median; `None` of nothing.
+pub(crate) fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    match n {
+        0 => None,
+        _ => Some(0.5 * (sorted[(n - 1) / 2] + sorted[n / 2])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(&[]), None);
+        assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(&[4.0, 1.0]), Some(2.5));
+    }
+
+    #[test]
+    fn tables() {
+        let table = Table { head: vec!["a", "b"], rows: vec![vec!["1,5".into(), "x".into()]] };
+        assert_eq!(table.csv(), "a,b\n\"1,5\",x\n");
+        assert_eq!(table.markdown(), "| a | b |\n| --- | --- |\n| 1,5 | x |");
+    }
+}
