@@ -156,6 +156,8 @@ pub(crate) struct Bench {
 pub(crate) enum Suite {
     /// RRT-Connect on rigid bodies, to the first solution.
     Rigid,
+    /// Growth of an RRT where nothing is in the way, against its size.
+    Scaling,
 }
 
 #[derive(Clone, Debug, Args)]

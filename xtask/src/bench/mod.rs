@@ -1,6 +1,8 @@
 //! `bench`: measurements, as Markdown on standard output and as CSV and JSON in a folder.
 
+mod growth;
 mod rigid;
+mod scaling;
 
 use crate::cli;
 use crate::output::{note, print, write};
@@ -10,6 +12,7 @@ use miette::Result;
 pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     match args.suite {
         cli::Suite::Rigid => rigid::run(args),
+        cli::Suite::Scaling => growth::run(args),
     }
 }
 

@@ -10,7 +10,6 @@ use mp::cspace::{
 };
 use mp::tree::{Goals, Problem, Rrt, Step, Tuning};
 use nalgebra::{Isometry3, SVector};
-use std::fmt::Write;
 use std::time::{Duration, Instant};
 
 /// What to measure.
@@ -69,11 +68,6 @@ impl Row {
     /// Nodes per second of RRT, from nothing.
     pub(crate) fn rate(&self) -> f64 {
         self.nodes as f64 / self.planner
-    }
-
-    /// The part of RRT's time that the bare loop does not need.
-    pub(crate) fn overhead(&self) -> f64 {
-        self.planner / self.bare - 1.0
     }
 }
 
@@ -231,35 +225,6 @@ fn best(least: &mut Vec<f64>, times: &[f64]) {
     }
 }
 
-/// The rows as a Markdown table.
-pub(crate) fn markdown(rows: &[Row]) -> String {
-    let mut text = String::from(
-        "| space | nodes | RRT, nodes/s | bare loop, nodes/s | the engine adds |\n|---|---|---|---|---|\n",
-    );
-    for row in rows {
-        let bare = row.nodes as f64 / row.bare;
-        let percent = 100.0 * row.overhead();
-        let _ = writeln!(
-            text,
-            "| {} | {} | {:.0} | {bare:.0} | {percent:+.1}% |",
-            row.space,
-            row.nodes,
-            row.rate()
-        );
-    }
-    text
-}
-
-/// The rows as comma-separated values.
-pub(crate) fn csv(rows: &[Row]) -> String {
-    let mut text = String::from("space,nodes,rrt_seconds,bare_seconds,rrt_nodes_per_second\n");
-    for row in rows {
-        let (planner, bare) = (row.planner, row.bare);
-        let _ = writeln!(text, "{},{},{planner:.9},{bare:.9},{:.1}", row.space, row.nodes, row.rate());
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -271,8 +236,6 @@ mod tests {
         let rows = measure(&options, |_| seen += 1).unwrap();
         assert_eq!((rows.len(), seen), (2 * SPACES.len(), 2 * SPACES.len()));
         assert!(rows.iter().all(|row| row.planner > 0.0 && row.bare > 0.0));
-        assert_eq!(markdown(&rows).lines().count(), rows.len() + 2);
-        assert_eq!(csv(&rows).lines().count(), rows.len() + 1);
     }
 
     #[test]
