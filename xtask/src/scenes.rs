@@ -65,3 +65,24 @@ fn names_in(folder: &Path) -> Vec<String> {
     names.sort();
     names
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sample_is_found_by_name_by_path_and_without_ending() {
+        let by_name = find(Path::new(SAMPLE)).unwrap();
+        let by_path = find(&Path::new("assets/scenes").join(SAMPLE)).unwrap();
+        assert_eq!(by_name.canonicalize().unwrap(), by_path.canonicalize().unwrap());
+        assert_eq!(find(&by_name).unwrap(), by_name);
+        assert!(names_in(&shipped()).iter().any(|n| n == SAMPLE));
+    }
+
+    #[test]
+    fn a_slip_of_the_finger_is_understood() {
+        let e = find(Path::new("cubicels")).unwrap_err();
+        assert!(e.help().unwrap().to_string().contains("cubicles"), "{e:?}");
+        assert!(find(Path::new("no/such/thing/at/all")).is_err());
+    }
+}
