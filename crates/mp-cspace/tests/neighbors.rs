@@ -284,7 +284,7 @@ proptest! {
         let queries: Vec<_> = queries.iter().map(vector).collect();
         agrees_along(&plane, KdTree::<2>::new(), &points, &queries);
         agrees_along(&plane, MetricTree::new(), &points, &queries);
-        agrees_along(&WithMetric::new(plane, Manhattan), KdTree::<0>::new(), &points, &queries);
+        agrees_along(&WithMetric::new(plane, Manhattan), KdTree::<16>::new(), &points, &queries);
     }
 
     #[test]
@@ -295,7 +295,7 @@ proptest! {
         let space = RnDyn::new(vec![-1.0; 3], vec![1.0; 3]).unwrap();
         let points: Vec<_> = points.into_iter().map(DVector::from_vec).collect();
         let query = [DVector::from_vec(query)];
-        agrees_along(&space, KdTree::<0>::new(), &points, &query);
+        agrees_along(&space, KdTree::<16>::new(), &points, &query);
         agrees_along(&space, MetricTree::new(), &points, &query);
     }
 }

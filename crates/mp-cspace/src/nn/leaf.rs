@@ -1,6 +1,7 @@
 //! The buckets of the trees: `f32` numbers of up to 32 states, structure of arrays.
 
 use super::NodeId;
+use std::collections::BTreeMap;
 
 /// States in a leaf.
 pub(super) const CAP: usize = 32;
@@ -22,10 +23,10 @@ pub(super) struct Extra {
 
 impl Extra {
     /// The states of `ids`, which `first` may be among, beside `first` in lane 0.
-    pub(super) fn beside(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Box<Self>> {
+    pub(super) fn beside(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Self> {
         ids.retain(|&id| id != first);
         ids.sort_unstable();
-        (!ids.is_empty()).then(|| Box::new(Self { ids, same }))
+        (!ids.is_empty()).then_some(Self { ids, same })
     }
 
     /// Adds the state `id`; returns the smallest id, which belongs into lane 0.
@@ -36,49 +37,83 @@ impl Extra {
     }
 }
 
-/// What a leaf holds beside its coordinates.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Leaf {
-    pub(super) len: usize,
-    pub(super) ids: [NodeId; CAP],
-    pub(super) extra: Option<Box<Extra>>,
-}
-
 /// All leaves of a tree.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Leaves {
-    all: Vec<Leaf>,
-    /// `rows` rows of [`CAP`] lanes for each leaf.
+    /// How many states each leaf has, and whether lane 0 has company in `extras`.
+    heads: Vec<Head>,
+    ids: Vec<[NodeId; CAP]>,
+    /// `rows` rows of [`CAP`] lanes for each leaf; not a number where there is no state.
     lanes: Vec<f32>,
+    extras: BTreeMap<usize, Extra>,
     free: Vec<usize>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Head {
+    pub(super) len: u32,
+    pub(super) has_extra: bool,
 }
 
 impl Leaves {
     /// A new empty leaf.
     pub(super) fn alloc(&mut self, rows: usize) -> usize {
-        let leaf = Leaf::default();
         if let Some(i) = self.free.pop() {
-            self.all[i] = leaf;
+            self.clear(i, rows);
             return i;
         }
-        self.all.push(leaf);
-        self.lanes.resize(self.all.len() * rows * CAP, 0.0);
-        self.all.len() - 1
+        self.heads.push(Head::default());
+        self.ids.push([0; CAP]);
+        self.lanes.resize(self.heads.len() * rows * CAP, f32::NAN);
+        self.heads.len() - 1
+    }
+
+    /// Empties leaf `i`.
+    pub(super) fn clear(&mut self, i: usize, rows: usize) {
+        self.take_extra(i);
+        self.heads[i].len = 0;
+        self.lanes[i * rows * CAP..][..rows * CAP].fill(f32::NAN);
     }
 
     /// Takes leaf `i` back.
     pub(super) fn free(&mut self, i: usize) {
-        self.all[i].extra = None;
+        self.take_extra(i);
         self.free.push(i);
     }
 
     #[inline]
-    pub(super) fn get(&self, i: usize) -> &Leaf {
-        &self.all[i]
+    pub(super) fn head(&self, i: usize) -> Head {
+        self.heads[i]
     }
 
-    pub(super) fn get_mut(&mut self, i: usize) -> &mut Leaf {
-        &mut self.all[i]
+    /// The states of leaf `i`, lane by lane.
+    #[inline]
+    pub(super) fn ids(&self, i: usize) -> &[NodeId] {
+        &self.ids[i][..self.heads[i].len as usize]
+    }
+
+    /// The company of lane 0.
+    pub(super) fn extra(&self, i: usize) -> Option<&Extra> {
+        if self.heads[i].has_extra { self.extras.get(&i) } else { None }
+    }
+
+    pub(super) fn take_extra(&mut self, i: usize) -> Option<Extra> {
+        std::mem::take(&mut self.heads[i].has_extra).then(|| self.extras.remove(&i)).flatten()
+    }
+
+    pub(super) fn set_extra(&mut self, i: usize, extra: Option<Extra>) {
+        self.heads[i].has_extra = extra.is_some();
+        if let Some(extra) = extra {
+            self.extras.insert(i, extra);
+        }
+    }
+
+    /// Adds a state to the company of lane 0, which has some.
+    pub(super) fn join(&mut self, i: usize, id: NodeId, same: bool) {
+        if let Some(extra) = self.extras.get_mut(&i) {
+            extra.same &= same;
+            self.ids[i][0] = extra.join(self.ids[i][0], id);
+        }
     }
 
     /// The numbers of leaf `i`: lane `l` of row `d` is at `d * CAP + l`.
@@ -87,21 +122,15 @@ impl Leaves {
         &self.lanes[i * rows * CAP..][..rows * CAP]
     }
 
-    /// Puts a state into a lane.
+    /// Adds a state to a leaf that is not full.
     #[inline]
-    pub(super) fn set(&mut self, i: usize, rows: usize, lane: usize, id: NodeId, x: impl Fn(usize) -> f32) {
-        self.all[i].ids[lane] = id;
+    pub(super) fn push(&mut self, i: usize, rows: usize, id: NodeId, x: impl Fn(usize) -> f32) {
+        let lane = self.heads[i].len as usize;
+        self.heads[i].len += 1;
+        self.ids[i][lane] = id;
         let lanes = &mut self.lanes[i * rows * CAP..][..rows * CAP];
         for d in 0..rows {
             lanes[d * CAP + lane] = x(d);
         }
-    }
-
-    /// Adds a state to a leaf that is not full.
-    #[inline]
-    pub(super) fn push(&mut self, i: usize, rows: usize, id: NodeId, x: impl Fn(usize) -> f32) {
-        let lane = self.all[i].len;
-        self.set(i, rows, lane, id, x);
-        self.all[i].len += 1;
     }
 }

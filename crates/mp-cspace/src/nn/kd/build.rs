@@ -2,7 +2,7 @@
 
 use super::super::NodeId;
 use super::super::leaf::{CAP, Extra, FILL};
-use super::{Inner, KdTree, MAX_DIM, Ref, Weight};
+use super::{Inner, KdTree, Ref, Weight};
 use crate::Embed;
 
 /// The states to build a subtree from.
@@ -12,7 +12,7 @@ pub(super) struct Items {
     /// `dim` coordinates each.
     rows: Vec<f64>,
     ids: Vec<NodeId>,
-    extras: Vec<Option<Box<Extra>>>,
+    extras: Vec<Option<Extra>>,
 }
 
 impl Items {
@@ -20,7 +20,7 @@ impl Items {
         Self { dim, rows: Vec::new(), ids: Vec::new(), extras: Vec::new() }
     }
 
-    pub(super) fn push(&mut self, x: &[f64; MAX_DIM], id: NodeId, extra: Option<Box<Extra>>) {
+    pub(super) fn push(&mut self, x: &[f64], id: NodeId, extra: Option<Extra>) {
         self.rows.extend_from_slice(&x[..self.dim]);
         self.ids.push(id);
         self.extras.push(extra);
@@ -34,14 +34,13 @@ impl Items {
     /// Splits `order` in two parts, neither empty, as evenly as equal coordinates allow: the
     /// coordinate, the value, and the length of the first part.
     fn split(&self, order: &mut [u32]) -> Option<(usize, f64, usize)> {
-        let mut widths = [(0.0, 0); MAX_DIM];
-        for (d, width) in widths[..self.dim].iter_mut().enumerate() {
+        let mut widths = vec![(0.0, 0); self.dim];
+        for (d, width) in widths.iter_mut().enumerate() {
             let (low, high) = order.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &i| {
                 (low.min(self.at(i, d)), high.max(self.at(i, d)))
             });
             *width = (high - low, d);
         }
-        let widths = &mut widths[..self.dim];
         widths.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut best: Option<(usize, f64, usize)> = None;
         for &(_, d) in widths.iter().take_while(|(width, _)| *width > 0.0) {
@@ -95,9 +94,8 @@ impl<const K: usize> KdTree<K> {
                 self.free_inner.push(i);
             }
             Err(leaf) => {
-                let mut extra = self.leaves.get_mut(leaf).extra.take();
-                let head = self.leaves.get(leaf);
-                for &id in &head.ids[..head.len] {
+                let mut extra = self.leaves.take_extra(leaf);
+                for &id in self.leaves.ids(leaf) {
                     items.push(&self.shape.embed(space, &points[id as usize]), id, extra.take());
                 }
                 self.leaves.free(leaf);
@@ -130,7 +128,7 @@ impl<const K: usize> KdTree<K> {
         for &i in order.iter() {
             self.leaves.push(leaf, items.dim, items.ids[i as usize], |d| items.at(i, d) as f32);
         }
-        self.leaves.get_mut(leaf).extra = order.first().and_then(|&i| items.extras[i as usize].take());
+        self.leaves.set_extra(leaf, order.first().and_then(|&i| items.extras[i as usize].take()));
         Ref::leaf(leaf)
     }
 
@@ -152,7 +150,7 @@ impl<const K: usize> KdTree<K> {
         if let Some(&i) = order.first() {
             self.leaves.push(leaf, items.dim, first, |d| items.at(i, d) as f32);
         }
-        self.leaves.get_mut(leaf).extra = Extra::beside(first, ids, same);
+        self.leaves.set_extra(leaf, Extra::beside(first, ids, same));
         Ref::leaf(leaf)
     }
 }

@@ -4,30 +4,31 @@ use super::super::NodeId;
 use super::super::leaf::CAP;
 use super::build::Items;
 use super::shape::Shape;
-use super::{Inner, KdTree, MAX_DIM, Ref, Weight};
+use super::{Inner, KdTree, Ref, Weight};
 use crate::Embed;
 
 impl<const K: usize> KdTree<K> {
     pub(super) fn insert<C: Embed>(&mut self, space: &C, points: &[C::State], id: NodeId) {
         let state = &points[id as usize];
         if self.root.is_none() {
-            self.shape = Shape::new(space, K, state);
+            self.shape = Shape::new(space, state);
         }
         let dim = self.dim();
         let x = self.shape.embed(space, state);
         let [low, high] = &mut self.bounds;
         low.iter_mut().zip(&x).for_each(|(low, x)| *low = low.min(*x));
         high.iter_mut().zip(&x).for_each(|(high, x)| *high = high.max(*x));
+        self.largest = x.iter().fold(self.largest, |largest, x| largest.max(x.abs()));
         let root = match self.root {
             Some(root) => root,
             None => *self.root.insert(Ref::leaf(self.leaves.alloc(dim))),
         };
         let leaf = self.descend(root, &x);
-        let joined = self.leaves.get(leaf).extra.is_some() && self.join(space, points, leaf, id, &x);
+        let joined = self.leaves.head(leaf).has_extra && self.join(space, points, leaf, id, &x);
         if joined {
             return;
         }
-        if self.leaves.get(leaf).len < CAP {
+        if self.leaves.ids(leaf).len() < CAP {
             self.leaves.push(leaf, dim, id, |d| x[d] as f32);
         } else {
             self.split(space, points, leaf, id, &x);
@@ -36,7 +37,7 @@ impl<const K: usize> KdTree<K> {
     }
 
     /// The leaf of `x`; the way there is left in `path`.
-    fn descend(&mut self, root: Ref, x: &[f64; MAX_DIM]) -> usize {
+    fn descend(&mut self, root: Ref, x: &[f64; K]) -> usize {
         self.path.clear();
         let mut r = root;
         loop {
@@ -60,28 +61,19 @@ impl<const K: usize> KdTree<K> {
         points: &[C::State],
         leaf: usize,
         id: NodeId,
-        x: &[f64; MAX_DIM],
+        x: &[f64; K],
     ) -> bool {
-        let first = self.leaves.get(leaf).ids[0] as usize;
-        if self.shape.embed(space, &points[first]) != *x {
+        let Some(&first) = self.leaves.ids(leaf).first() else { return false };
+        let first = &points[first as usize];
+        if self.shape.embed(space, first) != *x {
             return false;
         }
-        let leaf = self.leaves.get_mut(leaf);
-        let Some(extra) = &mut leaf.extra else { return false };
-        extra.same &= points[first] == points[id as usize];
-        leaf.ids[0] = extra.join(leaf.ids[0], id);
+        self.leaves.join(leaf, id, *first == points[id as usize]);
         true
     }
 
     /// Splits a full leaf and adds a state to one of the halves.
-    fn split<C: Embed>(
-        &mut self,
-        space: &C,
-        points: &[C::State],
-        leaf: usize,
-        id: NodeId,
-        x: &[f64; MAX_DIM],
-    ) {
+    fn split<C: Embed>(&mut self, space: &C, points: &[C::State], leaf: usize, id: NodeId, x: &[f64; K]) {
         let r = match self.halve(leaf, id, x) {
             Some(r) => r,
             None => {
@@ -97,7 +89,7 @@ impl<const K: usize> KdTree<K> {
     }
 
     /// The fast way to split: at the median of the widest coordinate, all in `f32`.
-    fn halve(&mut self, leaf: usize, id: NodeId, x: &[f64; MAX_DIM]) -> Option<Ref> {
+    fn halve(&mut self, leaf: usize, id: NodeId, x: &[f64; K]) -> Option<Ref> {
         let dim = self.dim();
         let lanes = self.leaves.lanes(leaf, dim);
         let (mut widest, mut width) = (0, 0.0);
@@ -119,15 +111,16 @@ impl<const K: usize> KdTree<K> {
         // States go where their `f64` coordinate would: above `split` means `b` or more in `f32`.
         let middle = 0.5 * (f64::from(a) + f64::from(b));
         let split = if middle as f32 >= b { middle.next_down() } else { middle };
-        let (row, lanes) = (*row, lanes.to_vec());
+        let (row, lanes, ids) = (*row, lanes.to_vec(), self.leaves.ids(leaf).to_vec());
+        let extra = self.leaves.take_extra(leaf);
         let right = self.leaves.alloc(dim);
-        let old = std::mem::take(self.leaves.get_mut(leaf));
-        for lane in 0..CAP {
+        self.leaves.clear(leaf, dim);
+        for (lane, &id) in ids.iter().enumerate() {
             let to = if row[lane] >= b { right } else { leaf };
-            self.leaves.push(to, dim, old.ids[lane], |d| lanes[d * CAP + lane]);
+            self.leaves.push(to, dim, id, |d| lanes[d * CAP + lane]);
         }
         // Lane 0 stayed lane 0 on its side.
-        self.leaves.get_mut(if row[0] >= b { right } else { leaf }).extra = old.extra;
+        self.leaves.set_extra(if row[0] >= b { right } else { leaf }, extra);
         let to = if x[widest] > split { right } else { leaf };
         self.leaves.push(to, dim, id, |d| x[d] as f32);
         Some(self.new_inner(Inner {

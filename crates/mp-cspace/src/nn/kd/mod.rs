@@ -2,6 +2,7 @@
 
 mod build;
 mod insert;
+mod scan;
 mod search;
 mod shape;
 
@@ -11,8 +12,8 @@ use super::node::{Ref, Weight};
 use super::{Embed, Hit, NearestNeighbors, NodeId};
 use shape::Shape;
 
-/// The most coordinates a tree looks at; a layout's later ones only enter the exact distances.
-const MAX_DIM: usize = 16;
+/// The `K` that stands for a number of coordinates read from the layout, and their maximum.
+const ANY: usize = 16;
 
 /// Splits space: coordinate `dim` is ≤ `split` in the first child and ≥ `split` in the second.
 #[derive(Clone, Copy, Debug)]
@@ -36,18 +37,20 @@ struct Inner {
 /// [`Linear`](super::Linear), to the bit. Symmetries (periods, q ~ −q) are met by searching for
 /// the images of the query.
 ///
-/// `K`, where known at compile time, is the layout's number of coordinates and makes the search
-/// faster; 0 reads it from the layout. With more coordinates than `K` or 16 the index looks at the
-/// first ones only. Queries allocate nothing.
+/// `K` is the layout's number of coordinates, best given where it is known at compile time; 16
+/// stands for any number up to 16. Of more coordinates than `K` the index looks at the first ones
+/// only. Queries allocate nothing, unless there are more than 16 coordinates.
 #[derive(Clone, Debug)]
-pub struct KdTree<const K: usize = 0> {
-    shape: Shape,
+pub struct KdTree<const K: usize = 16> {
+    shape: Shape<K>,
     root: Option<Ref>,
     inner: Vec<Inner>,
     free_inner: Vec<usize>,
     leaves: Leaves,
     /// Bounds of all coordinates, relative to the origin.
-    bounds: [[f64; MAX_DIM]; 2],
+    bounds: [[f64; K]; 2],
+    /// The largest of them.
+    largest: f64,
     /// The inner nodes on the way to the last leaf, and which child was taken.
     path: Vec<(usize, usize)>,
 }
@@ -60,7 +63,8 @@ impl<const K: usize> Default for KdTree<K> {
             inner: Vec::new(),
             free_inner: Vec::new(),
             leaves: Leaves::default(),
-            bounds: [[f64::INFINITY; MAX_DIM], [f64::NEG_INFINITY; MAX_DIM]],
+            bounds: [[f64::INFINITY; K], [f64::NEG_INFINITY; K]],
+            largest: 0.0,
             path: Vec::new(),
         }
     }
@@ -76,7 +80,7 @@ impl<const K: usize> KdTree<K> {
     /// The number of coordinates looked at.
     #[inline]
     fn dim(&self) -> usize {
-        if K == 0 { self.shape.dim } else { K.min(MAX_DIM) }
+        if K == ANY { self.shape.dim } else { K }
     }
 }
 

@@ -1,33 +1,30 @@
 //! The search.
 
 use super::super::collect::Collector;
-use super::super::leaf::{CAP, Extra, WIDE};
-use super::super::{Hit, NodeId};
-use super::{Inner, KdTree, MAX_DIM, Ref};
+use super::{Inner, KdTree, Ref};
 use crate::Embed;
 
-/// One search under way.
-struct Search<'a, C: Embed, L, const K: usize> {
-    tree: &'a KdTree<K>,
-    space: &'a C,
-    points: &'a [C::State],
-    query: &'a C::State,
-    collector: &'a mut L,
+/// One search under way. Distances to cells and lanes are squared.
+pub(super) struct Search<'a, C: Embed, L, const K: usize> {
+    pub(super) tree: &'a KdTree<K>,
+    pub(super) space: &'a C,
+    pub(super) points: &'a [C::State],
+    pub(super) query: &'a C::State,
+    pub(super) collector: &'a mut L,
     /// Coordinates of the image of the query being searched for.
-    q: [f64; MAX_DIM],
-    q32: [f32; MAX_DIM],
+    pub(super) q: [f64; K],
+    pub(super) q32: [f32; K],
     /// Which of the shape's antipodes are negated in it, bit by bit.
-    negated: u32,
-    period32: [f32; MAX_DIM],
+    pub(super) negated: u32,
     /// The current cell, along coordinates with a period.
-    cell: [(f64, f64); MAX_DIM],
+    cell: [(f64, f64); K],
     /// Squared distance of the image from the current cell: by coordinate, and summed by group.
-    off: [f64; MAX_DIM],
-    sums: [f64; MAX_DIM],
-    /// Cells farther than this (squared if there is one group) hold nothing of interest.
+    off: [f64; K],
+    sums: [f64; K],
+    groups: usize,
+    /// Cells farther than this hold nothing of interest, nor do lanes farther than that.
     reach: f64,
-    /// The same for lanes, with the rounding of their coordinates.
-    lane_reach: f32,
+    pub(super) lane_reach: f32,
     /// Bounds on the rounding of cells and of lanes.
     pads: [f64; 2],
 }
@@ -42,58 +39,45 @@ impl<const K: usize> KdTree<K> {
         collector: &mut impl Collector,
     ) {
         let Some(root) = self.root else { return };
+        let q = self.shape.embed(space, query);
+        let largest = q.iter().fold(self.largest, |largest, x| largest.max(x.abs())) * self.dim() as f64;
+        let [low, high] = &self.bounds;
         let mut search = Search {
             tree: self,
             space,
             points,
             query,
             collector,
-            q: self.shape.embed(space, query),
-            q32: [0.0; MAX_DIM],
+            q,
+            q32: [0.0; K],
             negated: 0,
-            period32: self.shape.period.map(|p| p as f32),
-            cell: [(0.0, 0.0); MAX_DIM],
-            off: [0.0; MAX_DIM],
-            sums: [0.0; MAX_DIM],
+            cell: std::array::from_fn(|d| (low[d], high[d])),
+            off: [0.0; K],
+            sums: [0.0; K],
+            groups: self.shape.ends.len(),
             reach: 0.0,
             lane_reach: 0.0,
-            pads: [0.0; 2],
+            pads: [largest * 1e-14, largest * 5e-7],
         };
-        let mut largest = 0.0f64;
-        for d in 0..self.dim() {
-            let (low, high) = (self.bounds[0][d], self.bounds[1][d]);
-            search.cell[d] = (low, high);
-            largest = largest.max(search.q[d].abs()).max(low.abs()).max(high.abs());
-        }
-        largest *= self.dim() as f64;
-        search.pads = [largest * 1e-14, largest * 5e-7];
         search.limit();
         search.images(root, 0);
     }
 }
 
 impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
-    #[inline(always)]
-    fn one_group(&self) -> bool {
-        self.tree.shape.ends.len() <= 1
-    }
-
     /// Reads the limit of the collector.
     #[inline]
-    fn limit(&mut self) {
-        // 1e-7 is what a layout admits.
+    pub(super) fn limit(&mut self) {
+        // 1e-7 is what a layout admits; `f32` arithmetic is off by some 2^-24 per operation, of
+        // which there are some 30.
         let limit = (self.collector.limit() + self.tree.shape.slack) * (1.0 + 1e-7);
-        self.reach = limit + self.pads[0];
-        // `f32` arithmetic is off by some 2^-24 per operation, of which there are some 20.
-        let lane = (limit + self.pads[1]) * (1.0 + 5e-6);
-        self.lane_reach = lane as f32;
-        if self.one_group() {
-            self.reach *= self.reach;
-            self.lane_reach = (lane * lane) as f32 + f32::MIN_POSITIVE;
-        }
         if limit < 0.0 {
             (self.reach, self.lane_reach) = (-1.0, -1.0);
+            return;
         }
+        let (cell, lane) = (limit + self.pads[0], (limit + self.pads[1]) * (1.0 + 5e-6));
+        self.reach = cell * cell;
+        self.lane_reach = (lane * lane) as f32 + f32::MIN_POSITIVE;
     }
 
     /// Searches for every image of the query, antipodes from number `a` on undecided.
@@ -110,20 +94,32 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
 
     /// Searches for the image `q`.
     fn begin(&mut self, root: Ref) {
-        self.sums = [0.0; MAX_DIM];
+        self.sums = [0.0; K];
         for d in 0..self.tree.dim() {
             self.q32[d] = self.q[d] as f32;
             let off = self.distance_along(d, self.cell[d]);
             self.off[d] = off * off;
-            self.sums[usize::from(self.tree.shape.group[d]) & (MAX_DIM - 1)] += off * off;
+            self.sums[self.tree.shape.group[d] as usize] += off * off;
         }
-        let total = if self.one_group() {
-            self.sums[0]
-        } else {
-            self.sums[..self.tree.shape.ends.len()].iter().map(|x| x.sqrt()).sum()
-        };
-        if total <= self.reach {
-            self.visit(root, total);
+        if self.admits() {
+            self.visit(root);
+        }
+    }
+
+    /// Whether the current cell may hold something of interest.
+    #[inline(always)]
+    fn admits(&self) -> bool {
+        match (self.groups, self.sums.as_slice()) {
+            (1, [a, ..]) => *a <= self.reach,
+            (2, [a, b, ..]) => {
+                // √a + √b ≤ √r, without a root.
+                let rest = self.reach - (a + b);
+                4.0 * a * b <= rest * rest.abs()
+            }
+            (n, sums) => {
+                let total: f64 = sums[..n].iter().map(|x| x.max(0.0).sqrt()).sum();
+                total * total <= self.reach
+            }
         }
     }
 
@@ -142,179 +138,47 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         }
     }
 
-    /// Searches the cell of `r`, at distance `total` (squared if there is one group).
-    fn visit(&mut self, r: Ref, total: f64) {
+    /// Searches the current cell, which is that of `r`.
+    fn visit(&mut self, r: Ref) {
         let i = match r.get() {
             Err(leaf) => return self.scan(leaf),
             Ok(i) => i,
         };
         let node = &self.tree.inner[i];
-        let d = node.dim as usize & (MAX_DIM - 1);
+        let d = node.dim as usize;
         if self.tree.shape.period[d] != f64::INFINITY {
-            return self.visit_round(node, d, total);
+            return self.visit_round(node, d);
         }
         let diff = self.q[d] - node.split;
         let near = usize::from(diff > 0.0);
-        self.visit(node.children[near], total);
-        self.visit_at(node.children[1 - near], d, diff * diff, total);
+        self.visit(node.children[near]);
+        self.visit_at(node.children[1 - near], d, diff * diff);
     }
 
     /// Searches a cell like the current one, but for the squared distance along `d`.
     #[inline(always)]
-    fn visit_at(&mut self, r: Ref, d: usize, off: f64, total: f64) {
-        let old = self.off[d];
-        if self.one_group() {
-            let total = total - old + off;
-            if total <= self.reach {
-                self.off[d] = off;
-                self.visit(r, total);
-                self.off[d] = old;
-            }
-        } else {
-            let g = usize::from(self.tree.shape.group[d]) & (MAX_DIM - 1);
-            let sum = self.sums[g];
-            let grown = (sum - old + off).max(0.0);
-            let total = total - sum.sqrt() + grown.sqrt();
-            if total <= self.reach {
-                (self.off[d], self.sums[g]) = (off, grown);
-                self.visit(r, total);
-                (self.off[d], self.sums[g]) = (old, sum);
-            }
+    fn visit_at(&mut self, r: Ref, d: usize, off: f64) {
+        let g = self.tree.shape.group[d] as usize;
+        let (old, sum) = (self.off[d], self.sums[g]);
+        self.sums[g] = sum - old + off;
+        if self.admits() {
+            self.off[d] = off;
+            self.visit(r);
+            self.off[d] = old;
         }
+        self.sums[g] = sum;
     }
 
     /// Searches the children of a node that splits a coordinate with a period.
-    fn visit_round(&mut self, node: &Inner, d: usize, total: f64) {
+    fn visit_round(&mut self, node: &Inner, d: usize) {
         let whole = self.cell[d];
         let cells = [(whole.0, node.split), (node.split, whole.1)];
         let offs = cells.map(|cell| self.distance_along(d, cell));
         let near = usize::from(offs[1] < offs[0]);
         for side in [near, 1 - near] {
             self.cell[d] = cells[side];
-            self.visit_at(node.children[side], d, offs[side] * offs[side], total);
+            self.visit_at(node.children[side], d, offs[side] * offs[side]);
         }
         self.cell[d] = whole;
     }
-
-    fn scan(&mut self, leaf: usize) {
-        let dim = self.tree.dim();
-        let lanes = self.tree.leaves.lanes(leaf, dim);
-        let head = self.tree.leaves.get(leaf);
-        let ends = &self.tree.shape.ends[..];
-        let mut bound = match *ends {
-            [] | [_] => squares(lanes, &self.q32, &self.period32, (0, dim), head.len),
-            _ => {
-                let mut start = 0;
-                let mut bound = [0.0; CAP];
-                for &end in ends {
-                    let s = squares(lanes, &self.q32, &self.period32, (start, end), head.len);
-                    for (b, s) in bound.iter_mut().zip(&s) {
-                        *b += s.sqrt();
-                    }
-                    start = end;
-                }
-                bound
-            }
-        };
-        let len = head.len.min(CAP);
-        bound[len..].fill(f32::INFINITY);
-        if bound.iter().all(|&b| b > self.lane_reach) {
-            return;
-        }
-        let mut start = 0;
-        if let Some(extra) = &head.extra {
-            self.offer_all(head.ids[0], extra);
-            start = 1;
-        }
-        // The nearest first: it spares most of the others.
-        let bound = &mut bound[..len];
-        let mut first = start;
-        for lane in start + 1..len {
-            if bound[lane] < bound[first] {
-                first = lane;
-            }
-        }
-        if first < len {
-            self.offer(head.ids[first]);
-            bound[first] = f32::INFINITY;
-        }
-        for (&bound, &id) in bound.iter().zip(&head.ids).skip(start) {
-            if bound <= self.lane_reach && bound < f32::INFINITY {
-                self.offer(id);
-            }
-        }
-    }
-
-    /// Offers all states that lane 0 stands for.
-    fn offer_all(&mut self, first: NodeId, extra: &Extra) {
-        if !extra.same {
-            return [first].iter().chain(&extra.ids).for_each(|&id| self.offer(id));
-        }
-        if self.is_repeated(first) {
-            return;
-        }
-        let distance = self.space.distance(&self.points[first as usize], self.query);
-        // Equal distances in the order of ids: one that is refused speaks for the rest.
-        let all = [first].into_iter().chain(extra.ids.iter().copied());
-        let _ = all.map(|id| self.collector.offer(Hit { id, distance })).take_while(|taken| *taken).count();
-        self.limit();
-    }
-
-    #[inline]
-    fn offer(&mut self, id: NodeId) {
-        let distance = self.space.distance(&self.points[id as usize], self.query);
-        if !self.is_repeated(id) && self.collector.offer(Hit { id, distance }) {
-            self.limit();
-        }
-    }
-
-    /// Whether another image of the query is the one to find state `id` by.
-    #[inline]
-    fn is_repeated(&self, id: NodeId) -> bool {
-        if L::MAY_REPEAT || self.tree.shape.antipodes.is_empty() {
-            return false;
-        }
-        let x = self.tree.shape.embed(self.space, &self.points[id as usize]);
-        // The nearer of an image and its antipode; of two equally near the original.
-        (0..).zip(&self.tree.shape.antipodes).any(|(a, &(start, end))| {
-            let dot: f64 = (start..end).map(|d| x[d] * self.q[d]).sum();
-            dot < 0.0 || (dot == 0.0 && self.negated >> a & 1 == 1)
-        })
-    }
-}
-
-/// The squared distance of every lane from `q` over the coordinates `start..end`, each the short
-/// way round its period.
-#[inline(always)]
-fn squares(
-    lanes: &[f32],
-    q: &[f32; MAX_DIM],
-    period: &[f32; MAX_DIM],
-    (start, end): (usize, usize),
-    len: usize,
-) -> [f32; CAP] {
-    let mut out = [0.0; CAP];
-    for (w, out) in out.chunks_exact_mut(WIDE).enumerate() {
-        if w * WIDE >= len {
-            break;
-        }
-        let mut sum = [0.0f32; WIDE];
-        for d in start..end.min(MAX_DIM) {
-            let Some(row) = lanes[d * CAP + w * WIDE..].first_chunk::<WIDE>() else { break };
-            if period[d] == f32::INFINITY {
-                for (s, x) in sum.iter_mut().zip(row) {
-                    let t = x - q[d];
-                    *s += t * t;
-                }
-            } else {
-                for (s, x) in sum.iter_mut().zip(row) {
-                    let t = (x - q[d]).abs();
-                    let t = t.min(period[d] - t);
-                    *s += t * t;
-                }
-            }
-        }
-        out.copy_from_slice(&sum);
-    }
-    out
 }

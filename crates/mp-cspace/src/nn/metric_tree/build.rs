@@ -10,13 +10,13 @@ use crate::Space;
 #[derive(Debug, Default)]
 pub(super) struct Items {
     ids: Vec<NodeId>,
-    extras: Vec<Option<Box<Extra>>>,
+    extras: Vec<Option<Extra>>,
     /// Distances to the last ancestors, the one at depth `d` in row `d % ROWS`.
     rows: Vec<[f32; ROWS]>,
 }
 
 impl Items {
-    pub(super) fn push(&mut self, id: NodeId, extra: Option<Box<Extra>>, row: impl FnMut(usize) -> f32) {
+    pub(super) fn push(&mut self, id: NodeId, extra: Option<Extra>, row: impl FnMut(usize) -> f32) {
         self.ids.push(id);
         self.extras.push(extra);
         self.rows.push(std::array::from_fn(row));
@@ -65,12 +65,11 @@ impl MetricTree {
                 self.free_inner.push(i);
             }
             Err(leaf) => {
-                let mut extra = self.leaves.get_mut(leaf).extra.take();
-                let head = self.leaves.get(leaf);
+                let mut extra = self.leaves.take_extra(leaf);
                 let lanes = self.leaves.lanes(leaf, ROWS);
                 // Ancestors between `top` and the leaf have taken the rows of the highest ones.
                 let kept = depth.saturating_sub(ROWS);
-                for (lane, &id) in head.ids[..head.len].iter().enumerate() {
+                for (lane, &id) in self.leaves.ids(leaf).iter().enumerate() {
                     items.push(id, extra.take(), |row| {
                         match (top.saturating_sub(ROWS)..top).find(|d| d % ROWS == row) {
                             Some(d) if d >= kept => lanes[row * CAP + lane],
@@ -161,7 +160,7 @@ impl MetricTree {
             let rows = items.rows[i as usize];
             self.leaves.push(leaf, ROWS, items.ids[i as usize], |row| rows[row]);
         }
-        self.leaves.get_mut(leaf).extra = order.first().and_then(|&i| items.extras[i as usize].take());
+        self.leaves.set_extra(leaf, order.first().and_then(|&i| items.extras[i as usize].take()));
         Ref::leaf(leaf)
     }
 

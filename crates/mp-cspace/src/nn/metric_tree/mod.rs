@@ -18,7 +18,7 @@ const ROWS: usize = 8;
 struct Inner {
     vantage: NodeId,
     /// States equal to the vantage point.
-    twins: Option<Box<Extra>>,
+    twins: Option<Extra>,
     /// New states at most this far go to the first child.
     split: f64,
     /// The least and greatest distance of the states below each child.
@@ -90,7 +90,7 @@ impl MetricTree {
             let vantage = &points[node.vantage as usize];
             let distance = capped(space.distance(vantage, state));
             if distance == 0.0 && vantage == state {
-                let twins = node.twins.get_or_insert_with(|| Box::new(Extra { ids: Vec::new(), same: true }));
+                let twins = node.twins.get_or_insert_with(|| Extra { ids: Vec::new(), same: true });
                 node.vantage = twins.join(node.vantage, id);
                 return Err(());
             }
@@ -109,14 +109,12 @@ impl MetricTree {
             return;
         }
         let Ok(leaf) = self.descend(space, points, id) else { return };
-        let head = self.leaves.get_mut(leaf);
-        if let Some(extra) = &mut head.extra
-            && points[head.ids[0] as usize] == *state
-        {
-            head.ids[0] = extra.join(head.ids[0], id);
+        let ids = self.leaves.ids(leaf);
+        if self.leaves.head(leaf).has_extra && points[ids[0] as usize] == *state {
+            self.leaves.join(leaf, id, true);
             return;
         }
-        if head.len < CAP {
+        if ids.len() < CAP {
             let mut rows = [0.0; ROWS];
             for (depth, step) in self.path.iter().enumerate() {
                 rows[depth % ROWS] = step.distance as f32;

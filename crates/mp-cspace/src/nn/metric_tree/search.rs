@@ -46,7 +46,7 @@ impl<C: Space, L: Collector> Search<'_, C, L> {
             Ok(i) => i,
         };
         let node = &self.tree.inner[i];
-        let distance = capped(self.offer(node.vantage, node.twins.as_deref()));
+        let distance = capped(self.offer(node.vantage, node.twins.as_ref()));
         let row = depth % ROWS;
         let saved = std::mem::replace(&mut self.rows[row], distance as f32);
         self.largest = self.largest.max(distance);
@@ -67,14 +67,16 @@ impl<C: Space, L: Collector> Search<'_, C, L> {
 
     fn scan(&mut self, leaf: usize) {
         let lanes = self.tree.leaves.lanes(leaf, ROWS);
-        let head = self.tree.leaves.get(leaf);
-        let len = head.len.min(CAP);
+        let ids = self.tree.leaves.ids(leaf);
+        let len = ids.len();
         let mut bounds = differences(lanes, &self.rows, len);
         let bounds = &mut bounds[..len];
         let mut reach = self.reach();
         let mut start = 0;
-        if head.extra.is_some() && bounds.first().is_some_and(|&b| b <= reach) {
-            self.offer(head.ids[0], head.extra.as_deref());
+        if let Some(extra) = self.tree.leaves.extra(leaf)
+            && bounds[0] <= reach
+        {
+            self.offer(ids[0], Some(extra));
             start = 1;
         }
         // The most promising first: it may spare the others.
@@ -85,11 +87,11 @@ impl<C: Space, L: Collector> Search<'_, C, L> {
             }
         }
         if first < len && bounds[first] <= reach {
-            self.offer(head.ids[first], None);
+            self.offer(ids[first], None);
             bounds[first] = f32::NAN;
             reach = self.reach();
         }
-        for (&bound, &id) in bounds.iter().zip(&head.ids).skip(start) {
+        for (&bound, &id) in bounds.iter().zip(ids).skip(start) {
             if bound <= reach {
                 self.offer(id, None);
                 reach = self.reach();

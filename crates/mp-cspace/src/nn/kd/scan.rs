@@ -1,0 +1,167 @@
+//! The search of one leaf: `f32` lower bounds for 32 states at a time, then the metric itself for
+//! those that pass.
+
+use super::super::collect::Collector;
+use super::super::leaf::{CAP, Extra, WIDE};
+use super::super::{Hit, NodeId};
+use super::search::Search;
+use crate::Embed;
+
+impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
+    /// Offers the states of a leaf that pass the filter.
+    #[inline(never)]
+    pub(super) fn scan(&mut self, leaf: usize) {
+        let (dim, reach) = (self.tree.dim(), self.lane_reach);
+        let lanes = self.tree.leaves.lanes(leaf, dim);
+        // Lanes without a state are not a number, for which no comparison holds.
+        match *self.tree.shape.ends.as_slice() {
+            [] | [_] => {
+                let squares = self.squares(lanes, 0, dim);
+                let least = least(&squares);
+                if least <= reach {
+                    self.take(leaf, squares, least);
+                }
+            }
+            [end, _] => {
+                let (a, b) = (self.squares(lanes, 0, end), self.squares(lanes, end, dim));
+                // √a + √b ≤ √r is 4ab ≤ (r − a − b)² with r − a − b ≥ 0: no root for most.
+                let r = reach * (1.0 + 2e-6);
+                let excess = pairs(&a, &b, |a, b| {
+                    let rest = r - (a + b);
+                    4.0 * a * b - rest * rest.abs()
+                });
+                if least(&excess) <= 0.0 {
+                    let bounds = pairs(&a, &b, |a, b| a + b + 2.0 * (a * b).sqrt());
+                    self.take(leaf, bounds, least(&bounds));
+                }
+            }
+            ref ends => {
+                let mut start = 0;
+                let mut sums = [0.0; CAP];
+                for &end in ends {
+                    sums = pairs(&sums, &self.squares(lanes, start, end), |sum, x| sum + x.sqrt());
+                    start = end;
+                }
+                let bounds = sums.map(|sum| sum * sum);
+                let least = least(&bounds);
+                if least <= reach {
+                    self.take(leaf, bounds, least);
+                }
+            }
+        }
+    }
+
+    /// The squared distance of every lane from the image over the coordinates `start..end`, each
+    /// the short way round its period.
+    #[inline(always)]
+    fn squares(&self, lanes: &[f32], start: usize, end: usize) -> [f32; CAP] {
+        let mut out = [0.0; CAP];
+        for (w, out) in out.chunks_exact_mut(WIDE).enumerate() {
+            let mut sum = [0.0f32; WIDE];
+            for d in start..end {
+                let Some(row) = lanes[d * CAP + w * WIDE..].first_chunk::<WIDE>() else { break };
+                let (q, period) = (self.q32[d], self.tree.shape.period[d]);
+                if period == f64::INFINITY {
+                    for (s, x) in sum.iter_mut().zip(row) {
+                        let t = x - q;
+                        *s += t * t;
+                    }
+                } else {
+                    let period = period as f32;
+                    for (s, x) in sum.iter_mut().zip(row) {
+                        let t = (x - q).abs();
+                        let round = period - t;
+                        let t = if round < t { round } else { t };
+                        *s += t * t;
+                    }
+                }
+            }
+            out.copy_from_slice(&sum);
+        }
+        out
+    }
+
+    /// Offers the states of a leaf whose bound is small enough, the one with the `least` first: it
+    /// spares most of the others.
+    fn take(&mut self, leaf: usize, mut bounds: [f32; CAP], least_bound: f32) {
+        let ids = self.tree.leaves.ids(leaf);
+        if let Some(extra) = self.tree.leaves.extra(leaf)
+            && bounds[0] <= self.lane_reach
+        {
+            self.offer_all(ids[0], extra);
+            bounds[0] = f32::NAN;
+        }
+        if let Some(first) = bounds.iter().position(|&b| b == least_bound) {
+            self.offer(ids[first]);
+            bounds[first] = f32::NAN;
+        }
+        if least(&bounds) <= self.lane_reach {
+            for (&bound, &id) in bounds.iter().zip(ids) {
+                if bound <= self.lane_reach {
+                    self.offer(id);
+                }
+            }
+        }
+    }
+
+    /// Offers all states that lane 0 stands for.
+    fn offer_all(&mut self, first: NodeId, extra: &Extra) {
+        if !extra.same {
+            return [first].iter().chain(&extra.ids).for_each(|&id| self.offer(id));
+        }
+        if self.is_repeated(first) {
+            return;
+        }
+        let distance = self.space.distance(&self.points[first as usize], self.query);
+        // Equal distances in the order of ids: one that is refused speaks for the rest.
+        let mut all = [first].into_iter().chain(extra.ids.iter().copied());
+        let _ = all.all(|id| self.collector.offer(Hit { id, distance }));
+        self.limit();
+    }
+
+    #[inline]
+    fn offer(&mut self, id: NodeId) {
+        let distance = self.space.distance(&self.points[id as usize], self.query);
+        if !self.is_repeated(id) && self.collector.offer(Hit { id, distance }) {
+            self.limit();
+        }
+    }
+
+    /// Whether another image of the query is the one to find state `id` by.
+    #[inline]
+    fn is_repeated(&self, id: NodeId) -> bool {
+        if L::MAY_REPEAT || self.tree.shape.antipodes.is_empty() {
+            return false;
+        }
+        let x = self.tree.shape.embed(self.space, &self.points[id as usize]);
+        // The nearer of an image and its antipode; of two equally near the original.
+        (0..).zip(&self.tree.shape.antipodes).any(|(a, &(start, end))| {
+            let dot: f64 = (start..end).map(|d| x[d] * self.q[d]).sum();
+            dot < 0.0 || (dot == 0.0 && self.negated >> a & 1 == 1)
+        })
+    }
+}
+
+/// `f` of every pair.
+#[inline(always)]
+fn pairs(a: &[f32; CAP], b: &[f32; CAP], f: impl Fn(f32, f32) -> f32) -> [f32; CAP] {
+    let mut out = [0.0; CAP];
+    for ((out, &a), &b) in out.iter_mut().zip(a).zip(b) {
+        *out = f(a, b);
+    }
+    out
+}
+
+/// The least of all that are numbers.
+#[inline(always)]
+fn least(all: &[f32; CAP]) -> f32 {
+    const LANES: usize = 8;
+    let less = |a: f32, b: f32| if a < b { a } else { b };
+    let mut columns = [f32::INFINITY; LANES];
+    for row in all.chunks_exact(LANES) {
+        for (column, &x) in columns.iter_mut().zip(row) {
+            *column = less(x, *column);
+        }
+    }
+    columns.into_iter().fold(f32::INFINITY, |least, x| less(x, least))
+}
