@@ -1,7 +1,71 @@
-//! Motion planning in Rust: the facade over the layered `mp-*` crates.
+//! Motion planning in Rust: one name for the layered `mp-*` crates, each of which can be used alone.
+//!
+//! | crate | what it holds |
+//! |---|---|
+//! | [`geom`] | triangle meshes, primitives, poses, boxes and spheres around things |
+//! | [`collide`] | exact collision and distance between meshes |
+//! | [`cspace`] | spaces, metrics, samplers, motion checks, neighbours, paths: the traits |
+//! | [`robot`] | what a configuration places where, and when it is free |
+//! | [`tree`] | the RRT family |
+//! | [`io`] | meshes, scenes, problems and paths in files |
+//!
+//! # A tour
+//! A body that must pass a window, from nothing to a verified path:
+//!
+//! ```
+//! use mp::geom::primitives::cuboid;
+//! use mp::prelude::*;
+//! use nalgebra::Isometry3;
+//!
+//! // 1. A robot among obstacles: four slabs that leave a window of 2 m by 2 m in the plane x = 0.
+//! let slab = |name: &str, size: [f64; 3], at: [f64; 3]| {
+//!     let mesh = cuboid(size[0], size[1], size[2])?;
+//!     Ok::<_, mp::geom::PrimitiveError>((name.to_owned(), mesh, Isometry3::translation(at[0], at[1], at[2])))
+//! };
+//! let obstacles = [
+//!     slab("below", [0.2, 8.0, 3.0], [0.0, 0.0, -2.5])?,
+//!     slab("above", [0.2, 8.0, 3.0], [0.0, 0.0, 2.5])?,
+//!     slab("left", [0.2, 3.0, 2.0], [0.0, 2.5, 0.0])?,
+//!     slab("right", [0.2, 3.0, 2.0], [0.0, -2.5, 0.0])?,
+//! ];
+//! let robot = FreeFlyer::new(&cuboid(1.0, 0.5, 0.5)?, obstacles)?;
+//!
+//! // 2. Its space: positions within bounds (metres), all rotations.
+//! let space = Se3::new([-4.0; 3], [4.0; 3])?;
+//!
+//! // 3. How motions are checked while planning, and how a finished path is proved.
+//! let tolerance = robot.tolerance();
+//! let verifier = Verifier::new(&space, &robot)?;
+//! let local = Straight::new(&space, Certified::new(&space, robot, tolerance)?);
+//!
+//! // 4. A planner, a budget, a seed.
+//! let (start, goal) = (Isometry3::translation(-3.0, 2.0, 2.0), Isometry3::translation(3.0, -2.0, -2.0));
+//! let problem = Problem::new(&space, local, verifier, start, Goals::states([goal]))?;
+//! let mut planner = RrtConnect::new(problem, Tuning::default())?;
+//! let Outcome::Solved(path) = planner.solve(&mut Rng::seed(1), &mut Iterations(100_000), &mut ()) else {
+//!     panic!("no path within the budget");
+//! };
+//! assert_eq!(path.states.first(), Some(&start));
+//! assert_eq!(path.states.last(), Some(&goal));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Scenes from files are [`io::Problem`]s; `examples/scene.rs` plans on one. The command line
+//! (`cargo xtask plan`) does the same with shortening, pictures and a report.
+
 pub use mp_collide as collide;
 pub use mp_cspace as cspace;
 pub use mp_geom as geom;
 pub use mp_io as io;
 pub use mp_robot as robot;
 pub use mp_tree as tree;
+
+/// What most programs need.
+pub mod prelude {
+    pub use mp_cspace::{
+        Certified, Discrete, Goal, Iterations, LocalPlanner, Metric, MotionCheck, MotionValidity, Outcome,
+        Path, Planner, Resolution, Rn, Rng, Sampler, Se2, Se3, Space, Stop, Straight, Validity,
+    };
+    pub use mp_robot::{FreeFlyer, PlanarFlyer, PointRobot, Verifier};
+    pub use mp_tree::{Goals, Problem, Rrt, RrtConnect, Tuning};
+}
