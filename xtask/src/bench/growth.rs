@@ -47,16 +47,19 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
             None => Vec::new(),
         };
         for row in rows {
-            let peer = theirs.iter().find(|t| t.nodes >= row.nodes && t.nodes < row.nodes + row.nodes / 10);
-            let peer = peer.map(|t| t.avg_nodes_per_s);
+            // Where it ran out of time, its rate at the size it reached: no less than it would be here.
+            let peer = theirs.iter().find(|t| t.nodes >= row.nodes).or(theirs.last());
             note(&format!("{} {}: {:.0} nodes/s", row.space, row.nodes, row.rate()));
             table.rows.push(vec![
                 row.space.clone(),
                 row.nodes.to_string(),
                 format!("{:.0}", row.rate()),
                 format!("{:.0}", row.nodes as f64 / row.bare),
-                peer.map_or("–".into(), |p| format!("{p:.0}")),
-                peer.map_or("–".into(), |p| format!("{:.1}", row.rate() / p)),
+                peer.map_or("–".into(), |p| match p.nodes < row.nodes {
+                    true => format!("{:.0} (at {})", p.avg_nodes_per_s, p.nodes),
+                    false => format!("{:.0}", p.avg_nodes_per_s),
+                }),
+                peer.map_or("–".into(), |p| format!("{:.1}", row.rate() / p.avg_nodes_per_s)),
             ]);
         }
     }
