@@ -32,7 +32,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Complains early about a path that [`write`] will not be able to write.
+/// Complains early about a path that [`write()`] will not be able to write.
 pub(crate) fn writable(path: &Path) -> Result<()> {
     if path.is_dir() {
         return Err(miette!(help = "name a file", "{} is a folder", path.display()));

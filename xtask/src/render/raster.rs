@@ -94,7 +94,7 @@ pub(crate) fn line(
     stroke((camera.width, camera.height), camera.project(&a), camera.project(&b), half, fragment);
 }
 
-/// As [`line`], between points of the picture.
+/// As [`line()`], between points of the picture.
 pub(crate) fn stroke(
     (width, height): (usize, usize),
     a: Projected,
