@@ -61,6 +61,11 @@ pub(crate) struct BroadPhase {
 }
 
 impl BroadPhase {
+    /// Whether there is no box.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.root.is_none()
+    }
+
     /// Adds a box; returns the handle to remove it by.
     pub(crate) fn insert(&mut self, item: u32, bounds: Bounds) -> usize {
         let leaf = self.allocate(Node { bounds, parent: None, content: Content::Leaf(item), height: 0 });

@@ -2,7 +2,7 @@
 //!
 //! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses.
-//! * [`Scene`]: many named bodies with a broad phase and allowed pairs.
+//! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
 //!
@@ -62,5 +62,5 @@ pub mod triangle;
 
 pub use mesh::CollisionMesh;
 pub use query::{Counters, Query, Separation};
-pub use scene::{Body, BodyId, Contact, Scene, SceneError};
+pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};
 pub use simd::Isa;

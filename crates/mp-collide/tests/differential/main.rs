@@ -6,5 +6,6 @@ mod meshes;
 mod parry;
 mod properties;
 mod referee;
+mod scene_model;
 mod scenes;
 mod triangles;
