@@ -61,11 +61,6 @@ impl Relative {
         [self.point(&triangle[0]), self.point(&triangle[1]), self.point(&triangle[2])]
     }
 
-    /// The pose of `a` in the frame of `b`, to rounding.
-    pub(crate) fn inverse(&self) -> Self {
-        let rotation = self.rotation.transpose();
-        Self { rotation, translation: -(rotation * self.translation), slack: self.slack }
-    }
 
     /// A box of `b` in the frame of `a`.
     pub(crate) fn obb(&self, obb: &Obb) -> Obb {

@@ -9,7 +9,7 @@ use crate::simd::Lanes;
 /// A rigid motion in `f32`, between centred frames.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
-    r: [[f32; 3]; 3],
+    pub(crate) r: [[f32; 3]; 3],
     t: [f32; 3],
 }
 
@@ -22,6 +22,16 @@ pub(crate) struct Placed {
 }
 
 impl Placed {
+    /// A box in the frame of its own tree, moved there so that its centre is the origin.
+    #[inline(always)]
+    pub(crate) fn at_origin(b: &Obb) -> Self {
+        let mut frame = b.frame;
+        for row in &mut frame {
+            row[0] = 0.0;
+        }
+        Self { frame, half: b.half }
+    }
+
     /// Axis `k` in every lane.
     #[inline(always)]
     pub(crate) fn axis<L: Lanes>(&self, k: usize) -> [L; 3] {
@@ -30,6 +40,16 @@ impl Placed {
 }
 
 impl Frame {
+    /// As [`Frame::place`], with the centre of the box at a place already known.
+    #[inline(always)]
+    pub(crate) fn place_at(&self, b: &Obb, center: [f32; 3]) -> Placed {
+        let mut placed = self.place(b);
+        for i in 0..3 {
+            placed.frame[i][0] = center[i];
+        }
+        placed
+    }
+
     fn new(r: &Matrix3<f64>, t: &Vector3<f64>) -> Self {
         Self {
             r: std::array::from_fn(|i| std::array::from_fn(|j| r[(i, j)] as f32)),
@@ -58,15 +78,13 @@ impl Frame {
 pub(crate) struct Frames {
     /// From the frame of `b` into that of `a`: the motion the contract speaks of.
     pub(crate) exact: Relative,
-    /// The way back; only for filters.
-    pub(crate) back: Relative,
     /// From centred `b` to centred `a`, and back.
     pub(crate) into_a: Frame,
     pub(crate) into_b: Frame,
     /// Boxes are apart only when the gap exceeds this (metres): [`PAD`], and the rounding of the triangles
     /// themselves in `f64`, which outweighs it far from the origin of a mesh.
     pub(crate) pad: f32,
-    /// That rounding alone (metres), for triangles carried by `back`.
+    /// That rounding alone (metres).
     pub(crate) slack: f32,
     /// Distance of the two centres.
     pub(crate) apart: f64,
@@ -84,13 +102,11 @@ impl Frames {
     pub(crate) fn new(a: &Tree, b: &Tree, exact: &Relative) -> Self {
         let r = exact.rotation;
         let shift = exact.point(&b.center) - a.center;
-        let back = exact.inverse();
         let shift_back = r.tr_mul(&shift) * -1.0;
         let apart = shift.norm();
         let pad = PAD * (a.radius_center + b.radius_center + apart) + exact.slack;
         Self {
             exact: *exact,
-            back,
             into_a: Frame::new(&r, &shift),
             into_b: Frame::new(&r.transpose(), &shift_back),
             pad: (pad * (1.0 + 1e-6)) as f32,

@@ -1,8 +1,8 @@
 //! Do two trees meet?
 
 use super::boxes::touching;
-use super::frames::{Frame, Frames};
-use super::leaves::{Block, near_box};
+use super::frames::{Frame, Frames, Placed};
+use super::leaves::{Meeting, Near, Verdict, corners, near_box};
 use super::{LEAF, Leaf, Node, Tree};
 use crate::query::Counters;
 use crate::simd::{Kernel, Lanes, prefetch};
@@ -98,48 +98,40 @@ fn leaf_pair<L: Lanes>(
     counters: &mut Counters,
 ) -> Option<(usize, usize)> {
     let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
-    let mask_a = near_box::<L>(a, leaf_a, &frames.into_a.place(&b.leaf_boxes[j]), frames.pad);
+    let near = Near::new(leaf_a, leaf_b, frames);
+    let corners_a = corners::<L>(leaf_a);
+    let box_b = frames.into_a.place_at(&b.leaf_boxes[j], near.shift);
+    let mask_a = near_box(&corners_a, leaf_a.edge, &box_b, &near, frames.pad) & leaf_a.all();
     if mask_a == 0 {
         return None;
     }
-    let mask_b = near_box::<L>(b, leaf_b, &frames.into_b.place(&a.leaf_boxes[i]), frames.pad);
+    let corners_b = near.carry::<L>(leaf_b, frames);
+    let box_a = Placed::at_origin(&a.leaf_boxes[i]);
+    let mask_b = near_box(&corners_b, leaf_b.edge, &box_a, &near, frames.pad) & leaf_b.all();
     if mask_b == 0 {
         return None;
     }
     // The fewer, one by one, against the more at once.
-    if mask_b.count_ones() <= mask_a.count_ones() {
-        let block = Block::<L>::new(leaf_a);
-        let mut singles = mask_b;
-        while singles != 0 {
-            let l = leaf_b.first as usize + singles.trailing_zeros() as usize;
-            singles &= singles - 1;
-            let single = frames.exact.triangle(&b.triangles[l]);
-            counters.triangle_tests += 1;
-            let mut meet = block.may_meet(&single, mask_a, 0.0);
-            while meet != 0 {
-                let k = leaf_a.first as usize + meet.trailing_zeros() as usize;
-                meet &= meet - 1;
-                if intersect(&a.triangles[k], &single) {
-                    return Some((k, l));
-                }
-            }
-        }
+    let swap = mask_b.count_ones() > mask_a.count_ones();
+    let (meeting, mut singles, mask) = if swap {
+        (Meeting::new(&corners_b, leaf_b.edge, &corners_a, leaf_a.edge, &near), mask_a, mask_b)
     } else {
-        let block = Block::<L>::new(leaf_b);
-        let mut singles = mask_a;
-        while singles != 0 {
-            let k = leaf_a.first as usize + singles.trailing_zeros() as usize;
-            singles &= singles - 1;
-            let single = frames.back.triangle(&a.triangles[k]);
-            counters.triangle_tests += 1;
-            let mut meet = block.may_meet(&single, mask_b, frames.slack);
-            while meet != 0 {
-                let l = leaf_b.first as usize + meet.trailing_zeros() as usize;
-                meet &= meet - 1;
-                if intersect(&a.triangles[k], &frames.exact.triangle(&b.triangles[l])) {
-                    return Some((k, l));
-                }
+        (Meeting::new(&corners_a, leaf_a.edge, &corners_b, leaf_b.edge, &near), mask_b, mask_a)
+    };
+    let (first_a, first_b) = (leaf_a.first as usize, leaf_b.first as usize);
+    while singles != 0 {
+        let single = singles.trailing_zeros() as usize;
+        singles &= singles - 1;
+        counters.triangle_tests += 1;
+        let Verdict { mut maybe, sure } = meeting.of(single, mask);
+        while maybe != 0 {
+            let lane = maybe.trailing_zeros() as usize;
+            let (k, l) = if swap { (single, lane) } else { (lane, single) };
+            let (k, l) = (first_a + k, first_b + l);
+            if sure & (1 << lane) != 0 || intersect(&a.triangles[k], &frames.exact.triangle(&b.triangles[l])) {
+                return Some((k, l));
             }
+            maybe &= maybe - 1;
         }
     }
     None

@@ -1,51 +1,19 @@
-//! Eight triangles against a box, and against one triangle: filters that never lose a pair that meets.
+//! Eight triangles against a box, and against eight others: filters that never lose a pair that meets, and
+//! never find one that does not.
 
 use super::boxes::{cross, dot, sub};
-use super::frames::Placed;
-use super::{Leaf, Tree};
+use super::frames::{Frames, Placed};
+use super::{Lane, Leaf, WIDTH};
 use crate::simd::Lanes;
-use crate::triangle::Triangle;
 
 /// Added to every margin: products of lengths so small that they underflow decide nothing.
 const TINY: f32 = 1e-34;
 
-/// The inverse of u = 2⁻²⁴, the relative rounding of `f32`.
-const INVERSE_U: f32 = 16_777_216.0;
-
-/// The triangles of `leaf` (of `tree`) that may come within `margin` of box `q`: axes of the box, then
-/// the normals of the triangles.
-#[inline(always)]
-pub(crate) fn near_box<L: Lanes>(tree: &Tree, leaf: &Leaf, q: &Placed, margin: f32) -> u32 {
-    let c: [f32; 3] = three!(i => q.frame[i][0] - (leaf.center[i] - tree.center[i]) as f32);
-    let c = [L::splat(c[0]), L::splat(c[1]), L::splat(c[2])];
-    let v = corners::<L>(leaf);
-    let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
-    let mut mask = !0;
-    for k in 0..3 {
-        let u = q.axis::<L>(k);
-        let (x, y, z) = (dot(&u, &d[0]), dot(&u, &d[1]), dot(&u, &d[2]));
-        let reach = q.half[k] + margin;
-        mask &= x.min(y).min(z).le(L::splat(reach)) & L::splat(-reach).le(x.max(y).max(z));
-    }
-    mask &= (1 << leaf.count) - 1;
-    if mask == 0 {
-        return 0;
-    }
-    let n = cross(&sub(&v[1], &v[0]), &sub(&v[2], &v[0]));
-    let height = dot(&n, &d[0]);
-    // The normal is no longer than edge², and wrong by about 4u·(edge + magnitude)·edge.
-    let edge = leaf.edge;
-    let size = leaf.magnitude + q.half[0] + q.half[1] + q.half[2] + margin;
-    let mut reach = L::splat(edge * (edge * margin + 2e-6 * (edge + leaf.magnitude) * size) + TINY);
-    for k in 0..3 {
-        let u = q.axis::<L>(k);
-        reach = dot(&n, &u).abs().mul_add(L::splat(q.half[k]), reach);
-    }
-    mask & height.abs().le(reach)
-}
+/// Corners of eight triangles: `[k][d]` is coordinate `d` of corner `k`.
+pub(crate) type Corners<L> = [[L; 3]; 3];
 
 #[inline(always)]
-pub(crate) fn corners<L: Lanes>(leaf: &Leaf) -> [[L; 3]; 3] {
+pub(crate) fn corners<L: Lanes>(leaf: &Leaf) -> Corners<L> {
     let c = &leaf.corner;
     [
         [L::load(&c[0][0]), L::load(&c[0][1]), L::load(&c[0][2])],
@@ -54,94 +22,270 @@ pub(crate) fn corners<L: Lanes>(leaf: &Leaf) -> [[L; 3]; 3] {
     ]
 }
 
-/// What one triangle after another is tested against: the triangles of a leaf with their normals.
-pub(crate) struct Block<L> {
-    v: [[L; 3]; 3],
-    f: [[L; 3]; 3],
-    n: [L; 3],
-    center: [f64; 3],
-    magnitude: f32,
-    edge: f32,
+/// Two leaves in the frame of the first, its origin moved to that leaf's centre, and how wrong `f32` makes
+/// what is computed there.
+///
+/// With u = 2⁻²⁴ and `g` the largest length around (coordinates of the first, distances of corners of the
+/// second from its centre, coordinates of that centre), a carried coordinate is wrong by u·√3·g for each
+/// rounding of corner and rotation and for up to six sums, and by u·g for that of the shift: less than
+/// 16u·g. `wrong` bounds that, and the rounding in `f64` of the triangles that the contract speaks of.
+pub(crate) struct Near {
+    /// Centre of the second leaf.
+    pub(crate) shift: [f32; 3],
+    g: f32,
+    wrong: f32,
 }
 
-impl<L: Lanes> Block<L> {
+impl Near {
     #[inline(always)]
-    pub(crate) fn new(leaf: &Leaf) -> Self {
-        let v = corners::<L>(leaf);
-        let f = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
-        let n = cross(&f[0], &f[1]);
-        Self { v, f, n, center: leaf.center, magnitude: leaf.magnitude, edge: leaf.edge }
+    pub(crate) fn new(a: &Leaf, b: &Leaf, frames: &Frames) -> Self {
+        let center = frames.exact.point(&b.center.into());
+        let shift = three!(d => (center[d] - a.center[d]) as f32);
+        let far = shift[0].abs().max(shift[1].abs()).max(shift[2].abs());
+        let g = a.magnitude.max(b.magnitude * 1.733).max(far);
+        Self { shift, g, wrong: 1e-6 * g + frames.slack }
     }
 
-    /// The triangles of the block that may meet `triangle`, given in the frame of the block's mesh and wrong
-    /// by up to `slack` (metres) there.
-    ///
-    /// Planes first, then the nine signed volumes of pairs of edges. With corners wrong by u·`g` (`g` the
-    /// largest coordinate, u = 2⁻²⁴) and edges no longer than `e` and `f`, a volume
-    /// (p − v)·(e × f) is wrong by at most 2u·g·w·(e + f) + 4u·g·e·f for the corners, with
-    /// w ≤ 2√3·g the distance of the corners, and 6u·w·e·f for the arithmetic.
+    /// The triangles of the second leaf.
     #[inline(always)]
-    pub(crate) fn may_meet(&self, triangle: &Triangle, mask: u32, slack: f32) -> u32 {
-        let c = &self.center;
-        let p: [[f32; 3]; 3] = three!(k => {
-            [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
-        });
-        let mut g = self.magnitude;
-        for corner in &p {
-            g = g.max(corner[0].abs()).max(corner[1].abs()).max(corner[2].abs());
+    pub(crate) fn carry<L: Lanes>(&self, b: &Leaf, frames: &Frames) -> Corners<L> {
+        let v = corners::<L>(b);
+        let r = &frames.into_a.r;
+        three!(k => three!(d => {
+            let x = v[k][2].mul_add(L::splat(r[d][2]), L::splat(self.shift[d]));
+            v[k][0].mul_add(L::splat(r[d][0]), v[k][1].mul_add(L::splat(r[d][1]), x))
+        }))
+    }
+}
+
+/// The triangles (with edges up to `edge` long) that may come within `margin` of box `q`, all in the frame of
+/// `near`: axes of the box, then the normals of the triangles.
+#[inline(always)]
+pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed, near: &Near, margin: f32) -> u32 {
+    let c = [L::splat(q.frame[0][0]), L::splat(q.frame[1][0]), L::splat(q.frame[2][0])];
+    let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
+    let margin = margin + 2.0 * near.wrong;
+    let mut mask = !0;
+    for k in 0..3 {
+        let u = q.axis::<L>(k);
+        let (x, y, z) = (dot(&u, &d[0]), dot(&u, &d[1]), dot(&u, &d[2]));
+        let reach = q.half[k] + margin;
+        mask &= x.min(y).min(z).le(L::splat(reach)) & L::splat(-reach).le(x.max(y).max(z));
+    }
+    if mask == 0 {
+        return 0;
+    }
+    let n = cross(&sub(&v[1], &v[0]), &sub(&v[2], &v[0]));
+    let height = dot(&n, &d[0]);
+    // The normal is no longer than edge², and wrong by some (7·wrong + 5u·edge)·edge; corners not ruled out
+    // are no farther from the centre of the box than `size`.
+    let size = 2.0 * edge + q.half[0] + q.half[1] + q.half[2] + margin;
+    let mut reach = L::splat(edge * (edge * margin + (16.0 * near.wrong + 1e-6 * edge) * size) + TINY);
+    for k in 0..3 {
+        let u = q.axis::<L>(k);
+        reach = dot(&n, &u).abs().mul_add(L::splat(q.half[k] * (1.0 + 1e-6)), reach);
+    }
+    mask & height.abs().le(reach)
+}
+
+/// Eight triangles with what sides and volumes are computed from.
+struct Eight<L> {
+    corner: Corners<L>,
+    edge: Corners<L>,
+    /// Corner × edge: with the edge, Plücker's coordinates of the line.
+    moment: Corners<L>,
+    normal: [L; 3],
+    /// Normal · corner.
+    height: L,
+}
+
+impl<L: Lanes> Eight<L> {
+    #[inline(always)]
+    fn new(v: &Corners<L>) -> Self {
+        let edge = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
+        let normal = cross(&edge[0], &edge[1]);
+        Self {
+            corner: *v,
+            moment: three!(k => cross(&v[k], &edge[k])),
+            edge,
+            height: dot(&normal, &v[0]),
+            normal,
         }
-        // A corner wrong by `slack` too is as wrong as one rounded at this size.
-        g += slack * INVERSE_U;
-        let s: [[L; 3]; 3] = three!(k => [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
+    }
+
+    #[inline(always)]
+    fn store(&self) -> Stored {
+        let lanes = |v: &Corners<L>| three!(k => three!(d => lane(v[k][d])));
+        Stored {
+            corner: lanes(&self.corner),
+            edge: lanes(&self.edge),
+            moment: lanes(&self.moment),
+            normal: three!(d => lane(self.normal[d])),
+            height: lane(self.height),
+        }
+    }
+}
+
+#[inline(always)]
+fn lane<L: Lanes>(v: L) -> Lane {
+    let mut a = [0.0; WIDTH];
+    v.store(&mut a);
+    a
+}
+
+/// The same in memory, to be taken one by one.
+struct Stored {
+    corner: [[Lane; 3]; 3],
+    edge: [[Lane; 3]; 3],
+    moment: [[Lane; 3]; 3],
+    normal: [Lane; 3],
+    height: Lane,
+}
+
+/// Eight triangles against others one by one.
+pub(crate) struct Meeting<L> {
+    block: Eight<L>,
+    singles: Stored,
+    /// How wrong heights over the planes of the eight, over that of the one, and volumes may be.
+    wrong_block: f32,
+    wrong_single: f32,
+    wrong_volume: f32,
+}
+
+/// What lanes say of eight pairs of triangles.
+pub(crate) struct Verdict {
+    /// Those that may meet.
+    pub(crate) maybe: u32,
+    /// Those among them that surely do.
+    pub(crate) sure: u32,
+}
+
+impl Verdict {
+    const NONE: Self = Self { maybe: 0, sure: 0 };
+}
+
+impl<L: Lanes> Meeting<L> {
+    /// Edges are no longer than `edge_block` and `edge_single`.
+    ///
+    /// With corners wrong by `w` in each coordinate and lengths up to `g`, a normal e × f is wrong by
+    /// 7w·e + 5u·e², so a height over its plane by 3.5g times that, by 3.5w·e² for the corners and by 14u·g·e²
+    /// for sums: at most w·e·(25g + 7e) as 16u·g ≤ w. A volume (p − v)·(e × f) is wrong by 12w·g·(e + f) +
+    /// 3.5w·e·f for corners and by 40u·g·e·f for sums.
+    #[inline(always)]
+    pub(crate) fn new(
+        block: &Corners<L>,
+        edge_block: f32,
+        singles: &Corners<L>,
+        edge_single: f32,
+        near: &Near,
+    ) -> Self {
+        let (g, w, e, f) = (near.g, near.wrong, edge_block, edge_single);
+        Self {
+            block: Eight::new(block),
+            singles: Eight::new(singles).store(),
+            wrong_block: w * e * (25.0 * g + 7.0 * e) + TINY,
+            wrong_single: w * f * (25.0 * g + 7.0 * f) + TINY,
+            wrong_volume: w * (12.0 * g * (e + f) + 7.0 * e * f) + TINY,
+        }
+    }
+
+    /// Compares single `l` with the lanes in `mask`: sides of planes first, then the signed volumes of the nine
+    /// pairs of edges. An edge passes through a triangle when it crosses its plane and runs past all three of its
+    /// edges on the same side.
+    #[inline(always)]
+    pub(crate) fn of(&self, l: usize, mask: u32) -> Verdict {
+        let (block, single, l) = (&self.block, &self.singles, l & (WIDTH - 1));
         // Corners of the one against the planes of the eight.
-        let edge = self.edge;
-        let wrong = g * edge * (1.5e-6 * g + 2e-6 * edge) + TINY;
-        let h: [L; 3] = three!(k => dot(&self.n, &sub(&s[k], &self.v[0])));
-        let mut mask = mask
-            & h[0].min(h[1]).min(h[2]).le(L::splat(wrong))
-            & L::splat(-wrong).le(h[0].max(h[1]).max(h[2]));
-        if mask == 0 {
-            return 0;
+        let mut sides = Sides::NONE;
+        for k in 0..3 {
+            let s = splat3(&single.corner[k], l);
+            sides.set::<L>(k, dot(&s, &block.normal).sub(block.height), self.wrong_block);
+        }
+        if mask & sides.both() == 0 {
+            return Verdict::NONE;
         }
         // Corners of the eight against the plane of the one.
-        let e: [[f32; 3]; 3] = three!(k => {
-            let (a, b) = (&p[k], &p[(k + 1) % 3]);
-            [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
-        });
-        let length = |v: &[f32; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-        let own = length(&e[0]).max(length(&e[1])).max(length(&e[2]));
-        let n = [
-            e[0][1] * e[1][2] - e[0][2] * e[1][1],
-            e[0][2] * e[1][0] - e[0][0] * e[1][2],
-            e[0][0] * e[1][1] - e[0][1] * e[1][0],
-        ];
-        let n = [L::splat(n[0]), L::splat(n[1]), L::splat(n[2])];
-        let wrong = g * own * (1.5e-6 * g + 2e-6 * own) + TINY;
-        let h: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
-        mask &= h[0].min(h[1]).min(h[2]).le(L::splat(wrong)) & L::splat(-wrong).le(h[0].max(h[1]).max(h[2]));
-        if mask == 0 {
-            return 0;
+        let normal = splat3(&single.normal, l);
+        let height = L::splat(single.height[l]);
+        let mut others = Sides::NONE;
+        for k in 0..3 {
+            others.set::<L>(k, dot(&block.corner[k], &normal).sub(height), self.wrong_single);
         }
-        // Edges against edges: they meet only if for some edge of one all three volumes may agree.
-        let wrong = g * (5e-7 * g * (own + edge) + 2e-6 * own * edge) + TINY;
-        let (above, below) = (L::splat(-wrong), L::splat(wrong));
-        let mut positive = [[0u32; 3]; 3];
-        let mut negative = [[0u32; 3]; 3];
+        let mask = mask & sides.both() & others.both();
+        if mask == 0 {
+            return Verdict::NONE;
+        }
+        let mut volumes = [Sides::NONE; 3];
         for i in 0..3 {
-            let ei = [L::splat(e[i][0]), L::splat(e[i][1]), L::splat(e[i][2])];
+            let (e, m): ([L; 3], [L; 3]) = (splat3(&single.edge[i], l), splat3(&single.moment[i], l));
             for j in 0..3 {
-                let volume = dot(&sub(&s[i], &self.v[j]), &cross(&ei, &self.f[j]));
-                positive[i][j] = above.le(volume);
-                negative[i][j] = volume.le(below);
+                let (f, n) = (&block.edge[j], &block.moment[j]);
+                let past = e[0].mul_add(n[0], e[1].mul_add(n[1], e[2].mul(n[2])));
+                let volume = m[0].mul_add(f[0], m[1].mul_add(f[1], m[2].mul_add(f[2], past)));
+                volumes[i].set::<L>(j, volume, self.wrong_volume);
             }
         }
-        let mut some = 0;
+        let (mut maybe, mut sure) = (0, 0);
         for i in 0..3 {
-            some |= (positive[i][0] & positive[i][1] & positive[i][2])
-                | (negative[i][0] & negative[i][1] & negative[i][2])
-                | (positive[0][i] & positive[1][i] & positive[2][i])
-                | (negative[0][i] & negative[1][i] & negative[2][i]);
+            let across = Sides { up: three!(j => volumes[j].up[i]), down: three!(j => volumes[j].down[i]) };
+            maybe |= sides.crossed(i) & volumes[i].agree() | others.crossed(i) & across.agree();
+            sure |=
+                sides.surely_crossed(i) & volumes[i].surely_agree() | others.surely_crossed(i) & across.surely_agree();
         }
-        mask & some
+        Verdict { maybe: mask & maybe, sure: mask & maybe & sure }
+    }
+}
+
+#[inline(always)]
+fn splat3<L: Lanes>(v: &[Lane; 3], l: usize) -> [L; 3] {
+    [L::splat(v[0][l]), L::splat(v[1][l]), L::splat(v[2][l])]
+}
+
+/// The signs of three numbers, eight times: those that may be at least zero, those that may be at most zero.
+#[derive(Clone, Copy)]
+struct Sides {
+    up: [u32; 3],
+    down: [u32; 3],
+}
+
+impl Sides {
+    const NONE: Self = Self { up: [0; 3], down: [0; 3] };
+
+    #[inline(always)]
+    fn set<L: Lanes>(&mut self, k: usize, x: L, wrong: f32) {
+        self.up[k] = L::splat(-wrong).le(x);
+        self.down[k] = x.le(L::splat(wrong));
+    }
+
+    /// Some of the three may be at least zero, some at most.
+    #[inline(always)]
+    fn both(&self) -> u32 {
+        (self.up[0] | self.up[1] | self.up[2]) & (self.down[0] | self.down[1] | self.down[2])
+    }
+
+    /// Numbers `i` and its successor may have different signs.
+    #[inline(always)]
+    fn crossed(&self, i: usize) -> u32 {
+        let j = (i + 1) % 3;
+        self.up[i] & self.down[j] | self.down[i] & self.up[j]
+    }
+
+    /// They have.
+    #[inline(always)]
+    fn surely_crossed(&self, i: usize) -> u32 {
+        let j = (i + 1) % 3;
+        !(self.down[i] | self.up[j]) | !(self.up[i] | self.down[j])
+    }
+
+    /// All three may have the same sign.
+    #[inline(always)]
+    fn agree(&self) -> u32 {
+        self.up[0] & self.up[1] & self.up[2] | self.down[0] & self.down[1] & self.down[2]
+    }
+
+    /// They have.
+    #[inline(always)]
+    fn surely_agree(&self) -> u32 {
+        !(self.down[0] | self.down[1] | self.down[2]) | !(self.up[0] | self.up[1] | self.up[2])
     }
 }

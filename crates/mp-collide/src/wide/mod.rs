@@ -85,6 +85,14 @@ pub(crate) struct Leaf {
     pub(crate) count: u32,
 }
 
+impl Leaf {
+    /// A bit for every triangle.
+    #[inline(always)]
+    pub(crate) fn all(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+}
+
 /// The tree of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Tree {
