@@ -68,6 +68,10 @@ pub(crate) trait Lanes: Copy {
     fn load(a: &[f32; 8]) -> Self;
     fn store(self, a: &mut [f32; 8]);
     fn splat(x: f32) -> Self;
+    /// Four values in the lower lanes and again in the upper.
+    fn twice(a: &[f32; 4]) -> Self;
+    /// One value in the four lower lanes, another in the upper.
+    fn halves(low: f32, high: f32) -> Self;
     fn add(self, b: Self) -> Self;
     fn sub(self, b: Self) -> Self;
     fn mul(self, b: Self) -> Self;
@@ -171,6 +175,14 @@ impl Lanes for Scalar {
         Self([x; 8])
     }
     #[inline(always)]
+    fn twice(a: &[f32; 4]) -> Self {
+        Self(std::array::from_fn(|i| a[i % 4]))
+    }
+    #[inline(always)]
+    fn halves(low: f32, high: f32) -> Self {
+        Self(std::array::from_fn(|i| if i < 4 { low } else { high }))
+    }
+    #[inline(always)]
     fn add(self, b: Self) -> Self {
         self.zip(b, |x, y| x + y)
     }
@@ -249,6 +261,16 @@ mod x86 {
             Self(unsafe { _mm256_set1_ps(x) })
         }
         #[inline(always)]
+        fn twice(a: &[f32; 4]) -> Self {
+            // SAFETY: see `Avx2`.
+            Self(unsafe { _mm256_broadcast_ps(&_mm_loadu_ps(a.as_ptr())) })
+        }
+        #[inline(always)]
+        fn halves(low: f32, high: f32) -> Self {
+            // SAFETY: see `Avx2`.
+            Self(unsafe { _mm256_set_m128(_mm_set1_ps(high), _mm_set1_ps(low)) })
+        }
+        #[inline(always)]
         fn add(self, b: Self) -> Self {
             // SAFETY: see `Avx2`.
             Self(unsafe { _mm256_add_ps(self.0, b.0) })
@@ -323,6 +345,17 @@ mod x86 {
             // SAFETY: see `Sse2`.
             let v = unsafe { _mm_set1_ps(x) };
             Self(v, v)
+        }
+        #[inline(always)]
+        fn twice(a: &[f32; 4]) -> Self {
+            // SAFETY: an unaligned load of the array.
+            let v = unsafe { _mm_loadu_ps(a.as_ptr()) };
+            Self(v, v)
+        }
+        #[inline(always)]
+        fn halves(low: f32, high: f32) -> Self {
+            // SAFETY: see `Sse2`.
+            unsafe { Self(_mm_set1_ps(low), _mm_set1_ps(high)) }
         }
         #[inline(always)]
         fn add(self, b: Self) -> Self {
@@ -409,6 +442,17 @@ mod arm {
             // SAFETY: NEON is part of aarch64 (so for every block below).
             let v = unsafe { vdupq_n_f32(x) };
             Self(v, v)
+        }
+        #[inline(always)]
+        fn twice(a: &[f32; 4]) -> Self {
+            // SAFETY: a load of the array.
+            let v = unsafe { vld1q_f32(a.as_ptr()) };
+            Self(v, v)
+        }
+        #[inline(always)]
+        fn halves(low: f32, high: f32) -> Self {
+            // SAFETY: see `splat`.
+            unsafe { Self(vdupq_n_f32(low), vdupq_n_f32(high)) }
         }
         #[inline(always)]
         fn add(self, b: Self) -> Self {

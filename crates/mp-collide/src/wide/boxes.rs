@@ -9,12 +9,9 @@ use crate::simd::Lanes;
 /// Six axes always; the nine products of edges too when `EDGES`. `margin` must hold the rounding error
 /// (`Frames::pad`). A product of unit edges is no longer than 1, so its gap is a lower bound as well.
 #[inline(always)]
-pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed, margin: f32) -> u32 {
-    let d: [L; 3] = [
-        L::splat(q.frame[0][0]).sub(L::load(&node.center[0])),
-        L::splat(q.frame[1][0]).sub(L::load(&node.center[1])),
-        L::splat(q.frame[2][0]).sub(L::load(&node.center[2])),
-    ];
+pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed<'_>, margin: f32) -> u32 {
+    let center = q.center::<L>();
+    let d: [L; 3] = three!(k => center[k].sub(L::load(&node.center[k])));
     let zero = L::splat(0.0);
     let pad = L::splat(margin);
     let h: [L; 3] = [L::splat(q.half[0]), L::splat(q.half[1]), L::splat(q.half[2])];
@@ -29,8 +26,7 @@ pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed, mar
         e[k] = L::load(&node.half[k]);
         let mut reach = e[k].add(pad);
         for j in 0..3 {
-            let a = [q.frame[0][j + 1], q.frame[1][j + 1], q.frame[2][j + 1]];
-            m[k][j] = u[0].mul_add(L::splat(a[0]), u[1].mul_add(L::splat(a[1]), u[2].mul(L::splat(a[2]))));
+            m[k][j] = dot(&u, &q.axis(j));
             am[k][j] = m[k][j].abs();
             reach = am[k][j].mul_add(h[j], reach);
         }
@@ -64,12 +60,9 @@ pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed, mar
 /// gap: the larger of two distances, from each box to the box around the other that is aligned with it.
 /// Infinite in lanes not used.
 #[inline(always)]
-pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed, pad: f32) -> L {
-    let d: [L; 3] = [
-        L::splat(q.frame[0][0]).sub(L::load(&node.center[0])),
-        L::splat(q.frame[1][0]).sub(L::load(&node.center[1])),
-        L::splat(q.frame[2][0]).sub(L::load(&node.center[2])),
-    ];
+pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
+    let center = q.center::<L>();
+    let d: [L; 3] = three!(k => center[k].sub(L::load(&node.center[k])));
     let zero = L::splat(0.0);
     let pad = L::splat(pad);
     let mut t = [zero; 3];

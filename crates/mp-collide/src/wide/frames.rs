@@ -13,63 +13,96 @@ pub(crate) struct Frame {
     t: [f32; 3],
 }
 
-/// A box carried into the frame of another tree.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
-    /// As [`Obb::frame`].
-    pub(crate) frame: [[f32; 4]; 3],
-    pub(crate) half: [f32; 3],
+impl Frame {
+    fn new(r: &Matrix3<f64>, t: &Vector3<f64>) -> Self {
+        Self {
+            r: [
+                [r.m11 as f32, r.m12 as f32, r.m13 as f32],
+                [r.m21 as f32, r.m22 as f32, r.m23 as f32],
+                [r.m31 as f32, r.m32 as f32, r.m33 as f32],
+            ],
+            t: [t.x as f32, t.y as f32, t.z as f32],
+        }
+    }
 }
 
-impl Placed {
+/// A [`Frame`] that carries boxes: rows 0 and 1 side by side, then row 2.
+#[derive(Clone, Copy)]
+pub(crate) struct Carrier<L> {
+    r: [[L; 3]; 2],
+    /// Moves the centre of a box, not its axes.
+    t: [L; 2],
+}
+
+impl<L: Lanes> Carrier<L> {
+    #[inline(always)]
+    pub(crate) fn new(frame: &Frame) -> Self {
+        let (r, t) = (&frame.r, &frame.t);
+        Self {
+            r: [three!(k => L::halves(r[0][k], r[1][k])), three!(k => L::splat(r[2][k]))],
+            t: [
+                L::load(&[t[0], 0.0, 0.0, 0.0, t[1], 0.0, 0.0, 0.0]),
+                L::load(&[t[2], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            ],
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn place<'b>(&self, b: &'b Obb) -> Placed<'b> {
+        let v: [L; 3] = three!(d => L::twice(&b.frame[d]));
+        let mut rows = [[0.0; 8]; 2];
+        for i in 0..2 {
+            let r = &self.r[i];
+            let sum = v[0].mul_add(r[0], v[1].mul_add(r[1], v[2].mul_add(r[2], self.t[i])));
+            sum.store(&mut rows[i]);
+        }
+        Placed { rows, half: &b.half }
+    }
+}
+
+/// A box carried into the frame of another tree.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed<'b> {
+    /// As [`Obb::frame`], the first two rows side by side.
+    rows: [[f32; 8]; 2],
+    pub(crate) half: &'b [f32; 3],
+}
+
+impl<'b> Placed<'b> {
     /// A box in the frame of its own tree, moved there so that its centre is the origin.
     #[inline(always)]
-    pub(crate) fn at_origin(b: &Obb) -> Self {
-        let mut frame = b.frame;
-        for row in &mut frame {
-            row[0] = 0.0;
+    pub(crate) fn at_origin(b: &'b Obb) -> Self {
+        let [x, y, z] = &b.frame;
+        Self {
+            rows: [[0.0, x[1], x[2], x[3], 0.0, y[1], y[2], y[3]], [0.0, z[1], z[2], z[3], 0.0, 0.0, 0.0, 0.0]],
+            half: &b.half,
         }
-        Self { frame, half: b.half }
+    }
+
+    /// The same box with its centre elsewhere.
+    #[inline(always)]
+    pub(crate) fn centred_at(mut self, center: [f32; 3]) -> Self {
+        self.rows[0][0] = center[0];
+        self.rows[0][4] = center[1];
+        self.rows[1][0] = center[2];
+        self
+    }
+
+    #[inline(always)]
+    fn column<L: Lanes>(&self, k: usize) -> [L; 3] {
+        [L::splat(self.rows[0][k]), L::splat(self.rows[0][k + 4]), L::splat(self.rows[1][k])]
+    }
+
+    /// The centre in every lane.
+    #[inline(always)]
+    pub(crate) fn center<L: Lanes>(&self) -> [L; 3] {
+        self.column(0)
     }
 
     /// Axis `k` in every lane.
     #[inline(always)]
     pub(crate) fn axis<L: Lanes>(&self, k: usize) -> [L; 3] {
-        [L::splat(self.frame[0][k + 1]), L::splat(self.frame[1][k + 1]), L::splat(self.frame[2][k + 1])]
-    }
-}
-
-impl Frame {
-    /// As [`Frame::place`], with the centre of the box at a place already known.
-    #[inline(always)]
-    pub(crate) fn place_at(&self, b: &Obb, center: [f32; 3]) -> Placed {
-        let mut placed = self.place(b);
-        for i in 0..3 {
-            placed.frame[i][0] = center[i];
-        }
-        placed
-    }
-
-    fn new(r: &Matrix3<f64>, t: &Vector3<f64>) -> Self {
-        Self {
-            r: std::array::from_fn(|i| std::array::from_fn(|j| r[(i, j)] as f32)),
-            t: std::array::from_fn(|i| t[i] as f32),
-        }
-    }
-
-    #[inline(always)]
-    pub(crate) fn place(&self, b: &Obb) -> Placed {
-        let [x, y, z] = &b.frame;
-        let mut frame = [[0.0; 4]; 3];
-        for i in 0..3 {
-            let r = &self.r[i];
-            // The centre and the three axes at once; only the centre is moved.
-            let t = [self.t[i], 0.0, 0.0, 0.0];
-            for l in 0..4 {
-                frame[i][l] = r[0] * x[l] + r[1] * y[l] + r[2] * z[l] + t[l];
-            }
-        }
-        Placed { frame, half: b.half }
+        self.column(k + 1)
     }
 }
 

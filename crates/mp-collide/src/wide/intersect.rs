@@ -1,7 +1,7 @@
 //! Do two trees meet?
 
 use super::boxes::touching;
-use super::frames::{Frame, Frames, Placed};
+use super::frames::{Carrier, Frames, Placed};
 use super::leaves::{Meeting, Near, Verdict, corners, near_box};
 use super::{LEAF, Leaf, Node, Tree};
 use crate::query::Counters;
@@ -25,6 +25,7 @@ impl Kernel for Intersect<'_> {
     fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, frames, stack, counters } = self;
         let pad = frames.pad;
+        let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
         let (far_a, far_b) = (a.is_large(), b.is_large());
         let mut tests = 0;
         stack.clear();
@@ -34,7 +35,7 @@ impl Kernel for Intersect<'_> {
             if x & y & LEAF != 0 {
                 let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
                 tests += 2;
-                found = leaf_pair::<L>(a, i, b, j, frames, counters);
+                found = leaf_pair::<L>(a, i, b, j, frames, &into_a, counters);
                 if found.is_some() {
                     break;
                 }
@@ -44,10 +45,10 @@ impl Kernel for Intersect<'_> {
             let open_a = x & LEAF == 0 && (y & LEAF != 0 || a.own(x).size >= b.own(y).size);
             if open_a {
                 let node = &a.nodes[x as usize];
-                push::<L>(a, far_a, node, &frames.into_a, b.own(y), pad, |child| stack.push((child, y)));
+                push::<L>(a, far_a, node, &into_a, b.own(y), pad, |child| stack.push((child, y)));
             } else {
                 let node = &b.nodes[y as usize];
-                push::<L>(b, far_b, node, &frames.into_b, a.own(x), pad, |child| stack.push((x, child)));
+                push::<L>(b, far_b, node, &into_b, a.own(x), pad, |child| stack.push((x, child)));
             }
         }
         counters.box_tests += tests;
@@ -61,7 +62,7 @@ fn push<L: Lanes>(
     tree: &Tree,
     far: bool,
     node: &Node,
-    frame: &Frame,
+    frame: &Carrier<L>,
     other: &super::Obb,
     pad: f32,
     mut push: impl FnMut(u32),
@@ -95,12 +96,13 @@ fn leaf_pair<L: Lanes>(
     b: &Tree,
     j: usize,
     frames: &Frames,
+    into_a: &Carrier<L>,
     counters: &mut Counters,
 ) -> Option<(usize, usize)> {
     let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
     let near = Near::new(leaf_a, leaf_b, frames);
     let corners_a = corners::<L>(leaf_a);
-    let box_b = frames.into_a.place_at(&b.leaf_boxes[j], near.shift);
+    let box_b = into_a.place(&b.leaf_boxes[j]).centred_at(near.shift);
     let mask_a = near_box(&corners_a, leaf_a.edge, &box_b, &near, frames.pad) & leaf_a.all();
     if mask_a == 0 {
         return None;

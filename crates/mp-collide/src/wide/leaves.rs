@@ -61,8 +61,8 @@ impl Near {
 /// The triangles (with edges up to `edge` long) that may come within `margin` of box `q`, all in the frame of
 /// `near`: axes of the box, then the normals of the triangles.
 #[inline(always)]
-pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed, near: &Near, margin: f32) -> u32 {
-    let c = [L::splat(q.frame[0][0]), L::splat(q.frame[1][0]), L::splat(q.frame[2][0])];
+pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed<'_>, near: &Near, margin: f32) -> u32 {
+    let c = q.center::<L>();
     let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
     let margin = margin + 2.0 * near.wrong;
     let mut mask = !0;

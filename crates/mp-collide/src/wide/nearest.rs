@@ -1,7 +1,7 @@
 //! How far are two trees apart?
 
 use super::boxes::distances;
-use super::frames::{Frame, Frames};
+use super::frames::{Carrier, Frames};
 use super::gaps::Gaps;
 use super::{LEAF, Node, Obb, Tree, WIDTH};
 use crate::query::Counters;
@@ -53,6 +53,7 @@ impl Kernel for Nearest<'_> {
     fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, frames, enough, accept, scratch, counters } = self;
         let Scratch { pairs, candidates } = scratch;
+        let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
         // Squares in `f32`: up for what must not be missed, down for what must be sure.
         let mut best = up(enough * enough);
         let sure = (accept * accept * (1.0 - 1e-6)) as f32;
@@ -98,12 +99,12 @@ impl Kernel for Nearest<'_> {
             let from = pairs.len();
             if open_a {
                 let node = &a.nodes[x as usize];
-                push::<L>(node, &frames.into_a, b.own(y), frames.pad, best, |bound, child| {
+                push::<L>(node, &into_a, b.own(y), frames.pad, best, |bound, child| {
                     pairs.push(Pair { bound, a: child, b: y });
                 });
             } else {
                 let node = &b.nodes[y as usize];
-                push::<L>(node, &frames.into_b, a.own(x), frames.pad, best, |bound, child| {
+                push::<L>(node, &into_b, a.own(x), frames.pad, best, |bound, child| {
                     pairs.push(Pair { bound, a: x, b: child });
                 });
             }
@@ -141,7 +142,7 @@ fn up(x: f64) -> f32 {
 #[inline(always)]
 fn push<L: Lanes>(
     node: &Node,
-    frame: &Frame,
+    frame: &Carrier<L>,
     other: &Obb,
     pad: f32,
     best: f32,
