@@ -61,7 +61,6 @@ impl Relative {
         [self.point(&triangle[0]), self.point(&triangle[1]), self.point(&triangle[2])]
     }
 
-
     /// A box of `b` in the frame of `a`.
     pub(crate) fn obb(&self, obb: &Obb) -> Obb {
         let r = &self.rotation;

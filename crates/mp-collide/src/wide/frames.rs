@@ -74,7 +74,10 @@ impl<'b> Placed<'b> {
     pub(crate) fn at_origin(b: &'b Obb) -> Self {
         let [x, y, z] = &b.frame;
         Self {
-            rows: [[0.0, x[1], x[2], x[3], 0.0, y[1], y[2], y[3]], [0.0, z[1], z[2], z[3], 0.0, 0.0, 0.0, 0.0]],
+            rows: [
+                [0.0, x[1], x[2], x[3], 0.0, y[1], y[2], y[3]],
+                [0.0, z[1], z[2], z[3], 0.0, 0.0, 0.0, 0.0],
+            ],
             half: &b.half,
         }
     }

@@ -130,7 +130,8 @@ fn leaf_pair<L: Lanes>(
             let lane = maybe.trailing_zeros() as usize;
             let (k, l) = if swap { (single, lane) } else { (lane, single) };
             let (k, l) = (first_a + k, first_b + l);
-            if sure & (1 << lane) != 0 || intersect(&a.triangles[k], &frames.exact.triangle(&b.triangles[l])) {
+            if sure & (1 << lane) != 0 || intersect(&a.triangles[k], &frames.exact.triangle(&b.triangles[l]))
+            {
                 return Some((k, l));
             }
             maybe &= maybe - 1;

@@ -229,8 +229,8 @@ impl<L: Lanes> Meeting<L> {
         for i in 0..3 {
             let across = Sides { up: three!(j => volumes[j].up[i]), down: three!(j => volumes[j].down[i]) };
             maybe |= sides.crossed(i) & volumes[i].agree() | others.crossed(i) & across.agree();
-            sure |=
-                sides.surely_crossed(i) & volumes[i].surely_agree() | others.surely_crossed(i) & across.surely_agree();
+            sure |= sides.surely_crossed(i) & volumes[i].surely_agree()
+                | others.surely_crossed(i) & across.surely_agree();
         }
         Verdict { maybe: mask & maybe, sure: mask & maybe & sure }
     }
