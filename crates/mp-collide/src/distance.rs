@@ -10,6 +10,7 @@ use crate::triangle::{Closest, closest_within, crossing};
 use crate::wide::Tree;
 use crate::wide::frames::Frames;
 use crate::wide::nearest::Nearest;
+use crate::wide::within::Within;
 
 impl Query {
     /// The distance of the meshes with nearest points, in the world.
@@ -32,7 +33,7 @@ impl Query {
             let point = to_world(pose_wa, &crossing(&a.tree().triangles[i], &triangle_b));
             return Separation { distance: 0.0, point_a: point, point_b: point };
         }
-        let nearest = self.nearest(a.tree(), b.tree(), &relative, f64::INFINITY, 0.0);
+        let nearest = self.nearest(a.tree(), b.tree(), &relative, f64::INFINITY);
         let closest = nearest.map_or(Closest::NONE, |(closest, ..)| closest);
         Separation {
             distance: positive(closest.squared.sqrt()),
@@ -78,13 +79,19 @@ impl Query {
             return true;
         }
         let (a, b) = (a.tree(), b.tree());
-        if self.bound(a, b, &relative) > tolerance {
+        if tolerance == 0.0 {
+            return self.colliding_pair(a, b, &relative).is_some();
+        }
+        let frames = Frames::new(a, b, &relative);
+        if frames.apart > (a.radius_center + b.radius_center + tolerance) * (1.0 + 1e-12) + relative.slack {
             return false;
         }
-        if self.colliding_pair(a, b, &relative).is_some() {
-            return true;
+        if !frames.fits_f32(a, b) || !(1e-9..=1e9).contains(&tolerance) {
+            return self.colliding_pair(a, b, &relative).is_some()
+                || self.nearest(a, b, &relative, tolerance.next_up()).is_some();
         }
-        tolerance > 0.0 && self.nearest(a, b, &relative, tolerance.next_up(), tolerance).is_some()
+        let (stack, counters) = (&mut self.stack, &mut self.counters);
+        run(self.isa, Within { a, b, frames: &frames, tolerance, stack, counters })
     }
 
     /// [`Query::clearance`], and the triangle of `b` (its position in the tree) that is nearest, if looked
@@ -104,7 +111,7 @@ impl Query {
         if let Some((_, j)) = self.colliding_pair(a, b, relative) {
             return (0.0, Some(j));
         }
-        let nearest = self.nearest(a, b, relative, enough, 0.0);
+        let nearest = self.nearest(a, b, relative, enough);
         match nearest {
             Some((closest, _, j)) => (positive(closest.squared.sqrt()), Some(j)),
             None => (positive(bound.max(enough)), None),
@@ -118,15 +125,13 @@ impl Query {
     }
 
     /// The nearest points of meshes that do not intersect (in the frame of `a`) and their triangles
-    /// (positions in the trees), when nearer than `enough`. The search may end with any points no further
-    /// apart than `accept`.
+    /// (positions in the trees), when nearer than `enough`.
     fn nearest(
         &mut self,
         a: &Tree,
         b: &Tree,
         relative: &Relative,
         enough: f64,
-        accept: f64,
     ) -> Option<(Closest, usize, usize)> {
         let frames = Frames::new(a, b, relative);
         let enough = enough.max(0.0);
@@ -134,7 +139,7 @@ impl Query {
             return nearest_of_all(a, b, &frames, enough);
         }
         let (scratch, counters) = (&mut self.scratch, &mut self.counters);
-        run(self.isa, Nearest { a, b, frames: &frames, enough, accept, scratch, counters })
+        run(self.isa, Nearest { a, b, frames: &frames, enough, scratch, counters })
     }
 }
 
@@ -157,4 +162,46 @@ fn nearest_of_all(a: &Tree, b: &Tree, frames: &Frames, enough: f64) -> Option<(C
 /// Meshes that do not intersect are never at distance 0, whatever rounding says.
 fn positive(distance: f64) -> f64 {
     distance.max(f64::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Isa;
+    use mp_geom::primitives;
+
+    #[test]
+    fn nearest_points_do_not_depend_on_the_instruction_set() {
+        // Many pairs of triangles share the nearest corner, edge or face.
+        let meshes = [
+            primitives::cuboid(1.0, 2.0, 0.5),
+            primitives::cylinder(0.5, 2.0, 24),
+            primitives::torus(1.0, 0.3, 24, 12),
+        ]
+        .map(|mesh| CollisionMesh::new(&mesh.unwrap()));
+        let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
+        for (i, a) in meshes.iter().enumerate() {
+            for b in &meshes[i..] {
+                for k in 0..60 {
+                    let turn = if k % 3 == 0 { 0.0 } else { 0.1 * f64::from(k) };
+                    let at = nalgebra::Vector3::new(1.7, 0.03 * f64::from(k), -0.9);
+                    let pose = Isometry3::new(at, nalgebra::Vector3::new(turn, 0.3 * turn, -turn));
+                    let here = Isometry3::identity();
+                    let all: Vec<(Separation, [bool; 2], f64)> = queries
+                        .iter_mut()
+                        .map(|q| {
+                            let found = q.distance(a, &here, b, &pose);
+                            let d = found.distance;
+                            let near = [d, 0.999 * d].map(|t| q.within(a, &here, b, &pose, t));
+                            (found, near, q.clearance(a, &here, b, &pose, 2.0 * d))
+                        })
+                        .collect();
+                    let (found, near, clearance) = all[0];
+                    assert!(near[0] && near[1] == (found.distance == 0.0), "{near:?} {}", found.distance);
+                    assert_eq!(clearance, found.distance);
+                    assert!(all.iter().all(|other| *other == all[0]), "{all:?}");
+                }
+            }
+        }
+    }
 }

@@ -77,7 +77,7 @@ pub(crate) fn closest_within(a: &Triangle, b: &Triangle, squared: f64) -> Option
 
 /// Whether the slab between `p` on `a` and `q` on `b`, at right angles to their join, keeps the triangles
 /// apart: then no points are nearer, up to rounding.
-fn is_nearest(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> bool {
+pub(crate) fn is_nearest(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> bool {
     let join = q - p;
     let (mut top_a, mut bottom_b, mut size) = (f64::NEG_INFINITY, f64::INFINITY, 0.0_f64);
     for corner in a {

@@ -1,5 +1,7 @@
 //! One box against eight: the separating-axis test (Gottschalk, Lin, Manocha 1996) in lanes.
 
+use nalgebra::Vector3;
+
 use super::Node;
 use super::frames::Placed;
 use crate::simd::Lanes;
@@ -56,30 +58,52 @@ pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed<'_>,
     mask
 }
 
+/// A direction, shorter than a unit by a little; or none.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Slab(pub(crate) [f32; 3]);
+
+impl Slab {
+    /// Along `join`, if it has a length.
+    pub(crate) fn across(join: &Vector3<f64>) -> Self {
+        let scale = (1.0 - 1e-6) / join.norm();
+        if scale.is_finite() {
+            Self(std::array::from_fn(|d| (join[d] * scale) as f32))
+        } else {
+            Self::default()
+        }
+    }
+}
+
 /// Squared lower bounds on the distances of `q` from the children of `node`, `pad` (metres) taken off each
-/// gap: the larger of two distances, from each box to the box around the other that is aligned with it.
-/// Infinite in lanes not used.
+/// gap: the largest of the two distances from each box to the box around the other that is aligned with it,
+/// and of the gaps along the nine products of edges and along `slab`. Infinite in lanes not used.
 #[inline(always)]
-pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
+pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32, slab: &Slab) -> L {
     let center = q.center::<L>();
     let d: [L; 3] = three!(k => center[k].sub(L::load(&node.center[k])));
     let zero = L::splat(0.0);
     let pad = L::splat(pad);
+    let h: [L; 3] = [L::splat(q.half[0]), L::splat(q.half[1]), L::splat(q.half[2])];
+    let n = slab.0.map(L::splat);
+    let mut along = dot(&n, &d).sub(pad);
+    for j in 0..3 {
+        along = along.sub(dot(&n, &q.axis(j)).abs().mul(h[j]));
+    }
     let mut t = [zero; 3];
     let mut m = [[zero; 3]; 3];
+    let mut am = [[zero; 3]; 3];
+    let mut e = [zero; 3];
     let mut from_node = zero;
-    let mut reach_q: [L; 3] =
-        [L::splat(q.half[0]).add(pad), L::splat(q.half[1]).add(pad), L::splat(q.half[2]).add(pad)];
     for k in 0..3 {
         let u = [L::load(&node.axes[k][0]), L::load(&node.axes[k][1]), L::load(&node.axes[k][2])];
         t[k] = dot(&u, &d);
-        let e = L::load(&node.half[k]);
-        let mut reach = e.add(pad);
+        e[k] = L::load(&node.half[k]);
+        along = along.sub(dot(&n, &u).abs().mul(e[k]));
+        let mut reach = e[k].add(pad);
         for j in 0..3 {
             m[k][j] = dot(&u, &q.axis(j));
-            let am = m[k][j].abs();
-            reach = am.mul_add(L::splat(q.half[j]), reach);
-            reach_q[j] = e.mul_add(am, reach_q[j]);
+            am[k][j] = m[k][j].abs();
+            reach = am[k][j].mul_add(h[j], reach);
         }
         let gap = t[k].abs().sub(reach).max(zero);
         from_node = gap.mul_add(gap, from_node);
@@ -87,10 +111,25 @@ pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
     let mut from_q = zero;
     for j in 0..3 {
         let p = t[0].mul_add(m[0][j], t[1].mul_add(m[1][j], t[2].mul(m[2][j])));
-        let gap = p.abs().sub(reach_q[j]).max(zero);
+        let reach = e[0].mul_add(am[0][j], e[1].mul_add(am[1][j], e[2].mul_add(am[2][j], h[j].add(pad))));
+        let gap = p.abs().sub(reach).max(zero);
         from_q = gap.mul_add(gap, from_q);
     }
-    from_node.max(from_q).mul(L::splat(1.0 - 1e-5))
+    let mut bound = from_node.max(from_q).max(along.max(zero).square());
+    // The squared length of a product is 1 − m², here rounded up.
+    let one = L::splat(1.0001);
+    for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+        for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let p = t[i2].mul_sub(m[i1][j], t[i1].mul(m[i2][j]));
+            let reach = e[i1].mul_add(
+                am[i2][j],
+                e[i2].mul_add(am[i1][j], am[i][j2].mul_add(h[j1], am[i][j1].mul_add(h[j2], pad))),
+            );
+            let gap = p.abs().sub(reach).max(zero);
+            bound = gap.square().div(one.sub(m[i][j].square())).max(bound);
+        }
+    }
+    bound.mul(L::splat(1.0 - 1e-5))
 }
 
 #[inline(always)]

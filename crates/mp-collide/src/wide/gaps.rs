@@ -1,11 +1,11 @@
 //! The distance of one triangle from eight, in lanes, with an error margin.
 //!
 //! Nine pairs of edges (Ericson 2005, *Real-Time Collision Detection*, §5.1.9) and six corners against
-//! faces. Triangles that intersect are not recognised here.
+//! faces. Triangles that intersect are only told from those that surely do not.
 
-use super::Leaf;
-use super::boxes::{cross, dot, sub};
+use super::boxes::{Slab, cross, dot, sub};
 use super::leaves::corners;
+use super::{Lane, Leaf};
 use crate::simd::Lanes;
 use crate::triangle::Triangle;
 
@@ -25,6 +25,25 @@ const TILT: f32 = 5.1e-6;
 /// Below this size (metres) products of four lengths are lost to underflow.
 const SMALL: f32 = 1e-7;
 
+/// Added to the margin of a height: products of lengths so small that they underflow decide nothing.
+const TINY_HEIGHT: f32 = 1e-34;
+
+/// Squared distances: `near` ≤ distance² ≤ `far` where the triangles do not intersect.
+#[derive(Default)]
+pub(crate) struct Bounds {
+    pub(crate) near: Lane,
+    pub(crate) far: Lane,
+}
+
+/// Which triangles are close.
+#[derive(Default)]
+pub(crate) struct Close {
+    /// Those for which `Bounds::near` is at most what was asked for; the bounds hold for these.
+    pub(crate) near: u32,
+    /// Those that may intersect.
+    pub(crate) crossing: u32,
+}
+
 /// The triangles of a leaf, ready to be compared with one after another.
 pub(crate) struct Gaps<L> {
     v: [[L; 3]; 3],
@@ -42,7 +61,9 @@ pub(crate) struct Gaps<L> {
     inward: [[L; 3]; 3],
     lo: [L; 3],
     hi: [L; 3],
-    all: u32,
+    /// How far they reach along a direction.
+    top: L,
+    slab: [f32; 3],
     center: [f64; 3],
     magnitude: f32,
     edge: f32,
@@ -50,7 +71,7 @@ pub(crate) struct Gaps<L> {
 
 impl<L: Lanes> Gaps<L> {
     #[inline(always)]
-    pub(crate) fn new(leaf: &Leaf) -> Self {
+    pub(crate) fn new(leaf: &Leaf, slab: &Slab) -> Self {
         let v = corners::<L>(leaf);
         let f = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
         let n = cross(&f[0], &f[1]);
@@ -62,6 +83,7 @@ impl<L: Lanes> Gaps<L> {
         let square = L::splat(leaf.magnitude * leaf.magnitude).add(longest);
         let least = L::splat(SOUND).mul(longest).mul_add(square, L::splat(SOUND_AT_LEAST));
         let huge = L::splat(1e38);
+        let along = slab.0.map(L::splat);
         Self {
             flat: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
             tilt: L::splat(TILT).mul(longest).mul(least.div(nn.max(L::splat(SOUND_AT_LEAST)))),
@@ -71,7 +93,8 @@ impl<L: Lanes> Gaps<L> {
             inward: [cross(&n, &f[0]), cross(&n, &f[1]), cross(&n, &f[2])],
             lo: three!(d => v[0][d].min(v[1][d]).min(v[2][d])),
             hi: three!(d => v[0][d].max(v[1][d]).max(v[2][d])),
-            all: (1 << leaf.count) - 1,
+            top: dot(&along, &v[0]).max(dot(&along, &v[1])).max(dot(&along, &v[2])),
+            slab: slab.0,
             center: leaf.center,
             magnitude: leaf.magnitude,
             edge: leaf.edge,
@@ -81,16 +104,10 @@ impl<L: Lanes> Gaps<L> {
         }
     }
 
-    /// The lanes whose squared distance from `triangle` (in the frame of the mesh) may be at most `best`;
-    /// for these, squared bounds: `near` ≤ distance² ≤ `far`.
+    /// The lanes, of those in `mask`, whose squared distance from `triangle` (in the frame of the mesh) may be
+    /// at most `best`.
     #[inline(always)]
-    pub(crate) fn between(
-        &self,
-        triangle: &Triangle,
-        best: f32,
-        near: &mut [f32; 8],
-        far: &mut [f32; 8],
-    ) -> u32 {
+    pub(crate) fn between(&self, triangle: &Triangle, mask: u32, best: f32, bounds: &mut Bounds) -> Close {
         let c = &self.center;
         let p: [[f32; 3]; 3] = three!(k => {
             [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
@@ -109,11 +126,15 @@ impl<L: Lanes> Gaps<L> {
             let apart = self.lo[d].sub(L::splat(hi)).max(L::splat(lo).sub(self.hi[d])).max(zero);
             gap = apart.mul_add(apart, gap);
         }
+        let along = three!(k => self.slab[0] * p[k][0] + self.slab[1] * p[k][1] + self.slab[2] * p[k][2]);
+        let bottom = along[0].min(along[1]).min(along[2]) - 4.0 * wrong;
+        let apart = L::splat(bottom).sub(self.top).max(zero);
+        let gap = apart.square().max(gap);
         // Finite: nothing is farther away, and 0 · ∞ would lose triangles without area.
         let limit = L::splat((best * (1.0 + 1e-4)).min(1e30));
-        let mut mask = self.all & gap.le(limit);
+        let mut mask = mask & gap.le(limit);
         if mask == 0 {
-            return 0;
+            return Close::default();
         }
         let s: [[L; 3]; 3] = three!(k => [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
         // All of the one on one side of the planes of the eight: height² / |n|² bounds. Errors of a height
@@ -121,9 +142,11 @@ impl<L: Lanes> Gaps<L> {
         let edge = self.edge;
         let error = L::splat(g * edge * (1.5e-6 * g + 2e-6 * edge));
         let h: [L; 3] = three!(k => dot(&self.n, &sub(&s[k], &self.v[0])));
-        mask &= one_sided(&h).sub(error).max(zero).square().le(self.nn.mul(limit).add(error.square()));
+        let apart = one_sided(&h).sub(error);
+        mask &= apart.max(zero).square().le(self.nn.mul(limit).add(error.square()));
+        let mut crossing = apart.le(L::splat(TINY_HEIGHT));
         if mask == 0 {
-            return 0;
+            return Close::default();
         }
         // Edges from the unrounded corners: for a small triangle far away those of `p` would be mostly noise.
         let e: [[f32; 3]; 3] = three!(k => {
@@ -140,9 +163,11 @@ impl<L: Lanes> Gaps<L> {
         let n = [L::splat(m[0]), L::splat(m[1]), L::splat(m[2])];
         let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
         let w: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
-        mask &= one_sided(&w).sub(error).max(zero).square().le(L::splat(mm).mul(limit).add(error.square()));
+        let apart = one_sided(&w).sub(error);
+        mask &= apart.max(zero).square().le(L::splat(mm).mul(limit).add(error.square()));
+        crossing &= apart.le(L::splat(TINY_HEIGHT));
         if mask == 0 {
-            return 0;
+            return Close::default();
         }
         let mut edges = L::splat(f32::INFINITY);
         for i in 0..3 {
@@ -181,11 +206,11 @@ impl<L: Lanes> Gaps<L> {
         let below = squared.mul_sub(L::splat(0.998), rounding.add(L::splat(1e-5 * size * size)));
         let below = below.sub(self.flat.add(flat));
         let low = below.max(gap.mul(L::splat(1.0 - 1e-5)));
-        low.store(near);
+        low.store(&mut bounds.near);
         let tilt = TILT * longest * (SOUND * longest * longest + SOUND_AT_LEAST) / mm.max(SOUND_AT_LEAST);
         let above = faces.add(self.tilt).min(face.add(L::splat(tilt))).min(edges);
-        above.mul_add(L::splat(1.002), rounding).store(far);
-        mask & low.le(L::splat(best))
+        above.mul_add(L::splat(1.002), rounding).store(&mut bounds.far);
+        Close { near: mask & low.le(L::splat(best)), crossing: mask & crossing }
     }
 
     /// Squared distance of an edge (from `p` along `d`, of squared length `dd`) and edges `j` of the eight.

@@ -79,8 +79,9 @@ fn push<L: Lanes>(
 }
 const EDGES: bool = true;
 
+/// Fetches a node or leaf that will be looked at soon.
 #[inline(always)]
-fn ahead(tree: &Tree, reference: u32) {
+pub(super) fn ahead(tree: &Tree, reference: u32) {
     if reference & LEAF != 0 {
         prefetch::<Leaf>(&tree.leaves[(reference & !LEAF) as usize]);
     } else {

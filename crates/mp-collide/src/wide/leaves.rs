@@ -2,8 +2,8 @@
 //! never find one that does not.
 
 use super::boxes::{cross, dot, sub};
-use super::frames::{Frames, Placed};
-use super::{Lane, Leaf, WIDTH};
+use super::frames::{Carrier, Frames, Placed};
+use super::{Lane, Leaf, Obb, WIDTH};
 use crate::simd::Lanes;
 
 /// Added to every margin: products of lengths so small that they underflow decide nothing.
@@ -86,6 +86,26 @@ pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed<'_>, near
         reach = dot(&n, &u).abs().mul_add(L::splat(q.half[k] * (1.0 + 1e-6)), reach);
     }
     mask & height.abs().le(reach)
+}
+
+/// The triangles of each of two leaves that may come within `margin` of the box around the other; none of the
+/// second when none of the first does.
+#[inline(always)]
+pub(crate) fn near_each_other<L: Lanes>(
+    (a, b): (&Leaf, &Leaf),
+    (box_a, box_b): (&Obb, &Obb),
+    frames: &Frames,
+    into_a: &Carrier<L>,
+    margin: f32,
+) -> (u32, u32) {
+    let near = Near::new(a, b, frames);
+    let box_b = into_a.place(box_b).centred_at(near.shift);
+    let mask_a = near_box(&corners::<L>(a), a.edge, &box_b, &near, margin) & a.all();
+    if mask_a == 0 {
+        return (0, 0);
+    }
+    let corners_b = near.carry::<L>(b, frames);
+    (mask_a, near_box(&corners_b, b.edge, &Placed::at_origin(box_a), &near, margin) & b.all())
 }
 
 /// Eight triangles with what sides and volumes are computed from.

@@ -32,6 +32,7 @@ pub(crate) mod gaps;
 pub(crate) mod intersect;
 pub(crate) mod leaves;
 pub(crate) mod nearest;
+pub(crate) mod within;
 
 use crate::triangle::Triangle;
 use nalgebra::Point3;

@@ -1,20 +1,44 @@
 //! How far are two trees apart?
 
-use super::boxes::distances;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use super::boxes::{Slab, distances};
 use super::frames::{Carrier, Frames};
-use super::gaps::Gaps;
-use super::{LEAF, Node, Obb, Tree, WIDTH};
+use super::gaps::{Bounds, Gaps};
+use super::leaves::near_each_other;
+use super::{LEAF, Tree, WIDTH};
 use crate::query::Counters;
 use crate::simd::{Kernel, Lanes};
-use crate::triangle::{Closest, closest_within};
+use crate::triangle::{Closest, closest_within, is_nearest};
 
-/// Two nodes whose boxes are at least the root of `bound` apart.
+/// Two nodes whose boxes are at least the root of `bound` apart; the greatest of several is the nearest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pair {
     bound: f32,
     a: u32,
     b: u32,
 }
+
+impl Ord for Pair {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.bound.total_cmp(&self.bound).then((other.a, other.b).cmp(&(self.a, self.b)))
+    }
+}
+
+impl PartialOrd for Pair {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Pair {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Pair {}
 
 /// Two triangles (positions in the trees) at least the root of `bound` apart that may be the nearest.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +51,7 @@ pub(crate) struct Candidate {
 /// What a search for nearest points needs between queries.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
-    pairs: Vec<Pair>,
+    pairs: BinaryHeap<Pair>,
     candidates: Vec<Candidate>,
 }
 
@@ -39,8 +63,6 @@ pub(crate) struct Nearest<'q> {
     pub(crate) frames: &'q Frames,
     /// Only points nearer than this are of interest.
     pub(crate) enough: f64,
-    /// Any points at most this far apart will do.
-    pub(crate) accept: f64,
     pub(crate) scratch: &'q mut Scratch,
     pub(crate) counters: &'q mut Counters,
 }
@@ -50,125 +72,146 @@ impl Kernel for Nearest<'_> {
     type Output = Option<(Closest, usize, usize)>;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Self::Output {
-        let Self { a, b, frames, enough, accept, scratch, counters } = self;
-        let Scratch { pairs, candidates } = scratch;
+    fn run<L: Lanes>(mut self) -> Self::Output {
+        let (a, b, frames, enough) = (self.a, self.b, self.frames, self.enough);
         let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
-        // Squares in `f32`: up for what must not be missed, down for what must be sure.
-        let mut best = up(enough * enough);
-        let sure = (accept * accept * (1.0 - 1e-6)) as f32;
-        pairs.clear();
-        candidates.clear();
-        pairs.push(Pair { bound: 0.0, a: a.root, b: b.root });
-        'search: while let Some(pair) = pairs.pop() {
-            if pair.bound > best {
-                continue;
+        self.scratch.pairs.clear();
+        self.scratch.candidates.clear();
+        let mut best =
+            Best { squared: up(enough * enough), slab: Slab::default(), slab_in_b: Slab::default() };
+        let mut next = Some(Pair { bound: 0.0, a: a.root, b: b.root });
+        while let Some(pair) = next.take().or_else(|| self.scratch.pairs.pop()) {
+            if pair.bound > best.squared {
+                break;
             }
-            counters.box_tests += 1;
+            self.counters.box_tests += 1;
             let (x, y) = (pair.a, pair.b);
             if x & y & LEAF != 0 {
-                let leaf_a = &a.leaves[(x & !LEAF) as usize];
-                let leaf_b = &b.leaves[(y & !LEAF) as usize];
-                let gaps = Gaps::<L>::new(leaf_a);
-                for l in 0..leaf_b.count {
-                    let position = leaf_b.first + l;
-                    let single = frames.exact.triangle(&b.triangles[position as usize]);
-                    let mut near = [0.0; WIDTH];
-                    let mut far = [0.0; WIDTH];
-                    let mut mask = gaps.between(&single, best, &mut near, &mut far);
-                    counters.triangle_tests += 1;
-                    while mask != 0 {
-                        let k = mask.trailing_zeros() as usize & 7;
-                        mask &= mask - 1;
-                        candidates.push(Candidate {
-                            bound: near[k],
-                            a: leaf_a.first + k as u32,
-                            b: position,
-                        });
-                        if far[k] < best {
-                            best = far[k];
-                            if best <= sure {
-                                break 'search;
-                            }
-                        }
-                    }
-                }
+                let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
+                self.leaf_pair::<L>(i, j, &into_a, &mut best);
                 continue;
             }
             let open_a = x & LEAF == 0 && (y & LEAF != 0 || a.own(x).size >= b.own(y).size);
-            let from = pairs.len();
-            if open_a {
-                let node = &a.nodes[x as usize];
-                push::<L>(node, &into_a, b.own(y), frames.pad, best, |bound, child| {
-                    pairs.push(Pair { bound, a: child, b: y });
-                });
+            let (node, place, slab) = if open_a {
+                (&a.nodes[x as usize], into_a.place(b.own(y)), &best.slab)
             } else {
-                let node = &b.nodes[y as usize];
-                push::<L>(node, &into_b, a.own(x), frames.pad, best, |bound, child| {
-                    pairs.push(Pair { bound, a: x, b: child });
-                });
-            }
-            nearest_last(&mut pairs[from..]);
-        }
-        // The likely nearest first: most of the others need no second look then.
-        candidates.retain(|c| c.bound <= best);
-        candidates.sort_unstable_by(|c, d| c.bound.total_cmp(&d.bound).then((c.a, c.b).cmp(&(d.a, d.b))));
-        let mut squared = enough * enough;
-        let mut witness = None;
-        for c in candidates.iter() {
-            if f64::from(c.bound) > squared {
-                break;
-            }
-            let (i, j) = (c.a as usize, c.b as usize);
-            let single = frames.exact.triangle(&b.triangles[j]);
-            if let Some(closest) = closest_within(&a.triangles[i], &single, squared) {
-                squared = closest.squared;
-                witness = Some((closest, i, j));
-                if squared <= accept * accept {
-                    break;
+                (&b.nodes[y as usize], into_b.place(a.own(x)), &best.slab_in_b)
+            };
+            let bounds = distances::<L>(node, &place, frames.pad, slab);
+            let mut mask = bounds.le(L::splat(best.squared)) & L::splat(0.0).le(L::load(&node.half[0]));
+            let mut bound = [0.0; WIDTH];
+            bounds.store(&mut bound);
+            let pairs = &mut self.scratch.pairs;
+            // The nearest child goes on, unless another pair waits that is nearer; straight down to the first
+            // leaves.
+            while mask != 0 {
+                let lane = mask.trailing_zeros() as usize & 7;
+                mask &= mask - 1;
+                let (a, b) = if open_a { (node.child[lane], y) } else { (x, node.child[lane]) };
+                let pair = Pair { bound: bound[lane], a, b };
+                match &mut next {
+                    Some(first) if pair > *first => pairs.push(std::mem::replace(first, pair)),
+                    Some(_) => pairs.push(pair),
+                    None => next = Some(pair),
                 }
             }
+            if best.squared < f32::INFINITY
+                && let (Some(first), Some(top)) = (next, pairs.peek())
+                && *top > first
+            {
+                pairs.push(first);
+                next = None;
+            }
         }
-        witness
+        refine(a, b, frames, enough, best.squared, &mut self.scratch.candidates)
     }
+}
+
+/// What is known of the nearest points.
+struct Best {
+    /// Not less than their squared distance.
+    squared: f32,
+    /// Across the join of the nearest found, in the frame of `a` and in that of `b`.
+    slab: Slab,
+    slab_in_b: Slab,
+}
+
+impl Nearest<'_> {
+    /// Compares the triangles of two leaves.
+    #[inline(always)]
+    fn leaf_pair<L: Lanes>(&mut self, i: usize, j: usize, into_a: &Carrier<L>, best: &mut Best) {
+        let (a, b, frames) = (self.a, self.b, self.frames);
+        let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
+        let (mut lanes, mut singles) = (leaf_a.all(), leaf_b.all());
+        if best.squared < 1e30 {
+            let margin = best.squared.sqrt() * (1.0 + 1e-6) + frames.pad;
+            let boxes = (&a.leaf_boxes[i], &b.leaf_boxes[j]);
+            (lanes, singles) = near_each_other((leaf_a, leaf_b), boxes, frames, into_a, margin);
+            if lanes == 0 || singles == 0 {
+                return;
+            }
+        }
+        let gaps = Gaps::<L>::new(leaf_a, &best.slab);
+        while singles != 0 {
+            let position = leaf_b.first + singles.trailing_zeros();
+            singles &= singles - 1;
+            let single = frames.exact.triangle(&b.triangles[position as usize]);
+            let mut bounds = Bounds::default();
+            let mut near = gaps.between(&single, lanes, best.squared, &mut bounds).near;
+            self.counters.triangle_tests += 1;
+            let mut nearest = None;
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize & 7;
+                near &= near - 1;
+                let k = leaf_a.first + lane as u32;
+                self.scratch.candidates.push(Candidate { bound: bounds.near[lane], a: k, b: position });
+                if bounds.far[lane] < best.squared {
+                    best.squared = bounds.far[lane];
+                    nearest = Some(k);
+                }
+            }
+            if let Some(k) = nearest
+                && let Some(closest) = closest_within(&a.triangles[k as usize], &single, f64::INFINITY)
+            {
+                let join = closest.on_b - closest.on_a;
+                best.slab = Slab::across(&join);
+                best.slab_in_b = Slab::across(&-frames.exact.rotation.tr_mul(&join));
+            }
+        }
+    }
+}
+
+/// The nearest of the candidates, in an order that does not depend on the lanes.
+fn refine(
+    a: &Tree,
+    b: &Tree,
+    frames: &Frames,
+    enough: f64,
+    best: f32,
+    candidates: &mut Vec<Candidate>,
+) -> Option<(Closest, usize, usize)> {
+    candidates.retain(|c| c.bound <= best);
+    candidates.sort_unstable_by_key(|c| (c.a, c.b));
+    let mut squared = enough * enough;
+    let mut witness: Option<(Closest, usize, usize)> = None;
+    for c in candidates.iter() {
+        let (i, j) = (c.a as usize, c.b as usize);
+        let single = frames.exact.triangle(&b.triangles[j]);
+        // Mostly neighbours that share the point found.
+        if let Some((closest, ..)) = &witness
+            && is_nearest(&a.triangles[i], &single, closest.on_a, closest.on_b)
+        {
+            continue;
+        }
+        if let Some(closest) = closest_within(&a.triangles[i], &single, squared) {
+            squared = closest.squared;
+            witness = Some((closest, i, j));
+        }
+    }
+    witness
 }
 
 /// Rounded up to `f32`.
 fn up(x: f64) -> f32 {
     ((x * (1.0 + 1e-6)) as f32).next_up()
-}
-
-/// Calls `push` for every child of `node` that may be nearer to `other` than the root of `best`.
-#[inline(always)]
-fn push<L: Lanes>(
-    node: &Node,
-    frame: &Carrier<L>,
-    other: &Obb,
-    pad: f32,
-    best: f32,
-    mut push: impl FnMut(f32, u32),
-) {
-    let bounds = distances::<L>(node, &frame.place(other), pad);
-    let mut mask = bounds.le(L::splat(best)) & L::splat(0.0).le(L::load(&node.half[0]));
-    let mut bound = [0.0; WIDTH];
-    bounds.store(&mut bound);
-    while mask != 0 {
-        let lane = mask.trailing_zeros() as usize & 7;
-        mask &= mask - 1;
-        push(bound[lane], node.child[lane]);
-    }
-}
-
-/// Sorts by falling bound, so that the nearest is popped first; equal bounds keep their order.
-#[inline(always)]
-fn nearest_last(pairs: &mut [Pair]) {
-    for i in 1..pairs.len() {
-        let pair = pairs[i];
-        let mut at = i;
-        while at > 0 && pairs[at - 1].bound < pair.bound {
-            pairs[at] = pairs[at - 1];
-            at -= 1;
-        }
-        pairs[at] = pair;
-    }
 }

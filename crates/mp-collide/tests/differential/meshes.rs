@@ -53,6 +53,13 @@ fn trees_answer_as_brute_force_does() {
             assert!((found.distance - expected).abs() <= 1e-14, "{} {expected}", found.distance);
             let apart = (found.point_a - found.point_b).norm();
             assert!((apart - found.distance).abs() <= 1e-14, "{apart} {}", found.distance);
+            for tolerance in [1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1e12] {
+                assert_eq!(
+                    query.within(&tree_a, &pose_wa, &tree_b, &pose_wb, tolerance),
+                    hit || expected <= tolerance,
+                    "{expected} {tolerance}"
+                );
+            }
             let reference = ref_a.clearance(&pose_wa, &ref_b, &pose_wb, f64::INFINITY);
             assert!((reference - expected).abs() <= 1e-12, "{reference} {expected}");
             for enough in [0.0, 0.3 * expected, 0.999 * expected, 1.001 * expected, 3.0 * expected] {
