@@ -31,8 +31,8 @@ impl Query {
     }
 
     /// A short translation of `a` in the world after which the meshes are apart: the shortest found by
-    /// walking along 38 directions (the axes of both outermost boxes, the diagonals of the world, the join
-    /// of the centres); zero when they are apart already.
+    /// walking along 39 directions (both ways along the axes of both outermost boxes and along the axes and
+    /// diagonals of the world, and the join of the centres); zero when they are apart already.
     ///
     /// `None` when no translation separates them: the input counts as in collision with everything (see
     /// the crate docs).
@@ -100,19 +100,16 @@ fn reach(tree: &Tree, pose: &Isometry3<f64>, direction: Vector3<f64>) -> f64 {
     (pose * obb.center).coords.dot(&direction) + half
 }
 
-fn directions(a: &Tree, pose_wa: &Isometry3<f64>, b: &Tree, pose_wb: &Isometry3<f64>) -> Vec<Vector3<f64>> {
-    let mut directions = Vec::with_capacity(40);
+fn directions(
+    a: &Tree,
+    pose_wa: &Isometry3<f64>,
+    b: &Tree,
+    pose_wb: &Isometry3<f64>,
+) -> impl Iterator<Item = Vector3<f64>> {
     let join = pose_wa * a.bounding.center - pose_wb * b.bounding.center;
-    directions.extend(join.try_normalize(0.0));
-    for (tree, pose) in [(b, pose_wb), (a, pose_wa)] {
-        directions.extend(tree.bounding.axes.iter().flat_map(|axis| [pose * axis, -(pose * axis)]));
-    }
-    for x in [-1.0, 0.0, 1.0] {
-        for y in [-1.0, 0.0, 1.0] {
-            for z in [-1.0, 0.0, 1.0] {
-                directions.extend(Vector3::new(x, y, z).try_normalize(0.0));
-            }
-        }
-    }
-    directions
+    let axes = [(b, pose_wb), (a, pose_wa)].map(|(tree, pose)| tree.bounding.axes.map(|axis| pose * axis));
+    let both_ways = axes.into_iter().flatten().flat_map(|axis| [axis, -axis]);
+    let world = (0..27).map(|i| Vector3::new(i / 9, i / 3 % 3, i % 3).map(|c| f64::from(c) - 1.0));
+    let world = world.filter_map(|way| way.try_normalize(0.0));
+    join.try_normalize(0.0).into_iter().chain(both_ways).chain(world)
 }

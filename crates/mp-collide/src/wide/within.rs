@@ -114,8 +114,7 @@ impl Within<'_> {
         let (a, b, frames) = (self.a, self.b, self.frames);
         let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
         let boxes = (&a.leaf_boxes[i], &b.leaf_boxes[j]);
-        let (mask_a, mut singles) =
-            near_each_other((leaf_a, leaf_b), boxes, frames, into_a, limit.margin);
+        let (mask_a, mut singles) = near_each_other((leaf_a, leaf_b), boxes, frames, into_a, limit.margin);
         if mask_a == 0 || singles == 0 {
             return false;
         }
