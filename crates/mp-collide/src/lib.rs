@@ -1,6 +1,6 @@
 //! Exact mesh–mesh collision detection with trees of oriented bounding boxes.
 //!
-//! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads.
+//! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads, saved and loaded.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses.
 //! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
@@ -53,14 +53,17 @@ mod mesh;
 mod obb;
 mod pose;
 mod query;
+mod save;
 mod scene;
 mod simd;
 mod wide;
 
+pub mod fuzz;
 pub mod reference;
 pub mod triangle;
 
 pub use mesh::CollisionMesh;
 pub use query::{Counters, Query, Separation};
+pub use save::{TreeError, TreeFileError};
 pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};
 pub use simd::Isa;

@@ -10,7 +10,7 @@ use crate::wide::Tree;
 /// A mesh with its tree of oriented boxes: built once, immutable, cheap to clone, shared between threads.
 #[derive(Clone, Debug)]
 pub struct CollisionMesh {
-    tree: Arc<Tree>,
+    pub(crate) tree: Arc<Tree>,
 }
 
 impl CollisionMesh {

@@ -1,6 +1,8 @@
 //! Building: a binary tree by the surface-area heuristic with bins, collapsed to eight children where
 //! dynamic programming finds it cheapest.
 
+use std::ops::Range;
+
 use nalgebra::{Point3, Vector3};
 
 use super::fit::{centred, fit};
@@ -16,7 +18,7 @@ const LEAF_COST: f64 = 1.0;
 struct Binary {
     /// Children, which are neighbours; 0 in a leaf.
     children: usize,
-    range: std::ops::Range<usize>,
+    range: Range<usize>,
     obb: Obb,
     surface: f64,
 }
@@ -30,19 +32,32 @@ struct Choice {
     node_left: u8,
 }
 
-impl Tree {
-    /// `triangles` is neither empty nor longer than `u32` can count: `TriMesh` has seen to it.
-    pub(crate) fn build(triangles: &[Triangle]) -> Self {
+/// What a tree knows of all its corners.
+pub(crate) struct Size {
+    pub(crate) center: Point3<f64>,
+    pub(crate) radius_center: f64,
+    pub(crate) radius: f64,
+}
+
+impl Size {
+    pub(crate) fn of<'a>(corners: impl Iterator<Item = &'a Point3<f64>> + Clone) -> Self {
         let (mut lo, mut hi) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-        for p in triangles.iter().flatten() {
+        for p in corners.clone() {
             lo = lo.inf(&p.coords);
             hi = hi.sup(&p.coords);
         }
         let center = Point3::from(lo * 0.5 + hi * 0.5);
         let up = 1.0 + 1e-15;
-        let corners = || triangles.iter().flatten();
-        let radius = corners().map(|p| p.coords.norm()).fold(0.0, f64::max) * up;
-        let radius_center = corners().map(|p| (p - center).norm()).fold(0.0, f64::max) * up;
+        let radius = corners.clone().map(|p| p.coords.norm()).fold(0.0, f64::max) * up;
+        let radius_center = corners.map(|p| (p - center).norm()).fold(0.0, f64::max) * up;
+        Self { center, radius_center, radius }
+    }
+}
+
+impl Tree {
+    /// `triangles` is neither empty nor longer than `u32` can count: `TriMesh` has seen to it.
+    pub(crate) fn build(triangles: &[Triangle]) -> Self {
+        let Size { center, radius_center, radius } = Size::of(triangles.iter().flatten());
         let mut items: Vec<Item> = triangles
             .iter()
             .enumerate()
@@ -76,7 +91,7 @@ impl Tree {
     fn emit(&mut self, binary: &[Binary], choices: &[Choice], n: usize) -> u32 {
         let b = &binary[n];
         if b.children == 0 {
-            self.leaves.push(leaf(&self.triangles, &self.center, b));
+            self.leaves.push(leaf(&self.triangles, &self.center, &b.range, &b.obb));
             self.leaf_boxes.push(b.obb);
             return LEAF | (self.leaves.len() - 1) as u32;
         }
@@ -85,34 +100,20 @@ impl Tree {
         forest(binary, choices, b.children, left, &mut roots);
         forest(binary, choices, b.children + 1, WIDTH - left, &mut roots);
         let me = self.nodes.len();
-        let none = [0.0; WIDTH];
-        self.nodes.push(Node {
-            center: [none; 3],
-            half: [[-1e30; WIDTH]; 3],
-            axes: [[none; 3]; 3],
-            child: [0; WIDTH],
-        });
+        self.nodes.push(Node::EMPTY);
         self.node_boxes.push(b.obb);
         for (lane, &root) in roots.iter().enumerate() {
             let child = self.emit(binary, choices, root);
-            let obb = &binary[root].obb;
-            let node = &mut self.nodes[me];
-            node.child[lane] = child;
-            for d in 0..3 {
-                node.center[d][lane] = obb.frame[d][0];
-                node.half[d][lane] = obb.half[d];
-                for k in 0..3 {
-                    node.axes[k][d][lane] = obb.frame[d][k + 1];
-                }
-            }
+            self.nodes[me].set(lane, child, &binary[root].obb);
         }
         me as u32
     }
 }
 
-fn leaf(triangles: &[Triangle], center: &Point3<f64>, b: &Binary) -> Leaf {
-    let (first, count) = (b.range.start, b.range.len());
-    let middle: [f64; 3] = std::array::from_fn(|d| center[d] + f64::from(b.obb.frame[d][0]));
+/// The leaf of `triangles[range]`, neither none nor more than eight, with the box around them.
+pub(crate) fn leaf(triangles: &[Triangle], center: &Point3<f64>, range: &Range<usize>, obb: &Obb) -> Leaf {
+    let (first, count) = (range.start, range.len());
+    let middle: [f64; 3] = std::array::from_fn(|d| center[d] + f64::from(obb.frame[d][0]));
     let mut leaf = Leaf {
         corner: [[[0.0; WIDTH]; 3]; 3],
         center: middle,
@@ -163,7 +164,7 @@ fn split_all(items: &mut [Item]) -> Vec<Binary> {
     binary
 }
 
-fn boxed(items: &[Item], range: std::ops::Range<usize>, scratch: &mut Vec<[[f64; 3]; 3]>) -> Binary {
+fn boxed(items: &[Item], range: Range<usize>, scratch: &mut Vec<[[f64; 3]; 3]>) -> Binary {
     scratch.clear();
     scratch.extend(items[range.clone()].iter().map(|i| i.corners));
     let obb = fit(scratch);

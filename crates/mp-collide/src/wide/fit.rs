@@ -46,7 +46,7 @@ fn around(triangles: &[[[f64; 3]; 3]], frame: &Frame) -> Obb {
         ((hi[k] - at).max(at - lo[k]) * (1.0 + 3e-7)) as f32
     });
     let frame = std::array::from_fn(|d| [center[d], axes[0][d], axes[1][d], axes[2][d]]);
-    Obb { frame, half, size: half[0] * half[0] + half[1] * half[1] + half[2] * half[2] }
+    Obb::new(frame, half)
 }
 
 /// The least and the greatest coordinate along each axis.

@@ -153,7 +153,11 @@ impl Frames {
 
     /// Whether lanes may be used: products of four lengths must neither overflow nor vanish in `f32`.
     pub(crate) fn fits_f32(&self, a: &Tree, b: &Tree) -> bool {
-        let fits = |length: f64| length == 0.0 || (1e-9..=1e9).contains(&length);
         fits(a.radius_center) && fits(b.radius_center) && self.apart <= 1e9
     }
+}
+
+/// Whether lanes, and so the boxes of nodes and leaves, may be used for a tree of this `Tree::radius_center`.
+pub(crate) fn fits(radius_center: f64) -> bool {
+    radius_center == 0.0 || (1e-9..=1e9).contains(&radius_center)
 }

@@ -57,6 +57,12 @@ pub(crate) struct Obb {
     pub(crate) size: f32,
 }
 
+impl Obb {
+    pub(crate) fn new(frame: [[f32; 4]; 3], half: [f32; 3]) -> Self {
+        Self { frame, half, size: half[0] * half[0] + half[1] * half[1] + half[2] * half[2] }
+    }
+}
+
 /// The boxes of up to eight children, each with its own orientation. 512 bytes.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -67,6 +73,35 @@ pub(crate) struct Node {
     /// `axes[k][d]`: coordinate `d` of axis `k`.
     pub(crate) axes: [[Lane; 3]; 3],
     pub(crate) child: [u32; WIDTH],
+}
+
+impl Node {
+    /// Without children.
+    pub(crate) const EMPTY: Self = Self {
+        center: [[0.0; WIDTH]; 3],
+        half: [[-1e30; WIDTH]; 3],
+        axes: [[[0.0; WIDTH]; 3]; 3],
+        child: [0; WIDTH],
+    };
+
+    /// Makes `child`, with its box, the child in `lane`.
+    pub(crate) fn set(&mut self, lane: usize, child: u32, obb: &Obb) {
+        self.child[lane] = child;
+        for d in 0..3 {
+            self.center[d][lane] = obb.frame[d][0];
+            self.half[d][lane] = obb.half[d];
+            for k in 0..3 {
+                self.axes[k][d][lane] = obb.frame[d][k + 1];
+            }
+        }
+    }
+
+    /// The children, from lane 0 on.
+    pub(crate) fn children(&self) -> impl Iterator<Item = u32> {
+        // Not a number, in a box too large for `f32`, is no empty lane.
+        let used = self.half[0].iter().take_while(|half| half.is_nan() || **half >= 0.0).count();
+        self.child[..used].iter().copied()
+    }
 }
 
 /// Up to eight triangles, relative to a centre of their own. 384 bytes.

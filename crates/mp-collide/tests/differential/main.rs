@@ -6,6 +6,7 @@ mod meshes;
 mod parry;
 mod properties;
 mod referee;
+mod saved;
 mod scene_model;
 mod scenes;
 mod triangles;
