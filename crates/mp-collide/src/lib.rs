@@ -1,7 +1,8 @@
-//! Exact mesh–mesh collision detection with trees of oriented bounding boxes.
+//! Exact collision detection between meshes, and with primitives, with trees of oriented bounding boxes.
 //!
 //! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads, saved and loaded.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses.
+//! * [`Solid`]: balls, capsules, boxes and half-spaces, to compare with meshes.
 //! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
@@ -56,6 +57,7 @@ mod query;
 mod save;
 mod scene;
 mod simd;
+mod solid;
 mod wide;
 
 pub mod fuzz;
@@ -67,3 +69,4 @@ pub use query::{Counters, Query, Separation};
 pub use save::{TreeError, TreeFileError};
 pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};
 pub use simd::Isa;
+pub use solid::Solid;

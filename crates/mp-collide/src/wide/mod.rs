@@ -29,6 +29,7 @@ pub(crate) mod build;
 pub(crate) mod fit;
 pub(crate) mod frames;
 pub(crate) mod gaps;
+pub(crate) mod inside;
 pub(crate) mod intersect;
 pub(crate) mod leaves;
 pub(crate) mod nearest;

@@ -9,4 +9,5 @@ mod referee;
 mod saved;
 mod scene_model;
 mod scenes;
+mod solids;
 mod triangles;

@@ -12,11 +12,11 @@ use crate::common::{bumpy, point, pose, rng, soup};
 /// Half the band around contact in which parry is not to be trusted, for sizes about 1.
 const BAND: f64 = 5e-6;
 
-fn vector(p: &Point3<f64>) -> Vector {
+pub(crate) fn vector(p: &Point3<f64>) -> Vector {
     Vector::new(p.x, p.y, p.z)
 }
 
-fn placed(pose: &Isometry3<f64>) -> Pose {
+pub(crate) fn placed(pose: &Isometry3<f64>) -> Pose {
     let q = pose.rotation.quaternion();
     Pose::from_parts(vector(&pose.translation.vector.into()), Rotation::from_xyzw(q.i, q.j, q.k, q.w))
 }
