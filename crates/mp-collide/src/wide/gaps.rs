@@ -126,6 +126,7 @@ impl<L: Lanes> Gaps<L> {
             let apart = self.lo[d].sub(L::splat(hi)).max(L::splat(lo).sub(self.hi[d])).max(zero);
             gap = apart.mul_add(apart, gap);
         }
+        // The same along the slab: each of its two sides is wrong by up to 7u·g.
         let along = three!(k => self.slab[0] * p[k][0] + self.slab[1] * p[k][1] + self.slab[2] * p[k][2]);
         let bottom = along[0].min(along[1]).min(along[2]) - 4.0 * wrong;
         let apart = L::splat(bottom).sub(self.top).max(zero);
@@ -137,8 +138,9 @@ impl<L: Lanes> Gaps<L> {
             return Close::default();
         }
         let s: [[L; 3]; 3] = three!(k => [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
-        // All of the one on one side of the planes of the eight: height² / |n|² bounds. Errors of a height
-        // are as in `leaves::Block`.
+        // All of the one on one side of the planes of the eight: height² / |n|² bounds. Corners are wrong by
+        // u·g and no farther apart than 2√3·g, so a normal is wrong by 7u·g·e + 3u·e² and a height, with the
+        // corners' own error and the rounding of the products, by 24u·g²·e + 28u·g·e².
         let edge = self.edge;
         let error = L::splat(g * edge * (1.5e-6 * g + 2e-6 * edge));
         let h: [L; 3] = three!(k => dot(&self.n, &sub(&s[k], &self.v[0])));
