@@ -26,6 +26,7 @@ pub(crate) struct Relative {
 
 impl Relative {
     /// `None` when a pose or a mesh (by `radius`, its largest coordinate) is not within the limits.
+    #[inline(always)]
     pub(crate) fn between(
         pose_wa: &Isometry3<f64>,
         radius_a: f64,
@@ -47,6 +48,7 @@ impl Relative {
     }
 
     /// A point of `b` in the frame of `a`.
+    #[inline(always)]
     pub(crate) fn point(&self, p: &Point3<f64>) -> Point3<f64> {
         let (r, t) = (&self.rotation, &self.translation);
         Point3::new(
@@ -57,6 +59,7 @@ impl Relative {
     }
 
     /// A triangle of `b` in the frame of `a`.
+    #[inline(always)]
     pub(crate) fn triangle(&self, triangle: &Triangle) -> Triangle {
         [self.point(&triangle[0]), self.point(&triangle[1]), self.point(&triangle[2])]
     }
@@ -73,6 +76,7 @@ impl Relative {
 }
 
 /// Whether `pose` is within the limits of the crate docs; NaN is not.
+#[inline(always)]
 fn is_rigid(pose: &Isometry3<f64>) -> bool {
     (pose.rotation.quaternion().norm_squared() - 1.0).abs() <= UNIT_TOLERANCE
         && pose.translation.vector.iter().all(|c| c.abs() <= LIMIT)
@@ -84,6 +88,7 @@ pub(crate) fn to_world(pose: &Isometry3<f64>, p: &Point3<f64>) -> Point3<f64> {
 }
 
 /// The rotation by `q`, which need not be quite of unit length.
+#[inline(always)]
 fn rotation_matrix(q: &Quaternion<f64>) -> Matrix3<f64> {
     let s = 2.0 / q.norm_squared();
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);

@@ -114,6 +114,7 @@ impl Query {
     }
 
     /// Two intersecting triangles, as positions in the trees.
+    #[inline]
     pub(crate) fn colliding_pair(
         &mut self,
         a: &Tree,

@@ -14,6 +14,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
+    #[inline(always)]
     fn new(r: &Matrix3<f64>, t: &Vector3<f64>) -> Self {
         Self {
             r: [
@@ -135,6 +136,7 @@ pub(crate) struct Frames {
 const PAD: f64 = 2e-6;
 
 impl Frames {
+    #[inline(always)]
     pub(crate) fn new(a: &Tree, b: &Tree, exact: &Relative) -> Self {
         let r = exact.rotation;
         let shift = exact.point(&b.center) - a.center;

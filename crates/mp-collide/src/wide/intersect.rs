@@ -108,7 +108,8 @@ fn leaf_pair<L: Lanes>(
     if mask_a == 0 {
         return None;
     }
-    let corners_b = near.carry::<L>(leaf_b, frames);
+    let own_b = corners::<L>(leaf_b);
+    let corners_b = near.carry(&own_b, frames);
     let box_a = Placed::at_origin(&a.leaf_boxes[i]);
     let mask_b = near_box(&corners_b, leaf_b.edge, &box_a, &near, frames.pad) & leaf_b.all();
     if mask_b == 0 {
@@ -116,11 +117,8 @@ fn leaf_pair<L: Lanes>(
     }
     // The fewer, one by one, against the more at once.
     let swap = mask_b.count_ones() > mask_a.count_ones();
-    let (meeting, mut singles, mask) = if swap {
-        (Meeting::new(&corners_b, leaf_b.edge, &corners_a, leaf_a.edge, &near), mask_a, mask_b)
-    } else {
-        (Meeting::new(&corners_a, leaf_a.edge, &corners_b, leaf_b.edge, &near), mask_b, mask_a)
-    };
+    let meeting = Meeting::new((leaf_a, &corners_a), (leaf_b, &corners_b, &own_b), (&near, frames), swap);
+    let (mut singles, mask) = if swap { (mask_a, mask_b) } else { (mask_b, mask_a) };
     let (first_a, first_b) = (leaf_a.first as usize, leaf_b.first as usize);
     while singles != 0 {
         let single = singles.trailing_zeros() as usize;

@@ -22,17 +22,22 @@ pub(crate) fn corners<L: Lanes>(leaf: &Leaf) -> Corners<L> {
     ]
 }
 
+/// u: the relative rounding of `f32`.
+const U: f32 = 6e-8;
+
 /// Two leaves in the frame of the first, its origin moved to that leaf's centre, and how wrong `f32` makes
 /// what is computed there.
 ///
-/// With u = 2⁻²⁴ and `g` the largest length around (coordinates of the first, distances of corners of the
-/// second from its centre, coordinates of that centre), a carried coordinate is wrong by u·√3·g for each
-/// rounding of corner and rotation and for up to six sums, and by u·g for that of the shift: less than
-/// 16u·g. `wrong` bounds that, and the rounding in `f64` of the triangles that the contract speaks of.
+/// Corners of the first, within `m` of its centre, are rounded once: u·m. Those of the second, within `n`
+/// of its centre, which is at `t`, are wrong by u·√3·n each for the rounding of the corner, of the rotation and of
+/// three products, by u·(√3·n + t) for each of three sums and by u·t for that of the shift, and by what `f64`
+/// loses in the triangles that the contract speaks of. All in each coordinate.
 pub(crate) struct Near {
     /// Centre of the second leaf.
     pub(crate) shift: [f32; 3],
-    g: f32,
+    /// The largest coordinate of that.
+    t: f32,
+    /// How wrong a coordinate of the first may be together with one of the second.
     wrong: f32,
 }
 
@@ -41,21 +46,81 @@ impl Near {
     pub(crate) fn new(a: &Leaf, b: &Leaf, frames: &Frames) -> Self {
         let center = frames.exact.point(&b.center.into());
         let shift = three!(d => (center[d] - a.center[d]) as f32);
-        let far = shift[0].abs().max(shift[1].abs()).max(shift[2].abs());
-        let g = a.magnitude.max(b.magnitude * 1.733).max(far);
-        Self { shift, g, wrong: 1e-6 * g + frames.slack }
+        let t = shift[0].abs().max(shift[1].abs()).max(shift[2].abs());
+        let wrong = U * (a.magnitude + 10.5 * b.magnitude + 4.0 * t) + frames.slack;
+        Self { shift, t, wrong }
     }
 
     /// The triangles of the second leaf.
     #[inline(always)]
-    pub(crate) fn carry<L: Lanes>(&self, b: &Leaf, frames: &Frames) -> Corners<L> {
-        let v = corners::<L>(b);
+    pub(crate) fn carry<L: Lanes>(&self, v: &Corners<L>, frames: &Frames) -> Corners<L> {
         let r = &frames.into_a.r;
         three!(k => three!(d => {
             let x = v[k][2].mul_add(L::splat(r[d][2]), L::splat(self.shift[d]));
             v[k][0].mul_add(L::splat(r[d][0]), v[k][1].mul_add(L::splat(r[d][1]), x))
         }))
     }
+}
+
+/// How wrong heights over the planes of the first leaf, over those of the second, and volumes may be.
+struct Bounds {
+    height_a: f32,
+    height_b: f32,
+    volume: f32,
+}
+
+impl Bounds {
+    /// With corners up to `far` apart and coordinates up to `g`, the height of a corner over a plane of the other leaf
+    /// is wrong by the error of the normal over that distance, by the errors of two corners, and by 20u·g·e² for
+    /// sums; a volume (p − v)·(e × f) by the errors of corners and edges, and by 40u·g·e·f for sums.
+    #[inline(always)]
+    fn new(leaf_a: &Leaf, leaf_b: &Leaf, near: &Near) -> Self {
+        let (m, reach) = (leaf_a.magnitude, near.t + 1.74 * leaf_b.magnitude);
+        let (far, corner) = (1.74 * (m + reach), 1.75 * near.wrong);
+        let g = m.max(reach);
+        let (a, b) = (Size::of(leaf_a), Size::of(leaf_b));
+        let height = |s: &Size| s.wrong_normal * far + s.edge * s.edge * (corner + 20.0 * U * g) + TINY;
+        let edges = a.wrong_edge * b.edge + b.wrong_edge * a.edge;
+        Self {
+            height_a: height(&a),
+            height_b: height(&b),
+            volume: edges * far + a.edge * b.edge * (corner + 40.0 * U * g) + TINY,
+        }
+    }
+}
+
+/// The longest edge of a leaf; how wrong edges (in length) and normals, products of two, may be.
+struct Size {
+    edge: f32,
+    wrong_edge: f32,
+    wrong_normal: f32,
+}
+
+impl Size {
+    /// An edge as the difference of two corners is wrong by 2√3·u·m and √3·u·e; turned, by 7u·e more. A product of
+    /// two is wrong by 2e times that and by 3√3·u·e² for its sums.
+    #[inline(always)]
+    fn of(leaf: &Leaf) -> Self {
+        let (m, e) = (leaf.magnitude, leaf.edge);
+        let wrong_edge = U * (3.5 * m + 9.0 * e);
+        Self { edge: e, wrong_edge, wrong_normal: e * (2.0 * wrong_edge + 5.2 * U * e) }
+    }
+}
+
+/// Edge `k` leads from corner `k` to the next.
+#[inline(always)]
+fn edges<L: Lanes>(v: &Corners<L>) -> Corners<L> {
+    [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])]
+}
+
+/// Edges of the second leaf, turned into the frame of the first.
+#[inline(always)]
+fn turn<L: Lanes>(e: &Corners<L>, frames: &Frames) -> Corners<L> {
+    let r = &frames.into_a.r;
+    three!(k => three!(d => {
+        let x = e[k][2].mul(L::splat(r[d][2]));
+        e[k][0].mul_add(L::splat(r[d][0]), e[k][1].mul_add(L::splat(r[d][1]), x))
+    }))
 }
 
 /// The triangles (with edges up to `edge` long) that may come within `margin` of box `q`, all in the frame of
@@ -104,7 +169,7 @@ pub(crate) fn near_each_other<L: Lanes>(
     if mask_a == 0 {
         return (0, 0);
     }
-    let corners_b = near.carry::<L>(b, frames);
+    let corners_b = near.carry(&corners::<L>(b), frames);
     (mask_a, near_box(&corners_b, b.edge, &Placed::at_origin(box_a), &near, margin) & b.all())
 }
 
@@ -121,13 +186,12 @@ struct Eight<L> {
 
 impl<L: Lanes> Eight<L> {
     #[inline(always)]
-    fn new(v: &Corners<L>) -> Self {
-        let edge = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
+    fn new(v: &Corners<L>, edge: &Corners<L>) -> Self {
         let normal = cross(&edge[0], &edge[1]);
         Self {
             corner: *v,
             moment: three!(k => cross(&v[k], &edge[k])),
-            edge,
+            edge: *edge,
             height: dot(&normal, &v[0]),
             normal,
         }
@@ -185,27 +249,34 @@ impl Verdict {
 }
 
 impl<L: Lanes> Meeting<L> {
-    /// Edges are no longer than `edge_block` and `edge_single`.
-    ///
-    /// With corners wrong by `w` in each coordinate and lengths up to `g`, a normal e × f is wrong by
-    /// 7w·e + 5u·e², so a height over its plane by 3.5g times that, by 3.5w·e² for the corners and by 14u·g·e²
-    /// for sums: at most w·e·(25g + 7e) as 16u·g ≤ w. A volume (p − v)·(e × f) is wrong by 12w·g·(e + f) +
-    /// 3.5w·e·f for corners and by 40u·g·e·f for sums.
+    /// Leaf `a` with its corners, and leaf `b` with its corners here and in its own frame: the latter's triangles one
+    /// by one, or the former's if `swap`.
     #[inline(always)]
     pub(crate) fn new(
-        block: &Corners<L>,
-        edge_block: f32,
-        singles: &Corners<L>,
-        edge_single: f32,
-        near: &Near,
+        (leaf_a, corners_a): (&Leaf, &Corners<L>),
+        (leaf_b, corners_b, own_b): (&Leaf, &Corners<L>, &Corners<L>),
+        (near, frames): (&Near, &Frames),
+        swap: bool,
     ) -> Self {
-        let (g, w, e, f) = (near.g, near.wrong, edge_block, edge_single);
-        Self {
-            block: Eight::new(block),
-            singles: Eight::new(singles).store(),
-            wrong_block: w * e * (25.0 * g + 7.0 * e) + TINY,
-            wrong_single: w * f * (25.0 * g + 7.0 * f) + TINY,
-            wrong_volume: w * (12.0 * g * (e + f) + 7.0 * e * f) + TINY,
+        let Bounds { height_a, height_b, volume } = Bounds::new(leaf_a, leaf_b, near);
+        let a = Eight::new(corners_a, &edges(corners_a));
+        let b = Eight::new(corners_b, &turn(&edges(own_b), frames));
+        if swap {
+            Self {
+                block: b,
+                singles: a.store(),
+                wrong_block: height_b,
+                wrong_single: height_a,
+                wrong_volume: volume,
+            }
+        } else {
+            Self {
+                block: a,
+                singles: b.store(),
+                wrong_block: height_a,
+                wrong_single: height_b,
+                wrong_volume: volume,
+            }
         }
     }
 
