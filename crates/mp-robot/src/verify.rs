@@ -3,30 +3,27 @@
 use crate::rigid::Reference;
 use crate::solid::Solid;
 use crate::{Placement, RigidBody};
-use mp_collide::reference::RefMesh;
+use mp_collide::reference::{RefMesh, Sweep, Swept};
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
-use std::collections::VecDeque;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// Proves motions of a rigid body free of collision, by other code than planners use: its own motion bound,
-/// its own subdivision, and `mp_collide::reference` (sphere trees) for distances. Only the space is
-/// shared: its interpolation is what a motion *is*.
+/// its own subdivision, and `mp_collide::reference` (sphere trees). Only the space is shared: its interpolation
+/// is what a motion *is*.
 ///
-/// The motion is bisected. A part is proved when the clearance at its middle exceeds, by the tolerance, how
-/// far any point of the robot can be from where it is at the middle, `‖Δp‖ + 2·radius·sin(θ/2)` to either end
-/// of the part. So:
+/// The proof is a [`Sweep`], to a margin of the tolerance. So:
 ///
 /// - free means: clearance of at least the tolerance all along, however thin the obstacles;
 /// - a motion with clearance of at least twice the tolerance all along is found free;
 /// - a motion with a tested state of less is [`Undecided`](MotionCheck::Undecided), as are motions longer
-///   than 10⁹ tolerances or cut into more than four million parts.
+///   than 10⁹ tolerances or that take a sweep too long.
 ///
 /// Interpolation in the space must move the origin on a straight line and turn by at most half a turn about
-/// a fixed axis, as `Se3`, `Se2` and `Rn` do. Obstacles are surfaces; for a point, which can touch one only by
-/// chance, motions that begin inside a solid collide too.
+/// a fixed axis, both at constant speed, as `Se3`, `Se2` and `Rn` do. Obstacles are surfaces; for a point,
+/// which can touch one only by chance, motions that begin inside a solid collide too.
 #[derive(Clone, Debug)]
 pub struct Verifier<'c, C, P> {
     space: &'c C,
@@ -36,15 +33,12 @@ pub struct Verifier<'c, C, P> {
     solids: Vec<Solid>,
     radius: f64,
     tolerance: f64,
-    queries: u64,
-    parts: VecDeque<[f64; 2]>,
+    sweep: Sweep,
     placement: PhantomData<P>,
 }
 
 /// Motions longer than this many tolerances are refused.
 const MAX_LENGTH: f64 = 1e9;
-/// Motions that need more parts than this are given up.
-const MAX_PARTS: u64 = 4_000_000;
 
 impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
     /// A verifier for `robot` in `space`, to a tenth of the robot's [tolerance](RigidBody::tolerance).
@@ -83,8 +77,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             solids: solids.iter().map(|(_, solid)| solid.clone()).collect(),
             radius: shared.robot_mesh.vertices().iter().map(from_origin).fold(0.0, f64::max),
             tolerance,
-            queries: 0,
-            parts: VecDeque::new(),
+            sweep: Sweep::default(),
             placement: PhantomData,
         })
     }
@@ -95,21 +88,17 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         self.tolerance
     }
 
-    /// Distance queries made so far.
+    /// Pairs of balls and of triangles compared so far.
     #[must_use]
-    pub fn queries(&self) -> u64 {
-        self.queries
+    pub fn comparisons(&self) -> u64 {
+        self.sweep.compared()
     }
 
-    /// A lower bound on the distance to the obstacles (m) of at least `enough`, or else the distance of
-    /// something nearer than that.
-    fn at_least(&mut self, pose: &Isometry3<f64>, enough: f64) -> Result<f64, f64> {
-        self.queries += 1;
-        match &self.world {
-            Some(world) => self.robot.at_least(pose, world, &Isometry3::identity(), enough),
-            None if pose.to_homogeneous().iter().all(|v| v.is_finite()) => Ok(f64::INFINITY),
-            None => Err(0.0),
-        }
+    /// Whether the robot surely touches an obstacle at a pose.
+    fn touches(&self, pose: &Isometry3<f64>) -> bool {
+        let Some(world) = &self.world else { return false };
+        let touching = self.robot.at_least(pose, world, &Isometry3::identity(), self.tolerance);
+        touching.is_err_and(|distance| distance <= 0.0)
     }
 
     /// How far apart two poses can put a point of the robot.
@@ -118,57 +107,27 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         let half_turn_sine = (a.rotation.quaternion().conjugate() * b.rotation.quaternion()).imag().norm();
         (a.translation.vector - b.translation.vector).norm() + 2.0 * self.radius * half_turn_sine
     }
-
-    fn pose_at(&self, from: &P::State, to: &P::State, t: f64) -> Isometry3<f64> {
-        P::pose(&self.space.interpolate(from, to, t))
-    }
 }
 
 impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Verifier<'_, C, P> {
     fn check_motion(&mut self, from: &P::State, to: &P::State) -> MotionCheck {
-        let whole = self.displacement(&P::pose(from), &P::pose(to));
+        let ends = [from, to].map(P::pose);
         // Written so that NaN is refused.
-        let provable = whole / self.tolerance < MAX_LENGTH;
+        let provable = self.displacement(&ends[0], &ends[1]) / self.tolerance < MAX_LENGTH;
         if !provable {
             return MotionCheck::Undecided { at: 0.0 };
         }
-        for (at, end) in [(0.0, from), (1.0, to)] {
-            if self.at_least(&P::pose(end), self.tolerance).is_err_and(|distance| distance <= 0.0) {
-                return MotionCheck::Collides { at };
-            }
-        }
-        if self.solids.iter().any(|solid| solid.contains(&P::pose(from).translation.vector.into())) {
+        if self.solids.iter().any(|solid| solid.contains(&ends[0].translation.vector.into())) {
             return MotionCheck::Collides { at: 0.0 };
         }
-        // Larger parts first: that meets obstacles soonest.
-        let mut least = f64::INFINITY;
-        let mut parts = std::mem::take(&mut self.parts);
-        parts.clear();
-        parts.push_back([0.0, 1.0]);
-        let mut verdict = None;
-        let limit = self.queries + MAX_PARTS;
-        while let Some([a, b]) = parts.pop_front() {
-            let at = 0.5 * (a + b);
-            let middle = self.pose_at(from, to, at);
-            let [to_a, to_b] = [a, b].map(|t| self.displacement(&middle, &self.pose_at(from, to, t)));
-            let swept = to_a.max(to_b);
-            if let Ok(clearance) = self.at_least(&middle, swept + self.tolerance) {
-                // The maximum is for rounding only.
-                least = least.min((clearance - swept).max(self.tolerance));
-                continue;
-            }
-            match self.at_least(&middle, 2.0 * self.tolerance) {
-                // Ends when the parts are so short that they can be proved.
-                Ok(_) if self.queries < limit => parts.extend([[a, at], [at, b]]),
-                found => {
-                    let hit = found.is_err_and(|distance| distance <= 0.0);
-                    verdict =
-                        Some(if hit { MotionCheck::Collides { at } } else { MotionCheck::Undecided { at } });
-                    break;
-                }
-            }
+        let Some(world) = &self.world else { return MotionCheck::Free { clearance: f64::INFINITY } };
+        let pose_at = |t: f64| P::pose(&self.space.interpolate(from, to, t));
+        match self.sweep.sweep(&self.robot, pose_at, world, self.tolerance) {
+            Swept::Free { clearance } => MotionCheck::Free { clearance },
+            _ if self.touches(&ends[0]) => MotionCheck::Collides { at: 0.0 },
+            _ if self.touches(&ends[1]) => MotionCheck::Collides { at: 1.0 },
+            Swept::Contact { at } => MotionCheck::Collides { at },
+            Swept::Near { at } => MotionCheck::Undecided { at },
         }
-        self.parts = parts;
-        verdict.unwrap_or(MotionCheck::Free { clearance: least })
     }
 }

@@ -1,7 +1,9 @@
 //! What differs between robots in the plane and in space.
 
 use miette::{IntoDiagnostic, Result};
-use mp::cspace::{Embed, EmbedFactors, MaxDisplacement, ScaledEuclidean, Se2, Se3, Space, TrueMetricOn};
+use mp::cspace::{
+    DefaultNn, Embed, EmbedFactors, MaxDisplacement, ScaledEuclidean, Se2, Se3, Space, TrueMetricOn,
+};
 use mp::geom::{Aabb, TriMesh};
 use mp::robot::{Placement, Planar, Spatial};
 use nalgebra::{Point2, Point3};
@@ -9,7 +11,14 @@ use std::fmt::Debug;
 
 /// A kind of rigid body.
 pub(crate) trait Mover: Placement {
-    type Space: Embed + EmbedFactors + Space<State = Self::State> + Clone + Debug + Send + Sync;
+    type Space: Embed
+        + EmbedFactors
+        + DefaultNn<Nn: 'static>
+        + Space<State = Self::State>
+        + Clone
+        + Debug
+        + Send
+        + Sync;
     type Displacement: TrueMetricOn<Self::Space>;
 
     /// The space of configurations with the origin within `bounds`.

@@ -8,9 +8,9 @@ use super::setting::Setting;
 use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
-    Cancel, Certified, Deadline, Discrete, Euclidean, Iterations, KdTree, Manhattan, MetricOn, MetricTree,
-    MotionValidity, NearestNeighbors, Outcome, Path, Progress, Resolution, Rng, Space, Stop, StopReason,
-    Straight, Validity, WithMetric,
+    Cancel, Certified, Deadline, DefaultNn, Discrete, Euclidean, Iterations, KdTree, Manhattan, MetricOn,
+    MetricTree, MotionValidity, NearestNeighbors, Outcome, Path, Progress, Resolution, Rng, Space, Stop,
+    StopReason, Straight, Validity, WithMetric,
 };
 use mp::tree::{Goals, Problem, build_with};
 use std::time::{Duration, Instant};
@@ -36,7 +36,7 @@ pub(crate) fn search<M: Mover>(
     let run = Run { setting, options, seed, cancel };
     let space = &setting.space;
     match options.metric {
-        metrics::Kind::Default => run.on(space, <KdTree>::default(), line),
+        metrics::Kind::Default => run.on(space, <M::Space as DefaultNn>::Nn::default(), line),
         metrics::Kind::Euclidean => run.on(&with(space, Euclidean), <KdTree>::default(), line),
         metrics::Kind::Manhattan => run.on(&with(space, Manhattan), <KdTree>::default(), line),
         metrics::Kind::Scaled => {

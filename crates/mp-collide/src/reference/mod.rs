@@ -4,11 +4,14 @@
 //!
 //! It is not exact at contact: whatever is nearer than about 1e-13 of the coordinates counts as touching.
 
+mod hull;
+mod sweep;
 mod triangle;
 
 use mp_geom::TriMesh;
-use nalgebra::{Isometry3, IsometryMatrix3, Point3};
+use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
 
+pub use sweep::{Sweep, Swept};
 pub use triangle::triangle_distance;
 
 use triangle::{Triangle, point_triangle};
@@ -21,6 +24,10 @@ const TOUCHING: f64 = 1e-13;
 struct Ball {
     center: Point3<f64>,
     radius: f64,
+    /// From the center to the sides of the box around the triangles.
+    half: Vector3<f64>,
+    /// The largest distance of a point of the triangles from the origin.
+    reach: f64,
     content: Content,
 }
 
@@ -103,8 +110,7 @@ impl RefMesh {
     ) -> Option<Search<'a>> {
         let pose_ab = pose_wa.inverse() * pose_wb;
         let scale = self.size + other.size + pose_ab.translation.vector.norm();
-        let rigid = |pose: &Isometry3<f64>| (pose.rotation.quaternion().norm() - 1.0).abs() < 1e-6;
-        if !(rigid(pose_wa) && rigid(pose_wb) && scale < 1e75) {
+        if !(is_usable(pose_wa, scale) && is_usable(pose_wb, scale)) {
             return None;
         }
         let pose_ab = IsometryMatrix3::from_parts(pose_ab.translation, pose_ab.rotation.to_rotation_matrix());
@@ -187,6 +193,12 @@ impl Search<'_> {
     }
 }
 
+/// Whether `pose` is a rigid motion, and finite with meshes of that size.
+fn is_usable(pose: &Isometry3<f64>, size: f64) -> bool {
+    let rigid = (pose.rotation.quaternion().norm() - 1.0).abs() < 1e-6;
+    rigid && pose.translation.vector.norm() + size < 1e75
+}
+
 /// Adds the balls of the triangles in `order`, children first; returns the index of the outermost.
 fn build(triangles: &[Triangle], order: &mut [usize], balls: &mut Vec<Ball>) -> usize {
     let content = if let [only] = order {
@@ -206,16 +218,16 @@ fn build(triangles: &[Triangle], order: &mut [usize], balls: &mut Vec<Ball>) -> 
         let (low, high) = order.split_at_mut(half);
         Content::Parts([build(triangles, low, balls), build(triangles, high, balls)])
     };
-    let (center, radius) = enclosing_ball(order.iter().flat_map(|&i| triangles[i]));
-    balls.push(Ball { center, radius, content });
+    balls.push(enclosing_ball(order.iter().flat_map(|&i| triangles[i]), content));
     balls.len() - 1
 }
 
 /// A ball around the points: the middle of their box, the distance of the farthest.
-fn enclosing_ball(points: impl Iterator<Item = Point3<f64>> + Clone) -> (Point3<f64>, f64) {
+fn enclosing_ball(points: impl Iterator<Item = Point3<f64>> + Clone, content: Content) -> Ball {
     let low = points.clone().reduce(|p, q| p.inf(&q)).unwrap_or_default();
     let high = points.clone().reduce(|p, q| p.sup(&q)).unwrap_or_default();
     let center = nalgebra::center(&low, &high);
-    let radius = points.map(|p| (p - center).norm()).fold(0.0, f64::max);
-    (center, radius)
+    let radius = points.clone().map(|p| (p - center).norm()).fold(0.0, f64::max);
+    let reach = points.map(|p| p.coords.norm()).fold(0.0, f64::max);
+    Ball { center, radius, half: (high - center).sup(&(center - low)), reach, content }
 }

@@ -1,77 +1,119 @@
 //! Distances of triangles, the plain way.
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 pub(super) type Triangle = [Point3<f64>; 3];
 
 const EDGES: [(usize, usize); 3] = [(0, 1), (1, 2), (2, 0)];
 
 /// The distance of two triangles, up to rounding; 0 when an edge of one passes through the other.
-///
-/// The least of: corners to the other triangle; common perpendiculars of edges.
 #[must_use]
 pub fn triangle_distance(a: &[Point3<f64>; 3], b: &[Point3<f64>; 3]) -> f64 {
-    let mut least = f64::INFINITY;
+    triangle_gap(a, b).norm()
+}
+
+/// The shortest way from triangle `b` to triangle `a`; zero when an edge of one passes through the other.
+///
+/// The least of: corners to the other triangle; common perpendiculars of edges.
+pub(super) fn triangle_gap(a: &Triangle, b: &Triangle) -> Vector3<f64> {
+    let mut least = Shortest::default();
     for p in a {
-        least = least.min(point_triangle(p, b));
+        least.offer(to_point(p, b));
     }
     for p in b {
-        least = least.min(point_triangle(p, a));
+        least.offer(-to_point(p, a));
     }
     for (i, j) in EDGES {
         if passes_through(&a[i], &a[j], b) || passes_through(&b[i], &b[j], a) {
-            return 0.0;
+            return Vector3::zeros();
         }
         for (k, l) in EDGES {
-            least = least.min(common_perpendicular(&a[i], &a[j], &b[k], &b[l]));
+            if let Some(way) = common_perpendicular(&a[i], &a[j], &b[k], &b[l]) {
+                least.offer(way);
+            }
         }
     }
-    least
+    least.way
+}
+
+/// The shortest of some vectors.
+struct Shortest {
+    way: Vector3<f64>,
+    square: f64,
+}
+
+impl Default for Shortest {
+    fn default() -> Self {
+        Self { way: Vector3::repeat(f64::INFINITY), square: f64::INFINITY }
+    }
+}
+
+impl Shortest {
+    fn offer(&mut self, way: Vector3<f64>) {
+        let square = way.norm_squared();
+        if square < self.square {
+            *self = Self { way, square };
+        }
+    }
 }
 
 /// The distance from a point to a triangle.
 pub(super) fn point_triangle(p: &Point3<f64>, t: &Triangle) -> f64 {
-    let (u, v) = (t[1] - t[0], t[2] - t[0]);
-    let normal = u.cross(&v);
-    let area = normal.norm();
-    // A sliver thinner than rounding is as good as its edges.
-    if area > 1e-14 * u.norm().max(v.norm()).powi(2) {
-        let inside = EDGES.iter().all(|&(i, j)| normal.dot(&(t[j] - t[i]).cross(&(p - t[i]))) >= 0.0);
-        if inside {
-            return (normal.dot(&(p - t[0])) / area).abs();
-        }
-    }
-    EDGES.iter().map(|&(i, j)| point_segment(p, &t[i], &t[j])).fold(f64::INFINITY, f64::min)
+    to_point(p, t).norm()
 }
 
-/// The distance from a point to a segment.
-fn point_segment(p: &Point3<f64>, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
+/// The shortest way from a triangle to a point.
+fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
+    let (u, v) = (t[1] - t[0], t[2] - t[0]);
+    let normal = u.cross(&v);
+    let square = normal.norm_squared();
+    // A sliver thinner than rounding is as good as its edges.
+    if square.sqrt() > 1e-14 * u.norm_squared().max(v.norm_squared()) {
+        let inside = EDGES.iter().all(|&(i, j)| normal.dot(&(t[j] - t[i]).cross(&(p - t[i]))) >= 0.0);
+        if inside {
+            return normal * (normal.dot(&(p - t[0])) / square);
+        }
+    }
+    let mut least = Shortest::default();
+    for (i, j) in EDGES {
+        least.offer(from_segment(p, &t[i], &t[j]));
+    }
+    least.way
+}
+
+/// The shortest way from a segment to a point.
+pub(super) fn from_segment(p: &Point3<f64>, a: &Point3<f64>, b: &Point3<f64>) -> Vector3<f64> {
     let (along, to_p) = (b - a, p - a);
     let reach = to_p.dot(&along);
     let square = along.norm_squared();
     if reach <= 0.0 || square == 0.0 {
-        to_p.norm()
+        to_p
     } else if reach >= square {
-        (p - b).norm()
+        p - b
     } else {
-        (to_p - along * (reach / square)).norm()
+        to_p - along * (reach / square)
     }
 }
 
-/// The distance of two segments at their common perpendicular, when it meets both; else infinity.
-fn common_perpendicular(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) -> f64 {
+/// The way from the second of two segments to the first along their common perpendicular, when it meets both.
+fn common_perpendicular(
+    a: &Point3<f64>,
+    b: &Point3<f64>,
+    c: &Point3<f64>,
+    d: &Point3<f64>,
+) -> Option<Vector3<f64>> {
     let (u, v, w) = (b - a, d - c, c - a);
     let normal = u.cross(&v);
     let square = normal.norm_squared();
     if square == 0.0 {
-        return f64::INFINITY;
+        return None;
     }
     let s = w.cross(&v).dot(&normal) / square;
     let t = w.cross(&u).dot(&normal) / square;
     if !(0.0..=1.0).contains(&s) || !(0.0..=1.0).contains(&t) {
-        return f64::INFINITY;
+        return None;
     }
-    point_segment(&(a + u * s), c, d)
+    Some(from_segment(&(a + u * s), c, d))
 }
 
 /// Whether a segment passes through a triangle (Möller, Trumbore, *Fast, Minimum Storage Ray-Triangle

@@ -1,0 +1,52 @@
+//! What a moving triangle passes over.
+
+use super::triangle::Triangle;
+use nalgebra::{Point3, Vector3};
+
+/// The corners of a triangle where it begins and where it ends.
+pub(super) struct Hull([Point3<f64>; 6]);
+
+impl Hull {
+    pub(super) fn new([a, b, c]: Triangle, [d, e, f]: Triangle) -> Self {
+        Self([a, b, c, d, e, f])
+    }
+
+    /// How far the hull is ahead of a triangle in some direction, if possible by `enough`. Tries `first`, or
+    /// the normal of the triangle when that is zero; then turns away from the points that are in the way
+    /// (Chung and Wang, *Quick collision detection of polytopes in virtual environments*, VRST 1996).
+    pub(super) fn ahead_of(&self, triangle: &Triangle, first: Vector3<f64>, enough: f64) -> f64 {
+        let mut way = first;
+        if way == Vector3::zeros() {
+            let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0]));
+            let side = normal.dot(&(self.0[0] - triangle[0]));
+            way = (normal * side.signum()).try_normalize(0.0).unwrap_or(Vector3::x());
+        }
+        let mut most = f64::NEG_INFINITY;
+        for _ in 0..TRIES {
+            let between = first_along(&self.0, &way) - first_along(triangle, &-way);
+            most = most.max(between.dot(&way));
+            if most >= enough {
+                break;
+            }
+            let Some(across) = between.try_normalize(0.0) else { break };
+            let Some(next) = (way - across * (2.0 * across.dot(&way))).try_normalize(0.0) else { break };
+            way = next;
+        }
+        most
+    }
+}
+
+/// How many directions are tried for a pair of triangles.
+const TRIES: usize = 5;
+
+/// The first of the points in a direction.
+fn first_along(points: &[Point3<f64>], way: &Vector3<f64>) -> Point3<f64> {
+    let mut first = (f64::INFINITY, Point3::origin());
+    for p in points {
+        let along = p.coords.dot(way);
+        if along < first.0 {
+            first = (along, *p);
+        }
+    }
+    first.1
+}
