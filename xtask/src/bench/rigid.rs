@@ -2,7 +2,8 @@
 //!
 //! Both sides plan with motion checks at 1% of the extent and steps of 20% of it, in the metric
 //! ‖Δp‖ + 0.5·angle, from the same start to the same goal in the same bounds, one thread, until the first
-//! solution. Our time includes the independent verification of that solution; theirs does not verify.
+//! solution. Neither time includes reading files and building the trees of meshes, with us those of the verifier
+//! among them. Our time includes the independent verification of candidate solutions; theirs does not verify.
 //!
 //! The other program is called as
 //! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S`, reads what

@@ -37,6 +37,9 @@ impl Extra {
     }
 }
 
+/// The range of no numbers.
+const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+
 /// All leaves of a tree.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Leaves {
@@ -45,6 +48,8 @@ pub(super) struct Leaves {
     ids: Vec<[NodeId; CAP]>,
     /// `rows` rows of [`CAP`] lanes for each leaf; not a number where there is no state.
     lanes: Vec<f32>,
+    /// The least and the greatest number in each row of each leaf.
+    ranges: Vec<[f32; 2]>,
     extras: BTreeMap<usize, Extra>,
     free: Vec<usize>,
 }
@@ -65,6 +70,7 @@ impl Leaves {
         self.heads.push(Head::default());
         self.ids.push([0; CAP]);
         self.lanes.resize(self.heads.len() * rows * CAP, f32::NAN);
+        self.ranges.resize(self.heads.len() * rows, NOTHING);
         self.heads.len() - 1
     }
 
@@ -73,6 +79,7 @@ impl Leaves {
         self.take_extra(i);
         self.heads[i].len = 0;
         self.lanes[i * rows * CAP..][..rows * CAP].fill(f32::NAN);
+        self.ranges[i * rows..][..rows].fill(NOTHING);
     }
 
     /// Takes leaf `i` back.
@@ -122,6 +129,12 @@ impl Leaves {
         &self.lanes[i * rows * CAP..][..rows * CAP]
     }
 
+    /// The least and the greatest number in each row of leaf `i`.
+    #[inline]
+    pub(super) fn ranges(&self, i: usize, rows: usize) -> &[[f32; 2]] {
+        &self.ranges[i * rows..][..rows]
+    }
+
     /// Adds a state to a leaf that is not full.
     #[inline]
     pub(super) fn push(&mut self, i: usize, rows: usize, id: NodeId, x: impl Fn(usize) -> f32) {
@@ -129,8 +142,10 @@ impl Leaves {
         self.heads[i].len += 1;
         self.ids[i][lane] = id;
         let lanes = &mut self.lanes[i * rows * CAP..][..rows * CAP];
-        for d in 0..rows {
-            lanes[d * CAP + lane] = x(d);
+        for (d, [low, high]) in self.ranges[i * rows..][..rows].iter_mut().enumerate() {
+            let x = x(d);
+            lanes[d * CAP + lane] = x;
+            (*low, *high) = (low.min(x), high.max(x));
         }
     }
 }

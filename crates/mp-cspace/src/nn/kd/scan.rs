@@ -12,6 +12,9 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     #[inline(never)]
     pub(super) fn scan(&mut self, leaf: usize) {
         let (dim, reach) = (self.tree.dim(), self.lane_reach);
+        if self.is_beyond(leaf, dim) {
+            return;
+        }
         let lanes = self.tree.leaves.lanes(leaf, dim);
         // Lanes without a state are not a number, for which no comparison holds.
         match *self.tree.shape.ends.as_slice() {
@@ -48,6 +51,29 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
                     self.take(leaf, bounds, least);
                 }
             }
+        }
+    }
+
+    /// Whether all lanes are farther than the reach, by the box around them. Rounds as the lanes do, in the
+    /// same order, so that no lane passes where the box does not.
+    #[inline(always)]
+    fn is_beyond(&self, leaf: usize, dim: usize) -> bool {
+        let shape = &self.tree.shape;
+        let ranges = self.tree.leaves.ranges(leaf, dim);
+        let gap = |d: usize| {
+            let ([low, high], q) = (ranges[d], self.q32[d]);
+            // Where there is a period, the way round may be shorter.
+            if shape.period[d] == f64::INFINITY { (low - q).max(q - high).max(0.0) } else { 0.0 }
+        };
+        let squares = |from: usize, to: usize| (from..to).map(gap).fold(0.0, |sum, t| sum + t * t);
+        match *shape.ends.as_slice() {
+            [] | [_] => squares(0, dim) > self.lane_reach,
+            [end, _] => {
+                let (a, b) = (squares(0, end), squares(end, dim));
+                let rest = self.lane_reach * (1.0 + 4e-6) - (a + b);
+                4.0 * a * b > rest * rest.abs()
+            }
+            _ => false,
         }
     }
 
