@@ -44,7 +44,8 @@
 //! # Bad input
 //! Queries are total: they neither fail nor panic. A pose with a component that is not finite, beyond 1e75,
 //! or whose quaternion is not of unit length (within 1e-6; smaller deviations are normalised away), and a
-//! mesh with a coordinate beyond 1e75, count as *in collision with everything*: `intersects` is `true`,
+//! mesh with a coordinate beyond 1e75 or not a number (moved by a pose that is not finite), count as *in
+//! collision with everything*: `intersects` is `true`,
 //! distance and clearance are 0. A planner can so never pass through what cannot be decided.
 
 mod broad;

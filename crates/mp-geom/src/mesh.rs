@@ -52,6 +52,11 @@ pub enum MeshError {
     },
 }
 
+/// Whether 32 bits can number `count` things.
+fn check_count(what: &'static str, count: usize) -> Result<(), MeshError> {
+    if u32::try_from(count).is_ok() { Ok(()) } else { Err(MeshError::TooLarge { what, count }) }
+}
+
 /// An indexed triangle mesh (boundary representation): a soup, with no promise of being closed,
 /// manifold, oriented or free of degenerate triangles.
 ///
@@ -72,11 +77,8 @@ impl TriMesh {
         if triangles.is_empty() {
             return Err(MeshError::Empty);
         }
-        for (what, count) in [("vertices", vertices.len()), ("triangles", triangles.len())] {
-            if u32::try_from(count).is_err() {
-                return Err(MeshError::TooLarge { what, count });
-            }
-        }
+        check_count("vertices", vertices.len())?;
+        check_count("triangles", triangles.len())?;
         if let Some((vertex, p)) = vertices.iter().enumerate().find(|(_, p)| p.iter().any(|c| !c.is_finite()))
         {
             return Err(MeshError::NotFinite { vertex, x: p.x, y: p.y, z: p.z });
@@ -131,5 +133,44 @@ impl TriMesh {
             triangles.extend(m.triangles.iter().map(|t| t.map(|i| i.wrapping_add(base))));
         }
         Self::new(vertices, triangles).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corners() -> Vec<Point3<f64>> {
+        vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0)]
+    }
+
+    #[test]
+    fn what_is_not_a_mesh() {
+        assert_eq!(TriMesh::new(corners(), vec![]), Err(MeshError::Empty));
+        assert_eq!(TriMesh::new(vec![], vec![]), Err(MeshError::Empty));
+        let out_of_range = |index, vertices| Err(MeshError::IndexOutOfRange { triangle: 0, index, vertices });
+        assert_eq!(TriMesh::new(vec![], vec![[0, 0, 0]]), out_of_range(0, 0));
+        assert_eq!(TriMesh::new(corners(), vec![[0, 1, 3], [0, 1, 2]]), out_of_range(3, 3));
+        assert_eq!(TriMesh::new(corners(), vec![[u32::MAX, 1, 2]]), out_of_range(u32::MAX, 3));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for k in 0..3 {
+                let mut vertices = corners();
+                vertices[2][k] = bad;
+                let error = TriMesh::new(vertices, vec![[0, 1, 2]]).unwrap_err();
+                assert!(matches!(error, MeshError::NotFinite { vertex: 2, .. }), "{error}");
+            }
+        }
+        assert!(TriMesh::merged([]).is_none());
+    }
+
+    #[test]
+    #[cfg(target_pointer_width = "64")]
+    fn more_than_32_bits_can_number_is_too_large() {
+        let most = u32::MAX as usize;
+        assert_eq!(check_count("vertices", most), Ok(()));
+        let error = check_count("triangles", most + 1).unwrap_err();
+        assert_eq!(error, MeshError::TooLarge { what: "triangles", count: most + 1 });
+        let line = "the mesh has 4294967296 triangles, more than a 32-bit index can name";
+        assert_eq!(error.to_string(), line);
     }
 }

@@ -77,23 +77,24 @@ impl CollisionMesh {
     /// `f64`. The same on any machine. Meant to notice that a mesh has changed, not to resist forgery. O(n).
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
-        fingerprint(&self.triangles())
+        fingerprint(self.triangles().into_iter())
     }
 
     /// What [`CollisionMesh::fingerprint`] is for the tree of `mesh`, without building it.
     #[must_use]
     pub fn fingerprint_of(mesh: &TriMesh) -> u64 {
-        let triangles: Vec<Triangle> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
-        fingerprint(&triangles)
+        fingerprint((0..mesh.triangles().len()).map(|i| mesh.triangle(i)))
     }
 }
 
-fn fingerprint(triangles: &[Triangle]) -> u64 {
+fn fingerprint(triangles: impl Iterator<Item = Triangle>) -> u64 {
     let mut hash = Xxh3::new();
-    let mut bytes = Vec::new();
-    for some in triangles.chunks(64) {
-        bytes.clear();
-        bytes.extend(some.iter().flatten().flat_map(|p| [p.x, p.y, p.z]).flat_map(f64::to_le_bytes));
+    for triangle in triangles {
+        let mut bytes = [0; 72];
+        let numbers = triangle.iter().flat_map(|p| [p.x, p.y, p.z]);
+        for (eight, x) in bytes.chunks_exact_mut(8).zip(numbers) {
+            eight.copy_from_slice(&x.to_le_bytes());
+        }
         hash.update(&bytes);
     }
     hash.digest()

@@ -41,8 +41,8 @@ pub enum SceneError {
         /// The body's name.
         name: String,
     },
-    /// A coordinate of the mesh is beyond 1e75.
-    #[error("the mesh of body \"{name}\" is too large: a coordinate is beyond 1e75")]
+    /// A coordinate of the mesh is beyond 1e75, or not a number (the mesh was moved by a pose that is not finite).
+    #[error("the mesh of body \"{name}\" is too large: a coordinate is beyond 1e75 or not a number")]
     TooLarge {
         /// The body's name.
         name: String,

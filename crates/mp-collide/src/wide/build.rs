@@ -48,8 +48,10 @@ impl Size {
         }
         let center = Point3::from(lo * 0.5 + hi * 0.5);
         let up = 1.0 + 1e-15;
-        let radius = corners.clone().map(|p| p.coords.norm()).fold(0.0, f64::max) * up;
-        let radius_center = corners.map(|p| (p - center).norm()).fold(0.0, f64::max) * up;
+        // A mesh moved by a pose that is not finite has corners that are none: infinitely far away.
+        let farthest = |far: f64, r: f64| if r.is_nan() { f64::INFINITY } else { far.max(r) };
+        let radius = corners.clone().map(|p| p.coords.norm()).fold(0.0, farthest) * up;
+        let radius_center = corners.map(|p| (p - center).norm()).fold(0.0, farthest) * up;
         Self { center, radius_center, radius }
     }
 }

@@ -1,7 +1,7 @@
 //! Queries are total: bad input counts as in collision with everything.
 
 use mp_collide::reference::RefMesh;
-use mp_collide::{CollisionMesh, Query, Scene, SceneError};
+use mp_collide::{CollisionMesh, Query, Scene, SceneError, View};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
@@ -60,6 +60,33 @@ fn bad_poses_collide_with_everything() {
         assert!(scene.insert("bad", tree.clone(), bad).is_err());
         assert_eq!(scene.body(body).unwrap().pose(), &far);
         assert_eq!(scene.len(), 1);
+    }
+}
+
+#[test]
+fn meshes_moved_by_bad_poses_collide_with_everything() {
+    let (mesh, here) = (cuboid(Vector3::new(1.0, 1.0, 1.0)), Isometry3::identity());
+    let (good, far) = (CollisionMesh::new(&mesh), Isometry3::translation(50.0, 0.0, 0.0));
+    let mut query = Query::default();
+    let mut scene = Scene::new();
+    for bad in [f64::NAN, f64::INFINITY] {
+        let mut poses = vec![Isometry3::translation(bad, 0.0, 0.0), Isometry3::translation(0.0, bad, bad)];
+        let q = UnitQuaternion::new_unchecked(Quaternion::new(1.0, bad, 0.0, 0.0));
+        poses.push(Isometry3::from_parts(Translation3::identity(), q));
+        for pose in poses {
+            // All corners, and one among good ones.
+            let moved = mesh.transformed(&pose);
+            let both = TriMesh::merged([&mesh, &moved, &mesh]);
+            for bad_mesh in [Some(moved), both].into_iter().flatten() {
+                let tree = CollisionMesh::new(&bad_mesh);
+                assert!(query.intersects(&tree, &here, &good, &far), "{pose}");
+                assert!(query.intersects(&good, &far, &tree, &here), "{pose}");
+                assert_eq!(query.distance(&tree, &here, &good, &far).distance, 0.0);
+                assert_eq!(query.clearance(&tree, &here, &good, &far, 1.0), 0.0);
+                assert!(matches!(scene.insert("bad", tree.clone(), here), Err(SceneError::TooLarge { .. })));
+                assert!(CollisionMesh::from_bytes(&tree.to_bytes()).is_err());
+            }
+        }
     }
 }
 
@@ -150,6 +177,7 @@ fn everything_can_be_shared_between_threads() {
     fn shared<T: Send + Sync + Clone>() {}
     shared::<CollisionMesh>();
     shared::<Scene>();
+    shared::<View<'_>>();
     shared::<RefMesh>();
     shared::<Query>();
 }

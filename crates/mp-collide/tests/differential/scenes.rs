@@ -234,3 +234,30 @@ fn what_has_no_place_collides_with_every_body_of_the_view() {
         scene.merge_static();
     }
 }
+
+#[test]
+fn threads_share_a_scene_and_get_the_same_answers() {
+    let mut rng = rng(37);
+    let mut scene = random_scene(&mut rng, 40);
+    scene.merge_static();
+    let mesh = CollisionMesh::new(&bumpy(7, 0.9, 0.1));
+    let poses: Vec<Isometry3<f64>> = (0..100).map(|_| pose(&mut rng, 3.5)).collect();
+    let answers = |scene: &Scene| -> Vec<_> {
+        let mut query = Query::default();
+        let answer =
+            |p| (scene.collide_body(&mut query, &mesh, p), scene.clearance(&mut query, &mesh, p, 1.0));
+        poses.iter().map(answer).collect()
+    };
+    let expected = answers(&scene);
+    std::thread::scope(|threads| {
+        let others: Vec<_> = (0..4).map(|_| threads.spawn(|| answers(&scene))).collect();
+        // A clone may be changed meanwhile.
+        let mut clone = scene.clone();
+        let first = clone.bodies().next().map(|(id, _)| id).unwrap();
+        clone.remove(first);
+        for other in others {
+            assert_eq!(other.join().unwrap(), expected);
+        }
+    });
+    assert_eq!(answers(&scene), expected);
+}
