@@ -380,3 +380,69 @@ impl Sides {
         !(self.down[0] | self.down[1] | self.down[2]) | !(self.up[0] | self.up[1] | self.up[2])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::simd::Isa;
+    use crate::triangle::{Triangle, intersect};
+    use crate::{CollisionMesh, Query};
+    use nalgebra::{Isometry3, Point3, UnitQuaternion, Vector3};
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    /// Up to eight triangles about the origin, of very different sizes, slivers among them.
+    fn some(rng: &mut Pcg64) -> Vec<Triangle> {
+        (0..rng.random_range(1..=8))
+            .map(|_| {
+                let mut at = |r: f64| Vector3::from_fn(|_, _| rng.random_range(-r..r));
+                let (middle, long, wide) = (at(1.0), at(1.0), at(1.0));
+                let (long, wide) =
+                    (long * 10f64.powf(at(1.0).x * 1.5), wide * 10f64.powf(at(1.0).x * 1.5 - 1.0));
+                [Point3::from(middle), Point3::from(middle + long), Point3::from(middle + wide)]
+            })
+            .collect()
+    }
+
+    /// Lanes neither lose a pair that meets nor find one that does not, down to the last digit.
+    #[test]
+    fn eight_against_eight_near_contact() {
+        let mut rng = Pcg64::seed_from_u64(3);
+        let (mut hits, mut misses) = (0, 0);
+        let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
+        for _ in 0..150 {
+            let (a, b) = (some(&mut rng), some(&mut rng));
+            let meshes = [CollisionMesh::from_triangles(a.clone()), CollisionMesh::from_triangles(b.clone())];
+            let turn = UnitQuaternion::from_scaled_axis(Vector3::from_fn(|_, _| rng.random_range(-3.0..3.0)));
+            let way = Vector3::from_fn(|_, _| rng.random_range(-1.0..1.0)).normalize();
+            let mut check = |x: f64| {
+                let pose = Isometry3::from_parts((way * x).into(), turn);
+                let here = Isometry3::identity();
+                let relative = crate::pose::Relative::between(&here, 1.0, &pose, 1.0).unwrap();
+                let exact = b.iter().any(|t| a.iter().any(|s| intersect(s, &relative.triangle(t))));
+                for query in &mut queries {
+                    let found = query.intersects(&meshes[0], &here, &meshes[1], &pose);
+                    assert_eq!(found, exact, "{:?} {a:?} {b:?} {pose}", query.isa);
+                }
+                if exact {
+                    hits += 1;
+                } else {
+                    misses += 1;
+                }
+                exact
+            };
+            let (mut free, mut hit) = (200.0, (0..40).map(|i| 0.1 * f64::from(i)).find(|x| check(*x)));
+            while let Some(inside) = hit {
+                let middle = 0.5 * (free + inside);
+                if middle <= inside || middle >= free {
+                    break;
+                }
+                if check(middle) {
+                    hit = Some(middle);
+                } else {
+                    free = middle;
+                }
+            }
+        }
+        assert!(hits > 1000 && misses > 1000, "{hits} {misses}");
+    }
+}
