@@ -150,7 +150,7 @@ fn foot_inside(p: &Point3<f64>, t: &Triangle) -> Option<Point3<f64>> {
 
 /// A point common to two triangles that intersect, up to rounding.
 pub(crate) fn crossing(a: &Triangle, b: &Triangle) -> Point3<f64> {
-    let mut best = closest_within(a, b, f64::INFINITY).unwrap_or(Closest::NONE);
+    let mut best = Closest::NONE;
     for (edges, face) in [(a, b), (b, a)] {
         let normal = (face[1] - face[0]).cross(&(face[2] - face[0]));
         for i in 0..3 {
@@ -164,5 +164,42 @@ pub(crate) fn crossing(a: &Triangle, b: &Triangle) -> Point3<f64> {
             }
         }
     }
+    // Where no edge goes through a face, or what it meets is too thin to say where.
+    let size = a.iter().chain(b).fold(0.0, |size: f64, p| size.max((p - a[0]).amax()));
+    if best.squared.sqrt() > 1e-13 * size {
+        best = closest_within(a, b, best.squared).unwrap_or(best);
+    }
     best.on_a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crossings_are_common_points() {
+        let mut state = 5u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
+        };
+        let mut hits = 0;
+        for round in 0..20_000 {
+            // In general position, on a coarse grid, and in one plane.
+            let corner = |next: &mut dyn FnMut() -> f64| match round % 3 {
+                0 => Point3::new(next(), next(), next()),
+                1 => Point3::new(next(), next(), next()).map(|c| (2.0 * c).round()),
+                _ => Point3::new(next(), next(), 0.0),
+            };
+            let [a, b]: [Triangle; 2] = [0; 2].map(|_| [0; 3].map(|_| corner(&mut next)));
+            if intersect(&a, &b) {
+                let at = crossing(&a, &b);
+                for t in [&a, &b] {
+                    assert!(closest(t, &[at; 3]).distance < 1e-12, "{a:?} {b:?} {at}");
+                }
+                hits += 1;
+            }
+        }
+        assert!(hits > 4_000, "{hits}");
+    }
 }
