@@ -152,6 +152,7 @@ impl Nearest<'_> {
             }
         }
         let gaps = Gaps::<L>::new(leaf_a, &best.slab);
+        let mut nearest = None;
         while singles != 0 {
             let position = leaf_b.first + singles.trailing_zeros();
             singles &= singles - 1;
@@ -159,7 +160,6 @@ impl Nearest<'_> {
             let mut bounds = Bounds::default();
             let mut near = gaps.between(&single, lanes, best.squared, &mut bounds).near;
             self.counters.triangle_tests += 1;
-            let mut nearest = None;
             while near != 0 {
                 let lane = near.trailing_zeros() as usize & 7;
                 near &= near - 1;
@@ -167,16 +167,16 @@ impl Nearest<'_> {
                 self.scratch.candidates.push(Candidate { bound: bounds.near[lane], a: k, b: position });
                 if bounds.far[lane] < best.squared {
                     best.squared = bounds.far[lane];
-                    nearest = Some(k);
+                    nearest = Some((k, single));
                 }
             }
-            if let Some(k) = nearest
-                && let Some(closest) = closest_within(&a.triangles[k as usize], &single, f64::INFINITY)
-            {
-                let join = closest.on_b - closest.on_a;
-                best.slab = Slab::across(&join);
-                best.slab_in_b = Slab::across(&-frames.exact.rotation.tr_mul(&join));
-            }
+        }
+        if let Some((k, single)) = nearest
+            && let Some(closest) = closest_within(&a.triangles[k as usize], &single, f64::INFINITY)
+        {
+            let join = closest.on_b - closest.on_a;
+            best.slab = Slab::across(&join);
+            best.slab_in_b = Slab::across(&-frames.exact.rotation.tr_mul(&join));
         }
     }
 }
