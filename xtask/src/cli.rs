@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::bench::PAIRS;
 use crate::plan::metrics;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -149,6 +150,35 @@ pub(crate) struct Bench {
     /// The folder for results.
     #[arg(long, value_name = "DIR", default_value = "out/bench")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) collide: BenchCollide,
+}
+
+/// What only the suite `collide` has.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Of the suite `collide`")]
+pub(crate) struct BenchCollide {
+    /// Pairs of meshes to measure on (default: all).
+    #[arg(long = "pair", value_name = "PAIR", value_parser = PossibleValuesParser::new(PAIRS))]
+    pub(crate) pairs: Vec<String>,
+    /// Compare booleans with exact arithmetic instead; exit code 0 if all are right.
+    #[arg(long)]
+    pub(crate) referee: bool,
+    /// Measure the cost of a query and of a tree against the number of triangles instead.
+    #[arg(long, conflicts_with = "referee")]
+    pub(crate) growth: bool,
+    /// Poses of each pair for --referee [default: a million for all pairs together].
+    #[arg(long, value_name = "N", requires = "referee")]
+    pub(crate) poses: Option<usize>,
+    /// The seed of the poses.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// A folder of other programs to measure in turn with ours; how they are called is in docs/benchmarks.md.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) peers: Option<PathBuf>,
+    /// Write meshes and poses to this folder, for other programs; without --peers, measure nothing.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) export: Option<PathBuf>,
 }
 
 /// A suite of measurements.
@@ -156,6 +186,8 @@ pub(crate) struct Bench {
 pub(crate) enum Suite {
     /// RRT-Connect on rigid bodies, to the first solution.
     Rigid,
+    /// Queries between two meshes.
+    Collide,
     /// Growth of an RRT where nothing is in the way, against its size.
     Scaling,
 }

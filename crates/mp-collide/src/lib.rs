@@ -28,7 +28,8 @@
 //! holes, coplanar, overlapping and degenerate triangles (segments and points) are all welcome.
 //!
 //! A query of `a` at `pose_wa` and `b` at `pose_wb` transforms the triangles of `b` into the frame of `a`
-//! in `f64`, each coordinate rounded as `((r0·x + r1·y) + r2·z) + t`. For those rounded triangles the
+//! in `f64`, each coordinate rounded as `((r0·x + r1·y) + r2·z) + t`, with the rotation matrix of the relative
+//! quaternion computed as `1 − s·(y·y + z·z)`, `s·(x·y − w·z)`, …, `s = 2/‖q‖²`. For those rounded triangles the
 //! answer of [`Query::intersects`] is *exact*: decided as in real arithmetic. The rounding of the
 //! transform itself (a few units in the last place of the largest coordinate, about 1e-15 relative) is
 //! outside the contract, so two meshes that truly touch at a general pose may be found apart by that

@@ -27,10 +27,7 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         given => given.to_vec(),
     };
     let repeats = args.runs.map_or(if args.quick { 1 } else { 3 }, |n| n as usize);
-    let mut table = Table {
-        head: vec!["space", "nodes", "nodes/s", "bare loop nodes/s", "peer nodes/s", "ratio"],
-        rows: Vec::new(),
-    };
+    let mut table = Table::new(["space", "nodes", "nodes/s", "bare loop nodes/s", "peer nodes/s", "ratio"]);
     let mut all = true;
     for space in spaces {
         let options = Options {

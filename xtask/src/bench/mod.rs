@@ -1,8 +1,11 @@
 //! `bench`: measurements, as Markdown on standard output and as CSV and JSON in a folder.
 
+mod collide;
 mod growth;
 mod rigid;
 mod scaling;
+
+pub(crate) use collide::PAIRS;
 
 use crate::cli;
 use crate::output::{note, print, write};
@@ -11,6 +14,7 @@ use miette::Result;
 /// Runs a suite. True when it could be measured completely.
 pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     match args.suite {
+        cli::Suite::Collide => collide::run(args),
         cli::Suite::Rigid => rigid::run(args),
         cli::Suite::Scaling => growth::run(args),
     }
@@ -19,17 +23,21 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
 /// A table, to be printed and written.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
-    pub(crate) head: Vec<&'static str>,
+    pub(crate) head: Vec<String>,
     pub(crate) rows: Vec<Vec<String>>,
 }
 
 impl Table {
+    /// With these headings and no rows.
+    pub(crate) fn new(head: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { head: head.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    }
+
     /// In Markdown.
     pub(crate) fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
-        let head: Vec<String> = self.head.iter().map(|h| (*h).to_owned()).collect();
         let rule: Vec<String> = self.head.iter().map(|_| "---".to_owned()).collect();
-        let mut lines = vec![line(&head), line(&rule)];
+        let mut lines = vec![line(&self.head), line(&rule)];
         lines.extend(self.rows.iter().map(|row| line(row)));
         lines.join("\n")
     }
@@ -41,7 +49,7 @@ impl Table {
             false => cell.to_owned(),
         };
         let line = |cells: &mut dyn Iterator<Item = &str>| cells.map(quote).collect::<Vec<_>>().join(",");
-        let mut text = line(&mut self.head.iter().copied());
+        let mut text = line(&mut self.head.iter().map(String::as_str));
         for row in &self.rows {
             text.push('\n');
             text.push_str(&line(&mut row.iter().map(String::as_str)));
@@ -85,7 +93,8 @@ mod tests {
 
     #[test]
     fn tables() {
-        let table = Table { head: vec!["a", "b"], rows: vec![vec!["1,5".into(), "x".into()]] };
+        let mut table = Table::new(["a", "b"]);
+        table.rows.push(vec!["1,5".into(), "x".into()]);
         assert_eq!(table.csv(), "a,b\n\"1,5\",x\n");
         assert_eq!(table.markdown(), "| a | b |\n| --- | --- |\n| 1,5 | x |");
     }

@@ -40,36 +40,30 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     let seeds = args.runs.unwrap_or(if args.quick { 3 } else { 20 });
     let options = Options::comparable(Motion::Discrete(Length::Fraction(0.01)), args.time)?;
     let problems = tempfile::tempdir().into_diagnostic()?;
-    let mut each = Table {
-        head: vec![
-            "scene",
-            "seed",
-            "solved",
-            "s",
-            "checks",
-            "peer_solved",
-            "peer_s",
-            "peer_checks",
-            "peer_path_free",
-        ],
-        rows: Vec::new(),
-    };
-    let mut summary = Table {
-        head: vec![
-            "scene",
-            "solved",
-            "median s",
-            "mean s",
-            "checks (median)",
-            "peer solved",
-            "peer median s",
-            "peer mean s",
-            "peer checks (median)",
-            "peer paths that collide",
-            "ratio of medians",
-        ],
-        rows: Vec::new(),
-    };
+    let mut each = Table::new([
+        "scene",
+        "seed",
+        "solved",
+        "s",
+        "checks",
+        "peer_solved",
+        "peer_s",
+        "peer_checks",
+        "peer_path_free",
+    ]);
+    let mut summary = Table::new([
+        "scene",
+        "solved",
+        "median s",
+        "mean s",
+        "checks (median)",
+        "peer solved",
+        "peer median s",
+        "peer mean s",
+        "peer checks (median)",
+        "peer paths that collide",
+        "ratio of medians",
+    ]);
     let mut all = true;
     for name in &named {
         let ready = Ready::load(&scenes::find(Path::new(name))?)?;

@@ -7,12 +7,14 @@ mod command;
 mod cutaway;
 mod decorate;
 mod model;
+mod plot;
 mod raster;
 mod sweep;
 mod text;
 mod view;
 
 pub(crate) use command::{SIZE, run, subject, wanted, write};
+pub(crate) use plot::{Series, plot};
 
 use camera::Camera;
 use canvas::{Colour, Layer, Veil, mix, scaled, srgb};

@@ -1,0 +1,167 @@
+//! `bench collide --growth`: what a query and a tree cost against the number of triangles.
+
+use super::clock::{What, add, timed};
+use super::export::export;
+use super::ours::{self, OURS};
+use super::pairs::tori;
+use super::peers::{self, Effort};
+use super::poses::{Counts, Meshes, Poses};
+use super::tables::Measured;
+use crate::bench::{Table, report};
+use crate::cli;
+use crate::output::note;
+use crate::render::{self, Series};
+use miette::{IntoDiagnostic, Result};
+use mp::collide::Query;
+use nalgebra::Isometry3;
+use std::path::PathBuf;
+
+/// The tori have 2·n² triangles each: from a thousand to a million.
+const SIDES: [usize; 7] = [22, 39, 71, 122, 224, 387, 707];
+/// Poses of the sizes above, at which other programs are measured too.
+const COUNTS: Counts = Counts { uniform: 10_000, near: 2_000, edges: 0 };
+/// Distances measured.
+const DISTANCES: usize = 200;
+/// What is asked.
+const ASKED: [(&str, &str, &str); 3] = [
+    ("uniform", "collide", "boolean, uniform poses"),
+    ("near", "collide", "boolean, near contact"),
+    ("uniform", "distance", "distance, uniform poses"),
+];
+
+/// Measures. True when all programs answered.
+pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
+    let programs = args.collide.peers.as_deref().map(peers::find).transpose()?.unwrap_or_default();
+    let sides = if args.quick { &SIDES[..4] } else { &SIDES[..] };
+    let rounds = args.runs.map_or(if args.quick { 1 } else { 3 }, |n| n as usize);
+    let (mut all, mut complete) = (Vec::new(), true);
+    for &n in sides {
+        let (measured, answered) = measure(n, args.collide.seed, rounds, &programs)?;
+        complete &= answered;
+        note(&format!("{} triangles measured", measured.triangles / 2));
+        all.push(measured);
+    }
+    let table = table(&all);
+    report(args, "collide-growth", &table, &table)?;
+    let picture = args.out.join("collide-growth.png");
+    let title = "Cost against the number of triangles of each mesh";
+    let axes = ["triangles", "times the cost of the smallest"];
+    render::write(&picture, &render::plot(title, axes, &curves(&all), (960, 600)))?;
+    note(&format!("written: {}", picture.display()));
+    Ok(complete)
+}
+
+/// Two tori of 2·n² triangles.
+fn measure(n: usize, seed: u64, rounds: usize, programs: &[PathBuf]) -> Result<(Measured, bool)> {
+    let pair = tori(&format!("tori-{n}"), n)?;
+    let meshes = Meshes::new(&pair);
+    let poses = Poses::new(&pair, &meshes, COUNTS, seed)?;
+    let mut measured = Measured::new(&pair);
+    let here = Isometry3::identity();
+    let scratch = tempfile::tempdir().into_diagnostic()?;
+    if !programs.is_empty() {
+        // Other programs read as many poses near contact as uniform ones.
+        let near = poses.near.iter().cycle().take(COUNTS.uniform).copied().collect();
+        export(scratch.path(), &pair, &Poses { near, ..poses.clone() })?;
+    }
+    let mut complete = true;
+    for _ in 0..rounds {
+        let (meshes, build) = ours::build(&pair);
+        measured.built(build);
+        let (a, b, mut query) = (&meshes.a, &meshes.b, Query::default());
+        for (set, kind, _) in ASKED {
+            let poses = if set == "near" { &poses.near } else { &poses.uniform };
+            let (what, some) = (What::new(OURS, set, kind), &poses[..DISTANCES]);
+            add(
+                &mut measured.records,
+                match kind {
+                    "collide" => timed(what, poses, 3, |p| f64::from(query.intersects(a, &here, b, p))),
+                    _ => timed(what, some, 1, |p| query.distance(a, &here, b, p).distance),
+                },
+            );
+        }
+        // Their trees are what is wanted: little time for anything else.
+        let effort = Effort { passes: 1, distances: 1, cap: 0.1 };
+        for program in programs {
+            match peers::ask(program, scratch.path(), &pair.name, effort) {
+                Ok((builds, _)) => builds.into_iter().for_each(|b| measured.built(b)),
+                Err(report) => {
+                    complete = false;
+                    note(&format!("{report:?}"));
+                }
+            }
+        }
+    }
+    Ok((measured, complete))
+}
+
+/// A row for each size; all costs are of both meshes.
+fn table(all: &[Measured]) -> Table {
+    let libs: Vec<&str> =
+        all.first().map_or(Vec::new(), |m| m.builds.iter().map(|b| b.lib.as_str()).collect());
+    let head = ["triangles of each mesh".to_owned()].into_iter();
+    let asked = ASKED.map(|(_, _, name)| format!("{name}, ns"));
+    let mut table =
+        Table::new(head.chain(asked).chain(libs.iter().map(|lib| format!("{lib}: building both, ms"))));
+    for m in all {
+        let costs =
+            ASKED.map(|(set, query, _)| cost(m, set, query).map_or("–".into(), |c| format!("{c:.0}")));
+        let builds = libs.iter().map(|lib| {
+            let build = m.builds.iter().find(|b| b.lib == *lib);
+            build.map_or("–".into(), |b| format!("{:.1}", b.ms))
+        });
+        let row = [(m.triangles / 2).to_string()].into_iter().chain(costs).chain(builds);
+        table.rows.push(row.collect());
+    }
+    table
+}
+
+/// Nanoseconds per query.
+fn cost(m: &Measured, set: &str, query: &str) -> Option<f64> {
+    m.record(OURS, set, query).map(|r| r.least)
+}
+
+/// Costs relative to the smallest size: a straight line is logarithmic growth.
+fn curves(all: &[Measured]) -> Vec<Series> {
+    let mut curves: Vec<Series> = ASKED
+        .iter()
+        .map(|&(set, query, name)| {
+            let costs = all.iter().filter_map(|m| Some((m.triangles, cost(m, set, query)?)));
+            relative(name, costs.collect())
+        })
+        .collect();
+    let per_triangle = |m: &Measured| {
+        let build = m.builds.iter().find(|b| b.lib == OURS)?;
+        Some((m.triangles, build.ms / m.triangles as f64))
+    };
+    curves.push(relative("building, per triangle", all.iter().filter_map(per_triangle).collect()));
+    curves
+}
+
+fn relative(name: &str, costs: Vec<(usize, f64)>) -> Series {
+    let first = costs.first().map_or(1.0, |c| c.1);
+    let points = costs.into_iter().map(|(triangles, cost)| (triangles as f64 / 2.0, cost / first));
+    Series { name: name.to_owned(), points: points.collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_from_a_thousand_to_a_million() {
+        let triangles = SIDES.map(|n| 2 * n * n);
+        assert!(triangles[0].abs_diff(1_000) < 50 && triangles[6].abs_diff(1_000_000) < 1_000);
+    }
+
+    #[test]
+    fn small_tori_are_measured() {
+        let all: Vec<Measured> = [22, 25].map(|n| measure(n, 1, 1, &[]).unwrap().0).to_vec();
+        let table = table(&all);
+        assert_eq!((table.head.len(), table.rows.len()), (5, 2));
+        assert_eq!(table.rows[0][0], "968");
+        let curves = curves(&all);
+        assert_eq!(curves.len(), ASKED.len() + 1);
+        assert!(curves.iter().all(|c| c.points[0] == (968.0, 1.0) && c.points[1].1 > 0.0));
+    }
+}

@@ -1,0 +1,148 @@
+//! `bench collide`: queries between two meshes, ours and those of other libraries, in turn.
+//!
+//! For each pair of meshes, in rounds: build the trees, then ask all booleans, tolerances, distances and motions
+//! of the pair's poses; parry3d once, in this process; then the other programs given, one after the other. All
+//! answers are compared.
+
+mod clock;
+mod export;
+mod growth;
+mod ours;
+mod pairs;
+mod parry;
+mod peers;
+mod poses;
+mod referee;
+mod tables;
+
+pub(crate) use pairs::PAIRS;
+
+use super::Table;
+use crate::cli;
+use crate::output::{note, print, write};
+use miette::{IntoDiagnostic, Result};
+use ours::OURS;
+use pairs::Pair;
+use parry::Parry;
+use peers::Effort;
+use poses::{Counts, Poses};
+use std::path::{Path, PathBuf};
+use tables::{Measured, is_ours};
+
+/// Measures. True when all could be measured and all our own answers agree.
+pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
+    let options = &args.collide;
+    let named: Vec<&str> = match options.pairs.as_slice() {
+        [] => PAIRS.to_vec(),
+        given => given.iter().map(String::as_str).collect(),
+    };
+    if options.referee {
+        return referee::run(args, &named);
+    }
+    if options.growth {
+        return growth::run(args);
+    }
+    let programs = options.peers.as_deref().map(peers::find).transpose()?.unwrap_or_default();
+    let scratch = tempfile::tempdir().into_diagnostic()?;
+    let folder = options.export.as_deref().unwrap_or(scratch.path());
+    // Other programs want all poses.
+    let counts =
+        if args.quick && programs.is_empty() && options.export.is_none() { QUICK } else { Counts::FULL };
+    let (mut all, mut complete) = (Vec::new(), true);
+    for name in named {
+        let pair = Pair::load(name)?;
+        let (meshes, _) = ours::build(&pair);
+        let poses = Poses::new(&pair, &meshes, counts, options.seed)?;
+        if options.export.is_some() || !programs.is_empty() {
+            export::export(folder, &pair, &poses)?;
+        }
+        if options.export.is_some() && options.peers.is_none() {
+            note(&format!("{name}: written to {}", folder.display()));
+            continue;
+        }
+        let (measured, answered) = measure(args, &pair, &poses, &programs, folder)?;
+        complete &= answered;
+        note(&told(&measured));
+        all.push(measured);
+    }
+    if all.is_empty() {
+        return Ok(complete);
+    }
+    report(args, &all)?;
+    Ok(complete && tables::consistent(&all))
+}
+
+/// How many poses of each kind a short run has.
+const QUICK: Counts = Counts { uniform: 1_000, near: 1_000, edges: 50 };
+
+/// All of one pair; whether every program answered.
+fn measure(
+    args: &cli::Bench,
+    pair: &Pair,
+    poses: &Poses,
+    programs: &[PathBuf],
+    folder: &Path,
+) -> Result<(Measured, bool)> {
+    let (rounds, passes, distances, cap) = if args.quick { (1, 3, 100, 0.2) } else { (3, 3, 1_000, 5.0) };
+    let rounds = args.runs.map_or(rounds, |n| n as usize);
+    let mut measured = Measured::new(pair);
+    let mut complete = true;
+    for round in 0..rounds {
+        let (meshes, build) = ours::build(pair);
+        measured.built(build);
+        for record in ours::ask(pair, &meshes, poses, distances, passes) {
+            clock::add(&mut measured.records, record);
+        }
+        if round == 0 {
+            let (parry, build) = Parry::new(pair)?;
+            measured.built(build);
+            measured.records.extend(parry.ask(poses, distances, cap)?);
+        }
+        let effort = Effort { passes, distances, cap };
+        for program in programs {
+            match peers::ask(program, folder, &pair.name, effort) {
+                Ok((builds, records)) => {
+                    builds.into_iter().for_each(|b| measured.built(b));
+                    records.into_iter().for_each(|r| clock::add(&mut measured.records, r));
+                }
+                Err(report) => {
+                    complete = false;
+                    note(&format!("{report:?}"));
+                }
+            }
+        }
+    }
+    Ok((measured, complete))
+}
+
+/// A line for the person watching.
+fn told(m: &Measured) -> String {
+    let own = m.records.iter().filter(|r| r.what.lib == OURS);
+    let figures = own.map(|r| format!("{} {} {:.0} ns", r.what.query, r.what.set, r.least));
+    format!("{}: {}", m.pair, figures.collect::<Vec<_>>().join(", "))
+}
+
+/// Prints and writes the tables.
+fn report(args: &cli::Bench, all: &[Measured]) -> Result<()> {
+    let foreign = |lib: &str| !is_ours(lib);
+    let parts: [(&str, Table); 8] = [
+        ("Boolean queries, ns (how many times ours)", tables::speed(all, "collide", foreign)),
+        ("Boolean queries on each instruction set, ns", tables::speed(all, "collide", is_ours)),
+        ("Tolerance queries, 2% of the robot's radius, ns", tables::speed(all, "tolerance", foreign)),
+        ("Distances, ns", tables::speed(all, "distance", foreign)),
+        ("Motions, ns per pose", tables::speed(all, "motion", foreign)),
+        ("Building the trees of both meshes, ms", tables::build_times(all)),
+        ("Memory of the trees of both meshes, bytes per triangle", tables::memory(all)),
+        ("Agreement", tables::agreement(all)),
+    ];
+    let parts = parts.iter().filter(|(_, table)| !table.rows.is_empty());
+    let text: Vec<String> =
+        parts.map(|(title, table)| format!("### {title}\n\n{}\n", table.markdown())).collect();
+    let text = text.join("\n");
+    print(text.trim_end())?;
+    let (markdown, csv) = (args.out.join("collide.md"), args.out.join("collide.csv"));
+    write(&markdown, text.as_bytes())?;
+    write(&csv, tables::each(all).csv().as_bytes())?;
+    note(&format!("written: {}, {}", markdown.display(), csv.display()));
+    Ok(())
+}
