@@ -33,7 +33,9 @@ pub(crate) fn plot(
     if low > high {
         return resolve(&sheet.colour, size, SUPERSAMPLING);
     }
-    let (low, high) = (low.floor(), high.ceil().max(low.floor() + 1.0));
+    // What is a little beyond a decade needs no other.
+    let low = (low + 0.05).floor();
+    let high = (high - 0.05).ceil().max(low + 1.0);
     let step = nice(points().map(|p| p.1).fold(0.0, f64::max) / 5.0);
     let top = step * (points().map(|p| p.1).fold(0.0, f64::max) / step).ceil().max(1.0);
 
