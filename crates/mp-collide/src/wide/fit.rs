@@ -1,72 +1,122 @@
-//! Fitting a box: the one of least surface among several frames.
+//! Choosing the axes of a box: those of least surface among several frames.
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::Obb;
-use crate::triangle::Triangle;
+use super::split::{Item, Vec4, along, max, min, surface};
 
-type Frame = [[f64; 3]; 3];
+/// Three orthonormal axes.
+pub(super) type Frame = [[f32; 3]; 3];
 
-/// At most so many triangles are looked at to choose a frame; the extent is always that of all.
+/// The axes of the mesh.
+pub(super) const MESH: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// At most so many triangles are looked at.
 const SAMPLE: usize = 48;
 
-fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+/// By how much boxes are turned to make them smaller: tangents of half the angle.
+const TURNS: [f64; 3] = [0.05, 0.025, 0.0125];
+
+/// The axes of a small box around `items`: the axes of the mesh; principal axes of surface, corners and
+/// normals; or the largest triangle's normal and shortest edge.
+pub(super) fn frame(items: &[Item]) -> Frame {
+    let (sample, count) = sample(items);
+    let mut best = Best { corners: sample[..count].as_flattened(), surface: f32::INFINITY, frame: MESH };
+    best.offer(&MESH);
+    principal(&sample[..count], &mut best);
+    best.frame
 }
 
-/// A small box around `triangles` (centred coordinates), conservative in `f32`.
-pub(crate) fn fit(triangles: &[[[f64; 3]; 3]]) -> Obb {
-    let step = triangles.len().div_ceil(SAMPLE);
-    let sample: Vec<[[f64; 3]; 3]> = triangles.iter().step_by(step).copied().collect();
-    let mut best: Option<(f64, Frame)> = None;
-    for frame in candidates(&sample) {
-        let (lo, hi) = extent(&sample, &frame);
-        let h = [hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]];
-        let surface = h[0] * h[1] + h[1] * h[2] + h[2] * h[0];
-        if best.is_none_or(|(s, _)| surface < s * 0.999) {
-            best = Some((surface, frame));
+/// At most [`SAMPLE`] triangles, evenly spread, and how many.
+fn sample(items: &[Item]) -> ([[Vec4; 3]; SAMPLE], usize) {
+    let mut sample = [[[0.0; 4]; 3]; SAMPLE];
+    let step = items.len().div_ceil(SAMPLE);
+    let mut count = 0;
+    for item in items.iter().step_by(step) {
+        sample[count] = item.corners;
+        count += 1;
+    }
+    (sample, count)
+}
+
+/// Turns `frame` a little about one axis after the other as long as the box around `items` shrinks. `None`
+/// where it does not.
+pub(super) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
+    let (sample, count) = sample(items);
+    let corners = sample[..count].as_flattened();
+    let mut axes = frame.map(|u| Vector3::from(u.map(f64::from)));
+    let (lo, hi) = extent(corners, &columns(frame));
+    let mut size: [f32; 3] = std::array::from_fn(|k| hi[k] - lo[k]);
+    let start = surface(&lo, &hi);
+    let mut best = start;
+    for half_tangent in TURNS {
+        let square: f64 = half_tangent * half_tangent;
+        let (sine, cosine) = (2.0 * half_tangent / (1.0 + square), (1.0 - square) / (1.0 + square));
+        for (k, i, j) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let [ci, cj, si, sj] = [axes[i] * cosine, axes[j] * cosine, axes[i] * sine, axes[j] * sine];
+            // Both ways at once.
+            let turned = [ci + sj, cj - si, ci - sj, cj + si];
+            let columns = std::array::from_fn(|d| turned.map(|u| u[d] as f32));
+            let (lo, hi) = extent(corners, &columns);
+            for (p, q) in [(0, 1), (2, 3)] {
+                let (x, y) = (hi[p] - lo[p], hi[q] - lo[q]);
+                let surface = x * y + size[k] * (x + y);
+                if surface < best * 0.999 {
+                    best = surface;
+                    (size[i], size[j]) = (x, y);
+                    (axes[i], axes[j]) = (turned[p], turned[q]);
+                }
+            }
         }
     }
-    let frame = best.map_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], |(_, f)| f);
-    around(triangles, &frame)
-}
-
-/// The box with these axes: rounded to `f32` first, then grown around the triangles in `f64`.
-fn around(triangles: &[[[f64; 3]; 3]], frame: &Frame) -> Obb {
-    let axes: [[f32; 3]; 3] = frame.map(|u| u.map(|x| x as f32));
-    let wide: Frame = axes.map(|u| u.map(f64::from));
-    let (lo, hi) = extent(triangles, &wide);
-    let middle: [f64; 3] = std::array::from_fn(|k| 0.5 * (lo[k] + hi[k]));
-    let center: [f32; 3] =
-        std::array::from_fn(|d| (0..3).map(|k| wide[k][d] * middle[k]).sum::<f64>() as f32);
-    let half: [f32; 3] = std::array::from_fn(|k| {
-        // The rounded axes are not quite orthogonal: measure from where the centre really is. A box test
-        // takes them for orthonormal; `Frames::pad` covers that.
-        let at = dot(&wide[k], &center.map(f64::from));
-        ((hi[k] - at).max(at - lo[k]) * (1.0 + 3e-7)) as f32
-    });
-    let frame = std::array::from_fn(|d| [center[d], axes[0][d], axes[1][d], axes[2][d]]);
-    Obb::new(frame, half)
+    if best >= start {
+        return None;
+    }
+    let x = axes[0].normalize();
+    let y = (axes[1] - x * x.dot(&axes[1])).normalize();
+    Some([x, y, x.cross(&y)].map(|u| [u.x as f32, u.y as f32, u.z as f32]))
 }
 
 /// The least and the greatest coordinate along each axis.
-fn extent(triangles: &[[[f64; 3]; 3]], frame: &Frame) -> ([f64; 3], [f64; 3]) {
-    let (mut lo, mut hi) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for p in triangles.iter().flatten() {
-        for k in 0..3 {
-            let x = dot(&frame[k], p);
-            lo[k] = if x < lo[k] { x } else { lo[k] };
-            hi[k] = if x > hi[k] { x } else { hi[k] };
-        }
+#[inline(always)]
+pub(super) fn extent<'a>(corners: impl IntoIterator<Item = &'a Vec4>, columns: &[Vec4; 3]) -> (Vec4, Vec4) {
+    let (mut lo, mut hi) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
+    for p in corners {
+        let x = along(columns, p);
+        (lo, hi) = (min(&x, &lo), max(&x, &hi));
     }
     (lo, hi)
 }
 
-/// The axes of the mesh; principal axes of surface, corners and normals; and the largest triangle's
-/// normal with each of its edges.
-fn candidates(triangles: &[[[f64; 3]; 3]]) -> Vec<Frame> {
-    let mut frames: Vec<Frame> = vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]];
-    let at = |p: &[f64; 3]| Vector3::new(p[0], p[1], p[2]);
+/// The columns of a frame, to multiply four at a time.
+#[inline(always)]
+pub(super) fn columns(frame: &Frame) -> [Vec4; 3] {
+    std::array::from_fn(|d| [frame[0][d], frame[1][d], frame[2][d], 0.0])
+}
+
+/// The best frame so far.
+struct Best<'a> {
+    corners: &'a [Vec4],
+    surface: f32,
+    frame: Frame,
+}
+
+impl Best<'_> {
+    fn offer(&mut self, frame: &Frame) {
+        let (lo, hi) = extent(self.corners, &columns(frame));
+        let surface = surface(&lo, &hi);
+        if surface < self.surface * 0.999 && frame.as_flattened().iter().all(|x| x.is_finite()) {
+            (self.surface, self.frame) = (surface, *frame);
+        }
+    }
+
+    fn offer_axes(&mut self, axes: &[Vector3<f64>; 3]) {
+        self.offer(&axes.map(|u| [u.x as f32, u.y as f32, u.z as f32]));
+    }
+}
+
+/// Offers the frames that depend on the triangles.
+fn principal(triangles: &[[Vec4; 3]], best: &mut Best<'_>) {
+    let at = |p: &Vec4| Vector3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
     let (mut area, mut mean) = (0.0, Vector3::zeros());
     let (mut largest, mut largest_area) = (0, -1.0);
     for (i, t) in triangles.iter().enumerate() {
@@ -79,64 +129,93 @@ fn candidates(triangles: &[[[f64; 3]; 3]]) -> Vec<Frame> {
         }
     }
     mean /= area;
-    let (mut surface, mut corners, mut normals) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
+    let (mut surface, mut corners, mut normals) = (Moment::ZERO, Moment::ZERO, Moment::ZERO);
     for t in triangles {
         let p = [at(&t[0]) - mean, at(&t[1]) - mean, at(&t[2]) - mean];
         let n = (p[1] - p[0]).cross(&(p[2] - p[0]));
         let twice = n.norm() + f64::MIN_POSITIVE;
-        let sum = p[0] + p[1] + p[2];
-        let own = p[0] * p[0].transpose() + p[1] * p[1].transpose() + p[2] * p[2].transpose();
-        surface += (sum * sum.transpose() + own) * twice;
-        corners += own;
-        normals += n * n.transpose() / twice;
+        let mut own = Moment::ZERO;
+        for p in &p {
+            own.add(p, 1.0);
+        }
+        corners.add_all(&own, 1.0);
+        own.add(&(p[0] + p[1] + p[2]), 1.0);
+        surface.add_all(&own, twice);
+        normals.add(&n, 1.0 / twice);
     }
-    frames.extend([surface, corners, normals].map(principal_axes));
-    let t = &triangles[largest];
-    let normal = (at(&t[1]) - at(&t[0])).cross(&(at(&t[2]) - at(&t[0]))).try_normalize(f64::MIN_POSITIVE);
-    if let Some(n) = normal {
-        for k in 0..3 {
-            // Orthogonal to the normal of a sliver only after taking the normal's part away.
-            let e = at(&t[(k + 1) % 3]) - at(&t[k]);
-            if let Some(e) = (e - n * n.dot(&e)).try_normalize(f64::MIN_POSITIVE) {
-                frames.push([e, n.cross(&e), n].map(|v| [v.x, v.y, v.z]));
-            }
+    for moment in [surface, corners, normals] {
+        best.offer_axes(&moment.principal_axes());
+    }
+    // Of a triangle with a right angle, as boxes are made of, the shortest edge lies along an axis.
+    let [a, b, c] = [at(&triangles[largest][0]), at(&triangles[largest][1]), at(&triangles[largest][2])];
+    let mut edge = b - a;
+    for other in [c - b, a - c] {
+        if other.norm_squared() < edge.norm_squared() {
+            edge = other;
         }
     }
-    frames.retain(|f| f.iter().flatten().all(|x| x.is_finite()));
-    frames
+    let normal = (b - a).cross(&(c - a)).try_normalize(f64::MIN_POSITIVE);
+    // Orthogonal to the normal of a sliver only after taking the normal's part away.
+    let along = normal.and_then(|n| (edge - n * n.dot(&edge)).try_normalize(f64::MIN_POSITIVE));
+    if let (Some(n), Some(e)) = (normal, along) {
+        best.offer_axes(&[e, n.cross(&e), n]);
+    }
 }
 
-/// The eigenvectors of a symmetric matrix, by Jacobi's rotations.
-fn principal_axes(mut m: Matrix3<f64>) -> Frame {
-    let mut v = Matrix3::<f64>::identity();
-    for _ in 0..8 {
-        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
-            if m[(p, q)].abs() <= 1e-14 * (m[(p, p)].abs() + m[(q, q)].abs()) {
-                continue;
-            }
-            let theta = (m[(q, q)] - m[(p, p)]) / (2.0 * m[(p, q)]);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
-            let s = t * c;
-            for k in 0..3 {
-                let (x, y) = (m[(k, p)], m[(k, q)]);
-                (m[(k, p)], m[(k, q)]) = (c * x - s * y, s * x + c * y);
-            }
-            for k in 0..3 {
-                let (x, y) = (m[(p, k)], m[(q, k)]);
-                (m[(p, k)], m[(q, k)]) = (c * x - s * y, s * x + c * y);
-                let (x, y) = (v[(k, p)], v[(k, q)]);
-                (v[(k, p)], v[(k, q)]) = (c * x - s * y, s * x + c * y);
-            }
+/// A sum of products of coordinates: a symmetric matrix as xx, yy, zz, xy, yz, zx.
+#[derive(Clone, Copy)]
+struct Moment([f64; 6]);
+
+impl Moment {
+    const ZERO: Self = Self([0.0; 6]);
+
+    #[inline(always)]
+    fn add(&mut self, p: &Vector3<f64>, weight: f64) {
+        let w = p * weight;
+        self.add_all(&Self([w.x * p.x, w.y * p.y, w.z * p.z, w.x * p.y, w.y * p.z, w.z * p.x]), 1.0);
+    }
+
+    #[inline(always)]
+    fn add_all(&mut self, other: &Self, weight: f64) {
+        for i in 0..6 {
+            self.0[i] += other.0[i] * weight;
         }
     }
-    let x: Vector3<f64> = v.column(0).normalize();
-    let y: Vector3<f64> = v.column(1).into();
-    let y = (y - x * x.dot(&y)).normalize();
-    [x, y, x.cross(&y)].map(|v| [v.x, v.y, v.z])
-}
 
-/// The triangles of a mesh relative to `center`.
-pub(crate) fn centred(triangle: &Triangle, center: &nalgebra::Point3<f64>) -> [[f64; 3]; 3] {
-    triangle.map(|p| [p.x - center.x, p.y - center.y, p.z - center.z])
+    /// The eigenvectors, by Jacobi's rotations.
+    fn principal_axes(&self) -> [Vector3<f64>; 3] {
+        let [xx, yy, zz, xy, yz, zx] = self.0;
+        let mut m = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
+        let mut v = Matrix3::<f64>::identity();
+        for _ in 0..8 {
+            let mut done = true;
+            for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+                if m[(p, q)].abs() <= 1e-6 * (m[(p, p)].abs() + m[(q, q)].abs()) {
+                    continue;
+                }
+                done = false;
+                let theta = (m[(q, q)] - m[(p, p)]) / (2.0 * m[(p, q)]);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let c = 1.0 / (t * t + 1.0).sqrt();
+                let s = t * c;
+                for k in 0..3 {
+                    let (x, y) = (m[(k, p)], m[(k, q)]);
+                    (m[(k, p)], m[(k, q)]) = (c * x - s * y, s * x + c * y);
+                }
+                for k in 0..3 {
+                    let (x, y) = (m[(p, k)], m[(q, k)]);
+                    (m[(p, k)], m[(q, k)]) = (c * x - s * y, s * x + c * y);
+                    let (x, y) = (v[(k, p)], v[(k, q)]);
+                    (v[(k, p)], v[(k, q)]) = (c * x - s * y, s * x + c * y);
+                }
+            }
+            if done {
+                break;
+            }
+        }
+        let x: Vector3<f64> = v.column(0).normalize();
+        let y: Vector3<f64> = v.column(1).into();
+        let y = (y - x * x.dot(&y)).normalize();
+        [x, y, x.cross(&y)]
+    }
 }

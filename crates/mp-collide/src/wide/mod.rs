@@ -26,13 +26,15 @@ macro_rules! three {
 
 pub(crate) mod boxes;
 pub(crate) mod build;
-pub(crate) mod fit;
+mod collapse;
+mod fit;
 pub(crate) mod frames;
 pub(crate) mod gaps;
 pub(crate) mod inside;
 pub(crate) mod intersect;
 pub(crate) mod leaves;
 pub(crate) mod nearest;
+mod split;
 pub(crate) mod within;
 
 use crate::triangle::Triangle;

@@ -152,7 +152,7 @@ fn signed(mut bytes: Vec<u8>) -> Vec<u8> {
 fn the_header_is_as_documented() {
     let bytes = CollisionMesh::new(&cuboid(Vector3::new(1.0, 2.0, 3.0))).to_bytes();
     let header: Vec<String> = bytes[..28].iter().map(|b| format!("{b:02x}")).collect();
-    insta::assert_snapshot!(format!("{} of {}", header.join(" "), bytes.len()), @"89 4d 50 54 0d 0a 1a 0a 01 00 00 00 08 00 00 00 0c 00 00 00 02 00 00 00 01 00 00 00 of 760");
+    insta::assert_snapshot!(format!("{} of {}", header.join(" "), bytes.len()), @"89 4d 50 54 0d 0a 1a 0a 01 00 00 00 08 00 00 00 0c 00 00 00 03 00 00 00 01 00 00 00 of 824");
 }
 
 #[test]
@@ -161,7 +161,7 @@ fn errors_say_what_was_expected_where() {
     let triangles = VERTICES + 8 * 24;
     let order = triangles + 12 * 12;
     let leaves = order + 12 * 4;
-    let nodes = leaves + 2 * 64;
+    let nodes = leaves + 3 * 64;
     let errors = [
         error(0, 0),
         error(8, 2),
@@ -169,7 +169,7 @@ fn errors_say_what_was_expected_where() {
         error(12, 9),
         error(16, 0),
         error(20, 13),
-        error(24, 2),
+        error(24, 3),
         error(32, 0x7ff8_0000),
         error(VERTICES + 4, 0x7ff0_0000),
         error(VERTICES + 4, 0x40f0_0000),
@@ -190,25 +190,25 @@ fn errors_say_what_was_expected_where() {
     not a file of a collision tree: it does not begin with the bytes 89 4d 50 54 0d 0a 1a 0a
     byte 8: expected version 1 of the format, found 2; build the tree anew
     byte 12: expected at least one vertex, found 0
-    expected 784 bytes from the counts in the header, found 760: cut off, or damaged
+    expected 848 bytes from the counts in the header, found 824: cut off, or damaged
     byte 16: expected at least one triangle, found 0
     byte 20: expected at least one leaf, no more than triangles and 2³¹ − 1, found 13
-    byte 24: expected fewer nodes than leaves, found 2
+    byte 24: expected fewer nodes than leaves, found 3
     byte 28: expected a box with orthonormal axes that is no larger than the mesh, found Obb { center: [NaN, 0.0, 0.0], axes: [[[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]]], half: [[1.0, 2.0, 3.0]] }
     byte 148: expected finite coordinates, found [inf, -2.0, -3.0]
     byte 28: expected a box around all triangles below it, found corner {65536, -2, -3} outside
     byte 340: expected three numbers of vertices, found [8, 1, 2]
     byte 484: expected the number of a triangle, found 99
-    byte 520: expected each triangle once, found 11 a second time
+    byte 528: expected each triangle once, found 11 a second time
     byte 532: expected leaves of 1 to 8 triangles, all of them together, found 0
     byte 532: expected leaves of 1 to 8 triangles, all of them together, found 9
-    byte 536: expected a box with orthonormal axes that is no larger than the mesh, found [[NaN, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]] [1.0000004, 2.0000007, 3.000001]
+    byte 536: expected a box with orthonormal axes that is no larger than the mesh, found [[NaN, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [-3.0, 0.0, 0.0, 1.0]] [1.0000012, 2.0000014, 9.473946e-7]
     byte 536: expected a box around all triangles below it, found corner [-1.0, -2.0, -3.0] outside
-    byte 660: expected a box with orthonormal axes that is no larger than the mesh, found [[8.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]] [1.0000004, 2.0000007, 3.000001]
-    byte 720: expected children that are later nodes or leaves, and in no other node, found [0, 80000001, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
-    byte 720: expected children that are later nodes or leaves, and in no other node, found [80000001, 80000001, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
-    byte 720: expected two to eight children, then ffffffff, found [ffffffff, 80000001, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
-    byte 720: expected children that are later nodes or leaves, and in no other node, found [80000000, 80000001, 80000000, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
+    byte 724: expected a box with orthonormal axes that is no larger than the mesh, found [[8.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]] [1.0000012, 2.0000014, 3.000002]
+    byte 784: expected children that are later nodes or leaves, and in no other node, found [0, 80000001, 80000002, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
+    byte 784: expected children that are later nodes or leaves, and in no other node, found [80000001, 80000001, 80000002, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
+    byte 784: expected two to eight children, then ffffffff, found [ffffffff, 80000001, 80000002, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
+    byte 784: expected children that are later nodes or leaves, and in no other node, found [80000000, 80000001, 80000000, ffffffff, ffffffff, ffffffff, ffffffff, ffffffff]
     "#);
     let mut damaged = CollisionMesh::new(&cuboid(Vector3::new(1.0, 2.0, 3.0))).to_bytes();
     damaged[VERTICES] ^= 1;

@@ -1,0 +1,316 @@
+//! A binary tree by the surface-area heuristic, along the axes of the mesh and those of each box.
+//!
+//! Everything here is in the unit of the mesh: relative to its centre, in parts of its radius, in `f32`.
+
+use std::ops::Range;
+
+use super::fit::{self, Frame};
+use super::{Obb, WIDTH};
+
+/// Bins along an axis: a power of two.
+const BINS: usize = 32;
+/// Between this and its double the numbers of `f32` are whole, and their last bits count from 0.
+const UNITS: f32 = (1 << 23) as f32;
+/// Up to so many triangles every division is tried, not only those between bins.
+const SWEEP: usize = 16;
+/// What fits a leaf is divided all the same where its box has so many times the surface of the two parts:
+/// opposite walls of a room are better kept apart.
+const WORTH: f32 = 1.1;
+/// A coordinate along an axis of a box is wrong by no more: u = 2⁻²⁴ from rounding the corner, 3u from the
+/// sum of three products, all of vectors no longer than 1.
+const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
+
+/// Three coordinates in a register of four.
+pub(super) type Vec4 = [f32; 4];
+
+/// A triangle on its way through the build.
+#[derive(Clone, Copy)]
+pub(super) struct Item {
+    pub(super) corners: [Vec4; 3],
+    pub(super) id: u32,
+}
+
+pub(super) struct Binary {
+    /// Children, which are neighbours; 0 in a leaf.
+    pub(super) children: usize,
+    pub(super) range: Range<usize>,
+    pub(super) surface: f32,
+    frame: Frame,
+    lo: Vec4,
+    hi: Vec4,
+}
+
+impl Binary {
+    fn new(range: Range<usize>) -> Self {
+        Self { children: 0, range, surface: 0.0, frame: fit::MESH, lo: [0.0; 4], hi: [0.0; 4] }
+    }
+
+    /// The box around these of `items`, whatever was rounded: of a mesh whose radius is `unit` metres, relative
+    /// to the centre of the mesh.
+    pub(super) fn obb(&self, items: &[Item], unit: f64) -> Obb {
+        let items = &items[self.range.clone()];
+        let (f, lo, hi) = match fit::refine(items, &self.frame) {
+            Some(frame) => {
+                let (lo, hi) =
+                    fit::extent(items.iter().flat_map(|item| &item.corners), &fit::columns(&frame));
+                (frame, lo, hi)
+            }
+            None => (self.frame, self.lo, self.hi),
+        };
+        let wide = f.map(|u| u.map(f64::from));
+        let lo: [f64; 3] = std::array::from_fn(|k| (f64::from(lo[k]) - ROUNDING) * unit);
+        let hi: [f64; 3] = std::array::from_fn(|k| (f64::from(hi[k]) + ROUNDING) * unit);
+        // Infinities would make numbers that are none, and those no box.
+        let center: [f32; 3] = std::array::from_fn(|d| {
+            let x = (0..3).map(|k| wide[k][d] * 0.5 * (lo[k] + hi[k])).sum::<f64>();
+            (x as f32).clamp(f32::MIN, f32::MAX)
+        });
+        let half: [f32; 3] = std::array::from_fn(|k| {
+            // The rounded axes are not quite orthogonal: measure from where the centre really is. A box
+            // test takes them for orthonormal; `Frames::pad` covers that.
+            let at: f64 = (0..3).map(|d| wide[k][d] * f64::from(center[d])).sum();
+            ((hi[k] - at).max(at - lo[k]) * (1.0 + 3e-7)) as f32
+        });
+        let frame = std::array::from_fn(|d| [center[d], f[0][d], f[1][d], f[2][d]]);
+        Obb::new(frame, half)
+    }
+}
+
+/// The binary tree, parents before children, its leaves of at most [`WIDTH`] items.
+pub(super) fn split_all(items: &mut [Item]) -> Vec<Binary> {
+    let mut own = Vec::with_capacity(items.len());
+    let mut aside = items.to_vec();
+    let mut binary = Vec::with_capacity(items.len() / 2 + 1);
+    binary.push(Binary::new(0..items.len()));
+    let mut todo = vec![0];
+    while let Some(n) = todo.pop() {
+        let range = binary[n].range.clone();
+        let items = &mut items[range.clone()];
+        let frame = fit::frame(items);
+        let all = bounds(items, &frame, &mut own);
+        let b = &mut binary[n];
+        (b.frame, b.lo, b.hi) = (frame, all.lo[1], all.hi[1]);
+        b.surface = surface(&b.lo, &b.hi);
+        // Along the axes of the mesh alone where those of the box are the same.
+        let frames = if frame == fit::MESH { 1 } else { 2 };
+        if let Some(first) = split(items, &own, frames, b.surface, &mut aside) {
+            let children = binary.len();
+            binary[n].children = children;
+            binary.push(Binary::new(range.start..range.start + first));
+            binary.push(Binary::new(range.start + first..range.end));
+            todo.extend([children, children + 1]);
+        }
+    }
+    binary
+}
+
+/// Extent along the axes of the mesh, then along those of a box.
+#[derive(Clone, Copy)]
+struct Bounds {
+    lo: [Vec4; 2],
+    hi: [Vec4; 2],
+}
+
+impl Bounds {
+    const EMPTY: Self = Self { lo: [[f32::INFINITY; 4]; 2], hi: [[f32::NEG_INFINITY; 4]; 2] };
+
+    #[inline(always)]
+    fn join(&mut self, other: &Self) {
+        for f in 0..2 {
+            self.lo[f] = min(&other.lo[f], &self.lo[f]);
+            self.hi[f] = max(&other.hi[f], &self.hi[f]);
+        }
+    }
+
+    /// The surface in the tighter of the two frames.
+    #[inline(always)]
+    fn surface(&self) -> f32 {
+        surface(&self.lo[0], &self.hi[0]).min(surface(&self.lo[1], &self.hi[1]))
+    }
+
+    /// Twice the middle.
+    #[inline(always)]
+    fn middle(&self, frame: usize) -> Vec4 {
+        std::array::from_fn(|k| self.lo[frame][k] + self.hi[frame][k])
+    }
+}
+
+#[inline(always)]
+pub(super) fn min(a: &Vec4, b: &Vec4) -> Vec4 {
+    std::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
+}
+
+#[inline(always)]
+pub(super) fn max(a: &Vec4, b: &Vec4) -> Vec4 {
+    std::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
+}
+
+/// Half the surface of a box: enough to compare by.
+#[inline(always)]
+pub(super) fn surface(lo: &Vec4, hi: &Vec4) -> f32 {
+    let [x, y, z] = [hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]];
+    x * y + y * z + z * x
+}
+
+/// Coordinates of `p` along three axes, which come as columns.
+#[inline(always)]
+pub(super) fn along(columns: &[Vec4; 3], p: &Vec4) -> Vec4 {
+    std::array::from_fn(|k| columns[0][k] * p[0] + columns[1][k] * p[1] + columns[2][k] * p[2])
+}
+
+/// The bounds of each item, in `own`, and of all.
+fn bounds(items: &[Item], frame: &Frame, own: &mut Vec<Bounds>) -> Bounds {
+    let columns = fit::columns(frame);
+    let mut all = Bounds::EMPTY;
+    own.clear();
+    for item in items {
+        let [a, b, c] = &item.corners;
+        let [x, y, z] = [along(&columns, a), along(&columns, b), along(&columns, c)];
+        let one = Bounds {
+            lo: [min(&min(a, b), c), min(&min(&x, &y), &z)],
+            hi: [max(&max(a, b), c), max(&max(&x, &y), &z)],
+        };
+        all.join(&one);
+        own.push(one);
+    }
+    all
+}
+
+/// Reorders `items` in two parts, neither empty; returns the length of the first. `None` where they had
+/// better stay together, in a leaf.
+fn split(items: &mut [Item], own: &[Bounds], frames: usize, whole: f32, aside: &mut [Item]) -> Option<usize> {
+    let n = items.len();
+    if n > SWEEP {
+        return Some(bin(items, own, frames, aside));
+    }
+    if n > WIDTH {
+        return Some(sweep(items, own, frames, aside, |bounds, count| bounds.surface() * count as f32).0);
+    }
+    if n == 1 {
+        return None;
+    }
+    // A leaf costs the same whatever it holds.
+    let (first, surface) = sweep(items, own, frames, aside, |bounds, _| bounds.surface());
+    (surface * WORTH < whole).then_some(first)
+}
+
+/// The best of all divisions in the order of the middles along each axis, and what it costs.
+#[inline(always)]
+fn sweep(
+    items: &mut [Item],
+    own: &[Bounds],
+    frames: usize,
+    aside: &mut [Item],
+    cost: impl Fn(&Bounds, usize) -> f32,
+) -> (usize, f32) {
+    let n = items.len();
+    let mut best = (n / 2, f32::INFINITY);
+    let mut best_order: [u64; SWEEP] = std::array::from_fn(|i| i as u64);
+    for (f, k) in (0..frames).flat_map(|f| [(f, 0), (f, 1), (f, 2)]) {
+        let mut order = [0; SWEEP];
+        let order = &mut order[..n];
+        for (i, (key, o)) in order.iter_mut().zip(own).enumerate() {
+            *key = u64::from(ordered(o.lo[f][k] + o.hi[f][k])) << 32 | i as u64;
+        }
+        order.sort_unstable();
+        let at = |i: usize| &own[order[i] as u32 as usize];
+        let mut above = [0.0; SWEEP];
+        let mut right = Bounds::EMPTY;
+        for i in (1..n).rev() {
+            right.join(at(i));
+            above[i] = cost(&right, n - i);
+        }
+        let mut left = Bounds::EMPTY;
+        let before = best.1;
+        for i in 1..n {
+            left.join(at(i - 1));
+            let both = cost(&left, i) + above[i];
+            if both < best.1 {
+                best = (i, both);
+            }
+        }
+        if best.1 < before {
+            best_order[..n].copy_from_slice(order);
+        }
+    }
+    aside[..n].copy_from_slice(items);
+    for (item, i) in items.iter_mut().zip(best_order) {
+        *item = aside[i as u32 as usize];
+    }
+    best
+}
+
+/// An integer in the order of `f32::total_cmp`.
+#[inline(always)]
+fn ordered(x: f32) -> u32 {
+    let bits = x.to_bits();
+    bits ^ if bits >> 31 == 1 { u32::MAX } else { 1 << 31 }
+}
+
+/// The best division between bins along each axis.
+fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) -> usize {
+    let n = items.len();
+    let mut best: Option<(f32, usize, usize, usize)> = None;
+    let (mut start, mut scale) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
+    for f in 0..frames {
+        let (mut lo, mut hi) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
+        for o in own {
+            let middle = o.middle(f);
+            (lo, hi) = (min(&middle, &lo), max(&middle, &hi));
+        }
+        (start[f], scale[f]) = (lo, std::array::from_fn(|k| (BINS - 1) as f32 / (hi[k] - lo[k])));
+        let mut bins = [[(Bounds::EMPTY, 0u32); BINS]; 3];
+        for o in own {
+            let at = place(o, f, &start[f], &scale[f]);
+            for k in 0..3 {
+                let bin = &mut bins[k][at[k]];
+                bin.0.join(o);
+                bin.1 += 1;
+            }
+        }
+        for k in (0..3).filter(|&k| scale[f][k].is_finite()) {
+            let mut above = [0.0; BINS];
+            let (mut right, mut count) = (Bounds::EMPTY, 0);
+            for i in (1..BINS).rev() {
+                right.join(&bins[k][i].0);
+                count += bins[k][i].1;
+                above[i] = right.surface() * count as f32;
+            }
+            let (mut left, mut count) = (Bounds::EMPTY, 0);
+            for i in 1..BINS {
+                left.join(&bins[k][i - 1].0);
+                count += bins[k][i - 1].1;
+                let cost = left.surface() * count as f32 + above[i];
+                let both = count > 0 && (count as usize) < n;
+                if both && best.is_none_or(|(least, ..)| cost < least) {
+                    best = Some((cost, f, k, i));
+                }
+            }
+        }
+    }
+    let Some((_, f, k, i)) = best else {
+        return n / 2; // All in one place.
+    };
+    // A stable partition: the order depends on the mesh alone.
+    let (mut low, mut high) = (0, 0);
+    for (j, o) in own.iter().enumerate() {
+        let item = items[j];
+        let first = place(o, f, &start[f], &scale[f])[k] < i;
+        items[low] = item;
+        aside[high] = item;
+        low += usize::from(first);
+        high += usize::from(!first);
+    }
+    items[low..].copy_from_slice(&aside[..high]);
+    low
+}
+
+/// The bins of an item along three axes.
+#[inline(always)]
+fn place(o: &Bounds, frame: usize, start: &Vec4, scale: &Vec4) -> [usize; 3] {
+    let middle = o.middle(frame);
+    std::array::from_fn(|k| {
+        // Rounded to the nearest by the addition, and never out of range.
+        ((middle[k] - start[k]) * scale[k] + UNITS).to_bits() as usize % BINS
+    })
+}
