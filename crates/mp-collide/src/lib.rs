@@ -1,7 +1,8 @@
 //! Exact collision detection between meshes, and with primitives, with trees of oriented bounding boxes.
 //!
 //! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads, saved and loaded.
-//! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses.
+//! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
+//!   stretches of motions.
 //! * [`Solid`]: balls, capsules, boxes and half-spaces, to compare with meshes.
 //! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
@@ -49,10 +50,12 @@
 //! collision with everything*: `intersects` is `true`,
 //! distance and clearance are 0. A planner can so never pass through what cannot be decided.
 
+mod batch;
 mod broad;
 mod depth;
 mod distance;
 mod mesh;
+mod motion;
 mod obb;
 mod pose;
 mod query;
@@ -67,6 +70,7 @@ pub mod reference;
 pub mod triangle;
 
 pub use mesh::CollisionMesh;
+pub use motion::Sway;
 pub use query::{Counters, Query, Separation};
 pub use save::{TreeError, TreeFileError};
 pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};

@@ -77,7 +77,7 @@ impl Relative {
 
 /// Whether `pose` is within the limits of the crate docs; NaN is not.
 #[inline(always)]
-fn is_rigid(pose: &Isometry3<f64>) -> bool {
+pub(crate) fn is_rigid(pose: &Isometry3<f64>) -> bool {
     (pose.rotation.quaternion().norm_squared() - 1.0).abs() <= UNIT_TOLERANCE
         && pose.translation.vector.iter().all(|c| c.abs() <= LIMIT)
 }

@@ -10,6 +10,8 @@ use crate::wide::Tree;
 use crate::wide::frames::Frames;
 use crate::wide::intersect::Intersect;
 use crate::wide::nearest::Scratch;
+use crate::wide::span::{Part, Span};
+use crate::wide::sweep::Item;
 
 /// How much work queries have done: the same for the same queries, on any machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,6 +54,9 @@ pub struct Query {
     pub counters: Counters,
     pub(crate) stack: Vec<(u32, u32)>,
     pub(crate) scratch: Scratch,
+    pub(crate) items: Vec<Item>,
+    pub(crate) parts: Vec<Part>,
+    pub(crate) spans: Vec<Span>,
     pub(crate) isa: Isa,
 }
 
@@ -66,7 +71,15 @@ impl Query {
     /// same on all; for tests and benchmarks.
     #[must_use]
     pub fn with_isa(isa: Isa) -> Self {
-        Self { counters: Counters::default(), stack: Vec::new(), scratch: Scratch::default(), isa }
+        Self {
+            counters: Counters::default(),
+            stack: Vec::new(),
+            scratch: Scratch::default(),
+            items: Vec::new(),
+            parts: Vec::new(),
+            spans: Vec::new(),
+            isa,
+        }
     }
 
     /// Whether the meshes have a point in common. Touching counts.
@@ -100,17 +113,6 @@ impl Query {
                 .map(|(i, j)| (a.tree().ids[i] as usize, b.tree().ids[j] as usize)),
             None => Some((0, 0)),
         }
-    }
-
-    /// The index of the first of `poses_wa` at which `a` collides with `b`; `None` when it never does.
-    pub fn first_collision(
-        &mut self,
-        a: &CollisionMesh,
-        poses_wa: &[Isometry3<f64>],
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
-    ) -> Option<usize> {
-        poses_wa.iter().position(|pose_wa| self.intersects(a, pose_wa, b, pose_wb))
     }
 
     /// Two intersecting triangles, as positions in the trees.

@@ -50,14 +50,7 @@ pub trait Clearance<S> {
     /// the robot travels and whether toward the obstacle or along it.
     fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
         let enough = stretch.travel.max(stretch.margin) + stretch.margin;
-        let clearance = self.clearance(stretch.middle, enough);
-        if clearance <= 0.0 {
-            Room::Contact
-        } else if clearance >= 2.0 * stretch.margin {
-            Room::Clear { clearance }
-        } else {
-            Room::Tight
-        }
+        Room::of(self.clearance(stretch.middle, enough), stretch.margin)
     }
 }
 
@@ -94,6 +87,20 @@ pub enum Room {
     Tight,
     /// In contact in the middle.
     Contact,
+}
+
+impl Room {
+    /// What a clearance (m) in the middle says when `margin` (m) is to be kept.
+    #[must_use]
+    pub fn of(clearance: f64, margin: f64) -> Self {
+        if clearance <= 0.0 {
+            Self::Contact
+        } else if clearance >= 2.0 * margin {
+            Self::Clear { clearance }
+        } else {
+            Self::Tight
+        }
+    }
 }
 
 impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {

@@ -164,7 +164,9 @@ fn grazing_motions() {
         let (a, b) = (Isometry3::translation(-0.3, 0.0, 0.0), pose_from_six([0.3, 0.1, 0.0, 1.0, 0.0, 0.0]));
         let accepted = certified.check_motion(&a, &b).is_free();
         let proved = verifier.check_motion(&a, &b).is_free();
-        assert_eq!(accepted, gap >= tolerance, "{gap}");
+        // Between margin and tolerance either answer will do.
+        assert!(accepted || gap < tolerance, "{gap}");
+        assert!(!accepted || gap >= certified.margin(), "{gap}");
         assert!(proved || !accepted);
         if gap < verifier.tolerance() {
             assert!(matches!(verifier.check_motion(&a, &b), MotionCheck::Undecided { .. }));

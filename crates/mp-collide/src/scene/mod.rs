@@ -2,6 +2,7 @@
 
 mod groups;
 mod merged;
+mod motion;
 mod nearest;
 mod pairs;
 mod view;

@@ -47,19 +47,6 @@ impl View<'_> {
         self.collide_body(query, mesh, pose_wm).is_some()
     }
 
-    /// The index of the first of `poses_wm` at which `mesh` collides with a body, and the body.
-    pub fn first_collision(
-        &self,
-        query: &mut Query,
-        mesh: &CollisionMesh,
-        poses_wm: &[Isometry3<f64>],
-    ) -> Option<(usize, BodyId)> {
-        poses_wm
-            .iter()
-            .enumerate()
-            .find_map(|(i, pose_wm)| Some((i, self.collide_body(query, mesh, pose_wm)?)))
-    }
-
     /// A lower bound on the distance from `mesh` at `pose_wm` to the bodies, exact when below `enough`
     /// (metres), and the nearest body in that case; otherwise some value of at least `enough` and no body.
     /// 0 exactly when it collides. Infinity when there are no bodies.
@@ -152,7 +139,7 @@ impl View<'_> {
     }
 
     /// The broad phases that have something in them; that of the static bodies only when `fixed`.
-    fn phases(&self, fixed: bool) -> impl Iterator<Item = &BroadPhase> {
+    pub(super) fn phases(&self, fixed: bool) -> impl Iterator<Item = &BroadPhase> {
         let phases = [fixed.then_some(&self.scene.fixed), Some(&self.scene.movable)];
         phases.into_iter().flatten().filter(|broad| !broad.is_empty())
     }
@@ -179,16 +166,6 @@ impl Scene {
     /// Whether `mesh` at `pose_wm` collides with any body.
     pub fn collides(&self, query: &mut Query, mesh: &CollisionMesh, pose_wm: &Isometry3<f64>) -> bool {
         self.view(Groups::ALL).collides(query, mesh, pose_wm)
-    }
-
-    /// The index of the first of `poses_wm` at which `mesh` collides with a body, and the body.
-    pub fn first_collision(
-        &self,
-        query: &mut Query,
-        mesh: &CollisionMesh,
-        poses_wm: &[Isometry3<f64>],
-    ) -> Option<(usize, BodyId)> {
-        self.view(Groups::ALL).first_collision(query, mesh, poses_wm)
     }
 
     /// A lower bound on the distance from `mesh` at `pose_wm` to the scene: see [`View::clearance`].

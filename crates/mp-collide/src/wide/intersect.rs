@@ -91,7 +91,7 @@ pub(super) fn ahead(tree: &Tree, reference: u32) {
 }
 
 #[inline(always)]
-fn leaf_pair<L: Lanes>(
+pub(super) fn leaf_pair<L: Lanes>(
     a: &Tree,
     i: usize,
     b: &Tree,

@@ -38,7 +38,7 @@ pub(crate) struct Near {
     /// The largest coordinate of that.
     t: f32,
     /// How wrong a coordinate of the first may be together with one of the second.
-    wrong: f32,
+    pub(super) wrong: f32,
 }
 
 impl Near {

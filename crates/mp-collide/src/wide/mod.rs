@@ -34,7 +34,9 @@ pub(crate) mod inside;
 pub(crate) mod intersect;
 pub(crate) mod leaves;
 pub(crate) mod nearest;
+pub(crate) mod span;
 mod split;
+pub(crate) mod sweep;
 pub(crate) mod within;
 
 use crate::triangle::Triangle;

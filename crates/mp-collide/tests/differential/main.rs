@@ -3,6 +3,7 @@
 mod bad_input;
 mod common;
 mod meshes;
+mod motions;
 mod parry;
 mod properties;
 mod referee;

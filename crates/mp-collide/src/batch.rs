@@ -1,0 +1,259 @@
+//! Many poses of one mesh at once.
+
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+
+use crate::mesh::CollisionMesh;
+use crate::pose::{Relative, is_rigid};
+use crate::query::Query;
+use crate::simd::run;
+use crate::wide::Tree;
+use crate::wide::frames::Frames;
+use crate::wide::span::{Part, Span, Travel};
+use crate::wide::sweep::{Course, Item, Sweep};
+
+/// Poses are taken so many at a time.
+const CHUNK: usize = 64;
+
+impl Query {
+    /// The index of the first of `poses_wa` at which `a` collides with `b`; `None` when it never does.
+    ///
+    /// The answer is that of [`Query::intersects`] pose by pose. When neighbours in `poses_wa` are near each
+    /// other, as along an edge of a planner, it comes much sooner: whole runs of poses are shown to be free
+    /// at once, as far as the bodies are from each other.
+    pub fn first_collision(
+        &mut self,
+        a: &CollisionMesh,
+        poses_wa: &[Isometry3<f64>],
+        b: &CollisionMesh,
+        pose_wb: &Isometry3<f64>,
+    ) -> Option<usize> {
+        let mut done = 0;
+        for poses in poses_wa.chunks(CHUNK) {
+            if let Some(i) = self.first_in_chunk(a, poses, b, pose_wb) {
+                return Some(done + i);
+            }
+            done += poses.len();
+        }
+        None
+    }
+
+    fn first_in_chunk(
+        &mut self,
+        a: &CollisionMesh,
+        poses: &[Isometry3<f64>],
+        b: &CollisionMesh,
+        pose_wb: &Isometry3<f64>,
+    ) -> Option<usize> {
+        let pace = Pace::of(poses);
+        let step = pace.step + 2.0 * pace.turn * a.radius();
+        let near = step <= NEAR * a.tree().radius_center && in_lanes(a, poses, b, pose_wb, step);
+        let first = if near { 1 } else { poses.len() };
+        if let Some(i) = poses[..first].iter().position(|p| self.intersects(a, p, b, pose_wb)) {
+            return Some(i);
+        }
+        if first == poses.len() {
+            return None;
+        }
+        let (a, b) = (a.tree(), b.tree());
+        let (mut parts, mut spans) = (std::mem::take(&mut self.parts), std::mem::take(&mut self.spans));
+        parts.clear();
+        spans.clear();
+        self.items.clear();
+        let back = pose_wb.rotation.inverse();
+        let mut course = Poses { a, b, poses, pose_wb, back, pace, parts: &mut parts, spans: &mut spans };
+        course.add(first, poses.len());
+        self.items.push(Item::new(a, b, 0));
+        let sweep = Sweep { a, b, course: &mut course, stack: &mut self.items, counters: &mut self.counters };
+        let found = run(self.isa, sweep).map(|part| parts[part as usize].range[0] as usize);
+        (self.parts, self.spans) = (parts, spans);
+        self.counters.queries += found.unwrap_or(poses.len() - 1) as u64;
+        found
+    }
+}
+
+/// Whether poses and sizes are such that lanes may be used.
+fn in_lanes(
+    a: &CollisionMesh,
+    poses: &[Isometry3<f64>],
+    b: &CollisionMesh,
+    pose_wb: &Isometry3<f64>,
+    step: f64,
+) -> bool {
+    let Some(first) = poses.first() else { return false };
+    let Some(relative) = Relative::between(first, a.radius(), pose_wb, b.radius()) else { return false };
+    let frames = Frames::new(a.tree(), b.tree(), &relative);
+    // NaN in a pose makes the first step or the quaternion's length NaN, and is passed over by maxima.
+    poses.iter().all(is_rigid)
+        && frames.fits_f32(a.tree(), b.tree())
+        && frames.apart + step * CHUNK as f64 <= 1e8
+}
+
+/// Only a single pose stands still (metres).
+const LEAST: f64 = 1e-30;
+
+/// Poses are taken together that are no farther apart than this many times the body's radius.
+const NEAR: f64 = 0.25;
+
+/// How a sequence of poses advances: the most of all steps.
+#[derive(Clone, Copy, Debug)]
+struct Pace {
+    /// Of the origin, metres.
+    step: f64,
+    /// Between quaternions of unit length.
+    turn: f64,
+    /// How much two steps in a row differ.
+    bend: f64,
+    twist: f64,
+}
+
+impl Pace {
+    fn of(poses: &[Isometry3<f64>]) -> Self {
+        let (mut step, mut turn, mut bend, mut twist) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
+        let mut before: Option<(Vector3<f64>, Quaternion<f64>)> = None;
+        let mut last: (Vector3<f64>, Quaternion<f64>) = match poses.first() {
+            Some(p) => (p.translation.vector, *p.rotation.quaternion()),
+            None => (Vector3::zeros(), Quaternion::identity()),
+        };
+        let mut length = (last.1.norm_squared() - 1.0).abs();
+        for pose in &poses[1.min(poses.len())..] {
+            let p = pose.translation.vector;
+            let q = *pose.rotation.quaternion();
+            // Of the two quaternions of a rotation the nearer.
+            let q = if last.1.dot(&q) < 0.0 { -q } else { q };
+            raise(&mut length, (q.norm_squared() - 1.0).abs());
+            let by = (p - last.0, q - last.1);
+            raise(&mut step, by.0.norm_squared());
+            raise(&mut turn, by.1.norm_squared());
+            if let Some(before) = before {
+                raise(&mut bend, (by.0 - before.0).norm_squared());
+                raise(&mut twist, (by.1 - before.1).norm_squared());
+            }
+            before = Some(by);
+            last = (p, q);
+        }
+        // Quaternions off unit length by `length` differ by up to so much from those that are not.
+        let off = 2.0 * length + 1e-15;
+        Self {
+            step: step.sqrt(),
+            turn: turn.sqrt() + 2.0 * off,
+            bend: bend.sqrt(),
+            twist: twist.sqrt() + 4.0 * off,
+        }
+    }
+}
+
+/// The greater, without the care for NaN that `f64::max` takes.
+#[inline]
+fn raise(greatest: &mut f64, x: f64) {
+    if x > *greatest {
+        *greatest = x;
+    }
+}
+
+/// Poses in a row; parts are ranges of them.
+struct Poses<'q> {
+    a: &'q Tree,
+    b: &'q Tree,
+    poses: &'q [Isometry3<f64>],
+    pose_wb: &'q Isometry3<f64>,
+    /// From the world into the frame of `b`.
+    back: UnitQuaternion<f64>,
+    pace: Pace,
+    parts: &'q mut Vec<Part>,
+    spans: &'q mut Vec<Span>,
+}
+
+impl Poses<'_> {
+    /// The part from pose `lo` to before pose `hi`.
+    fn add(&mut self, lo: usize, hi: usize) {
+        let most =
+            if hi - lo == 1 { 0.0 } else { self.most(hi - 1 - usize::midpoint(lo, hi - 1)).max(LEAST) };
+        self.parts.push(Part::new([lo as u32, hi as u32], most));
+    }
+
+    /// How far a point gets at most in `n` steps.
+    fn most(&self, n: usize) -> f64 {
+        n as f64 * (self.pace.step + 2.0 * self.pace.turn * self.a.radius)
+    }
+
+    /// Makes the span of a part.
+    fn make(&mut self, index: u32) -> u32 {
+        let [lo, hi] = self.parts[index as usize].range.map(|i| i as usize);
+        let middle = usize::midpoint(lo, hi - 1);
+        let relative = Relative::between(&self.poses[middle], self.a.radius, self.pose_wb, self.b.radius);
+        let span = relative.and_then(|relative| {
+            let travel =
+                if hi - lo == 1 { Travel::none() } else { self.travel(&relative, middle, hi - 1 - middle) };
+            Span::new((self.a, self.b), &relative, &travel, 0.0)
+        });
+        let made = if span.is_some() { self.spans.len() as u32 } else { Part::FAR };
+        self.spans.extend(span);
+        self.parts[index as usize].span = made;
+        made
+    }
+
+    /// How far points get in `n` steps from pose `middle`, where they are at `q`, turned from the frame of `a`.
+    ///
+    /// With g half the way from the pose before to the pose after (or the whole way from or to one of them),
+    /// and steps in a row that differ by at most c, what is n steps on is at n·g to within c·n·(n + 1)/2: both
+    /// places and quaternions. A quaternion r + d turns p to where r does, and by d·p·r* + r·p·d* + d·p·d*; for
+    /// d = n·g and g·r* = (s, w) the first two are n·2·(s·q + w × q).
+    fn travel(&self, relative: &Relative, middle: usize, n: usize) -> Travel {
+        let most = self.most(n);
+        let n = n as f64;
+        let (before, after) = (middle.saturating_sub(1), (middle + 1).min(self.poses.len() - 1));
+        let scale = n / (after - before) as f64;
+        let (from, to) = (&self.poses[before], &self.poses[after]);
+        let here = self.poses[middle].rotation.quaternion();
+        // Of the two quaternions of a rotation the nearer.
+        let near = |pose: &Isometry3<f64>| {
+            let q = *pose.rotation.quaternion();
+            if q.dot(here) < 0.0 { -q } else { q }
+        };
+        let by = (near(to) - near(from)) * here.conjugate() * (2.0 * scale);
+        let shift = (to.translation.vector - from.translation.vector) * scale;
+        let Pace { turn, bend, twist, .. } = self.pace;
+        let radius = self.a.radius;
+        let curve = n * (n + 1.0) * (0.5 * bend + twist * radius) + (n * turn).powi(2) * radius;
+        let rest = curve + by.w.abs() * radius + n * relative.slack;
+        if rest > 0.5 * most {
+            // Not smooth: no direction is known.
+            return Travel { rest: most, most, ..Travel::none() };
+        }
+        let back = self.back;
+        Travel { shift: back * shift, turn: back * by.imag(), rest, most }
+    }
+}
+
+impl Course for Poses<'_> {
+    const ORDERED: bool = true;
+
+    #[inline]
+    fn part(&self, index: u32) -> &Part {
+        &self.parts[index as usize]
+    }
+
+    #[inline]
+    fn span(&mut self, index: u32) -> Option<&Span> {
+        let part = self.parts[index as usize];
+        let span = if part.span == Part::NONE { self.make(index) } else { part.span };
+        self.spans.get(span as usize)
+    }
+
+    fn halve(&mut self, index: u32) -> Option<u32> {
+        let part = self.parts[index as usize];
+        if part.halves != Part::NONE {
+            return Some(part.halves);
+        }
+        let [lo, hi] = part.range.map(|i| i as usize);
+        if hi - lo == 1 {
+            return None;
+        }
+        let halves = self.parts.len() as u32;
+        self.parts[index as usize].halves = halves;
+        let middle = usize::midpoint(lo, hi);
+        self.add(lo, middle);
+        self.add(middle, hi);
+        Some(halves)
+    }
+}

@@ -1,0 +1,101 @@
+//! Batches of poses and whole motions in a scene.
+
+use nalgebra::{Isometry3, Vector3};
+
+use super::{BodyId, Groups, Scene, View, bounds};
+use crate::broad::Bounds;
+use crate::mesh::CollisionMesh;
+use crate::motion::Sway;
+use crate::query::Query;
+
+impl View<'_> {
+    /// The index of the first of `poses_wm` at which `mesh` collides with a body, and the body. Much faster than
+    /// pose by pose where neighbours are near each other: see [`Query::first_collision`].
+    pub fn first_collision(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        poses_wm: &[Isometry3<f64>],
+    ) -> Option<(usize, BodyId)> {
+        let scene = self.scene;
+        let mut before = poses_wm.len();
+        for merged in scene.merged.iter().filter(|merged| merged.groups.meets(self.groups)) {
+            let world = Isometry3::identity();
+            let hit = query.first_collision(mesh, &poses_wm[..before], &merged.mesh, &world);
+            before = hit.unwrap_or(before);
+        }
+        let fixed = !scene.is_merged();
+        for (i, pose_wm) in poses_wm[..before].iter().enumerate() {
+            let hit = self.near(mesh, pose_wm, fixed, |id, body| {
+                query.intersects(mesh, pose_wm, &body.mesh, &body.pose).then_some(id)
+            });
+            if let Some(id) = hit {
+                return Some((i, id));
+            }
+        }
+        let at = poses_wm.get(before)?;
+        self.collide_body(query, mesh, at).map(|id| (before, id))
+    }
+
+    /// Whether `mesh` surely stays at least `margin` (metres) from all bodies along a stretch of a motion: see
+    /// [`Query::keeps_clear`].
+    pub fn keeps_clear(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        middle_wm: &Isometry3<f64>,
+        sway: &Sway,
+        margin: f64,
+    ) -> bool {
+        let scene = self.scene;
+        for merged in scene.merged.iter().filter(|merged| merged.groups.meets(self.groups)) {
+            if !query.keeps_clear(mesh, middle_wm, sway, &merged.mesh, &Isometry3::identity(), margin) {
+                return false;
+            }
+        }
+        // Whatever is farther than this from the box in the middle is never near; NaN is near everything.
+        let reach = (sway.most + margin) * (1.0 + 1e-9);
+        let own = bounds(mesh, middle_wm).filter(|_| reach >= 0.0).map(|own| Bounds {
+            min: own.min - Vector3::repeat(reach),
+            max: own.max + Vector3::repeat(reach),
+        });
+        self.phases(!scene.is_merged()).all(|broad| {
+            let blocked = broad.find(
+                |bounds| own.is_none_or(|own| own.overlaps(bounds)),
+                |item| {
+                    let body = scene.bodies[item as usize].as_ref()?;
+                    let clear = !body.groups.meets(self.groups)
+                        || query.keeps_clear(mesh, middle_wm, sway, &body.mesh, &body.pose, margin);
+                    (!clear).then_some(())
+                },
+            );
+            blocked.is_none()
+        })
+    }
+}
+
+impl Scene {
+    /// The index of the first of `poses_wm` at which `mesh` collides with a body, and the body: see
+    /// [`View::first_collision`].
+    pub fn first_collision(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        poses_wm: &[Isometry3<f64>],
+    ) -> Option<(usize, BodyId)> {
+        self.view(Groups::ALL).first_collision(query, mesh, poses_wm)
+    }
+
+    /// Whether `mesh` surely stays at least `margin` (metres) from all bodies along a stretch of a motion: see
+    /// [`Query::keeps_clear`].
+    pub fn keeps_clear(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        middle_wm: &Isometry3<f64>,
+        sway: &Sway,
+        margin: f64,
+    ) -> bool {
+        self.view(Groups::ALL).keeps_clear(query, mesh, middle_wm, sway, margin)
+    }
+}

@@ -1,0 +1,137 @@
+//! Parts of a motion: how two trees lie in the middle of one, and how far the points of the first get from
+//! where they are there.
+
+use nalgebra::Vector3;
+
+use super::frames::Frames;
+use super::{Obb, Tree};
+use crate::pose::Relative;
+use crate::simd::Lanes;
+
+/// How far (m) and which way points of `a` move while a part of a motion goes from its middle to one of its
+/// ends, to first order: `shift + turn × p`, in the centred frame of a tree. Toward the other end it is the
+/// opposite.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drift {
+    shift: [f32; 3],
+    turn: [f32; 3],
+}
+
+impl Drift {
+    /// `shift` is that of the point `origin`.
+    fn new(turn: &Vector3<f64>, shift: &Vector3<f64>, origin: &Vector3<f64>) -> Self {
+        let shift = shift - turn.cross(origin);
+        Self { shift: shift.map(|x| x as f32).into(), turn: turn.map(|x| x as f32).into() }
+    }
+
+    /// At a point in each lane.
+    #[inline(always)]
+    pub(crate) fn at<L: Lanes>(&self, p: &[L; 3]) -> [L; 3] {
+        let w = [L::splat(self.turn[0]), L::splat(self.turn[1]), L::splat(self.turn[2])];
+        let s = [L::splat(self.shift[0]), L::splat(self.shift[1]), L::splat(self.shift[2])];
+        [
+            w[1].mul_add(p[2], s[0]).sub(w[2].mul(p[1])),
+            w[2].mul_add(p[0], s[1]).sub(w[0].mul(p[2])),
+            w[0].mul_add(p[1], s[2]).sub(w[1].mul(p[0])),
+        ]
+    }
+}
+
+/// How `a` moves over half a part of a motion, in `f64` and in the frame of `b`: the origin of `a` by
+/// `shift`, a point at `p` from it by `turn × p` beside that, and in any direction by `rest` more; by `most`
+/// in all.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Travel {
+    pub(crate) shift: Vector3<f64>,
+    pub(crate) turn: Vector3<f64>,
+    /// Metres.
+    pub(crate) rest: f64,
+    /// Metres.
+    pub(crate) most: f64,
+}
+
+impl Travel {
+    /// Standing still.
+    pub(crate) fn none() -> Self {
+        Self { shift: Vector3::zeros(), turn: Vector3::zeros(), rest: 0.0, most: 0.0 }
+    }
+}
+
+/// What lies where in a part of a motion of `a` past `b`, about its middle.
+#[derive(Clone, Debug)]
+pub(crate) struct Span {
+    pub(crate) frames: Frames,
+    /// In the frame of `a` as it is in the middle, and in that of `b`.
+    pub(crate) in_a: Drift,
+    pub(crate) in_b: Drift,
+    /// How much the drift differs between points of `a`, per metre between them.
+    pub(crate) rate: f32,
+    /// How much farther than its drift a point may move (m), in any direction.
+    pub(crate) rest: f32,
+    /// Boxes and triangles are apart when their gap exceeds this (m) and what they move: rounding, and
+    /// the clearance to keep.
+    pub(crate) margin: f32,
+}
+
+/// For what is rounded to `f32`.
+const UP: f64 = 1.0 + 1e-6;
+
+impl Span {
+    /// `None` when `a` stays farther than `clearance` from `b` by the balls around them.
+    pub(crate) fn new(
+        (a, b): (&Tree, &Tree),
+        relative: &Relative,
+        travel: &Travel,
+        clearance: f64,
+    ) -> Option<Self> {
+        let frames = Frames::new(a, b, relative);
+        let reach = a.radius_center + b.radius_center + travel.most + clearance;
+        if frames.apart > reach * (1.0 + 1e-12) + relative.slack {
+            return None;
+        }
+        let rate = travel.turn.norm();
+        // Drifts are sums of three products in `f32`, and their projections of three; quaternions may be 1e-6
+        // off unit length.
+        let rounding = 1e-5 * (travel.shift.norm() + rate * (a.radius + b.radius_center)) + relative.slack;
+        let into_a = &relative.rotation;
+        let origin = -into_a.tr_mul(&relative.translation) - b.center.coords;
+        Some(Self {
+            in_a: Drift::new(&(into_a * travel.turn), &(into_a * travel.shift), &-a.center.coords),
+            in_b: Drift::new(&travel.turn, &travel.shift, &origin),
+            rate: (rate * UP) as f32,
+            rest: ((travel.rest + rounding) * UP) as f32,
+            margin: ((clearance + f64::from(frames.pad)) * UP) as f32,
+            frames,
+        })
+    }
+
+    /// How much farther than the drift of its centre a point of a box of `a` may move.
+    #[inline(always)]
+    pub(crate) fn slop(&self, obb: &Obb) -> f32 {
+        self.rate * (obb.size.sqrt() * 1.000_001) + self.rest
+    }
+}
+
+/// A part of a motion.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    /// What it covers, in whatever counts it: from the first to before the last.
+    pub(crate) range: [u32; 2],
+    /// How far any point moves at most (m) from the middle to either end; 0 for a single pose.
+    pub(crate) most: f32,
+    /// The first of its two halves, once made.
+    pub(crate) halves: u32,
+    /// Its span, once made.
+    pub(crate) span: u32,
+}
+
+impl Part {
+    /// Not made yet.
+    pub(crate) const NONE: u32 = u32::MAX;
+    /// Made, and found to be nowhere near.
+    pub(crate) const FAR: u32 = u32::MAX - 1;
+
+    pub(crate) fn new(range: [u32; 2], most: f64) -> Self {
+        Self { range, most: (most * UP) as f32, halves: Self::NONE, span: Self::NONE }
+    }
+}

@@ -1,0 +1,196 @@
+//! Batches of poses and whole motions, against single poses.
+
+use mp_collide::{CollisionMesh, Isa, Query, Sway};
+use mp_geom::TriMesh;
+use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
+use rand::RngExt;
+
+use crate::common::{Pcg64, bumpy, cuboid, point, pose, rng, rotation, soup};
+
+/// Pairs of all kinds: round, edged, thin, small beside large, far from their origins, a point.
+fn pair(rng: &mut Pcg64, kind: usize) -> (TriMesh, TriMesh) {
+    match kind % 6 {
+        0 => (bumpy(12, 0.5, 0.2), bumpy(10, 0.6, 0.1)),
+        1 => (cuboid(Vector3::new(1.0, 0.05, 0.02)), soup(rng, 60, 1.5, 0.3)),
+        2 => (soup(rng, 20, 0.3, 0.3), bumpy(20, 1.0, 0.4)),
+        3 => (
+            bumpy(5, 0.3, 0.0).transformed(&Isometry3::translation(3.0, 1.0, 0.0)),
+            cuboid(Vector3::new(2.0, 2.0, 1e-6)),
+        ),
+        4 => (soup(rng, 1, 1e-9, 1e-12), soup(rng, 30, 1.0, 1.0)),
+        _ => (cuboid(Vector3::new(0.2, 0.2, 0.2)), cuboid(Vector3::new(5.0, 5.0, 1e-9))),
+    }
+}
+
+/// A row of poses near the origin: along a straight motion, bent, in another order, or anywhere.
+fn row(rng: &mut Pcg64, n: usize) -> Vec<Isometry3<f64>> {
+    let from = pose(rng, 1.5);
+    let step = 10.0_f64.powf(rng.random_range(-8.0..-0.3));
+    let along = point(rng, step).coords;
+    let turn = if rng.random_range(0..4) == 0 { Vector3::zeros() } else { point(rng, step).coords };
+    let at = |t: f64| {
+        let turned = UnitQuaternion::from_scaled_axis(turn * t) * from.rotation;
+        Isometry3::from_parts(Translation3::from(from.translation.vector + along * t), turned)
+    };
+    let mut poses: Vec<_> = (0..n).map(|i| at(i as f64)).collect();
+    match rng.random_range(0..6) {
+        // Bent.
+        0 => {
+            let bend = point(rng, 0.1 * step).coords;
+            for (i, p) in poses.iter_mut().enumerate() {
+                p.translation.vector += bend * (i * i) as f64;
+            }
+        }
+        // As planners test them: far apart first.
+        1 => poses.sort_by_key(|p| p.translation.vector.x.to_bits().reverse_bits()),
+        // Quaternions that are not quite of unit length, and of either sign.
+        2 => {
+            for p in &mut poses {
+                let by = (1.0 + rng.random_range(-4e-7..4e-7)) * f64::from(rng.random_range(0..2) * 2 - 1);
+                p.rotation = Unit::new_unchecked(Quaternion::from(p.rotation.coords * by));
+            }
+        }
+        // With a jump.
+        3 if n > 2 => poses[n / 2] = pose(rng, 1.5),
+        _ => {}
+    }
+    poses
+}
+
+#[test]
+fn batches_answer_as_single_poses_do() {
+    let mut rng = rng(41);
+    let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
+    let (mut hits, mut later) = (0, 0);
+    for kind in 0..30 {
+        let (a, b) = pair(&mut rng, kind);
+        let (a, b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
+        for _ in 0..60 {
+            let n = rng.random_range(1..150);
+            let poses = row(&mut rng, n);
+            let here = if kind % 2 == 0 { Isometry3::identity() } else { pose(&mut rng, 0.5) };
+            let expected = poses.iter().position(|p| queries[0].intersects(&a, p, &b, &here));
+            for query in &mut queries {
+                query.counters.queries = 0;
+                assert_eq!(query.first_collision(&a, &poses, &b, &here), expected, "{kind}");
+                assert_eq!(query.counters.queries as usize, expected.map_or(n, |i| i + 1));
+            }
+            hits += u32::from(expected.is_some());
+            later += u32::from(expected.is_some_and(|i| i > 0));
+        }
+    }
+    assert!(hits > 300 && later > 100, "{hits} {later}");
+}
+
+/// Poses bisected to the last place around contact: the first that touches, and none before.
+#[test]
+fn batches_are_exact_at_contact() {
+    let mut rng = rng(42);
+    let mut query = Query::default();
+    let (a, b) = (CollisionMesh::new(&bumpy(9, 0.5, 0.2)), CollisionMesh::new(&bumpy(8, 0.7, 0.1)));
+    let here = Isometry3::identity();
+    for _ in 0..200 {
+        let turn = rotation(&mut rng);
+        let to = point(&mut rng, 1.0).coords.normalize();
+        let at = |r: f64| Isometry3::from_parts(Translation3::from(to * r), turn);
+        let (mut near, mut far) = (0.6, 2.0);
+        if !query.intersects(&a, &at(near), &b, &here) {
+            continue;
+        }
+        while far - near > 1e-15 * far {
+            let middle = 0.5 * (near + far);
+            if middle == near || middle == far {
+                break;
+            }
+            if query.intersects(&a, &at(middle), &b, &here) { near = middle } else { far = middle }
+        }
+        let step = 10.0_f64.powf(rng.random_range(-15.5..-2.0));
+        let poses: Vec<_> = (0..40).map(|i| at(near + step * f64::from(30 - i))).collect();
+        let expected = poses.iter().position(|p| query.intersects(&a, p, &b, &here));
+        assert!(expected.is_some());
+        assert_eq!(query.first_collision(&a, &poses, &b, &here), expected);
+    }
+}
+
+/// A stretch of a motion and the pose at `t` in [−1, 1].
+fn stretch(rng: &mut Pcg64, radius: f64) -> (Isometry3<f64>, Sway) {
+    let size = 10.0_f64.powf(rng.random_range(-6.0..0.0));
+    let mut part = || if rng.random_range(0..4) == 0 { Vector3::zeros() } else { point(rng, size).coords };
+    let sway = Sway::new(part(), part(), radius);
+    (pose(rng, 1.8), sway)
+}
+
+fn along(middle: &Isometry3<f64>, sway: &Sway, t: f64) -> Isometry3<f64> {
+    let turned = UnitQuaternion::from_scaled_axis(sway.turn * t) * middle.rotation;
+    Isometry3::from_parts(Translation3::from(middle.translation.vector + sway.shift * t), turned)
+}
+
+#[test]
+fn what_is_clear_stays_clear_and_wide_room_is_found_clear() {
+    let mut rng = rng(43);
+    let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
+    let (mut clear, mut beyond) = (0, 0);
+    for kind in 0..24 {
+        let (a, b) = pair(&mut rng, kind);
+        let (a, b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
+        for _ in 0..30 {
+            let (middle, sway) = stretch(&mut rng, a.radius());
+            let here = if kind % 2 == 0 { Isometry3::identity() } else { pose(&mut rng, 0.5) };
+            let margin = 10.0_f64.powf(rng.random_range(-9.0..-1.0));
+            let answers: Vec<bool> =
+                queries.iter_mut().map(|q| q.keeps_clear(&a, &middle, &sway, &b, &here, margin)).collect();
+            assert!(answers.iter().all(|x| *x == answers[0]), "{kind} {answers:?}");
+            let query = &mut queries[0];
+            let room = query.clearance(&a, &middle, &b, &here, f64::INFINITY);
+            if room >= (sway.most + margin) * (1.0 + 1e-9) + 1e-12 {
+                assert!(answers[0], "{kind} {room} {margin} {sway:?}");
+            }
+            if answers[0] {
+                clear += 1;
+                beyond += u32::from(room < sway.most + margin);
+                for i in -32..=32 {
+                    let at = along(&middle, &sway, f64::from(i) / 32.0);
+                    let clearance = query.clearance(&a, &at, &b, &here, 2.0 * margin);
+                    assert!(clearance >= margin - 1e-13, "{kind} {clearance} {margin} at {i}");
+                }
+            }
+        }
+    }
+    assert!(clear > 300 && beyond > 8, "{clear} {beyond}");
+}
+
+/// Walls down to 1e-12 thick, and sheets without any thickness, are never passed.
+#[test]
+fn no_wall_is_too_thin() {
+    let mut rng = rng(44);
+    let mut query = Query::default();
+    let a = CollisionMesh::new(&bumpy(6, 0.1, 0.2));
+    let here = Isometry3::identity();
+    for exponent in 1..=13 {
+        let thickness = if exponent == 13 { 0.0 } else { 0.1_f64.powi(exponent) };
+        let b = CollisionMesh::new(&cuboid(Vector3::new(0.5 * thickness, 3.0, 3.0)));
+        for _ in 0..200 {
+            let (mut middle, sway) = stretch(&mut rng, a.radius());
+            // Somewhere in the stretch the origin is in the wall.
+            middle.translation.vector.x = sway.shift.x * rng.random_range(-1.0..1.0);
+            assert!(!query.keeps_clear(&a, &middle, &sway, &b, &here, 0.0), "{exponent}");
+        }
+    }
+}
+
+#[test]
+fn bad_stretches_are_not_clear() {
+    let mesh = CollisionMesh::new(&cuboid(Vector3::new(0.1, 0.1, 0.1)));
+    let (here, far) = (Isometry3::identity(), Isometry3::translation(9.0, 0.0, 0.0));
+    let mut query = Query::default();
+    let mut clear =
+        |middle, sway: Sway, margin| query.keeps_clear(&mesh, &middle, &sway, &mesh, &here, margin);
+    let still = Sway::new(Vector3::zeros(), Vector3::zeros(), 1.0);
+    assert!(clear(far, still, 1.0) && clear(far, still, -1.0) && !clear(here, still, 0.0));
+    for x in [f64::NAN, f64::INFINITY, 1e300] {
+        assert!(!clear(far, Sway { shift: Vector3::new(x, 0.0, 0.0), ..still }, 0.0));
+        assert!(!clear(far, Sway { turn: Vector3::new(0.0, x, 0.0), ..still }, 0.0));
+        assert!(!clear(far, Sway { most: x, ..still }, 0.0) && !clear(far, still, x));
+        assert!(!clear(Isometry3::translation(0.0, 0.0, x), still, 0.0));
+    }
+}
