@@ -8,10 +8,10 @@ use crate::simd::Lanes;
 
 /// Bit `i` is set unless child `i` of `node` is surely farther than `margin` from `q`.
 ///
-/// Six axes always; the nine products of edges too when `EDGES`. `margin` must hold the rounding error
+/// Six axes, then the nine products of edges where some lane is left. `margin` must hold the rounding error
 /// (`Frames::pad`). A product of unit edges is no longer than 1, so its gap is a lower bound as well.
 #[inline(always)]
-pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed<'_>, margin: f32) -> u32 {
+pub(crate) fn touching<L: Lanes>(node: &Node, q: &Placed<'_>, margin: f32) -> u32 {
     let center = q.center::<L>();
     let d: [L; 3] = three!(k => center[k].sub(L::load(&node.center[k])));
     let zero = L::splat(0.0);
@@ -42,7 +42,7 @@ pub(crate) fn touching<L: Lanes, const EDGES: bool>(node: &Node, q: &Placed<'_>,
         let reach = e[0].mul_add(am[0][j], e[1].mul_add(am[1][j], e[2].mul_add(am[2][j], h[j].add(pad))));
         mask &= p.abs().le(reach);
     }
-    if !EDGES || mask == 0 {
+    if mask == 0 {
         return mask;
     }
     for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {

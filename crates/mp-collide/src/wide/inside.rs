@@ -35,7 +35,7 @@ impl Kernel for Inside<'_> {
             counters.box_tests += 1;
             if x & LEAF == 0 {
                 let node = &a.nodes[x as usize];
-                let mut mask = touching::<L, true>(node, &place, frames.pad);
+                let mut mask = touching::<L>(node, &place, frames.pad);
                 while mask != 0 {
                     stack.push((node.child[mask.trailing_zeros() as usize & 7], b.root));
                     mask &= mask - 1;

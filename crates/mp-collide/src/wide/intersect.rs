@@ -56,18 +56,18 @@ impl Kernel for Intersect<'_> {
     }
 }
 
-/// Calls `push` for every child of `node` (of `tree`) that may touch `other`.
+/// Calls `push` for every child of `node` (of `tree`) that may come within `margin` of `other`.
 #[inline(always)]
-fn push<L: Lanes>(
+pub(super) fn push<L: Lanes>(
     tree: &Tree,
     far: bool,
     node: &Node,
     frame: &Carrier<L>,
     other: &super::Obb,
-    pad: f32,
+    margin: f32,
     mut push: impl FnMut(u32),
 ) {
-    let mut mask = touching::<L, EDGES>(node, &frame.place(other), pad);
+    let mut mask = touching::<L>(node, &frame.place(other), margin);
     while mask != 0 {
         let child = node.child[mask.trailing_zeros() as usize & 7];
         mask &= mask - 1;
@@ -77,7 +77,6 @@ fn push<L: Lanes>(
         push(child);
     }
 }
-const EDGES: bool = true;
 
 /// Fetches a node or leaf that will be looked at soon.
 #[inline(always)]

@@ -127,7 +127,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                 let node = &a.nodes[x as usize];
                 let q = Carrier::<L>::new(&frames.into_a).place(own_b);
                 let mut mask = if still {
-                    touching::<L, true>(node, &q, frames.pad)
+                    touching::<L>(node, &q, frames.pad)
                 } else {
                     let center: [L; 3] = three!(d => L::load(&node.center[d]));
                     let extent =
@@ -147,7 +147,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                 let node = &b.nodes[y as usize];
                 let q = Carrier::<L>::new(&frames.into_b).place(own_a);
                 let mut mask = if still {
-                    touching::<L, true>(node, &q, frames.pad)
+                    touching::<L>(node, &q, frames.pad)
                 } else {
                     apart(node, &q, &span.in_b.at(&q.center()), L::splat(span.slop(own_a)), span)
                 };

@@ -1,11 +1,11 @@
 //! Do two trees come within a tolerance?
 
-use super::boxes::{Slab, touching};
+use super::boxes::Slab;
 use super::frames::{Carrier, Frames};
 use super::gaps::{Bounds, Gaps};
-use super::intersect::ahead;
+use super::intersect::push;
 use super::leaves::near_each_other;
-use super::{LEAF, Node, Obb, Tree};
+use super::{LEAF, Tree};
 use crate::query::Counters;
 use crate::simd::{Kernel, Lanes};
 use crate::triangle::{closest_within, intersect};
@@ -82,28 +82,6 @@ impl Limit {
             maybe: ((squared * (1.0 + 1e-6)) as f32).next_up(),
             surely: (tolerance * tolerance * (1.0 - 1e-6)) as f32,
         }
-    }
-}
-
-/// Calls `push` for every child of `node` (of `tree`) that may come within `margin` of `other`.
-#[inline(always)]
-fn push<L: Lanes>(
-    tree: &Tree,
-    far: bool,
-    node: &Node,
-    frame: &Carrier<L>,
-    other: &Obb,
-    margin: f32,
-    mut push: impl FnMut(u32),
-) {
-    let mut mask = touching::<L, true>(node, &frame.place(other), margin);
-    while mask != 0 {
-        let child = node.child[mask.trailing_zeros() as usize & 7];
-        mask &= mask - 1;
-        if far {
-            ahead(tree, child);
-        }
-        push(child);
     }
 }
 
