@@ -254,7 +254,14 @@ impl FromStr for Motion {
 
 /// The planners by name.
 fn planners() -> Vec<PossibleValue> {
-    mp::tree::planners().iter().map(|p| PossibleValue::new(p.name).help(p.summary)).collect()
+    let value = |p: &mp::tree::PlannerInfo| {
+        let also = match p.aliases {
+            [] => String::new(),
+            names => format!(" (also {})", names.join(", ")),
+        };
+        PossibleValue::new(p.name).aliases(p.aliases).help(format!("{}{also}", p.summary))
+    };
+    mp::tree::planners().iter().map(value).collect()
 }
 
 /// A finite number above zero.

@@ -4,6 +4,9 @@
 //! |---|---|---|---|
 //! | [`Rrt`] | [`algo::rrt`] | from the start | one step toward a sample |
 //! | [`RrtConnect`] | [`algo::rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
+//! | [`BiRrt`] | [`algo::bi_rrt`] | from start and goal | one step toward a sample; then one step of the other tree toward it |
+//! | [`RrtConExt`] | [`algo::con_ext`] | from start and goal | all the way toward a sample; then one step of the other tree |
+//! | [`RrtConCon`] | [`algo::con_con`] | from start and goal | all the way toward a sample; then the other tree all the way to it |
 //!
 //! A planner is made from a checked [`Problem`] and works through the trait
 //! [`Planner`](mp_cspace::Planner): one step at a time, or until a stop says so. [`build`] makes
@@ -68,6 +71,9 @@ mod tree;
 mod two;
 mod verify;
 
+pub use algo::bi_rrt::BiRrt;
+pub use algo::con_con::RrtConCon;
+pub use algo::con_ext::RrtConExt;
 pub use algo::rrt::Rrt;
 pub use algo::rrt_connect::RrtConnect;
 pub use attach::{Append, AppendDistinct, Attach, Attached};
@@ -80,7 +86,9 @@ pub use propose::{Propose, Samples};
 pub use recipe::{Recipe, Step, Tuning};
 pub use registry::{AnyPlanner, build, build_with, planner, planners};
 pub use select::{Nearest, Purpose, Selector};
-pub use settings::{GOAL_BIAS, PATIENCE, Parameter, PlannerInfo, STEP, Settings, closest};
+pub use settings::{
+    Demand, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, Parameter, PlannerInfo, STEP, Settings, closest,
+};
 pub use single::SingleTree;
 pub use tree::Tree;
 pub use two::TwoTrees;

@@ -1,7 +1,9 @@
 //! Planners by name, for programs that choose at run time.
 
-use crate::algo::{rrt, rrt_connect};
-use crate::{BuildError, PlannerInfo, Problem, Rrt, RrtConnect, Settings, closest};
+use crate::algo::{bi_rrt, con_con, con_ext, rrt, rrt_connect};
+use crate::{
+    BiRrt, BuildError, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect, Settings, closest,
+};
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Planner, Space};
 
 /// A planner chosen at run time.
@@ -10,20 +12,21 @@ pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + 'c>;
 /// All planners of the crate.
 #[must_use]
 pub fn planners() -> &'static [PlannerInfo] {
-    &[rrt::INFO, rrt_connect::INFO]
+    &[rrt::INFO, rrt_connect::INFO, bi_rrt::INFO, con_ext::INFO, con_con::INFO]
 }
 
-/// The planner called `name`.
+/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
 ///
 /// # Errors
 /// When there is none, with the names there are.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().find(|info| info.name == name).ok_or_else(|| unknown(name))
+    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
 }
 
 fn unknown(name: &str) -> BuildError {
     let known: Vec<_> = planners().iter().map(|info| info.name).collect();
-    let suggestion = closest(name, known.iter().copied());
+    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
+    let suggestion = closest(name, known.iter().copied().chain(aliases));
     BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
 }
 
@@ -61,10 +64,42 @@ where
     L: LocalPlanner<C::State> + 'c,
     N: NearestNeighbors<C> + Clone + 'c,
 {
-    let tuning = settings.tuning(planner(name)?)?;
-    Ok(match name {
+    let info = planner(name)?;
+    let tuning = settings.tuning(info)?;
+    Ok(match info.name {
         "rrt" => Box::new(Rrt::with_index(problem, index, tuning)?),
         "rrt-connect" => Box::new(RrtConnect::with_index(problem, index, tuning)?),
+        "bi-rrt" => Box::new(BiRrt::with_index(problem, index, tuning)?),
+        "rrt-con-ext" => Box::new(RrtConExt::with_index(problem, index, tuning)?),
+        "rrt-con-con" => Box::new(RrtConCon::with_index(problem, index, tuning)?),
         _ => return Err(unknown(name)),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_and_unique() {
+        let mut names: Vec<&str> =
+            planners().iter().flat_map(|p| [p.name].into_iter().chain(p.aliases.iter().copied())).collect();
+        for name in &names {
+            assert!(planner(name).is_ok_and(|info| info.is_called(name)));
+        }
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count, "two planners share a name");
+        for (known, alias) in [
+            ("bi-rrt", "rrt-ext-ext"),
+            ("rrt-connect", "rrt-ext-con"),
+            ("rrt-con-ext", "rrt-con-ext"),
+            ("rrt-con-con", "rrt-con-con"),
+        ] {
+            assert_eq!(planner(alias).unwrap().name, known);
+        }
+        let message = planner("rrt-ext-cno").unwrap_err().to_string();
+        assert!(message.contains("did you mean `rrt-ext-con`?"), "{message}");
+    }
 }

@@ -26,7 +26,41 @@ pub struct PlannerInfo {
     pub citation: &'static str,
     /// Its parameters.
     pub parameters: &'static [Parameter],
+    /// Other names it goes by.
+    pub aliases: &'static [&'static str],
+    /// What it by its nature cannot do, each with the reason.
+    pub cannot: &'static [(Demand, &'static str)],
 }
+
+impl PlannerInfo {
+    /// Whether it can do what is demanded.
+    #[must_use]
+    pub fn can(&self, demand: Demand) -> bool {
+        self.cannot.iter().all(|(kind, _)| *kind != demand)
+    }
+
+    /// Whether `name` is its name or one of its other names.
+    #[must_use]
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.aliases.contains(&name)
+    }
+}
+
+/// What a problem may demand that not every planner can do by its nature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Demand {
+    /// To reach a goal that is only a test: no state to aim at.
+    Region,
+    /// To plan with motions that cannot run backward.
+    OneWay,
+}
+
+/// [`PlannerInfo::cannot`] of planners that grow a tree from the goal.
+pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[
+    (Demand::Region, "it also grows a tree from the goal, which needs a state to grow from"),
+    (Demand::OneWay, "it also grows a tree from the goal, by motions run backward"),
+];
 
 /// [`Tuning::step`].
 pub const STEP: Parameter = Parameter {
@@ -199,8 +233,14 @@ fn edits(a: &[char], b: &[char]) -> usize {
 mod tests {
     use super::*;
 
-    const INFO: PlannerInfo =
-        PlannerInfo { name: "p", summary: "", citation: "", parameters: &[STEP, GOAL_BIAS, PATIENCE] };
+    const INFO: PlannerInfo = PlannerInfo {
+        name: "p",
+        summary: "",
+        citation: "",
+        parameters: &[STEP, GOAL_BIAS, PATIENCE],
+        aliases: &[],
+        cannot: &[],
+    };
 
     #[test]
     fn reads_what_is_set() {

@@ -1,4 +1,7 @@
 //! The named algorithms, one file each.
 
+pub mod bi_rrt;
+pub mod con_con;
+pub mod con_ext;
 pub mod rrt;
 pub mod rrt_connect;

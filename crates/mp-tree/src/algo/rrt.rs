@@ -52,6 +52,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
     summary: "one tree from the start, one step per iteration; for goal regions and one-way motions",
     citation: "LaValle 1998",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
+    aliases: &[],
+    cannot: &[],
 };
 
 /// RRT: see the [module](self).

@@ -41,7 +41,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Append, BuildError, Connect, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, Tuning, TwoTrees,
 };
@@ -53,6 +53,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
     summary: "trees from start and goal that reach for each other; the first to try",
     citation: "Kuffner and LaValle 2000",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
+    aliases: &["rrt-ext-con"],
+    cannot: NEEDS_BOTH_ENDS,
 };
 
 /// RRT-Connect: see the [module](self).

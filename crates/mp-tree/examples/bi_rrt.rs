@@ -1,0 +1,10 @@
+//! Bi-RRT: a point leaves a bug trap in the plane.
+//!
+//! `cargo run -p mp-tree --example bi_rrt [SEED]`
+
+mod shared;
+
+fn main() -> shared::Result {
+    let space = shared::square()?;
+    shared::run(mp_tree::BiRrt::new(shared::bug_trap(&space)?, shared::tuning())?)
+}

@@ -1,0 +1,10 @@
+//! RRTConExt: a point leaves a bug trap in the plane.
+//!
+//! `cargo run -p mp-tree --example con_ext [SEED]`
+
+mod shared;
+
+fn main() -> shared::Result {
+    let space = shared::square()?;
+    shared::run(mp_tree::RrtConExt::new(shared::bug_trap(&space)?, shared::tuning())?)
+}

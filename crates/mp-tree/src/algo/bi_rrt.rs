@@ -1,0 +1,84 @@
+//! Bi-RRT: two trees that each take one step toward the other.
+//!
+//! S. M. LaValle and J. J. Kuffner, *Randomized kinodynamic planning*, ICRA 1999; the RRTExtExt of
+//! the same, *Rapidly-exploring random trees: progress and prospects*, 2001.
+//!
+//! From one tree that holds the start and one that holds the goal, repeat:
+//! 1. draw a sample, uniform in the space;
+//! 2. extend the tree whose turn it is from its nearest node, one step at most, toward it;
+//! 3. if that added a node, extend the other tree from its nearest node, one step at most, toward
+//!    it;
+//! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
+//! 5. the other tree has the next turn.
+//!
+//! **When to use it.** Where greedy connections are of no use: long motions that mostly fail, or
+//! local planners whose single steps are what is known to work. Otherwise
+//! [RRT-Connect](super::rrt_connect) needs fewer samples.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point goes around a disc in the unit square:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Problem, BiRrt, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let mut planner = BiRrt::new(problem, Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{Append, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, Tuning, TwoTrees};
+use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "bi-rrt",
+    summary: "two trees, each one step per iteration; where long connections mostly fail",
+    citation: "LaValle and Kuffner 1999",
+    parameters: &[STEP, GOAL_BIAS, PATIENCE],
+    aliases: &["rrt-ext-ext"],
+    cannot: NEEDS_BOTH_ENDS,
+};
+
+/// Bi-RRT: see the [module](self).
+pub type BiRrt<'c, C, L, N> = TwoTrees<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Extend, Append>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> BiRrt<'c, C, L, N> {
+    /// Bi-RRT with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning)
+    }
+
+    /// Bi-RRT with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+        let propose = Samples(Uniform(problem.space));
+        let grow = (Extend, Extend);
+        let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };
+        Self::assemble(INFO.name, problem, recipe)
+    }
+}
