@@ -47,7 +47,7 @@ pub enum Extension<S, E> {
 /// edges, rotate-at-s, kinodynamic input sets and the snake.
 pub trait LocalPlanner<S> {
     /// What an edge remembers, enough to replay it exactly.
-    type Edge: Clone + Debug;
+    type Edge: Clone + Debug + Send + Sync;
     /// Tries to move from `from`, which is free, toward `toward`, at most as far as `reach` allows.
     fn extend(
         &mut self,

@@ -4,7 +4,7 @@ use crate::{Factored, Metric, Rng, Se2, Se2State, Se3, Space, SpaceError, TrueMe
 use nalgebra::{Isometry3, Point2, Point3};
 
 /// A metric that needs its space to measure.
-pub trait MetricOn<C: Space> {
+pub trait MetricOn<C: Space>: Sync {
     /// The distance from `from` to `to`; as [`Metric::distance`].
     fn distance_on(&self, space: &C, from: &C::State, to: &C::State) -> f64;
     /// An upper bound on the distance between any two states of the space.
@@ -221,7 +221,7 @@ impl<M> Bounded<M> {
     }
 }
 
-impl<C: Space, M: Metric<C::State>> MetricOn<C> for Bounded<M> {
+impl<C: Space, M: Metric<C::State> + Sync> MetricOn<C> for Bounded<M> {
     #[inline]
     fn distance_on(&self, _: &C, from: &C::State, to: &C::State) -> f64 {
         self.metric.distance(from, to)
@@ -230,7 +230,7 @@ impl<C: Space, M: Metric<C::State>> MetricOn<C> for Bounded<M> {
         self.extent
     }
 }
-impl<C: Space, M: TrueMetric<C::State>> TrueMetricOn<C> for Bounded<M> {}
+impl<C: Space, M: TrueMetric<C::State> + Sync> TrueMetricOn<C> for Bounded<M> {}
 
 /// A closure as a metric.
 #[derive(Clone, Copy, Debug)]

@@ -30,6 +30,15 @@ pub enum Event<'a, S> {
         /// Its state.
         state: &'a S,
     },
+    /// A node of tree `tree` hangs on another parent now: the way through it costs less.
+    Rewired {
+        /// Which tree (0 from the start, 1 from the goal).
+        tree: usize,
+        /// The node.
+        id: NodeId,
+        /// Its new parent.
+        parent: NodeId,
+    },
     /// An extension of `tree` failed.
     Trapped {
         /// Which tree.
@@ -107,7 +116,7 @@ pub struct EventCounts {
 impl<S> Observer<S> for EventCounts {
     fn on(&mut self, event: Event<'_, S>) {
         match event {
-            Event::Iteration(_) | Event::Pruned { .. } => {}
+            Event::Iteration(_) | Event::Rewired { .. } | Event::Pruned { .. } => {}
             Event::Sampled(_) => self.sampled += 1,
             Event::Rooted { .. } | Event::Added { .. } => self.added += 1,
             Event::Trapped { .. } => self.trapped += 1,

@@ -53,9 +53,11 @@ impl<S, M: TrueMetric<S> + ?Sized> TrueMetric<S> for &M {}
 ///   maximum displacement measures chords);
 /// - every sample is contained, and so is every state between two contained ones;
 /// - no two contained states are farther apart than `extent`.
-pub trait Space: Metric<Self::State> {
+///
+/// Spaces are shared by threads, and states passed between them.
+pub trait Space: Metric<Self::State> + Sync {
     /// A configuration. Equality is exact: planners use it to tell a state they already have.
-    type State: Clone + Debug + PartialEq;
+    type State: Clone + Debug + PartialEq + Send + Sync;
 
     /// Number of degrees of freedom.
     fn dim(&self) -> usize;

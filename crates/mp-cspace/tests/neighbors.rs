@@ -10,7 +10,7 @@ use mp_cspace::{
 use nalgebra::{DVector, Point2, Point3, SVector, Vector2};
 use proptest::prelude::*;
 use rand::RngExt;
-use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 fn agrees_on<C: DefaultNn>(space: C) {
     check_nearest_neighbors(&space, &mut C::Nn::default(), 500, 1);
@@ -179,12 +179,12 @@ fn wrong_number_of_coordinates_is_only_slower() {
 /// Counts how often the metric is asked.
 struct Counting<C> {
     space: C,
-    calls: Cell<u64>,
+    calls: AtomicU64,
 }
 
 impl<C: Space> Metric<C::State> for Counting<C> {
     fn distance(&self, from: &C::State, to: &C::State) -> f64 {
-        self.calls.set(self.calls.get() + 1);
+        self.calls.fetch_add(1, Relaxed);
         self.space.distance(from, to)
     }
 }
@@ -225,12 +225,12 @@ fn distances_per_query<C: Space, N: NearestNeighbors<Counting<C>>>(
     mut index: N,
     states: &[C::State],
 ) -> f64 {
-    let space = Counting { space, calls: Cell::new(0) };
+    let space = Counting { space, calls: AtomicU64::new(0) };
     for n in 0..states.len() {
         let _: Option<Hit> = index.nearest(&space, &states[..n], &states[n]);
         index.inserted(&space, &states[..=n], n as u32);
     }
-    space.calls.get() as f64 / states.len() as f64
+    space.calls.into_inner() as f64 / states.len() as f64
 }
 
 #[test]

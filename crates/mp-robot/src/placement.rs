@@ -41,7 +41,7 @@ impl Shape {
 /// How configurations of a kind place a rigid body in the world.
 pub trait Placement: Copy + Debug + Default + Send + Sync + 'static {
     /// A configuration.
-    type State: Clone + Debug;
+    type State: Clone + Debug + Send + Sync;
 
     /// The pose of the body in the world.
     fn pose(q: &Self::State) -> Isometry3<f64>;

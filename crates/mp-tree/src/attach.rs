@@ -25,6 +25,10 @@ pub trait Attach<C: Space, L: LocalPlanner<C::State>> {
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
     ) -> Attached;
+    /// The nodes that the last motion attached gave another parent, in the order in which it did.
+    fn rewired(&self) -> &[NodeId] {
+        &[]
+    }
 }
 
 /// Under the node it came from. A motion that goes nowhere adds nothing.

@@ -10,7 +10,7 @@ use std::fmt;
 pub struct Steer<'c, C: Space, L: LocalPlanner<C::State>> {
     space: &'c C,
     local: L,
-    verify: Box<dyn Verify<C::State, L::Edge> + 'c>,
+    verify: Box<dyn Verify<C::State, L::Edge> + Send + 'c>,
     step: f64,
     patience: u64,
     motions: u64,
@@ -21,7 +21,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
     pub(crate) fn new(
         space: &'c C,
         local: L,
-        verify: Box<dyn Verify<C::State, L::Edge> + 'c>,
+        verify: Box<dyn Verify<C::State, L::Edge> + Send + 'c>,
         tuning: &Tuning,
     ) -> Result<Self, BuildError> {
         let step = tuning.step.length_in(space)?;
@@ -327,6 +327,10 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
                 self.select.inserted(self.steer.space, self.tree.states(), id, parent);
                 let (tree, state) = (self.index, self.tree.state(id));
                 self.observer.on(Event::Added { tree, id, parent: parent.unwrap_or(from), state });
+                for &id in self.attach.rewired() {
+                    let Some(parent) = self.tree.parent(id) else { continue };
+                    self.observer.on(Event::Rewired { tree, id, parent });
+                }
                 if reached { Grown::Reached(id) } else { Grown::Advanced(id) }
             }
         }

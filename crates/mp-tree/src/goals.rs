@@ -17,8 +17,8 @@ use std::fmt;
 /// ```
 pub struct Goals<'g, S> {
     states: Vec<S>,
-    region: Option<Box<dyn Goal<S> + 'g>>,
-    sampler: Option<Box<dyn Sampler<S> + 'g>>,
+    region: Option<Box<dyn Goal<S> + Send + 'g>>,
+    sampler: Option<Box<dyn Sampler<S> + Send + 'g>>,
 }
 
 impl<'g, S> Goals<'g, S> {
@@ -28,19 +28,19 @@ impl<'g, S> Goals<'g, S> {
     }
 
     /// Any state of a region.
-    pub fn region(region: impl Goal<S> + 'g) -> Self {
+    pub fn region(region: impl Goal<S> + Send + 'g) -> Self {
         Self { states: Vec::new(), region: Some(Box::new(region)), sampler: None }
     }
 
     /// Any state that `sampler` yields.
-    pub fn sampled(sampler: impl Sampler<S> + 'g) -> Self {
+    pub fn sampled(sampler: impl Sampler<S> + Send + 'g) -> Self {
         Self { states: Vec::new(), region: None, sampler: Some(Box::new(sampler)) }
     }
 
     /// Also aims at the samples of `sampler`; those outside the region, if there is one, are
     /// ignored.
     #[must_use]
-    pub fn with_sampler(mut self, sampler: impl Sampler<S> + 'g) -> Self {
+    pub fn with_sampler(mut self, sampler: impl Sampler<S> + Send + 'g) -> Self {
         self.sampler = Some(Box::new(sampler));
         self
     }

@@ -53,6 +53,8 @@
 //! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping
 //!   and going on changes nothing.
 //! - No tree has two nodes with the same state.
+//! - A panic in a local planner, verifier, goal or observer leaves the planner as it was but for the
+//!   step it interrupts: whoever catches it may look at the trees and step on.
 
 pub mod algo;
 mod attach;

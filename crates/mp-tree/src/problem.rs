@@ -9,7 +9,7 @@ use std::fmt;
 pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
     pub(crate) space: &'c C,
     pub(crate) local: L,
-    pub(crate) verify: Box<dyn Verify<C::State, L::Edge> + 'c>,
+    pub(crate) verify: Box<dyn Verify<C::State, L::Edge> + Send + 'c>,
     pub(crate) start: C::State,
     pub(crate) goals: Goals<'c, C::State>,
 }
@@ -28,7 +28,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     pub fn new(
         space: &'c C,
         mut local: L,
-        mut verifier: impl Verify<C::State, L::Edge> + 'c,
+        mut verifier: impl Verify<C::State, L::Edge> + Send + 'c,
         start: C::State,
         goal: impl Into<Goals<'c, C::State>>,
     ) -> Result<Self, BuildError> {

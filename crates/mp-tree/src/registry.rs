@@ -7,7 +7,7 @@ use crate::{
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Planner, Space};
 
 /// A planner chosen at run time.
-pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + 'c>;
+pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + Send + 'c>;
 
 /// All planners of the crate.
 #[must_use]
@@ -43,7 +43,7 @@ where
     C: DefaultNn,
     C::Nn: 'c,
     C::State: 'c,
-    L: LocalPlanner<C::State> + 'c,
+    L: LocalPlanner<C::State> + Send + 'c,
 {
     build_with(name, problem, C::Nn::default(), settings)
 }
@@ -61,8 +61,8 @@ pub fn build_with<'c, C, L, N>(
 where
     C: Space,
     C::State: 'c,
-    L: LocalPlanner<C::State> + 'c,
-    N: NearestNeighbors<C> + Clone + 'c,
+    L: LocalPlanner<C::State> + Send + 'c,
+    N: NearestNeighbors<C> + Clone + Send + 'c,
 {
     let info = planner(name)?;
     let tuning = settings.tuning(info)?;

@@ -30,6 +30,13 @@ pub trait Selector<C: Space> {
     /// All nodes within `radius` of `q` (inclusive), in order of distance, into `out` (cleared
     /// first).
     fn near(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>);
+    /// The `k` nodes nearest to `q`, in order of distance, into `out` (cleared first).
+    ///
+    /// The default sorts all nodes: give a better one where there is an index.
+    fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
+        self.near(space, points, q, f64::INFINITY, out);
+        out.truncate(k);
+    }
     /// Node `id` is new; `parent` is `None` for a root.
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId, parent: Option<NodeId>);
     /// Whether the tree grew from `id` when asked for `why`.
@@ -58,6 +65,9 @@ impl<C: Space, N: NearestNeighbors<C>> Selector<C> for Nearest<N> {
     }
     fn near(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
         self.0.within(space, points, q, radius, out);
+    }
+    fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
+        self.0.k_nearest(space, points, q, k, out);
     }
     #[inline]
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId, _: Option<NodeId>) {

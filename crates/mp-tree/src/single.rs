@@ -15,7 +15,9 @@ use rand::RngExt;
 /// solution grows the same tree on; the same path may be found again.
 #[derive(Debug)]
 pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
-    start: Option<C::State>,
+    start: C::State,
+    /// How many listed goal states have been tried straight from the start.
+    tried: usize,
     goals: Goals<'c, C::State>,
     steer: Steer<'c, C, L>,
     branch: Branch<C, L, Se, A>,
@@ -42,7 +44,8 @@ where
         let goal_bias = recipe.tuning.checked_bias()?;
         Ok(Self {
             steer: Steer::new(problem.space, problem.local, problem.verify, &recipe.tuning)?,
-            start: Some(problem.start),
+            start: problem.start,
+            tried: 0,
             goal_bias: if problem.goals.can_aim() { goal_bias } else { 0.0 },
             goals: problem.goals,
             branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
@@ -58,19 +61,23 @@ where
         self.branch.tree()
     }
 
-    /// Plants the root and tries the straight way.
+    /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the
+    /// next step takes up behind the place.
     fn begin(
         &mut self,
-        start: C::State,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        let root = self.branch.add_root(self.steer.space(), start, observer);
-        if self.goals.reached(self.branch.tree().state(root)) {
-            return self.candidate(root, observer);
+        if self.branch.tree().is_empty() {
+            let arrived = self.goals.reached(&self.start);
+            let root = self.branch.add_root(self.steer.space(), self.start.clone(), observer);
+            if arrived {
+                return self.candidate(root, observer);
+            }
         }
-        for i in 0..self.goals.listed().len() {
-            let grown = self.branch.leap(root, &self.goals.listed()[i], &mut self.steer, rng, observer);
+        while let Some(goal) = self.goals.listed().get(self.tried) {
+            self.tried += 1;
+            let grown = self.branch.leap(0, goal, &mut self.steer, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate(id, observer) {
                 return Some(path);
@@ -134,9 +141,7 @@ where
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         self.iterations += 1;
-        if let Some(start) = self.start.take()
-            && let Some(path) = self.begin(start, rng, observer)
-        {
+        if let Some(path) = self.begin(rng, observer) {
             return Some(path);
         }
         if self.goal_bias > 0.0

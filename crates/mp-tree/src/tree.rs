@@ -31,13 +31,21 @@ pub struct Tree<S, E> {
 struct Node<E> {
     cost: f64,
     link: Option<Link<E>>,
+    /// The child added last, or [`NONE`].
+    child: NodeId,
+    /// The child of the same parent added before, or [`NONE`].
+    sibling: NodeId,
 }
+
+/// No node.
+const NONE: NodeId = NodeId::MAX;
 
 /// How a node hangs on its parent.
 #[derive(Clone, Debug)]
 struct Link<E> {
     parent: NodeId,
     edge: E,
+    cost: f64,
     verified: bool,
 }
 
@@ -114,15 +122,59 @@ impl<S, E> Tree<S, E> {
 
     /// Adds a root.
     pub fn add_root(&mut self, state: S) -> NodeId {
-        self.insert(state, Node { cost: 0.0, link: None })
+        self.insert(state, Node { cost: 0.0, link: None, child: NONE, sibling: NONE })
     }
 
     /// Adds the end of `motion` under `parent`.
     #[inline]
     pub fn push(&mut self, parent: NodeId, motion: Motion<S, E>) -> NodeId {
         let cost = self.cost(parent) + motion.cost;
-        let link = Link { parent, edge: motion.edge, verified: false };
-        self.insert(motion.end, Node { cost, link: Some(link) })
+        let link = Link { parent, edge: motion.edge, cost: motion.cost, verified: false };
+        let sibling = std::mem::replace(&mut self.nodes[parent as usize].child, self.states.len() as NodeId);
+        self.insert(motion.end, Node { cost, link: Some(link), child: NONE, sibling })
+    }
+
+    /// Hangs node `id` on another parent, by an edge (in forward time) of the given cost, and
+    /// brings the costs of all that hangs on it up to date. The new edge is not verified yet; those
+    /// below keep what they have. `false`, and nothing changes, where that would make a ring:
+    /// `parent` is `id` or hangs on it.
+    ///
+    /// Linear in the depth of `parent`, the children of the former parent and the nodes that hang
+    /// on `id`.
+    pub fn reparent(&mut self, id: NodeId, parent: NodeId, edge: E, cost: f64) -> bool {
+        if self.lineage(parent).any(|node| node == id) {
+            return false;
+        }
+        if let Some(former) = self.parent(id) {
+            self.unlink(id, former);
+        }
+        let sibling = std::mem::replace(&mut self.nodes[parent as usize].child, id);
+        let node = &mut self.nodes[id as usize];
+        (node.sibling, node.link) = (sibling, Some(Link { parent, edge, cost, verified: false }));
+        let mut stack = vec![id];
+        while let Some(at) = stack.pop() {
+            let Node { link: Some(link), .. } = &self.nodes[at as usize] else { continue };
+            self.nodes[at as usize].cost = self.cost(link.parent) + link.cost;
+            stack.extend(self.children(at));
+        }
+        true
+    }
+
+    /// The children of a node, the latest first.
+    pub fn children(&self, id: NodeId) -> impl Iterator<Item = NodeId> {
+        let next = |at: NodeId| (at != NONE).then_some(at);
+        std::iter::successors(next(self.nodes[id as usize].child), move |&at| {
+            next(self.nodes[at as usize].sibling)
+        })
+    }
+
+    /// Takes `id` out of the list of the children of `parent`.
+    fn unlink(&mut self, id: NodeId, parent: NodeId) {
+        let after = self.nodes[id as usize].sibling;
+        match self.children(parent).take_while(|&child| child != id).last() {
+            Some(before) => self.nodes[before as usize].sibling = after,
+            None => self.nodes[parent as usize].child = after,
+        }
     }
 
     #[inline]
@@ -164,6 +216,9 @@ impl<S, E> Tree<S, E> {
     ///
     /// Linear in the size of the tree.
     pub fn prune(&mut self, id: NodeId) -> Vec<NodeId> {
+        if let Some(parent) = self.parent(id) {
+            self.unlink(id, parent);
+        }
         let doomed = self.below(id);
         let mut renamed = vec![0; self.len()];
         let mut survivors = Vec::new();
@@ -175,8 +230,11 @@ impl<S, E> Tree<S, E> {
         }
         keep(&mut self.states, &doomed);
         keep(&mut self.nodes, &doomed);
-        for link in self.nodes.iter_mut().filter_map(|node| node.link.as_mut()) {
-            link.parent = renamed[link.parent as usize];
+        let rename = |at: &mut NodeId| *at = if *at == NONE { NONE } else { renamed[*at as usize] };
+        for node in &mut self.nodes {
+            node.link.iter_mut().for_each(|link| rename(&mut link.parent));
+            rename(&mut node.child);
+            rename(&mut node.sibling);
         }
         survivors
     }
@@ -267,5 +325,75 @@ mod tests {
         tree.push(other, motion(8));
         assert_eq!(tree.prune(0), [5, 6]);
         assert_eq!(tree.path(1).states, [7, 8]);
+    }
+
+    #[test]
+    fn a_new_parent_changes_the_costs_of_all_below() {
+        for direction in [Direction::Forward, Direction::Backward] {
+            let mut tree = sample(direction);
+            (1..6).for_each(|id| tree.set_verified(id));
+            assert!(tree.reparent(3, 4, 34, 0.25));
+            assert_eq!((tree.parent(3), tree.edge(3)), (Some(4), Some(&34)));
+            assert_eq!((tree.cost(3), tree.cost(5), tree.cost(1)), (2.25, 3.25, 1.0));
+            let verified: Vec<bool> = (0..6).map(|id| tree.is_verified(id)).collect();
+            assert_eq!(verified, [true, true, true, false, true, true]);
+            let mut path = Path { states: vec![0, 2, 4, 3, 5], edges: vec![20, 40, 34, 50] };
+            if direction == Direction::Backward {
+                path.states.reverse();
+                path.edges.reverse();
+            }
+            assert_eq!(tree.path(5), path);
+        }
+    }
+
+    #[test]
+    fn a_root_may_be_hung_on_another_tree() {
+        let mut tree = sample(Direction::Forward);
+        let root = tree.add_root(9);
+        let below = tree.push(root, motion(10));
+        assert!(tree.reparent(root, 5, 0, 0.5));
+        assert_eq!((tree.cost(root), tree.cost(below)), (3.5, 4.5));
+    }
+
+    #[test]
+    fn no_ring_is_made() {
+        let mut tree = sample(Direction::Forward);
+        for (id, parent) in [(1, 5), (1, 1), (0, 4)] {
+            let before = format!("{tree:?}");
+            assert!(!tree.reparent(id, parent, 0, 0.0));
+            assert_eq!(format!("{tree:?}"), before);
+        }
+    }
+
+    /// After any sequence of changes, children are those whose parent it is, and costs add up.
+    #[test]
+    fn children_and_costs_agree_with_parents() {
+        let mut tree = Tree::new(Direction::Forward);
+        tree.add_root(0);
+        let mut seed = 1_u32;
+        let mut pick = |n: usize| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) % n as u32
+        };
+        for round in 0..3000 {
+            let (a, b) = (pick(tree.len()), pick(tree.len()));
+            match pick(20) {
+                0 if a > 0 && tree.len() > 30 => drop(tree.prune(a)),
+                0..9 => drop(tree.reparent(a, b, round, f64::from(pick(8)) / 4.0)),
+                _ => drop(tree.push(a, Motion { end: round, edge: round, cost: f64::from(pick(8)) / 4.0 })),
+            }
+            let mut found = 0;
+            for id in 0..tree.len() as NodeId {
+                for child in tree.children(id) {
+                    assert_eq!(tree.parent(child), Some(id));
+                    found += 1;
+                }
+                let cost: f64 = tree.lineage(id).filter_map(|at| tree.link(at)).map(|link| link.cost).sum();
+                assert_eq!(tree.cost(id), cost);
+            }
+            let hanging = (0..tree.len() as NodeId).filter(|&id| tree.parent(id).is_some()).count();
+            assert_eq!(found, hanging);
+        }
+        assert!(tree.len() > 10);
     }
 }

@@ -17,7 +17,12 @@ use rand::RngExt;
 /// Stepping on after a solution grows the same trees on.
 #[derive(Debug)]
 pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
-    start: Option<C::State>,
+    start: C::State,
+    /// How many listed goal states have been looked at, how many roots that gave, and how many of
+    /// those have been tried straight from the start.
+    planted: usize,
+    roots: NodeId,
+    tried: NodeId,
     goals: Goals<'c, C::State>,
     steer: Steer<'c, C, L>,
     trees: [Branch<C, L, Se, A>; 2],
@@ -60,7 +65,10 @@ where
         let backward = Branch::new(1, Direction::Backward, recipe.select, recipe.attach);
         Ok(Self {
             steer: Steer::new(problem.space, problem.local, problem.verify, &recipe.tuning)?,
-            start: Some(problem.start),
+            start: problem.start,
+            planted: 0,
+            roots: 0,
+            tried: 0,
             goals: problem.goals,
             trees: [forward, backward],
             propose: recipe.propose,
@@ -78,28 +86,34 @@ where
         [self.trees[0].tree(), self.trees[1].tree()]
     }
 
-    /// Plants the roots and tries the straight way.
+    /// Plants the roots and tries the straight way. What a panic of the user's code interrupts,
+    /// the next step takes up behind the place.
     fn begin(
         &mut self,
-        start: C::State,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         let space = self.steer.space();
-        let arrived = self.goals.reached(&start);
-        let root = self.trees[0].add_root(space, start, observer);
-        if arrived {
-            return Some(self.trees[0].tree().path(root));
+        if self.trees[0].tree().is_empty() {
+            let arrived = self.goals.reached(&self.start);
+            let root = self.trees[0].add_root(space, self.start.clone(), observer);
+            if arrived {
+                return Some(self.trees[0].tree().path(root));
+            }
         }
-        for goal in self.goals.listed() {
+        while let Some(goal) = self.goals.listed().get(self.planted) {
+            self.planted += 1;
             if !self.trees[1].knows(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
+            self.roots = self.trees[1].tree().len() as NodeId;
         }
-        for goal_root in 0..self.trees[1].tree().len() as NodeId {
+        while self.tried < self.roots {
+            let goal_root = self.tried;
+            self.tried += 1;
             let [forward, backward] = &mut self.trees;
             let goal = backward.tree().state(goal_root);
-            let grown = forward.leap(root, goal, &mut self.steer, rng, observer);
+            let grown = forward.leap(0, goal, &mut self.steer, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate([id, goal_root], observer) {
                 return Some(path);
@@ -164,9 +178,7 @@ where
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         self.iterations += 1;
-        if let Some(start) = self.start.take()
-            && let Some(path) = self.begin(start, rng, observer)
-        {
+        if let Some(path) = self.begin(rng, observer) {
             return Some(path);
         }
         if self.goals.has_sampler() {

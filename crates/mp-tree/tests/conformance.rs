@@ -27,7 +27,7 @@ fn solves<const N: usize>(
         for seed in 0..SEEDS {
             let certified = Certified::new(space, boxes.clone(), 1e-3).unwrap();
             let discrete = Discrete::new(space, boxes.clone(), Resolution::Length(2e-3)).unwrap();
-            let checks: [Box<dyn MotionValidity<_>>; 2] = [Box::new(certified), Box::new(discrete)];
+            let checks: [Box<dyn MotionValidity<_> + Send>; 2] = [Box::new(certified), Box::new(discrete)];
             for check in checks {
                 let local = Straight::new(space, check);
                 let problem = Problem::new(space, local, Exact(boxes.clone()), start, goal).unwrap();
@@ -99,12 +99,16 @@ fn thin_walls_are_never_crossed() {
     }
 }
 
-fn never_solves<C: DefaultNn, M: MotionValidity<C::State>, V: MotionValidity<C::State>>(
+fn never_solves<C, M, V>(
     space: &C,
     check: impl Fn() -> M,
     verifier: impl Fn() -> V,
     [start, goal]: [C::State; 2],
-) {
+) where
+    C: DefaultNn,
+    M: MotionValidity<C::State> + Send,
+    V: MotionValidity<C::State> + Send,
+{
     for info in planners() {
         let local = Straight::new(space, check());
         let problem = Problem::new(space, local, verifier(), start.clone(), goal.clone()).unwrap();

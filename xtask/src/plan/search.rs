@@ -80,13 +80,13 @@ impl<M: Mover> Run<'_, M> {
     fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<M::State>>
     where
         C: Space<State = M::State>,
-        N: NearestNeighbors<C> + Clone + 'static,
+        N: NearestNeighbors<C> + Clone + Send + 'static,
     {
         let Self { setting, options, .. } = self;
         let (mut robot, verifier) = (setting.robot.clone(), setting.verifier()?);
         let began = Instant::now();
         let (outcome, progress) = {
-            let check: Box<dyn MotionValidity<M::State>> = match options.motion {
+            let check: Box<dyn MotionValidity<M::State> + Send> = match options.motion {
                 Motion::Certified => {
                     Box::new(Certified::new(&setting.space, &mut robot, setting.tolerance).into_diagnostic()?)
                 }

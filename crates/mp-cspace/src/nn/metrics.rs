@@ -10,7 +10,7 @@ use crate::{
 /// [`WithMetric`] a space with a [default index](DefaultNn).
 pub trait NnOn<C: Space>: MetricOn<C> + Sized {
     /// The index.
-    type Nn: NearestNeighbors<WithMetric<C, Self>> + Default + Clone + std::fmt::Debug;
+    type Nn: NearestNeighbors<WithMetric<C, Self>> + Default + Clone + std::fmt::Debug + Send;
 }
 
 impl<C: Space, M: NnOn<C>> DefaultNn for WithMetric<C, M> {
@@ -81,6 +81,6 @@ where
     type Nn = MetricTree;
 }
 
-impl<C: Space, M: TrueMetric<C::State>> NnOn<C> for Bounded<M> {
+impl<C: Space, M: TrueMetric<C::State> + Sync> NnOn<C> for Bounded<M> {
     type Nn = MetricTree;
 }
