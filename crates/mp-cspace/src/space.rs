@@ -1,5 +1,6 @@
 //! Spaces and metrics: the traits, and the spaces one file each.
 
+mod joints;
 mod product;
 mod rn;
 mod rn_dyn;
@@ -9,6 +10,7 @@ mod so2;
 mod so3;
 mod torus;
 
+pub use joints::{Coordinates, JointRange, Joints};
 pub use product::Product;
 pub use rn::Rn;
 pub use rn_dyn::RnDyn;

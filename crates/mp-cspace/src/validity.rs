@@ -81,6 +81,13 @@ pub enum Room {
         /// As good as this clearance (m) in the middle.
         clearance: f64,
     },
+    /// At least `margin` from everything over `part` of the motion, a fraction of it above zero, to either side
+    /// of the middle. Where the clearance in the middle is `c` of at least twice the margin, this is at
+    /// least `(c - margin)` over the travel of the whole motion.
+    Over {
+        /// The fraction; may be more than what is left of the motion.
+        part: f64,
+    },
     /// Nothing shown: a shorter stretch may be.
     Near,
     /// In the middle less than twice the margin: not worth a closer look.

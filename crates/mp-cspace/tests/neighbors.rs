@@ -3,9 +3,9 @@
 
 use mp_cspace::testkit::check_nearest_neighbors;
 use mp_cspace::{
-    Bounded, DefaultNn, Embed, Euclidean, Hit, KdTree, Layout, Linear, Manhattan, MaxDisplacement, Metric,
-    MetricTree, NearestNeighbors, Product, Rn, RnDyn, Rng, ScaledEuclidean, Se2, Se3, So2, So3, Space, Torus,
-    TrueMetric, WithMetric,
+    Bounded, DefaultNn, Embed, Euclidean, Hit, JointRange, Joints, KdTree, Layout, Linear, Manhattan,
+    MaxDisplacement, Metric, MetricTree, NearestNeighbors, Product, Rn, RnDyn, Rng, ScaledEuclidean, Se2,
+    Se3, So2, So3, Space, Torus, TrueMetric, WithMetric,
 };
 use nalgebra::{DVector, Point2, Point3, SVector, Vector2};
 use proptest::prelude::*;
@@ -29,6 +29,10 @@ fn default_index_of_every_space() {
     agrees_on(So3);
     agrees_on(Torus::<2>);
     agrees_on(Torus::<7>);
+    let ranges = [JointRange::Interval { low: -6.0, high: 6.0 }, JointRange::Circle, JointRange::Circle];
+    agrees_on(Joints::<SVector<f64, 3>>::new(ranges).unwrap());
+    agrees_on(Joints::<DVector<f64>>::new(ranges.repeat(7)).unwrap());
+    agrees_on(WithMetric::new(Joints::<DVector<f64>>::new(ranges).unwrap(), Manhattan));
     agrees_on(Se2::new([0.0; 2], [10.0; 2]).unwrap());
     agrees_on(Se2::new([0.0; 2], [1.0; 2]).unwrap().with_rotation_weight(3.0).unwrap());
     agrees_on(se3());

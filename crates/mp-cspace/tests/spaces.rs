@@ -2,7 +2,7 @@
 
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_true_metric};
 use mp_cspace::*;
-use nalgebra::{Isometry3, Point2, Point3, UnitQuaternion, Vector3};
+use nalgebra::{DVector, Isometry3, Point2, Point3, UnitQuaternion, Vector3, Vector4};
 use proptest::prelude::*;
 
 type Ok = Result<(), TestCaseError>;
@@ -74,6 +74,12 @@ fn hull() -> Vec<Point3<f64>> {
 fn r3() -> Rn<3> {
     Rn::new([-1.0, 0.0, 5.0], [1.0, 0.5, 25.0]).unwrap()
 }
+/// Intervals of radians and metres, and circles.
+fn joints<Q: Coordinates>() -> Joints<Q> {
+    let interval = |low, high| JointRange::Interval { low, high };
+    let ranges = [interval(-6.2, 6.2), JointRange::Circle, interval(0.1, 0.4), JointRange::Circle];
+    Joints::new(ranges).unwrap()
+}
 fn se2() -> Se2 {
     Se2::new([-1.0, -2.0], [3.0, 4.0]).unwrap()
 }
@@ -91,6 +97,9 @@ spaces! {
     se3_space: se3(), SpaceKit::new(), geodesic_axioms;
     se3_heavy: se3().with_rotation_weight(30.0).unwrap(), SpaceKit::new(), geodesic_axioms;
     torus: Torus::<3>, SpaceKit::new(), geodesic_axioms;
+    joints_static: joints::<Vector4<f64>>(), SpaceKit::new(), geodesic_axioms;
+    joints_dynamic: joints::<DVector<f64>>(), SpaceKit::new(), geodesic_axioms;
+    joints_manhattan: WithMetric::new(joints::<Vector4<f64>>(), Manhattan), SpaceKit::new(), geodesic_axioms;
     product: Product::new(se2(), 1.0, Torus::<2>, 0.25).unwrap(), SpaceKit::new(), geodesic_axioms;
     nested: Product::new(Product::new(So3, 0.1, So2, 1.0).unwrap(), 2.0, r3(), 1.0).unwrap(), SpaceKit::new(), geodesic_axioms;
     euclidean: WithMetric::new(se3(), Euclidean), SpaceKit::new(), geodesic_axioms;
@@ -140,6 +149,12 @@ fn bad_parameters_are_errors() {
     assert!(matches!(Rn::new([-1e300], [1e300]), Err(SpaceError::NotFinite { .. })));
     assert!(matches!(Rn::<0>::new([], []), Err(SpaceError::Empty { .. })));
     assert!(matches!(RnDyn::new(vec![0.0], vec![1.0, 2.0]), Err(SpaceError::Count { .. })));
+    let interval = |low, high| JointRange::Interval { low, high };
+    assert!(matches!(Joints::<Vector3<f64>>::new([JointRange::Circle]), Err(SpaceError::Count { .. })));
+    assert!(matches!(Joints::<DVector<f64>>::new([]), Err(SpaceError::Empty { .. })));
+    let one = |range| Joints::<DVector<f64>>::new([JointRange::Circle, range]);
+    assert!(matches!(one(interval(0.3, 0.3)), Err(SpaceError::EmptyRange { axis: 1, .. })));
+    assert!(matches!(one(interval(nan, 0.3)), Err(SpaceError::NotFinite { axis: 1, .. })));
     assert!(Se2::new([0.0, 0.0], [1.0, 0.0]).is_err() && Se3::new([0.0; 3], [1.0, nan, 1.0]).is_err());
     for w in [0.0, -1.0, nan, f64::INFINITY] {
         assert!(matches!(se3().with_rotation_weight(w), Err(SpaceError::Weight { .. })));
@@ -158,6 +173,32 @@ fn bad_parameters_are_errors() {
         Rn::new([0.0, 3.0], [1.0, 2.0]).unwrap_err().to_string(),
         "axis 1 is empty: its lower bound 3 must be below its upper bound 2"
     );
+}
+
+/// Circles as a torus, intervals as a box, to the bit; and mixed as they should.
+#[test]
+fn joints_are_boxes_and_tori() {
+    let mut rng = mp_cspace::Rng::seed(4);
+    let (torus, circles) = (Torus::<3>, Joints::new([JointRange::Circle; 3]).unwrap());
+    let ranges = [(-1.0, 1.0), (0.0, 0.5), (5.0, 25.0)];
+    let intervals = Joints::new(ranges.map(|(low, high)| JointRange::Interval { low, high })).unwrap();
+    for t in [0.0, 0.25, 0.7, 1.0] {
+        let (a, b) = (torus.sample_uniform(&mut rng), torus.sample_uniform(&mut rng));
+        assert_eq!(circles.distance(&a, &b), torus.distance(&a, &b));
+        assert_eq!(circles.interpolate(&a, &b, t), torus.interpolate(&a, &b, t));
+        let (a, b) = (r3().sample_uniform(&mut rng), r3().sample_uniform(&mut rng));
+        assert_eq!(intervals.distance(&a, &b), r3().distance(&a, &b));
+        assert_eq!(intervals.interpolate(&a, &b, t), r3().interpolate(&a, &b, t));
+    }
+    // An interval wider than a turn does not go round.
+    let (a, b) = (Vector4::new(-6.0, 3.0, 0.2, -3.0), Vector4::new(6.0, -3.0, 0.2, 3.0));
+    let short = std::f64::consts::TAU - 6.0;
+    let space = joints::<Vector4<f64>>();
+    assert!((space.distance(&a, &b) - (144.0 + 2.0 * short * short).sqrt()).abs() < 1e-14);
+    assert_eq!(space.interpolate(&a, &b, 0.5)[0], 0.0);
+    assert!(space.interpolate(&a, &b, 0.5)[1].abs() > 3.13);
+    let wrapped = space.wrapped(&Vector4::new(6.5, 6.5, 9.0, -6.5));
+    assert!((wrapped - Vector4::new(6.5, 6.5 - short - 6.0, 9.0, 6.0 + short - 6.5)).norm() < 1e-14);
 }
 
 #[test]

@@ -5,8 +5,9 @@
 //! | [`FreeFlyer`] | `Isometry3<f64>`, in SE(3) | a mesh, freely in space |
 //! | [`PlanarFlyer`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a mesh, in the plane z = 0, turning about Z |
 //! | [`PointRobot`] | `Vector3<f64>`, in R³ | a point |
+//! | [`Arm`] | `SVector<f64, N>` or `DVector<f64>`, in [`Joints`](mp_cspace::Joints) | a tree of links |
 //!
-//! All are a [`RigidBody`] among obstacles that stand still. It answers the questions of planners:
+//! The first three are a [`RigidBody`]. Obstacles stand still. Robots answer the questions of planners:
 //! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
 //! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; and of people:
 //! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] proves
@@ -32,6 +33,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod arm;
 mod bounds;
 mod explain;
 mod placement;
@@ -39,6 +41,7 @@ mod rigid;
 mod solid;
 mod verify;
 
+pub use arm::{Arm, ArmError, ArmModel, Coordinate, Joint, JointKind, Kinematics, Link, Mimic};
 pub use placement::{Placement, Planar, Point, Shape, Spatial};
 pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
 pub use verify::Verifier;

@@ -103,10 +103,17 @@ where
                 Room::Tight => return MotionCheck::Undecided { at },
                 Room::Near if stretch.travel <= margin => return MotionCheck::Undecided { at },
                 Room::Near => 0.0,
+                Room::Over { part } => {
+                    least = least.min(margin);
+                    part
+                }
                 Room::Clear { clearance } => {
-                    least = least.min((clearance - stretch.travel).max(margin));
                     let reach = (clearance - margin) / travel;
-                    if clearance >= stretch.travel + margin { reach.max(half) } else { reach }
+                    let covered = if clearance >= stretch.travel + margin { reach.max(half) } else { reach };
+                    // As far out as it is relied on.
+                    let relied = covered.min(b - at) * travel;
+                    least = least.min((clearance - relied).max(margin));
+                    covered
                 }
             };
             // What is left over, unless it is rounding.
@@ -273,6 +280,82 @@ mod tests {
             assert!(f64::from(check.valid.asked.get()) <= bound);
         }
         assert!(free > 2000 && refused > 2000);
+    }
+
+    /// A check that answers more than it is asked, as bounds on boxes do: covered far beyond the stretch, and the
+    /// clearance out there is what counts.
+    #[test]
+    fn reports_no_more_clearance_than_there_is() {
+        struct Generous(Discs);
+        impl Clearance<Vector2<f64>> for Generous {
+            fn clearance(&mut self, q: &Vector2<f64>, _: f64) -> f64 {
+                self.0.exact(q).max(0.0)
+            }
+        }
+        impl MotionBound<Vector2<f64>> for Generous {
+            fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+                self.0.motion_bound(from, to)
+            }
+        }
+        let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
+        let mut rng = Rng::seed(2);
+        let mut free = 0;
+        for _ in 0..2000 {
+            let discs = Discs { discs: vec![(space.sample_uniform(&mut rng), 0.1)], ..Discs::default() };
+            let (a, b) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
+            let exact = discs.along(&a, &b);
+            let check = Certified::new(&space, Generous(discs), 0.01).unwrap();
+            if let MotionCheck::Free { clearance } = check.with_stride(0.02).unwrap().check_motion(&a, &b) {
+                assert!(clearance <= exact + 1e-12, "{clearance} {exact}");
+                free += 1;
+            }
+        }
+        assert!(free > 500);
+    }
+
+    /// What a check shows of the part it names is all that is taken from it.
+    #[test]
+    fn keeps_its_promises_by_parts() {
+        struct Parts(Discs);
+        impl Clearance<Vector2<f64>> for Parts {
+            fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
+                self.0.clearance(q, enough)
+            }
+            fn room(&mut self, stretch: &Stretch<'_, Vector2<f64>>) -> Room {
+                self.0.asked.set(self.0.asked.get() + 1);
+                let clearance = self.0.exact(stretch.middle);
+                match Room::of(clearance, stretch.margin) {
+                    Room::Clear { clearance } => {
+                        let travel = (stretch.to - stretch.from).norm();
+                        Room::Over { part: (clearance - stretch.margin) / travel }
+                    }
+                    other => other,
+                }
+            }
+        }
+        impl MotionBound<Vector2<f64>> for Parts {
+            fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+                self.0.motion_bound(from, to)
+            }
+        }
+        let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
+        let mut rng = Rng::seed(12);
+        let tolerance = 0.01;
+        for _ in 0..5000 {
+            let discs = (0..3).map(|_| (space.sample_uniform(&mut rng), 0.1)).collect();
+            let discs = Discs { discs, ..Discs::default() };
+            let (a, b) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
+            let exact = discs.along(&a, &b);
+            let mut check = Certified::new(&space, Parts(discs), tolerance).unwrap();
+            match check.check_motion(&a, &b) {
+                MotionCheck::Free { clearance } => {
+                    assert!(clearance >= tolerance / 2.0 && clearance <= exact + 1e-12);
+                }
+                _ => assert!(exact < tolerance),
+            }
+            let bound = 4.0 * (b - a).norm() / tolerance + 2.0;
+            assert!(f64::from(check.valid.0.asked.get()) <= bound);
+        }
     }
 
     /// Walls from thick to 1e-12 are never passed, from either side.

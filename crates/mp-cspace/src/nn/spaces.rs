@@ -1,7 +1,9 @@
 //! Coordinates and the default index of the spaces of this crate.
 
 use super::{DefaultNn, Embed, EmbedFactors, KdTree, Layout};
-use crate::{Product, Rn, RnDyn, Se2, Se2State, Se3, So2, So3, Torus, wrap_angle};
+use crate::{
+    Coordinates, JointRange, Joints, Product, Rn, RnDyn, Se2, Se2State, Se3, So2, So3, Torus, wrap_angle,
+};
 use nalgebra::{DVector, Isometry3, SVector, UnitQuaternion};
 
 /// Twice the quaternion, its scalar part not negative: twice the chord is at most the angle.
@@ -103,6 +105,51 @@ impl<const N: usize> EmbedFactors for Torus<N> {
 }
 impl<const N: usize> DefaultNn for Torus<N> {
     type Nn = KdTree<N>;
+}
+
+impl<Q: Coordinates> Joints<Q> {
+    fn joint_layout(range: JointRange) -> Layout {
+        match range {
+            JointRange::Interval { .. } => Layout::flat(1),
+            JointRange::Circle => Layout::angles(1),
+        }
+    }
+    #[inline]
+    fn coordinate(&self, i: usize, x: f64) -> f64 {
+        match self.ranges()[i] {
+            JointRange::Interval { .. } => x,
+            JointRange::Circle => wrap_angle(x),
+        }
+    }
+}
+impl<Q: Coordinates> Embed for Joints<Q> {
+    fn layout(&self) -> Layout {
+        let joints = self.ranges().iter().map(|range| Self::joint_layout(*range));
+        joints.reduce(Layout::beside).unwrap_or_default()
+    }
+    #[inline]
+    fn embed(&self, state: &Q, out: &mut [f64]) -> usize {
+        let n = self.ranges().len();
+        let each = out[..n].iter_mut().zip(state.as_slice()).enumerate();
+        each.for_each(|(i, (o, x))| *o = self.coordinate(i, *x));
+        n
+    }
+}
+impl<Q: Coordinates> EmbedFactors for Joints<Q> {
+    fn factor_layouts(&self) -> Vec<Layout> {
+        self.ranges().iter().map(|range| Self::joint_layout(*range)).collect()
+    }
+    #[inline]
+    fn embed_factors(&self, state: &Q, put: &mut impl FnMut(usize, f64)) {
+        let n = self.ranges().len();
+        state.as_slice().iter().take(n).enumerate().for_each(|(i, x)| put(i, self.coordinate(i, *x)));
+    }
+}
+impl<const N: usize> DefaultNn for Joints<SVector<f64, N>> {
+    type Nn = KdTree<N>;
+}
+impl DefaultNn for Joints<DVector<f64>> {
+    type Nn = KdTree;
 }
 
 impl Embed for So3 {

@@ -1,0 +1,241 @@
+//! Joints: intervals and circles side by side.
+
+use super::so2::{angle_at, angle_lerp, arc};
+use super::{Factored, Metric, Space, TrueMetric, lerp, scale};
+use crate::{Rng, SpaceError};
+use nalgebra::{DVector, SVector};
+use rand::RngExt;
+use std::f64::consts::PI;
+use std::fmt::Debug;
+
+/// A list of coordinates: `SVector<f64, N>` where their number is known when compiling, else `DVector<f64>`.
+pub trait Coordinates: Clone + Debug + PartialEq + Send + Sync {
+    /// How many there must be; `None` when any number will do.
+    const COUNT: Option<usize>;
+    /// The list of `f(0)`, `f(1)`, …, `f(count - 1)`; of [`COUNT`](Self::COUNT) where that is a number.
+    fn from_fn(count: usize, f: impl FnMut(usize) -> f64) -> Self;
+    /// The coordinates.
+    fn as_slice(&self) -> &[f64];
+    /// The coordinates, to be changed.
+    fn as_mut_slice(&mut self) -> &mut [f64];
+}
+
+impl<const N: usize> Coordinates for SVector<f64, N> {
+    const COUNT: Option<usize> = Some(N);
+    #[inline]
+    fn from_fn(_: usize, mut f: impl FnMut(usize) -> f64) -> Self {
+        SVector::from_fn(|i, _| f(i))
+    }
+    #[inline]
+    fn as_slice(&self) -> &[f64] {
+        self.as_slice()
+    }
+    #[inline]
+    fn as_mut_slice(&mut self) -> &mut [f64] {
+        self.as_mut_slice()
+    }
+}
+
+impl Coordinates for DVector<f64> {
+    const COUNT: Option<usize> = None;
+    #[inline]
+    fn from_fn(count: usize, mut f: impl FnMut(usize) -> f64) -> Self {
+        DVector::from_fn(count, |i, _| f(i))
+    }
+    #[inline]
+    fn as_slice(&self) -> &[f64] {
+        self.as_slice()
+    }
+    #[inline]
+    fn as_mut_slice(&mut self) -> &mut [f64] {
+        self.as_mut_slice()
+    }
+}
+
+/// What one joint can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointRange {
+    /// From `low` to `high`: radians or metres.
+    Interval {
+        /// The lower bound.
+        low: f64,
+        /// The upper bound.
+        high: f64,
+    },
+    /// Any angle, in (-π, π] rad, going round the shorter way.
+    Circle,
+}
+
+impl JointRange {
+    fn bounds(self) -> [f64; 2] {
+        match self {
+            Self::Interval { low, high } => [low, high],
+            Self::Circle => [-PI, PI],
+        }
+    }
+
+    fn extent(self) -> f64 {
+        match self {
+            Self::Interval { low, high } => high - low,
+            Self::Circle => PI,
+        }
+    }
+}
+
+/// The space of an arm: each joint an interval or a circle, with the Euclidean norm of the differences, on
+/// circles that of the shorter arc. Radians and metres count alike; a
+/// [`ScaledEuclidean`](crate::ScaledEuclidean) weighs them.
+///
+/// Where all joints are intervals this is [`Rn`](crate::Rn), where all are circles [`Torus`](crate::Torus).
+///
+/// ```
+/// use mp_cspace::{JointRange, Joints, Metric, Space};
+/// use nalgebra::Vector2;
+/// let lift = JointRange::Interval { low: 0.0, high: 0.5 };
+/// let space = Joints::<Vector2<f64>>::new([lift, JointRange::Circle])?;
+/// let (a, b) = ([0.1, 3.0].into(), [0.1, -3.0].into());
+/// assert!((space.distance(&a, &b) - 0.2831853071795862).abs() < 1e-15);
+/// assert!(space.interpolate(&a, &b, 0.75).y < 0.0);
+/// # Ok::<(), mp_cspace::SpaceError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joints<Q> {
+    ranges: Vec<JointRange>,
+    /// Differences up to these are the shorter way: π on circles, infinite on intervals.
+    straight: Q,
+    extent: f64,
+}
+
+impl<Q: Coordinates> Joints<Q> {
+    /// The space of joints with these ranges.
+    ///
+    /// # Errors
+    /// When there are none or not as many as `Q` has coordinates, a bound is not finite, or some `low` is not
+    /// below its `high`.
+    pub fn new(ranges: impl Into<Vec<JointRange>>) -> Result<Self, SpaceError> {
+        let ranges = ranges.into();
+        if let Some(expected) = Q::COUNT
+            && expected != ranges.len()
+        {
+            return Err(SpaceError::Count { what: "joint ranges", expected, found: ranges.len() });
+        }
+        let bounds = |end: usize| ranges.iter().map(|r| r.bounds()[end]).collect::<Vec<_>>();
+        crate::error::diagonal(&bounds(0), &bounds(1))?;
+        let extent = ranges.iter().map(|r| r.extent().powi(2)).sum::<f64>().sqrt();
+        let straight = Q::from_fn(ranges.len(), |i| match ranges[i] {
+            JointRange::Interval { .. } => f64::INFINITY,
+            JointRange::Circle => PI,
+        });
+        Ok(Self { ranges, straight, extent })
+    }
+
+    /// What each joint can do.
+    #[must_use]
+    pub fn ranges(&self) -> &[JointRange] {
+        &self.ranges
+    }
+
+    /// `q` with the angles of circles wrapped to (-π, π]; other joints are left alone.
+    #[must_use]
+    pub fn wrapped(&self, q: &Q) -> Q {
+        let q = q.as_slice();
+        Q::from_fn(q.len(), |i| match self.ranges.get(i) {
+            Some(JointRange::Circle) => super::wrap_angle(q[i]),
+            _ => q[i],
+        })
+    }
+
+    /// The signed way of joint `i`.
+    #[inline]
+    fn way(&self, i: usize, from: f64, to: f64) -> f64 {
+        let d = to - from;
+        if d.abs() <= self.straight.as_slice()[i] { d } else { arc(from, to) }
+    }
+
+    fn state(&self, mut u: impl FnMut(usize) -> f64) -> Q {
+        Q::from_fn(self.ranges.len(), |i| match self.ranges[i] {
+            JointRange::Interval { low, high } => scale(low, high, u(i)),
+            JointRange::Circle => angle_at(u(i)),
+        })
+    }
+
+    #[inline]
+    fn joint_between(&self, i: usize, from: f64, to: f64, t: f64) -> f64 {
+        match self.ranges[i] {
+            JointRange::Interval { .. } => lerp(from, to, t),
+            JointRange::Circle => angle_lerp(from, to, t),
+        }
+    }
+}
+
+impl<Q: Coordinates> Metric<Q> for Joints<Q> {
+    #[inline]
+    fn distance(&self, from: &Q, to: &Q) -> f64 {
+        let (from, to) = (from.as_slice(), to.as_slice());
+        let count = self.ranges.len().min(from.len()).min(to.len());
+        (0..count).map(|i| self.way(i, from[i], to[i])).map(|d| d * d).sum::<f64>().sqrt()
+    }
+}
+impl<Q: Coordinates> TrueMetric<Q> for Joints<Q> {}
+
+impl<Q: Coordinates> Space for Joints<Q> {
+    type State = Q;
+
+    #[inline]
+    fn dim(&self) -> usize {
+        self.ranges.len()
+    }
+    #[inline]
+    fn extent(&self) -> f64 {
+        self.extent
+    }
+    #[inline]
+    fn interpolate_into(&self, from: &Q, to: &Q, t: f64, out: &mut Q) {
+        if out.as_slice().len() != from.as_slice().len() {
+            out.clone_from(from);
+        }
+        let (from, to) = (from.as_slice(), to.as_slice());
+        let count = self.ranges.len().min(from.len()).min(to.len());
+        for (i, o) in out.as_mut_slice().iter_mut().enumerate().take(count) {
+            *o = self.joint_between(i, from[i], to[i], t);
+        }
+    }
+    fn unit_cube_to_state(&self, u: &[f64]) -> Q {
+        self.state(|i| u[i])
+    }
+    fn sample_uniform(&self, rng: &mut Rng) -> Q {
+        self.state(|_| rng.random())
+    }
+    fn contains(&self, q: &Q) -> bool {
+        let q = q.as_slice();
+        q.len() == self.ranges.len()
+            && self.ranges.iter().zip(q).all(|(range, x)| match *range {
+                JointRange::Interval { low, high } => low <= *x && *x <= high,
+                JointRange::Circle => -PI < *x && *x <= PI,
+            })
+    }
+}
+
+impl<Q: Coordinates> Factored for Joints<Q> {
+    fn factors(&self) -> usize {
+        self.ranges.len()
+    }
+    #[inline]
+    fn each_factor(&self, from: &Q, to: &Q, f: &mut impl FnMut(usize, f64)) {
+        let (from, to) = (from.as_slice(), to.as_slice());
+        let count = self.ranges.len().min(from.len()).min(to.len());
+        (0..count).for_each(|i| f(i, self.way(i, from[i], to[i]).abs()));
+    }
+    fn factor_extent(&self, factor: usize) -> f64 {
+        self.ranges.get(factor).map_or(0.0, |range| range.extent())
+    }
+    fn interpolate_factor(&self, factor: usize, from: &Q, to: &Q, t: f64, out: &mut Q) {
+        let (from, to) = (from.as_slice(), to.as_slice());
+        if factor < self.ranges.len()
+            && let (Some(a), Some(b), Some(o)) =
+                (from.get(factor), to.get(factor), out.as_mut_slice().get_mut(factor))
+        {
+            *o = self.joint_between(factor, *a, *b, t);
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! The questions of planners about an arm.
+
+use super::Arm;
+use super::travel::axes_into;
+use mp_cspace::{Clearance, Coordinates, MotionBound, Room, Stretch, Validity};
+
+impl Arm {
+    /// Whether `q`, a configuration, is in collision.
+    fn collides(&mut self, q: &[f64]) -> bool {
+        self.counters.collision_checks += 1;
+        let Self { robot, world, query, scratch, .. } = self;
+        if !robot.kinematics.is_configuration(q) {
+            return true;
+        }
+        let frames = &mut scratch.frames;
+        robot.kinematics.frames_into(q, frames);
+        // What is farthest from the base moves most.
+        let moving = robot.bodies.iter().rev().filter(|body| body.frame > 0);
+        for body in moving {
+            if world.scene.collides(query, &body.tree, &frames[body.frame]) {
+                return true;
+            }
+        }
+        scratch.balls.clear();
+        scratch.balls.extend(robot.bodies.iter().map(|body| body.ball_at(frames)));
+        robot.pairs.iter().any(|pair| {
+            let [i, j] = pair.bodies;
+            let ([a, b], [ball_a, ball_b]) =
+                ([i, j].map(|k| &robot.bodies[k]), [i, j].map(|k| &scratch.balls[k]));
+            let reach = ball_a.radius + ball_b.radius;
+            (ball_a.center - ball_b.center).norm_squared() <= reach * reach
+                && query.intersects(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame])
+        })
+    }
+}
+
+impl<Q: Coordinates> Validity<Q> for Arm {
+    fn is_valid(&mut self, q: &Q) -> bool {
+        !self.collides(q.as_slice())
+    }
+}
+
+impl<Q: Coordinates> Clearance<Q> for Arm {
+    /// The least of the distances of links to obstacles and to each other.
+    fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
+        self.counters.clearance_checks += 1;
+        let Self { robot, world, query, scratch, .. } = self;
+        if !robot.kinematics.is_configuration(q.as_slice()) {
+            return 0.0;
+        }
+        let frames = &mut scratch.frames;
+        robot.kinematics.frames_into(q.as_slice(), frames);
+        let enough = if enough.is_nan() { f64::INFINITY } else { enough };
+        let mut least = f64::INFINITY;
+        for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
+            let limit = enough.min(least);
+            least = least.min(world.scene.clearance(query, &body.tree, &frames[body.frame], limit).0);
+            if least <= 0.0 {
+                return 0.0;
+            }
+        }
+        for pair in &robot.pairs {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+            let limit = enough.min(least);
+            let distance = query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
+            least = least.min(distance);
+            if least <= 0.0 {
+                return 0.0;
+            }
+        }
+        least
+    }
+
+    fn in_contact(&mut self, q: &Q) -> bool {
+        self.collides(q.as_slice())
+    }
+
+    /// Link by link and pair by pair, each by how far it moves itself: a link near the base may be near an
+    /// obstacle without holding up the rest. Pairs move relative to each other by the joints between them only.
+    fn room(&mut self, stretch: &Stretch<'_, Q>) -> Room {
+        self.counters.clearance_checks += 1;
+        let [from, to, middle] = [stretch.from, stretch.to, stretch.middle].map(Q::as_slice);
+        let Self { robot, world, query, scratch, .. } = self;
+        let kinematics = &robot.kinematics;
+        if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
+            return Room::Contact;
+        }
+        kinematics.frames_into(middle, &mut scratch.frames);
+        axes_into(kinematics, &scratch.frames, &mut scratch.axes);
+        scratch.balls.clear();
+        scratch.far.clear();
+        scratch.near.clear();
+        let ways = |i: usize| kinematics.way(i, from, to);
+        for body in &robot.bodies {
+            let ball = body.ball_at(&scratch.frames);
+            body.chain.far(ways, &mut scratch.far);
+            body.chain.near(|i| ways(i) * stretch.half, &ball, &scratch.axes, &mut scratch.near);
+            scratch.balls.push(ball);
+        }
+        let frames = &scratch.frames;
+        let mut cover = Cover { margin: stretch.margin, half: stretch.half, part: f64::INFINITY };
+        for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
+            let last = body.first + body.chain.steps.len();
+            let (near, far) = (scratch.near[last], scratch.far[last]);
+            let clearance = |limit| world.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
+            if let Some(room) = cover.add(near, far, f64::NEG_INFINITY, clearance) {
+                return room;
+            }
+        }
+        for pair in &robot.pairs {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i]);
+            let [ball_a, ball_b] = pair.bodies.map(|i| &scratch.balls[i]);
+            let sum = |of: &[f64]| of[a.first + pair.steps[0]] + of[b.first + pair.steps[1]];
+            let apart = (ball_a.center - ball_b.center).norm() - ball_a.radius - ball_b.radius;
+            let clearance =
+                |limit| query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
+            if let Some(room) = cover.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
+                return room;
+            }
+        }
+        Room::Over { part: cover.part }
+    }
+}
+
+/// How much of a motion is shown to be clear.
+struct Cover {
+    margin: f64,
+    half: f64,
+    /// To either side of the middle, as a fraction of the motion.
+    part: f64,
+}
+
+impl Cover {
+    /// Takes into account a distance that changes by at most `near` over half the stretch and at most `far`
+    /// over the whole motion; over a smaller part of the stretch by a smaller part of `near`. It is at least
+    /// `known`, and otherwise to be asked for. An answer when the rest need not be looked at.
+    fn add(&mut self, near: f64, far: f64, known: f64, clearance: impl FnOnce(f64) -> f64) -> Option<Room> {
+        let margin = self.margin;
+        // Others may have shown already that less will do.
+        let wanted = self.half.min(self.part);
+        let near = near * (wanted / self.half);
+        let enough = near.max(margin) + margin;
+        let clearance = if known >= enough { known } else { clearance(enough) };
+        let part = if clearance <= 0.0 {
+            return Some(Room::Contact);
+        } else if clearance >= near + margin {
+            wanted.max((clearance - margin) / far)
+        } else if clearance >= 2.0 * margin {
+            wanted * (clearance - margin) / near
+        } else {
+            return Some(Room::Tight);
+        };
+        // 0/0 where nothing moves: clear all along.
+        self.part = self.part.min(if far > 0.0 { part } else { f64::INFINITY });
+        None
+    }
+}
+
+impl<Q: Coordinates> MotionBound<Q> for Arm {
+    /// The most that any link moves, or two links relative to each other, along the interpolation of the
+    /// [space](Arm::space) of the arm: the sum over the joints above it of how far the joint goes times the
+    /// largest distance of a point of the link from the joint's axis.
+    fn motion_bound(&self, from: &Q, to: &Q) -> f64 {
+        let (robot, from, to) = (&*self.robot, from.as_slice(), to.as_slice());
+        let kinematics = &robot.kinematics;
+        if from.len() != kinematics.dof() || to.len() != kinematics.dof() {
+            return f64::INFINITY;
+        }
+        let ways = |i: usize| kinematics.way(i, from, to);
+        // `max` would lose NaN.
+        if !(0..kinematics.dof()).all(|i| ways(i).is_finite()) {
+            return f64::INFINITY;
+        }
+        let links = robot.bodies.iter().map(|body| body.chain.whole(ways)).fold(0.0, f64::max);
+        let pairs = robot.pairs.iter().filter(|pair| pair.steps.iter().all(|steps| *steps > 0)).map(|pair| {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].chain);
+            a.part(pair.steps[0], ways) + b.part(pair.steps[1], ways)
+        });
+        pairs.fold(links, f64::max)
+    }
+}

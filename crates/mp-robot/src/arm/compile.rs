@@ -1,0 +1,268 @@
+//! From the names of a model to a checked tree.
+
+use super::kinematics::{Coordinate, Frame, Kinematics, Place, is_pose, range};
+use super::{ArmError, ArmModel, Joint, JointKind};
+use mp_cspace::JointRange;
+use nalgebra::{Isometry3, Unit};
+use std::collections::HashMap;
+
+/// Largest coordinate of an origin and largest limit.
+pub(crate) const MAX_LENGTH: f64 = 1e70;
+
+/// Which coordinate a joint follows and how.
+#[derive(Clone, Copy)]
+struct Source {
+    coordinate: usize,
+    scale: f64,
+    offset: f64,
+}
+
+pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
+    if !is_pose(&model.base, MAX_LENGTH) {
+        return Err(ArmError::Origin { what: "base", name: String::new(), max: MAX_LENGTH });
+    }
+    let links = numbered("link", model.links.iter().map(|link| link.name.as_str()))?;
+    let joints = numbered("joint", model.joints.iter().map(|joint| joint.name.as_str()))?;
+    model.joints.iter().try_for_each(check)?;
+    let tree = Tree::new(model, &links)?;
+    let (coordinates, sources) = coordinates(model, &joints)?;
+
+    let mut out = Kinematics {
+        base: model.base,
+        frames: Vec::new(),
+        coordinates,
+        places: Vec::new(),
+        joined: tree.ends.clone(),
+    };
+    let mut places: Vec<Option<Place>> = vec![None; model.links.len()];
+    let name = |link: usize| model.links[link].name.clone();
+    places[tree.root] = Some(Place { name: name(tree.root), frame: 0, pose: Isometry3::identity() });
+    // A queue: every joint comes after the one its parent hangs on.
+    let mut next = vec![tree.root];
+    let mut at = 0;
+    while at < next.len() {
+        let link = next[at];
+        at += 1;
+        let Some(Place { frame, pose, .. }) = places[link].clone() else { continue };
+        for &j in &tree.below[link] {
+            let (joint, child) = (&model.joints[j], tree.ends[j][1]);
+            let origin = pose * joint.origin;
+            let (frame, pose) = match sources[j] {
+                None => (frame, origin),
+                Some(source) => {
+                    out.frames.push(moving(joint, frame, origin, source, &out.coordinates));
+                    (out.frames.len(), Isometry3::identity())
+                }
+            };
+            places[child] = Some(Place { name: name(child), frame, pose });
+            next.push(child);
+        }
+    }
+    out.places = places.into_iter().flatten().collect();
+    Ok(out)
+}
+
+/// Names to indices.
+fn numbered<'a>(
+    what: &'static str,
+    names: impl Iterator<Item = &'a str>,
+) -> Result<HashMap<&'a str, usize>, ArmError> {
+    let mut numbers = HashMap::new();
+    for (i, name) in names.enumerate() {
+        if numbers.insert(name, i).is_some() {
+            return Err(ArmError::Duplicate { what, name: name.to_owned() });
+        }
+    }
+    Ok(numbers)
+}
+
+/// The joint by itself.
+fn check(joint: &Joint) -> Result<(), ArmError> {
+    let name = || joint.name.clone();
+    if !is_pose(&joint.origin, MAX_LENGTH) {
+        return Err(ArmError::Origin { what: "joint", name: name(), max: MAX_LENGTH });
+    }
+    let Some(range) = range(joint.kind) else { return Ok(()) };
+    let [x, y, z] = joint.axis.into();
+    let finite = joint.axis.iter().all(|c| c.is_finite());
+    if !(finite && (1.0 / MAX_LENGTH..=MAX_LENGTH).contains(&joint.axis.amax())) {
+        return Err(ArmError::Axis { joint: name(), x, y, z });
+    }
+    match range {
+        JointRange::Interval { low, high }
+            if !(low < high && low.abs() <= MAX_LENGTH && high.abs() <= MAX_LENGTH) =>
+        {
+            Err(ArmError::Limits { joint: name(), low, high })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Which link hangs on which.
+struct Tree {
+    root: usize,
+    /// The joints below each link, in the order of the model.
+    below: Vec<Vec<usize>>,
+    /// Parent and child of each joint.
+    ends: Vec<[usize; 2]>,
+}
+
+impl Tree {
+    fn new(model: &ArmModel, links: &HashMap<&str, usize>) -> Result<Self, ArmError> {
+        let mut below = vec![Vec::new(); model.links.len()];
+        let mut above: Vec<Option<usize>> = vec![None; model.links.len()];
+        let mut ends = Vec::new();
+        for (j, joint) in model.joints.iter().enumerate() {
+            let find = |role: &'static str, name: &String| {
+                links.get(name.as_str()).copied().ok_or_else(|| ArmError::UnknownLink {
+                    joint: joint.name.clone(),
+                    role,
+                    link: name.clone(),
+                })
+            };
+            let (parent, child) = (find("parent", &joint.parent)?, find("child", &joint.child)?);
+            if let Some(first) = above[child].replace(j) {
+                return Err(ArmError::TwoParents {
+                    link: joint.child.clone(),
+                    first: model.joints[first].name.clone(),
+                    second: joint.name.clone(),
+                });
+            }
+            below[parent].push(j);
+            ends.push([parent, child]);
+        }
+        let name = |link: usize| model.links[link].name.clone();
+        let mut roots = (0..model.links.len()).filter(|&link| above[link].is_none());
+        let looped = |link: usize| ArmError::Loop {
+            link: name(link),
+            joint: above[link].map_or_else(String::new, |j| model.joints[j].name.clone()),
+        };
+        let root = match (roots.next(), roots.next()) {
+            (Some(root), None) => root,
+            (Some(first), Some(second)) => {
+                return Err(ArmError::TwoRoots { first: name(first), second: name(second) });
+            }
+            (None, _) => return Err(if model.links.is_empty() { ArmError::NoLinks } else { looped(0) }),
+        };
+        // What the root does not reach goes round in a circle.
+        let mut reached = vec![false; model.links.len()];
+        let mut stack = vec![root];
+        while let Some(link) = stack.pop() {
+            reached[link] = true;
+            stack.extend(below[link].iter().map(|&j| ends[j][1]));
+        }
+        match reached.iter().position(|reached| !reached) {
+            Some(link) => Err(looped(link)),
+            None => Ok(Self { root, below, ends }),
+        }
+    }
+}
+
+/// The coordinates, and what each joint follows (nothing where it is fixed).
+fn coordinates(
+    model: &ArmModel,
+    joints: &HashMap<&str, usize>,
+) -> Result<(Vec<Coordinate>, Vec<Option<Source>>), ArmError> {
+    let mut all = Vec::new();
+    let mut own = vec![None; model.joints.len()];
+    for (j, joint) in model.joints.iter().enumerate() {
+        if let (Some(range), None) = (range(joint.kind), &joint.mimic) {
+            own[j] = Some(all.len());
+            all.push(Coordinate { name: joint.name.clone(), range });
+        }
+    }
+    let mut sources = Vec::new();
+    for (j, joint) in model.joints.iter().enumerate() {
+        if joint.kind == JointKind::Fixed {
+            sources.push(None);
+            continue;
+        }
+        let source = follow(model, joints, &own, j)?;
+        narrow(joint, source, &mut all[source.coordinate])?;
+        sources.push(Some(source));
+    }
+    if all.is_empty() { Err(ArmError::NothingMoves) } else { Ok((all, sources)) }
+}
+
+/// From joint to joint until one follows no other.
+fn follow(
+    model: &ArmModel,
+    joints: &HashMap<&str, usize>,
+    own: &[Option<usize>],
+    start: usize,
+) -> Result<Source, ArmError> {
+    let (mut j, mut scale, mut offset) = (start, 1.0, 0.0);
+    for _ in 0..=model.joints.len() {
+        if let Some(coordinate) = own[j] {
+            return Ok(Source { coordinate, scale, offset });
+        }
+        let joint = &model.joints[j];
+        let Some(mimic) = &joint.mimic else {
+            let (joint, of) = (model.joints[start].name.clone(), joint.name.clone());
+            return Err(ArmError::Mimic {
+                joint,
+                of,
+                why: "that joint is fixed, so there is nothing to follow",
+            });
+        };
+        let wrong = |why| ArmError::Mimic { joint: joint.name.clone(), of: mimic.joint.clone(), why };
+        let usable = |x: f64| x.abs() <= MAX_LENGTH;
+        if !(usable(mimic.multiplier) && usable(mimic.offset)) {
+            return Err(wrong("multiplier and offset must be finite numbers"));
+        }
+        j = *joints.get(mimic.joint.as_str()).ok_or_else(|| wrong("there is no joint of that name"))?;
+        offset += scale * mimic.offset;
+        scale *= mimic.multiplier;
+    }
+    let joint = &model.joints[start];
+    let of = joint.mimic.as_ref().map_or_else(String::new, |mimic| mimic.joint.clone());
+    Err(ArmError::Mimic { joint: joint.name.clone(), of, why: "that leads back to itself" })
+}
+
+/// Lets a coordinate go no farther than a joint that follows it can.
+fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<(), ArmError> {
+    let Some(mimic) = &joint.mimic else { return Ok(()) };
+    let wrong = |why| ArmError::Mimic { joint: joint.name.clone(), of: mimic.joint.clone(), why };
+    let Source { scale, offset, .. } = source;
+    match (joint.kind, &mut coordinate.range) {
+        (JointKind::Continuous, JointRange::Circle) if scale.fract() == 0.0 => Ok(()),
+        (_, JointRange::Circle) => Err(wrong(
+            "that joint turns without end, so what follows it must be continuous too, by a whole multiplier; \
+             or give that joint limits and make it revolute",
+        )),
+        (JointKind::Continuous | JointKind::Fixed, _) => Ok(()),
+        (
+            JointKind::Revolute { low, high } | JointKind::Prismatic { low, high },
+            JointRange::Interval { low: own_low, high: own_high },
+        ) => {
+            if scale == 0.0 {
+                let inside = (low..=high).contains(&offset);
+                return if inside { Ok(()) } else { Err(wrong("its offset is outside of its limits")) };
+            }
+            let ends = [(low - offset) / scale, (high - offset) / scale];
+            *own_low = own_low.max(ends[0].min(ends[1]));
+            *own_high = own_high.min(ends[0].max(ends[1]));
+            let room = *own_low < *own_high;
+            if room { Ok(()) } else { Err(wrong("the limits of both leave no room to move")) }
+        }
+    }
+}
+
+fn moving(
+    joint: &Joint,
+    parent: usize,
+    origin: Isometry3<f64>,
+    source: Source,
+    coordinates: &[Coordinate],
+) -> Frame {
+    let Source { coordinate, scale, offset } = source;
+    let slides = matches!(joint.kind, JointKind::Prismatic { .. });
+    let slide = match coordinates[coordinate].range {
+        JointRange::Interval { low, high } if slides => {
+            (low * scale + offset).abs().max((high * scale + offset).abs())
+        }
+        _ => 0.0,
+    };
+    let axis = Unit::new_normalize(joint.axis);
+    Frame { parent, origin, axis, slides, coordinate, scale, offset, slide }
+}

@@ -1,0 +1,164 @@
+//! What can be wrong with an arm.
+
+use mp_collide::SceneError;
+use mp_cspace::SpaceError;
+use mp_geom::MeshError;
+use thiserror::Error;
+
+/// Why an arm could not be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ArmError {
+    /// Two links or two joints of one name.
+    #[error("there are two {what}s named \"{name}\": give each a name of its own")]
+    Duplicate {
+        /// "link" or "joint".
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A joint names a link that is not there.
+    #[error("joint \"{joint}\" has the {role} link \"{link}\", but there is no link of that name")]
+    UnknownLink {
+        /// The joint.
+        joint: String,
+        /// "parent" or "child".
+        role: &'static str,
+        /// The link it names.
+        link: String,
+    },
+    /// A pair that may touch names a link that is not there.
+    #[error(
+        "the links \"{first}\" and \"{second}\" shall be allowed to touch, but there is no link \"{missing}\""
+    )]
+    UnknownPair {
+        /// One link of the pair.
+        first: String,
+        /// The other.
+        second: String,
+        /// The one that is missing.
+        missing: String,
+    },
+    /// No links at all.
+    #[error("an arm needs at least one link and one joint that moves; this one has no links")]
+    NoLinks,
+    /// Nothing moves.
+    #[error(
+        "no joint of this arm moves by itself: at least one revolute, continuous or prismatic joint is needed"
+    )]
+    NothingMoves,
+    /// A link hangs on two joints.
+    #[error(
+        "link \"{link}\" is the child of joint \"{first}\" and of joint \"{second}\": chains must be trees, so \
+         a closed chain has to be cut at one of them"
+    )]
+    TwoParents {
+        /// The link.
+        link: String,
+        /// The first joint.
+        first: String,
+        /// The second joint.
+        second: String,
+    },
+    /// Every link is some joint's child.
+    #[error(
+        "the joints form a loop through link \"{link}\" (by joint \"{joint}\"): chains must be trees that begin \
+         at one link with no parent"
+    )]
+    Loop {
+        /// A link of the loop.
+        link: String,
+        /// The joint that closes it.
+        joint: String,
+    },
+    /// Two links with no parent.
+    #[error(
+        "the links \"{first}\" and \"{second}\" both have no parent: join them by a joint, if only a fixed one"
+    )]
+    TwoRoots {
+        /// One of them.
+        first: String,
+        /// Another.
+        second: String,
+    },
+    /// The axis of a joint that moves has no direction.
+    #[error("the axis of joint \"{joint}\" is {x} {y} {z}: it must have a direction")]
+    Axis {
+        /// The joint.
+        joint: String,
+        /// Its axis.
+        x: f64,
+        /// Its axis.
+        y: f64,
+        /// Its axis.
+        z: f64,
+    },
+    /// A pose that is none.
+    #[error("the origin of {what} \"{name}\" is no pose: its numbers must be finite and below {max:e} m")]
+    Origin {
+        /// "joint" or "link" or "base".
+        what: &'static str,
+        /// Its name.
+        name: String,
+        /// The largest possible.
+        max: f64,
+    },
+    /// Limits that leave no room.
+    #[error(
+        "joint \"{joint}\" may move from {low} to {high}: the lower limit must be below the upper and both \
+         finite; make the joint fixed if it shall not move, continuous if it turns without end"
+    )]
+    Limits {
+        /// The joint.
+        joint: String,
+        /// Its lower limit (rad or m).
+        low: f64,
+        /// Its upper limit.
+        high: f64,
+    },
+    /// Limits given for a joint that has none to give.
+    #[error("there is no joint \"{joint}\" with limits of its own: {why}")]
+    NoSuchCoordinate {
+        /// The name asked for.
+        joint: String,
+        /// What is there instead.
+        why: String,
+    },
+    /// A joint that cannot follow another.
+    #[error("joint \"{joint}\" mimics \"{of}\": {why}")]
+    Mimic {
+        /// The joint.
+        joint: String,
+        /// The one it names.
+        of: String,
+        /// What is wrong.
+        why: &'static str,
+    },
+    /// A link is too large to compute with.
+    #[error("link \"{link}\" is too large or too far away: {radius:e} m; at most {max:e} m can be handled")]
+    TooLarge {
+        /// The link.
+        link: String,
+        /// Its size.
+        radius: f64,
+        /// The largest possible.
+        max: f64,
+    },
+    /// More triangles than can be handled.
+    #[error("arm and obstacles have {count} triangles; at most {max} can be handled")]
+    TooManyTriangles {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        max: usize,
+    },
+    /// An obstacle's pose is no pose, or its mesh is too large.
+    #[error("cannot place an obstacle: {0}")]
+    Obstacle(#[from] SceneError),
+    /// A mesh that is none.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// Joint ranges that make no space.
+    #[error(transparent)]
+    Space(#[from] SpaceError),
+}

@@ -1,0 +1,167 @@
+//! What an arm is made of: plain data, by names.
+
+use mp_geom::TriMesh;
+use nalgebra::{Isometry3, Vector3};
+
+/// A rigid part of an arm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// Its name.
+    pub name: String,
+    /// What can collide, in the frame of the link; nothing for links that only carry joints.
+    pub shapes: Vec<TriMesh>,
+}
+
+impl Link {
+    /// A link without shapes.
+    #[must_use]
+    pub fn new(name: impl Into<String>) -> Self {
+        Self { name: name.into(), shapes: Vec::new() }
+    }
+
+    /// The same with one more shape, at `pose` in the frame of the link.
+    #[must_use]
+    pub fn with(mut self, shape: &TriMesh, pose: &Isometry3<f64>) -> Self {
+        self.shapes.push(shape.transformed(pose));
+        self
+    }
+}
+
+/// How a joint lets its child move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum JointKind {
+    /// Not at all.
+    Fixed,
+    /// Turns about its axis between two angles (rad).
+    Revolute {
+        /// The lower limit.
+        low: f64,
+        /// The upper limit.
+        high: f64,
+    },
+    /// Turns about its axis without end.
+    Continuous,
+    /// Slides along its axis between two places (m).
+    Prismatic {
+        /// The lower limit.
+        low: f64,
+        /// The upper limit.
+        high: f64,
+    },
+}
+
+/// A joint that follows another: its value is `multiplier` times the other's, plus `offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// The joint it follows.
+    pub joint: String,
+    /// Factor; negative for the other way.
+    pub multiplier: f64,
+    /// Radians or metres.
+    pub offset: f64,
+}
+
+/// A joint between two links.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// The link it hangs on.
+    pub parent: String,
+    /// The link it moves.
+    pub child: String,
+    /// Where the frame of the child is in the frame of the parent, at value zero.
+    pub origin: Isometry3<f64>,
+    /// The axis, in the frame of the child: any length but zero.
+    pub axis: Vector3<f64>,
+    /// How the child moves.
+    pub kind: JointKind,
+    /// The joint it follows, if it does; it is then no coordinate of its own.
+    pub mimic: Option<Mimic>,
+}
+
+impl Joint {
+    /// A joint about or along X, the frames of both links in one place.
+    #[must_use]
+    pub fn new(
+        name: impl Into<String>,
+        parent: impl Into<String>,
+        child: impl Into<String>,
+        kind: JointKind,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            parent: parent.into(),
+            child: child.into(),
+            origin: Isometry3::identity(),
+            axis: Vector3::x(),
+            kind,
+            mimic: None,
+        }
+    }
+
+    /// The same with the frame of the child at `origin` in that of the parent.
+    #[must_use]
+    pub fn at(mut self, origin: Isometry3<f64>) -> Self {
+        self.origin = origin;
+        self
+    }
+
+    /// The same about or along `axis`.
+    #[must_use]
+    pub fn axis(mut self, axis: Vector3<f64>) -> Self {
+        self.axis = axis;
+        self
+    }
+
+    /// The same following `joint`.
+    #[must_use]
+    pub fn mimic(mut self, joint: impl Into<String>, multiplier: f64, offset: f64) -> Self {
+        self.mimic = Some(Mimic { joint: joint.into(), multiplier, offset });
+        self
+    }
+}
+
+/// An arm, or any tree of links: plain data, checked by [`Arm::new`](crate::Arm::new).
+///
+/// ```
+/// use mp_geom::primitives::cuboid;
+/// use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
+/// use nalgebra::{Isometry3, Vector3};
+///
+/// // Two bars of 1 m in a plane.
+/// let bar = cuboid(0.9, 0.1, 0.1)?;
+/// let along = Isometry3::translation(0.5, 0.0, 0.0);
+/// let turn = JointKind::Revolute { low: -3.0, high: 3.0 };
+/// let model = ArmModel {
+///     links: vec![Link::new("base"), Link::new("upper").with(&bar, &along), Link::new("lower").with(&bar, &along)],
+///     joints: vec![
+///         Joint::new("shoulder", "base", "upper", turn).axis(Vector3::z()),
+///         Joint::new("elbow", "upper", "lower", turn)
+///             .axis(Vector3::z())
+///             .at(Isometry3::translation(1.0, 0.0, 0.0)),
+///     ],
+///     ..ArmModel::default()
+/// };
+/// let arm = Arm::new(&model, [])?;
+/// assert_eq!(arm.dof(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmModel {
+    /// The links. One has no parent: the root, which stands still.
+    pub links: Vec<Link>,
+    /// The joints. Those that move and mimic no other are the coordinates, in this order.
+    pub joints: Vec<Joint>,
+    /// Where the root is in the world.
+    pub base: Isometry3<f64>,
+    /// Pairs of links that may touch and overlap, besides those a joint joins; `None` to find by sampling
+    /// which pairs always do.
+    pub may_touch: Option<Vec<(String, String)>>,
+}
+
+impl Default for ArmModel {
+    fn default() -> Self {
+        Self { links: Vec::new(), joints: Vec::new(), base: Isometry3::identity(), may_touch: None }
+    }
+}

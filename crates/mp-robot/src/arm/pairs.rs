@@ -1,0 +1,86 @@
+//! Which links are compared with each other.
+
+use super::kinematics::Kinematics;
+use super::robot::Body;
+use super::{ArmError, ArmModel};
+use mp_collide::Query;
+use mp_cspace::{Halton, Joints, Rng, Sampler};
+use nalgebra::DVector;
+use std::collections::BTreeSet;
+
+/// Two bodies that must not touch, and how many joints of their chains are between them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) bodies: [usize; 2],
+    pub(super) steps: [usize; 2],
+}
+
+/// In how many configurations a pair must touch to be taken for one that always does.
+const SAMPLES: usize = 100;
+
+/// All pairs but those that never move relative to each other, those a joint joins, and those that may touch.
+pub(super) fn pairs(
+    kinematics: &Kinematics,
+    bodies: &[Body],
+    model: &ArmModel,
+) -> Result<Vec<Pair>, ArmError> {
+    let key = |a: usize, b: usize| (a.min(b), a.max(b));
+    let mut allowed: BTreeSet<_> = kinematics.joined.iter().map(|[a, b]| key(*a, *b)).collect();
+    for (first, second) in model.may_touch.iter().flatten() {
+        let find = |name: &String| {
+            kinematics.links().position(|link| link == name).ok_or_else(|| ArmError::UnknownPair {
+                first: first.clone(),
+                second: second.clone(),
+                missing: name.clone(),
+            })
+        };
+        allowed.insert(key(find(first)?, find(second)?));
+    }
+    let mut out = Vec::new();
+    for (j, b) in bodies.iter().enumerate() {
+        for (i, a) in bodies.iter().enumerate().take(j) {
+            if a.frame != b.frame && !allowed.contains(&key(a.link, b.link)) {
+                out.push(Pair { bodies: [i, j], steps: between(a, b) });
+            }
+        }
+    }
+    if model.may_touch.is_none() {
+        leave_out_what_always_touches(kinematics, bodies, &mut out)?;
+    }
+    Ok(out)
+}
+
+/// How many joints of each chain are below the frame where both chains meet.
+fn between(a: &Body, b: &Body) -> [usize; 2] {
+    let on = |body: &Body| body.chain.steps.iter().map(|step| step.frame).collect::<Vec<_>>();
+    let (on_a, on_b) = (on(a), on(b));
+    let common = on_a.iter().rev().zip(on_b.iter().rev()).take_while(|(x, y)| x == y).count();
+    [on_a.len() - common, on_b.len() - common]
+}
+
+/// The neutral configuration and points of the Halton sequence: the same for the same arm.
+fn leave_out_what_always_touches(
+    kinematics: &Kinematics,
+    bodies: &[Body],
+    pairs: &mut Vec<Pair>,
+) -> Result<(), ArmError> {
+    let space: Joints<DVector<f64>> = kinematics.space()?;
+    let (mut halton, mut rng) = (Halton::new(&space), Rng::seed(0));
+    let (mut query, mut frames) = (Query::default(), Vec::new());
+    let mut always = vec![true; pairs.len()];
+    let mut q = DVector::from(kinematics.neutral());
+    for _ in 0..SAMPLES {
+        if !always.contains(&true) {
+            break;
+        }
+        kinematics.frames_into(q.as_slice(), &mut frames);
+        for (pair, always) in pairs.iter().zip(&mut always) {
+            let [a, b] = pair.bodies.map(|i| &bodies[i]);
+            *always = *always && query.intersects(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame]);
+        }
+        q = halton.sample(&mut rng);
+    }
+    let mut always = always.into_iter();
+    pairs.retain(|_| !always.next().unwrap_or(false));
+    Ok(())
+}

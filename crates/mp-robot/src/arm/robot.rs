@@ -1,0 +1,308 @@
+//! An arm among obstacles that stand still.
+
+use super::kinematics::{Coordinate, Kinematics};
+use super::pairs::{Pair, pairs};
+use super::travel::Chain;
+use super::{ArmError, ArmModel};
+use crate::CheckCounters;
+use mp_collide::{BodyId, CollisionMesh, Counters, Query, Scene};
+use mp_cspace::{Coordinates, Joints};
+use mp_geom::{Aabb, Sphere, TriMesh};
+use nalgebra::{Isometry3, Point3, Vector3};
+use std::sync::Arc;
+
+/// Most triangles: what a reference mesh can hold.
+const MAX_TRIANGLES: usize = 1 << 30;
+
+/// Largest link, metres.
+const MAX_RADIUS: f64 = 1e70;
+
+/// A link that can collide.
+#[derive(Debug)]
+pub(super) struct Body {
+    /// Which link of the model.
+    pub(super) link: usize,
+    /// What moves it: 0 for the base.
+    pub(super) frame: usize,
+    /// In that frame.
+    pub(super) mesh: TriMesh,
+    pub(super) tree: CollisionMesh,
+    pub(super) ball: Sphere,
+    pub(super) chain: Chain,
+    /// Where its entries begin in [`Scratch::far`] and [`Scratch::near`].
+    pub(super) first: usize,
+}
+
+impl Body {
+    /// The ball around it in the world.
+    #[inline]
+    pub(super) fn ball_at(&self, frames: &[Isometry3<f64>]) -> Sphere {
+        Sphere { center: frames[self.frame] * self.ball.center, radius: self.ball.radius }
+    }
+}
+
+/// The arm itself: shared by all clones, whatever the obstacles.
+#[derive(Debug)]
+pub(super) struct Robot {
+    pub(super) kinematics: Kinematics,
+    /// In the order of the links.
+    pub(super) bodies: Vec<Body>,
+    pub(super) pairs: Vec<Pair>,
+    /// The largest distance of any of its points from the base in any configuration.
+    pub(super) reach: f64,
+}
+
+impl Robot {
+    fn new(model: &ArmModel) -> Result<Self, ArmError> {
+        let kinematics = Kinematics::new(model)?;
+        let mut bodies = Vec::new();
+        let (mut first, mut count, mut reach) = (0, 0_usize, 0.0_f64);
+        for (i, (link, place)) in model.links.iter().zip(&kinematics.places).enumerate() {
+            if link.shapes.is_empty() {
+                continue;
+            }
+            // No mesh of finite shapes means a shape moved by a pose that is none, or too many triangles.
+            let too_large = |radius| ArmError::TooLarge { link: link.name.clone(), radius, max: MAX_RADIUS };
+            let merged = TriMesh::merged(&link.shapes).ok_or_else(|| too_large(f64::NAN))?;
+            count = count.saturating_add(merged.triangles().len());
+            if count > MAX_TRIANGLES {
+                return Err(ArmError::TooManyTriangles { count, max: MAX_TRIANGLES });
+            }
+            let mesh = merged.transformed(&place.pose);
+            let chain = Chain::new(&kinematics, &mesh, place.frame);
+            let radius = reach_of(&kinematics, &mesh, place.frame);
+            // Written so that NaN is refused.
+            let small = radius <= MAX_RADIUS;
+            if !small {
+                return Err(too_large(radius));
+            }
+            reach = reach.max(radius);
+            let entries = chain.steps.len() + 1;
+            let (ball, tree) = (mesh.bounding_sphere(), CollisionMesh::new(&mesh));
+            let ball = Sphere { radius: ball.radius * (1.0 + 1e-9), ..ball };
+            bodies.push(Body { link: i, frame: place.frame, mesh, tree, ball, chain, first });
+            first += entries;
+        }
+        let pairs = pairs(&kinematics, &bodies, model)?;
+        Ok(Self { kinematics, bodies, pairs, reach })
+    }
+
+    pub(super) fn name(&self, body: usize) -> &str {
+        &self.kinematics.places[self.bodies[body].link].name
+    }
+}
+
+/// The largest distance of a point of `mesh`, in the frame `frame`, from the base in any configuration.
+fn reach_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> f64 {
+    let mut reach = mesh.vertices().iter().map(|p| p.coords.norm()).fold(0.0, |a: f64, b| {
+        // `max` would lose NaN.
+        if b > a || b.is_nan() { b } else { a }
+    });
+    let mut at = frame;
+    while at > 0 {
+        let joint = &kinematics.frames[at - 1];
+        reach += joint.slide + joint.origin.translation.vector.norm();
+        at = joint.parent;
+    }
+    reach
+}
+
+/// Obstacles: shared by all clones.
+#[derive(Debug)]
+pub(super) struct World {
+    pub(super) scene: Scene,
+    /// Every obstacle in the world.
+    pub(super) placed: Vec<(BodyId, Arc<TriMesh>)>,
+    pub(super) bounds: Aabb,
+}
+
+impl World {
+    fn new(
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+        triangles: usize,
+    ) -> Result<Self, ArmError> {
+        let (mut scene, mut placed, mut count) = (Scene::new(), Vec::new(), triangles);
+        for (name, mesh, pose) in obstacles {
+            count = count.saturating_add(mesh.triangles().len());
+            if count > MAX_TRIANGLES {
+                return Err(ArmError::TooManyTriangles { count, max: MAX_TRIANGLES });
+            }
+            let in_world = Arc::new(mesh.transformed(&pose));
+            placed.push((scene.insert(name, CollisionMesh::new(&mesh), pose)?, in_world));
+        }
+        scene.merge_static();
+        let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
+        Ok(Self { scene, placed, bounds })
+    }
+}
+
+/// Memory of one clone.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    pub(super) frames: Vec<Isometry3<f64>>,
+    pub(super) axes: Vec<(Point3<f64>, Vector3<f64>)>,
+    pub(super) balls: Vec<Sphere>,
+    pub(super) far: Vec<f64>,
+    pub(super) near: Vec<f64>,
+}
+
+/// An arm, or any tree of links, among named obstacles that stand still.
+///
+/// A configuration is a list of joint values (`SVector<f64, N>` or `DVector<f64>`), one for each
+/// [coordinate](Arm::coordinates); its space is [`space`](Arm::space). It is free when
+///
+/// - no link that can move has a point in common with an obstacle. Links that stand still are not compared with
+///   obstacles, which stand still too: a table may touch the base it carries;
+/// - no two links have a point in common, but for pairs that never move relative to each other, pairs that a
+///   joint joins (at a joint links touch), and pairs that may touch: those of
+///   [`ArmModel::may_touch`] if given, else those that touch at each of 100 configurations, the neutral one and
+///   99 of the Halton sequence.
+///
+/// Surfaces count, as for [`RigidBody`](crate::RigidBody): touching is collision, and what is wholly inside of
+/// something closed is free. Limits are the business of the space.
+///
+/// Distances between links count as clearance like those to obstacles.
+///
+/// Meshes and trees are shared between clones; counters and scratch memory are each clone's own, so clone it
+/// per thread. Nothing is allocated by checks once the scratch has grown.
+#[derive(Clone, Debug)]
+pub struct Arm {
+    pub(super) robot: Arc<Robot>,
+    pub(super) world: Arc<World>,
+    pub(super) query: Query,
+    pub(super) counters: CheckCounters,
+    pub(super) scratch: Scratch,
+}
+
+impl Arm {
+    /// The arm of `model` among obstacles: name, mesh and pose in the world each.
+    ///
+    /// # Errors
+    /// When the model makes no sense (see [`ArmError`]), or an obstacle has no pose or is too large.
+    pub fn new(
+        model: &ArmModel,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+    ) -> Result<Self, ArmError> {
+        let robot = Robot::new(model)?;
+        let triangles = robot.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
+        let world = World::new(obstacles, triangles)?;
+        Ok(Self {
+            robot: Arc::new(robot),
+            world: Arc::new(world),
+            query: Query::default(),
+            counters: CheckCounters::default(),
+            scratch: Scratch::default(),
+        })
+    }
+
+    /// The same arm among other obstacles. Counters start at zero.
+    ///
+    /// # Errors
+    /// When an obstacle has no pose or is too large.
+    pub fn among(
+        &self,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+    ) -> Result<Self, ArmError> {
+        let triangles = self.robot.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
+        let world = Arc::new(World::new(obstacles, triangles)?);
+        let mut other = Self { world, ..self.clone() };
+        other.take_counters();
+        Ok(other)
+    }
+
+    /// Its kinematic tree.
+    #[must_use]
+    pub fn kinematics(&self) -> &Kinematics {
+        &self.robot.kinematics
+    }
+
+    /// The coordinates of a configuration, in order.
+    #[must_use]
+    pub fn coordinates(&self) -> &[Coordinate] {
+        self.kinematics().coordinates()
+    }
+
+    /// How many coordinates a configuration has.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.kinematics().dof()
+    }
+
+    /// The space of its configurations: see [`Kinematics::space`].
+    ///
+    /// # Errors
+    /// When `Q` has another number of coordinates.
+    pub fn space<Q: Coordinates>(&self) -> Result<Joints<Q>, ArmError> {
+        self.kinematics().space()
+    }
+
+    /// The links that can collide: name, mesh in the world at `q`. Nothing when `q` is no configuration. Slow:
+    /// for pictures.
+    #[must_use]
+    pub fn meshes_at(&self, q: &[f64]) -> Vec<(&str, TriMesh)> {
+        let mut frames = Vec::new();
+        if !self.kinematics().is_configuration(q) {
+            return Vec::new();
+        }
+        self.kinematics().frames_into(q, &mut frames);
+        let bodies = self.robot.bodies.iter().enumerate();
+        bodies.map(|(i, body)| (self.robot.name(i), body.mesh.transformed(&frames[body.frame]))).collect()
+    }
+
+    /// The names of the pairs of links that must not touch.
+    #[must_use]
+    pub fn checked_pairs(&self) -> Vec<[&str; 2]> {
+        self.robot.pairs.iter().map(|pair| pair.bodies.map(|body| self.robot.name(body))).collect()
+    }
+
+    /// The largest distance (m) of any of its points from the base, in any configuration: a bound by the
+    /// lengths of its links.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.robot.reach
+    }
+
+    /// The obstacles, by name.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.world.scene
+    }
+
+    /// The obstacles in the world, with their names.
+    pub fn obstacles(&self) -> impl Iterator<Item = (&str, &TriMesh)> {
+        let name = |id: &BodyId| self.world.scene.body(*id).map_or("", |body| body.name());
+        self.world.placed.iter().map(move |(id, mesh)| (name(id), &**mesh))
+    }
+
+    /// The box around all obstacles; empty when there are none.
+    #[must_use]
+    pub fn obstacle_bounds(&self) -> Aabb {
+        self.world.bounds
+    }
+
+    /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and never so small
+    /// that coordinates could not resolve it. An [`ArmVerifier`](crate::ArmVerifier) works to a tenth of it.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        let base = self.kinematics().base.translation.vector.amax();
+        let bounds = &self.world.bounds;
+        let world =
+            if bounds.is_empty() { 0.0 } else { bounds.min.coords.amax().max(bounds.max.coords.amax()) };
+        let tolerance = (1e-4 * self.reach()).max(1e-9 * (base + world + self.reach()));
+        if tolerance > 0.0 { tolerance } else { 1e-6 }
+    }
+
+    /// What was done so far by this clone.
+    #[must_use]
+    pub fn counters(&self) -> CheckCounters {
+        CheckCounters { work: self.query.counters, ..self.counters }
+    }
+
+    /// Starts counting anew, returning the counts so far.
+    pub fn take_counters(&mut self) -> CheckCounters {
+        let counters = self.counters();
+        self.counters = CheckCounters::default();
+        self.query.counters = Counters::default();
+        counters
+    }
+}

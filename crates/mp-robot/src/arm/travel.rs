@@ -1,0 +1,235 @@
+//! How far a motion of the joints moves a link.
+//!
+//! A point of a link has the speed of each joint above it times its distance from that joint's axis, added up.
+//! The distance is bounded twice:
+//!
+//! - once and for all, by the lengths of the chain between: [`Chain::new`];
+//! - about a configuration, by the distance there and how far the joints between have moved the point since:
+//!   [`Chain::near`].
+//!
+//! The second is the smaller where the arm is folded, and both are taken.
+
+use super::kinematics::Kinematics;
+use mp_geom::{Sphere, TriMesh};
+use nalgebra::{Isometry3, Point3, Vector3};
+
+/// Bounds are enlarged by this factor against rounding.
+const ROUND_UP: f64 = 1.0 + 1e-12;
+
+/// The joints above a link, the nearest first.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    pub(super) steps: Vec<Step>,
+}
+
+/// One of them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    /// The frame behind the joint.
+    pub(super) frame: usize,
+    coordinate: usize,
+    /// Radians or metres of the joint for one of the coordinate.
+    rate: f64,
+    /// The largest distance of a point of the link from the axis in any configuration; 1 where the joint slides.
+    reach: f64,
+    slides: bool,
+}
+
+impl Chain {
+    /// The joints above `mesh`, which is given in the frame `frame`.
+    ///
+    /// The largest distance of its points from the axis of a joint is at most that of the next joint's origin
+    /// plus that of the points from there, and so on along the chain; at the last joint it is taken from the
+    /// vertices themselves.
+    pub(super) fn new(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> Self {
+        let vertices = || mesh.vertices().iter().map(|p| p.coords);
+        // Of the points from the origin of the frame, and from the axis of the joint.
+        let mut from_origin = vertices().map(|v| v.norm()).fold(0.0, f64::max);
+        let mut steps = Vec::new();
+        let mut at = frame;
+        let from_axis = |axis: &Vector3<f64>| vertices().map(|v| v.cross(axis).norm()).fold(0.0, f64::max);
+        let mut lower: Option<(Vector3<f64>, f64)> = None;
+        while at > 0 {
+            let joint = &kinematics.frames[at - 1];
+            let reach = match lower {
+                None => from_axis(&joint.axis),
+                Some((origin, beyond)) => origin.cross(&joint.axis).norm() + beyond,
+            };
+            steps.push(Step {
+                frame: at,
+                coordinate: joint.coordinate,
+                rate: joint.scale.abs(),
+                reach: if joint.slides { 1.0 } else { reach * ROUND_UP },
+                slides: joint.slides,
+            });
+            // Now in the frame above.
+            let beyond = from_origin + joint.slide;
+            lower = Some((joint.origin.translation.vector, beyond));
+            from_origin = joint.origin.translation.vector.norm() + beyond;
+            at = joint.parent;
+        }
+        Self { steps }
+    }
+
+    /// Bounds (m) on how far the joints up to each step move a point of the link, over a whole motion; the
+    /// last is that of the whole chain. The first is zero: by no joint at all.
+    pub(super) fn far(&self, ways: impl Fn(usize) -> f64, out: &mut Vec<f64>) {
+        let mut sum = 0.0;
+        out.push(sum);
+        for step in &self.steps {
+            sum += ways(step.coordinate) * step.rate * step.reach * ROUND_UP;
+            out.push(sum);
+        }
+    }
+
+    /// The same over a stretch of the motion that turns the joints by `ways` to either side of a configuration,
+    /// in which the link is within `ball` and the joints have these axes, all in the world.
+    pub(super) fn near(
+        &self,
+        ways: impl Fn(usize) -> f64,
+        ball: &Sphere,
+        axes: &[(Point3<f64>, Vector3<f64>)],
+        out: &mut Vec<f64>,
+    ) {
+        let mut sum = 0.0;
+        out.push(sum);
+        for step in &self.steps {
+            let way = ways(step.coordinate) * step.rate;
+            if way > 0.0 {
+                let reach = if step.slides {
+                    1.0
+                } else {
+                    let (origin, axis) = &axes[step.frame - 1];
+                    let from_axis = (ball.center - origin).cross(axis).norm() + ball.radius;
+                    step.reach.min(from_axis + sum)
+                };
+                sum += way * reach * ROUND_UP;
+            }
+            out.push(sum);
+        }
+    }
+
+    /// Only the last of [`far`](Self::far).
+    pub(super) fn whole(&self, ways: impl Fn(usize) -> f64) -> f64 {
+        self.steps.iter().map(|step| ways(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
+    }
+
+    /// As [`whole`](Self::whole) by the first `count` joints only.
+    pub(super) fn part(&self, count: usize, ways: impl Fn(usize) -> f64) -> f64 {
+        let steps = &self.steps[..count];
+        steps.iter().map(|step| ways(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
+    }
+}
+
+/// The origins and directions of the axes of the joints in the world.
+pub(super) fn axes_into(
+    kinematics: &Kinematics,
+    frames: &[Isometry3<f64>],
+    out: &mut Vec<(Point3<f64>, Vector3<f64>)>,
+) {
+    out.clear();
+    out.extend(kinematics.frames.iter().zip(&frames[1..]).map(|(joint, pose)| {
+        (Point3::from(pose.translation.vector), pose.rotation * joint.axis.into_inner())
+    }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ArmModel, Joint, JointKind, Link};
+    use mp_cspace::{Joints, Rng, Space};
+    use nalgebra::{DVector, UnitQuaternion};
+    use rand::RngExt;
+
+    /// A chain of joints of all kinds with boxes off their axes.
+    fn chain(rng: &mut Rng) -> ArmModel {
+        let mut next = move || rng.random_range(-1.0..1.0);
+        let mut model = ArmModel { links: vec![Link::new("0")], ..ArmModel::default() };
+        for i in 1..7 {
+            let kind = match i {
+                3 => JointKind::Prismatic { low: -0.3, high: 0.2 },
+                5 => JointKind::Continuous,
+                _ => JointKind::Revolute { low: -2.0, high: 3.0 },
+            };
+            let mut vector = |scale: f64| Vector3::new(next(), next(), next()) * scale;
+            let (place, turn, axis) = (vector(0.4), vector(2.0), vector(1.0));
+            let shape = mp_geom::primitives::cuboid(0.1, 0.2, 0.5).unwrap();
+            let at = Isometry3::new(vector(0.3), vector(2.0));
+            model.links.push(Link::new(i.to_string()).with(&shape, &at));
+            let origin = Isometry3::from_parts(place.into(), UnitQuaternion::from_scaled_axis(turn));
+            let joint = Joint::new(format!("j{i}"), (i - 1).to_string(), i.to_string(), kind);
+            model.joints.push(joint.at(origin).axis(axis));
+        }
+        model.joints[5] = model.joints[5].clone().mimic("j1", -0.5, 0.1);
+        model
+    }
+
+    /// Every vertex of every link, on its way through small steps: never longer than either bound, and the
+    /// bounds are not far off.
+    #[test]
+    fn no_vertex_moves_farther_than_the_bounds() {
+        let mut rng = Rng::seed(1);
+        let (mut best_far, mut best_near) = (0.0_f64, 0.0_f64);
+        for _ in 0..30 {
+            let model = chain(&mut rng);
+            let kinematics = Kinematics::new(&model).unwrap();
+            let space: Joints<DVector<f64>> = kinematics.space().unwrap();
+            for size in [1.0, 0.1, 0.01] {
+                let a = space.sample_uniform(&mut rng);
+                let b = space.interpolate(&a, &space.sample_uniform(&mut rng), size);
+                let half = rng.random_range(0.05..0.5);
+                let at = |t: f64| {
+                    let mut frames = Vec::new();
+                    kinematics.frames_into(space.interpolate(&a, &b, t).as_slice(), &mut frames);
+                    frames
+                };
+                let ways = |i: usize| kinematics.way(i, a.as_slice(), b.as_slice());
+                let middle = at(0.5);
+                let mut axes = Vec::new();
+                axes_into(&kinematics, &middle, &mut axes);
+                for (link, place) in model.links.iter().zip(&kinematics.places).skip(1) {
+                    let mesh = link.shapes[0].transformed(&place.pose);
+                    let chain = Chain::new(&kinematics, &mesh, place.frame);
+                    let ball = mesh.bounding_sphere();
+                    let ball = Sphere { center: middle[place.frame] * ball.center, ..ball };
+                    let (mut far, mut near) = (Vec::new(), Vec::new());
+                    chain.far(ways, &mut far);
+                    chain.near(|i| ways(i) * half, &ball, &axes, &mut near);
+                    assert_eq!(*far.last().unwrap(), chain.whole(ways));
+                    assert!(near.iter().zip(&far).all(|(near, far)| *near <= far * half * (1.0 + 1e-9)));
+                    // Relative to each frame of the chain.
+                    for (count, (near, far)) in near.iter().zip(&far).enumerate() {
+                        let base = chain.steps.get(count).map_or(0, |step| step.frame);
+                        let way = |from: f64, to: f64| {
+                            let steps = 200;
+                            let place = |k: i32| {
+                                let frames = at(from + (to - from) * f64::from(k) / f64::from(steps));
+                                let pose = frames[base].inverse() * frames[place.frame];
+                                mesh.vertices().iter().map(|v| pose * v).collect::<Vec<_>>()
+                            };
+                            let mut ways = vec![0.0; mesh.vertices().len()];
+                            let mut last = place(0);
+                            for k in 1..=steps {
+                                let next = place(k);
+                                ways.iter_mut()
+                                    .zip(last.iter().zip(&next))
+                                    .for_each(|(w, (p, q))| *w += (q - p).norm());
+                                last = next;
+                            }
+                            ways.into_iter().fold(0.0, f64::max)
+                        };
+                        let whole = way(0.0, 1.0);
+                        assert!(whole <= far + 1e-12, "{whole} {far}");
+                        let sides = way(0.5, 0.5 + half).max(way(0.5, 0.5 - half));
+                        assert!(sides <= near + 1e-12, "{sides} {near}");
+                        if count > 0 {
+                            best_far = best_far.max(whole / far);
+                            best_near = best_near.max(sides / near);
+                        }
+                    }
+                }
+            }
+        }
+        assert!(best_far > 0.9 && best_near > 0.9, "{best_far} {best_near}");
+    }
+}

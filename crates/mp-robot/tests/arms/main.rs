@@ -1,0 +1,6 @@
+//! Arms.
+
+mod bad_input;
+mod common;
+mod kinematics;
+mod motions;

@@ -1,0 +1,298 @@
+//! Validity, clearance and certified motions, against plain triangle distances and against sampling.
+
+use crate::common::{clutter, obstacle, random_tree, six};
+use mp_collide::reference::RefMesh;
+use mp_cspace::{
+    Certified, Clearance, Joints, MotionBound, MotionCheck, MotionValidity, Rng, Space, Validity,
+};
+use mp_geom::{TriMesh, primitives::cuboid};
+use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
+use nalgebra::{DVector, Isometry3, SVector, Vector3};
+
+type Six = SVector<f64, 6>;
+
+fn arm() -> (Arm, Joints<Six>) {
+    let arm = Arm::new(&six(), clutter()).unwrap();
+    let space = arm.space().unwrap();
+    (arm, space)
+}
+
+/// The least distance by the reference implementation, from the model and the names of the pairs only.
+fn plain_distance(arm: &Arm, q: &[f64], still: &[&str]) -> f64 {
+    let identity = Isometry3::identity();
+    let links: Vec<(&str, RefMesh)> =
+        arm.meshes_at(q).into_iter().map(|(name, mesh)| (name, RefMesh::new(&mesh))).collect();
+    let mut least = f64::INFINITY;
+    for (name, link) in &links {
+        for (_, obstacle) in arm.obstacles().filter(|_| !still.contains(name)) {
+            least = least.min(link.clearance(&identity, &RefMesh::new(obstacle), &identity, f64::INFINITY));
+        }
+    }
+    for [a, b] in arm.checked_pairs() {
+        let find = |name: &str| &links.iter().find(|(n, _)| *n == name).unwrap().1;
+        least = least.min(find(a).clearance(&identity, find(b), &identity, f64::INFINITY));
+    }
+    least
+}
+
+fn consistent(mut arm: Arm, still: &[&str], samples: usize) -> [usize; 2] {
+    let space: Joints<DVector<f64>> = arm.space().unwrap();
+    let mut rng = Rng::seed(7);
+    let mut counts = [0, 0];
+    for _ in 0..samples {
+        let q = space.sample_uniform(&mut rng);
+        let (valid, clearance) = (arm.is_valid(&q), arm.clearance(&q, f64::INFINITY));
+        let plain = plain_distance(&arm, q.as_slice(), still);
+        assert_eq!(valid, clearance > 0.0);
+        assert_eq!(valid, !arm.in_contact(&q));
+        assert!((clearance - plain).abs() < 1e-11 || plain == clearance, "{clearance} {plain}");
+        assert!(arm.clearance(&q, 0.01) >= clearance.min(0.01) - 1e-12);
+        counts[usize::from(valid)] += 1;
+    }
+    counts
+}
+
+#[test]
+fn answers_are_those_of_the_reference() {
+    let counts = consistent(arm().0, &["base"], 400);
+    assert!(counts.into_iter().all(|n| n > 60), "{counts:?}");
+    let mut rng = Rng::seed(5);
+    let mut sum = [0, 0];
+    for count in 4..14 {
+        let mut model = random_tree(&mut rng, count);
+        model.may_touch = Some(Vec::new());
+        let Ok(arm) = Arm::new(&model, clutter()) else { continue };
+        // Whatever hangs on the root by fixed joints stands still.
+        let mut still: Vec<&str> = Vec::new();
+        let root = model.links.iter().find(|l| model.joints.iter().all(|j| j.child != l.name)).unwrap();
+        still.push(&root.name);
+        for _ in 0..count {
+            let fixed = model.joints.iter().filter(|j| j.kind == JointKind::Fixed);
+            let more: Vec<_> = fixed.filter(|j| still.contains(&&*j.parent)).map(|j| &*j.child).collect();
+            still.extend(more);
+        }
+        let counts = consistent(arm, &still, 60);
+        sum = [sum[0] + counts[0], sum[1] + counts[1]];
+    }
+    assert!(sum[0] > 50 && sum[1] > 5, "{sum:?}");
+}
+
+/// Which pairs are compared: not those a joint joins, not those that always touch, not those given.
+#[test]
+fn pairs_that_may_touch() {
+    let all = |model: &ArmModel| {
+        let arm = Arm::new(model, []).unwrap();
+        arm.checked_pairs().into_iter().map(|[a, b]| format!("{a} {b}")).collect::<Vec<_>>()
+    };
+    let mut model = six();
+    // Seven links: 21 pairs, six of them joined.
+    let pairs = all(&model);
+    assert_eq!(pairs.len(), 15);
+    assert!(pairs.contains(&"base upper".to_owned()) && !pairs.contains(&"upper fore".to_owned()));
+    // A case about the wrist: the tool always sticks through it.
+    let case = cuboid(0.24, 0.24, 0.24).unwrap();
+    model.links[4] = model.links[4].clone().with(&case, &Isometry3::translation(0.0, 0.0, 0.11));
+    let without = all(&model);
+    assert!(!without.contains(&"roll tool".to_owned()) && without.len() == 14, "{without:?}");
+    model.may_touch = Some(vec![("tool".into(), "base".into())]);
+    let given = all(&model);
+    assert!(given.contains(&"roll tool".to_owned()) && !given.contains(&"base tool".to_owned()));
+    // Links of one rigid body are never compared.
+    model.may_touch = None;
+    model.links.push(model.links[6].clone());
+    model.links[7].name = "camera".into();
+    model.joints.push(Joint::new("mount", "tool", "camera", JointKind::Fixed));
+    assert!(!all(&model).contains(&"tool camera".to_owned()));
+    assert!(all(&model).contains(&"fore camera".to_owned()));
+}
+
+/// Certified motions are free at every sample; refused ones hit something or come near it.
+fn agree(arm: &Arm, space: &Joints<Six>, motions: usize) -> [usize; 2] {
+    let tolerance = arm.tolerance();
+    let mut certified = Certified::new(space, arm.clone(), tolerance).unwrap();
+    let mut exact = arm.clone();
+    let mut rng = Rng::seed(11);
+    let mut counts = [0, 0];
+    for i in 0..motions {
+        let a = space.sample_uniform(&mut rng);
+        let b = space.interpolate(&a, &space.sample_uniform(&mut rng), [1.0, 0.3, 0.05][i % 3]);
+        let at = |t: f64| space.interpolate(&a, &b, t);
+        match certified.check_motion(&a, &b) {
+            MotionCheck::Free { clearance } => {
+                counts[1] += 1;
+                assert!(clearance >= certified.margin());
+                for k in 0..=100 {
+                    let found = exact.clearance(&at(f64::from(k) / 100.0), 1.0);
+                    assert!(found >= clearance * (1.0 - 1e-9), "{found} {clearance}");
+                }
+            }
+            MotionCheck::Collides { at: t } => {
+                counts[0] += 1;
+                assert!(!exact.is_valid(&at(t)));
+            }
+            MotionCheck::Undecided { at: t } => {
+                assert!(exact.clearance(&at(t), 1.0) < 2.0 * tolerance);
+            }
+        }
+    }
+    counts
+}
+
+#[test]
+fn certified_motions_are_free() {
+    let (arm, space) = arm();
+    let counts = agree(&arm, &space, 900);
+    assert!(counts.into_iter().all(|n| n > 100), "{counts:?}");
+    // Alone it hits itself only.
+    let alone = arm.among([]).unwrap();
+    let counts = agree(&alone, &space, 900);
+    assert!(counts.into_iter().all(|n| n > 40), "{counts:?}");
+}
+
+/// A sheet of 1e-4 m and thinner in the way of the tool is never passed.
+#[test]
+fn a_thin_wall_is_never_crossed() {
+    let mut rng = Rng::seed(3);
+    for thickness in [1e-4, 1e-7, 1e-12] {
+        let sheet = obstacle("wall", cuboid(thickness, 4.0, 4.0).unwrap(), [0.35, 0.0, 0.0, 0.2, 0.1, 0.0]);
+        let plane = sheet.2.inverse();
+        let mut arm = Arm::new(&six(), [sheet]).unwrap();
+        let space: Joints<Six> = arm.space().unwrap();
+        let mut certified = Certified::new(&space, arm.clone(), arm.tolerance()).unwrap();
+        let mut crossings = 0;
+        while crossings < 150 {
+            let [a, b] = [0, 1].map(|_| space.sample_uniform(&mut rng));
+            let side = |q: &Six| {
+                let pose = arm.kinematics().link_poses(q.as_slice()).unwrap()[6];
+                (plane * nalgebra::Point3::from(pose.translation.vector)).x > 0.0
+            };
+            if side(&a) != side(&b) && arm.is_valid(&a) && arm.is_valid(&b) {
+                crossings += 1;
+                assert!(!certified.check_motion(&a, &b).is_free());
+            }
+        }
+    }
+}
+
+/// Two fins of 1e-4 m on one arm that can only pass through each other.
+#[test]
+fn links_do_not_pass_through_each_other() {
+    let fin = |x: f64, y: f64| cuboid(x, y, 0.3).unwrap();
+    let at = Isometry3::translation;
+    let turn = JointKind::Revolute { low: -3.0, high: 3.0 };
+    let model = ArmModel {
+        links: vec![
+            Link::new("base").with(&fin(0.5, 1e-4), &at(0.5, 0.0, 0.0)),
+            Link::new("hub"),
+            Link::new("hand").with(&fin(0.5, 1e-4), &at(0.3, 0.0, 0.0)),
+        ],
+        joints: vec![
+            Joint::new("a", "base", "hub", turn).axis(Vector3::z()),
+            Joint::new("b", "hub", "hand", turn).axis(Vector3::z()).at(at(0.1, 0.0, 0.0)),
+        ],
+        ..ArmModel::default()
+    };
+    let mut arm = Arm::new(&model, []).unwrap();
+    assert_eq!(arm.checked_pairs(), [["base", "hand"]]);
+    let space: Joints<SVector<f64, 2>> = arm.space().unwrap();
+    let mut certified = Certified::new(&space, arm.clone(), arm.tolerance()).unwrap();
+    let mut rng = Rng::seed(9);
+    let (mut crossings, mut free) = (0, 0);
+    while crossings < 300 {
+        let [a, b] = [0, 1].map(|_| space.sample_uniform(&mut rng));
+        let check = certified.check_motion(&a, &b);
+        let y = |t: f64| {
+            let q = space.interpolate(&a, &b, t);
+            let tip =
+                arm.kinematics().link_poses(q.as_slice()).unwrap()[2] * nalgebra::Point3::new(0.4, 0.0, 0.0);
+            (tip.x > 0.3 && tip.x < 0.7).then_some(tip.y)
+        };
+        let ys: Vec<_> = (0..=400).map(|k| y(f64::from(k) / 400.0)).collect();
+        let crosses = ys.windows(2).any(|w| matches!(w, [Some(a), Some(b)] if a * b < 0.0));
+        if crosses {
+            crossings += 1;
+            assert!(!check.is_free());
+        }
+        free += usize::from(check.is_free());
+    }
+    assert!(free > 100 && arm.is_valid(&SVector::from([1.0, 0.0])));
+}
+
+/// The bound of the whole motion holds for every vertex; it is that of the link that moves most.
+#[test]
+fn no_vertex_moves_farther_than_the_bound() {
+    let mut rng = Rng::seed(4);
+    let mut best = 0.0_f64;
+    for count in 3..20 {
+        let model = random_tree(&mut rng, count);
+        let Ok(arm) = Arm::new(&model, []) else { continue };
+        let space: Joints<DVector<f64>> = arm.space().unwrap();
+        for size in [1.0, 0.1] {
+            let a = space.sample_uniform(&mut rng);
+            let b = space.interpolate(&a, &space.sample_uniform(&mut rng), size);
+            let vertices = |t: f64| {
+                let meshes = arm.meshes_at(space.interpolate(&a, &b, t).as_slice());
+                meshes
+                    .iter()
+                    .flat_map(|(_, mesh): &(_, TriMesh)| mesh.vertices().to_vec())
+                    .collect::<Vec<_>>()
+            };
+            let bound = arm.motion_bound(&a, &b);
+            let mut last = vertices(0.0);
+            let mut ways = vec![0.0; last.len()];
+            for k in 1..=100 {
+                let next = vertices(f64::from(k) / 100.0);
+                let steps = last.iter().zip(&next).map(|(p, q)| (q - p).norm());
+                ways.iter_mut().zip(steps).for_each(|(way, step)| *way += step);
+                last = next;
+            }
+            let most = ways.into_iter().fold(0.0, f64::max);
+            assert!(most <= bound + 1e-12, "{most} {bound}");
+            best = best.max(most / bound.max(1e-9));
+        }
+    }
+    assert!(best > 0.7, "{best}");
+}
+
+#[test]
+fn checks_do_not_allocate_and_are_counted() {
+    let (mut arm, space) = arm();
+    let mut rng = Rng::seed(1);
+    let states: Vec<Six> = (0..50).map(|_| space.sample_uniform(&mut rng)).collect();
+    let mut certified = Certified::new(&space, arm.clone(), arm.tolerance()).unwrap();
+    let mut run = |arm: &mut Arm| {
+        for q in states.windows(2) {
+            arm.is_valid(&q[0]);
+            arm.clearance(&q[0], 0.1);
+            let b = space.interpolate(&q[0], &q[1], 0.1);
+            certified.check_motion(&q[0], &b);
+        }
+    };
+    run(&mut arm);
+    let measured = allocation_counter::measure(|| run(&mut arm));
+    assert_eq!(measured.count_total, 0);
+    let counted = arm.take_counters();
+    assert_eq!((counted.collision_checks, counted.clearance_checks), (98, 98));
+    assert!(counted.work.box_tests > 0);
+    assert_eq!(arm.counters(), mp_robot::CheckCounters::default());
+    let other = certified.valid.among([]).unwrap();
+    assert_eq!(other.counters(), mp_robot::CheckCounters::default());
+    assert!(certified.valid.counters().clearance_checks > 0);
+}
+
+/// The same whether the number of coordinates is known when compiling or not.
+#[test]
+fn static_and_dynamic_configurations_agree() {
+    let (mut arm, space) = arm();
+    let dynamic: Joints<DVector<f64>> = arm.space().unwrap();
+    let mut rng = Rng::seed(2);
+    let tolerance = arm.tolerance();
+    let mut a_check = Certified::new(&space, arm.clone(), tolerance).unwrap();
+    let mut b_check = Certified::new(&dynamic, arm.clone(), tolerance).unwrap();
+    for _ in 0..100 {
+        let [a, b] = [0, 1].map(|_| space.sample_uniform(&mut rng));
+        let [c, d] = [a, b].map(|q| DVector::from_column_slice(q.as_slice()));
+        assert_eq!(arm.clearance(&a, 1.0), arm.clearance(&c, 1.0));
+        assert_eq!(a_check.check_motion(&a, &b), b_check.check_motion(&c, &d));
+    }
+}
