@@ -281,7 +281,7 @@ impl Arm {
     }
 
     /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and never so small
-    /// that coordinates could not resolve it. An [`ArmVerifier`](crate::ArmVerifier) works to a tenth of it.
+    /// that coordinates could not resolve it. A verifier works to a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         let base = self.kinematics().base.translation.vector.amax();
