@@ -6,7 +6,7 @@ use common::{Dir, xtask};
 use serde_json::Value;
 
 /// Every field of the JSON of one run, and whether it may be null.
-const FIELDS: [(&str, bool); 24] = [
+const FIELDS: [(&str, bool); 26] = [
     ("scene", false),
     ("scene_file", false),
     ("space", false),
@@ -24,6 +24,8 @@ const FIELDS: [(&str, bool); 24] = [
     ("rejected", false),
     ("time_s", false),
     ("finish_s", false),
+    ("first_s", true),
+    ("first_length", true),
     ("path_length_found", true),
     ("path_length", true),
     ("clearance", true),
@@ -141,6 +143,27 @@ fn every_planner_metric_and_motion_check_gives_a_certified_path() {
             assert_eq!(xtask(&dir, &["check", scene, "p.json"]).code, 0);
         }
     }
+}
+
+#[test]
+fn planners_that_improve_use_the_budget_and_say_what_it_gave() {
+    let dir = Dir::new();
+    for planner in ["rrt-star", "informed-rrt-star"] {
+        let args =
+            ["plan", "plane.env", "--planner", planner, "--iterations", "2000", "--json", "--no-shorten"];
+        let run = xtask(&dir, &args);
+        assert_eq!(run.code, 0, "{run:?}");
+        let report = run.json();
+        assert_fields(&report, true);
+        assert_eq!(report["iterations"], 2000);
+        let number = |field: &str| report[field].as_f64().unwrap();
+        assert!(number("path_length") < number("first_length"), "{report}");
+        assert!(number("first_s") < number("time_s"), "{report}");
+        let short = xtask(&dir, &[&args[..], &["--set", "near=0"]].concat());
+        assert!(short.code == 2 && short.stderr.contains("near is 0"), "{short:?}");
+    }
+    let run = xtask(&dir, &["plan", "plane.env", "--json"]);
+    assert!(run.json()["first_s"].is_null());
 }
 
 #[test]

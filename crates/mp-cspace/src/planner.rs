@@ -19,6 +19,11 @@ pub trait Planner<S> {
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S, Self::Edge>>;
     /// What has been done so far.
     fn progress(&self) -> Progress;
+    /// Whether stepping on after a solution returns only better ones, so that it pays to go on until
+    /// the budget is spent.
+    fn improves(&self) -> bool {
+        false
+    }
     /// Runs until solved or stopped. Call again to go on with the same trees.
     fn solve(
         &mut self,

@@ -1,5 +1,6 @@
 //! Spaces and metrics: the traits, and the spaces one file each.
 
+mod ellipsoid;
 mod joints;
 mod product;
 mod rn;
@@ -81,6 +82,19 @@ pub trait Space: Metric<Self::State> + Sync {
 
     /// A state drawn uniformly.
     fn sample_uniform(&self, rng: &mut Rng) -> Self::State;
+
+    /// A state drawn uniformly among those whose distances from `from` and to `to` add up to at most
+    /// `sum`. `None` where the space knows no direct way, or finds none within its bounds in a
+    /// hundred tries: then draw uniformly, and reject.
+    fn sample_between(
+        &self,
+        _from: &Self::State,
+        _to: &Self::State,
+        _sum: f64,
+        _rng: &mut Rng,
+    ) -> Option<Self::State> {
+        None
+    }
 
     /// Whether `q` is finite and within the bounds of the space.
     fn contains(&self, q: &Self::State) -> bool;

@@ -2,7 +2,7 @@
 
 use crate::{Attach, Attached, BuildError, Grown, Growth, Purpose, Selector, Tree, Tuning, Verify};
 use mp_cspace::{
-    Direction, Event, Extension, Hit, LocalPlanner, MotionCheck, NodeId, Observer, Reach, Rng, Space,
+    Direction, Event, Extension, Hit, LocalPlanner, Motion, MotionCheck, NodeId, Observer, Reach, Rng, Space,
 };
 use std::fmt;
 
@@ -77,7 +77,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
 
     /// Whether the local planner's check has let through so much that each new edge is verified.
     #[inline]
-    fn distrusts(&self) -> bool {
+    #[must_use]
+    pub fn distrusts(&self) -> bool {
         self.rejected >= self.patience
     }
 
@@ -99,6 +100,24 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
             Direction::Forward => self.verify.verify_edge(tree.state(parent), edge, end),
             Direction::Backward => self.verify.verify_edge(end, edge, tree.state(parent)),
         }
+    }
+
+    /// The whole motion from `from`, a node or about to be one, to `to`, if the local planner has
+    /// one. Once the local planner is [no longer believed](Steer::distrusts) it is verified too.
+    pub fn reach(
+        &mut self,
+        from: &C::State,
+        to: &C::State,
+        direction: Direction,
+    ) -> Option<Motion<C::State, L::Edge>> {
+        let Extension::Reached(motion) = self.extend(from, to, direction, Reach::Full) else { return None };
+        if self.distrusts() {
+            let (a, b) = if direction == Direction::Forward { (from, to) } else { (to, from) };
+            if !self.verify.verify_edge(a, &motion.edge, b).is_free() {
+                return None;
+            }
+        }
+        Some(motion)
     }
 }
 
@@ -203,16 +222,15 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
     }
 
     /// Verifies the path between a root and `id`, edge by edge from the root; edges that passed
-    /// before are not asked again. At the first edge that fails, what hangs on it is pruned.
-    ///
-    /// # Errors
-    /// The former ids of the nodes that remain when an edge failed.
+    /// before are not asked again. `false` when an edge fails: what hangs on it is pruned, and
+    /// `pruned` is given the former ids of the nodes that remain before anybody else hears of it.
     pub fn verify(
         &mut self,
         id: NodeId,
         steer: &mut Steer<'_, C, L>,
         observer: &mut dyn Observer<C::State>,
-    ) -> Result<(), Vec<NodeId>> {
+        mut pruned: impl FnMut(&[NodeId]),
+    ) -> bool {
         let doubtful: Vec<NodeId> =
             self.tree.lineage(id).filter(|&node| !self.tree.is_verified(node)).collect();
         for &node in doubtful.iter().rev() {
@@ -221,13 +239,14 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
                 continue;
             }
             steer.rejected += 1;
-            observer.on(Event::Rejected);
             let survivors = self.tree.prune(node);
             self.select.pruned(steer.space, self.tree.states(), &survivors);
+            pruned(&survivors);
+            observer.on(Event::Rejected);
             observer.on(Event::Pruned { tree: self.index, survivors: &survivors });
-            return Err(survivors);
+            return false;
         }
-        Ok(())
+        true
     }
 
     fn growing<'a, 'c>(

@@ -4,6 +4,8 @@
 //! |---|---|---|---|
 //! | [`Rrt`] | [`algo::rrt`] | from the start | one step toward a sample |
 //! | [`RrtConnect`] | [`algo::rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
+//! | [`RrtStar`] | [`algo::rrt_star`] | from the start, rewired | one step toward a sample, attached by the cheapest way; ever better paths |
+//! | [`InformedRrtStar`] | [`algo::informed_rrt_star`] | from the start, rewired | as RRT*, toward samples that can be on a better path |
 //! | [`BiRrt`] | [`algo::bi_rrt`] | from start and goal | one step toward a sample; then one step of the other tree toward it |
 //! | [`RrtConExt`] | [`algo::con_ext`] | from start and goal | all the way toward a sample; then one step of the other tree |
 //! | [`RrtConCon`] | [`algo::con_con`] | from start and goal | all the way toward a sample; then the other tree all the way to it |
@@ -41,10 +43,11 @@
 //! | what to grow toward | [`Propose`] | [`Samples`] |
 //! | which nodes to grow from | [`Selector`] | [`Nearest`] |
 //! | how far | [`Growth`] | [`Extend`], [`Connect`] |
-//! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`] |
+//! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`Rewire`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
-//! A variant is a [`Recipe`] for one of two loops, [`SingleTree`] and [`TwoTrees`].
+//! A variant is a [`Recipe`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
+//! which goes on for better paths.
 //!
 //! # What is promised
 //! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that
@@ -62,10 +65,12 @@ mod branch;
 mod error;
 mod goals;
 mod grow;
+mod improve;
 mod problem;
 mod propose;
 mod recipe;
 mod registry;
+mod rewire;
 mod select;
 mod settings;
 mod single;
@@ -76,17 +81,21 @@ mod verify;
 pub use algo::bi_rrt::BiRrt;
 pub use algo::con_con::RrtConCon;
 pub use algo::con_ext::RrtConExt;
+pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
 pub use algo::rrt::Rrt;
 pub use algo::rrt_connect::RrtConnect;
+pub use algo::rrt_star::RrtStar;
 pub use attach::{Append, AppendDistinct, Attach, Attached};
 pub use branch::{Branch, Growing, Steer};
 pub use error::{BuildError, Endpoint};
 pub use goals::Goals;
 pub use grow::{Connect, Extend, Grown, Growth};
+pub use improve::{Improving, improve};
 pub use problem::Problem;
 pub use propose::{Propose, Samples};
 pub use recipe::{Recipe, Step, Tuning};
 pub use registry::{AnyPlanner, build, build_with, planner, planners};
+pub use rewire::{Near, Rewire};
 pub use select::{Nearest, Purpose, Selector};
 pub use settings::{
     Demand, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, Parameter, PlannerInfo, STEP, Settings, closest,

@@ -13,6 +13,8 @@ pub trait Propose<C: Space> {
         points: &[C::State],
         select: &mut Se,
     ) -> C::State;
+    /// A verified path of this cost was found: from now on only cheaper ones are of interest.
+    fn improved(&mut self, _cost: f64) {}
 }
 
 /// The samples of a [`Sampler`], whatever the tree looks like.

@@ -1,8 +1,9 @@
 //! Planners by name, for programs that choose at run time.
 
-use crate::algo::{bi_rrt, con_con, con_ext, rrt, rrt_connect};
+use crate::algo::{bi_rrt, con_con, con_ext, informed_rrt_star, rrt, rrt_connect, rrt_star};
 use crate::{
-    BiRrt, BuildError, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect, Settings, closest,
+    BiRrt, BuildError, InformedRrtStar, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect, RrtStar,
+    Settings, closest,
 };
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Planner, Space};
 
@@ -12,7 +13,15 @@ pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + Send + 'c>;
 /// All planners of the crate.
 #[must_use]
 pub fn planners() -> &'static [PlannerInfo] {
-    &[rrt::INFO, rrt_connect::INFO, bi_rrt::INFO, con_ext::INFO, con_con::INFO]
+    &[
+        rrt::INFO,
+        rrt_connect::INFO,
+        bi_rrt::INFO,
+        con_ext::INFO,
+        con_con::INFO,
+        rrt_star::INFO,
+        informed_rrt_star::INFO,
+    ]
 }
 
 /// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
@@ -72,6 +81,10 @@ where
         "bi-rrt" => Box::new(BiRrt::with_index(problem, index, tuning)?),
         "rrt-con-ext" => Box::new(RrtConExt::with_index(problem, index, tuning)?),
         "rrt-con-con" => Box::new(RrtConCon::with_index(problem, index, tuning)?),
+        "rrt-star" => Box::new(RrtStar::with_index(problem, index, tuning, rrt_star::near(settings)?)?),
+        "informed-rrt-star" => {
+            Box::new(InformedRrtStar::with_index(problem, index, tuning, rrt_star::near(settings)?)?)
+        }
         _ => return Err(unknown(name)),
     })
 }

@@ -114,13 +114,9 @@ where
         id: NodeId,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        match self.branch.verify(id, &mut self.steer, observer) {
-            Ok(()) => Some(self.branch.tree().path(id)),
-            Err(survivors) => {
-                self.growth.pruned(Direction::Forward, &survivors);
-                None
-            }
-        }
+        let pruned = |survivors: &[NodeId]| self.growth.pruned(Direction::Forward, survivors);
+        let passed = self.branch.verify(id, &mut self.steer, observer, pruned);
+        passed.then(|| self.branch.tree().path(id))
     }
 }
 

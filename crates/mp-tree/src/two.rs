@@ -145,10 +145,12 @@ where
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
-            if let Err(survivors) = tree.verify(id, &mut self.steer, observer) {
-                let direction = tree.tree().direction();
-                self.explore.pruned(direction, &survivors);
-                self.join.pruned(direction, &survivors);
+            let direction = tree.tree().direction();
+            let pruned = |survivors: &[NodeId]| {
+                self.explore.pruned(direction, survivors);
+                self.join.pruned(direction, survivors);
+            };
+            if !tree.verify(id, &mut self.steer, observer, pruned) {
                 return None;
             }
         }

@@ -28,6 +28,10 @@ pub(crate) struct Report {
     pub(crate) time_s: f64,
     /// Shortening and verifying, seconds.
     pub(crate) finish_s: f64,
+    /// Of a planner that goes on for better paths: when it found the first, seconds.
+    pub(crate) first_s: Option<f64>,
+    /// And how long that was, in the metric.
+    pub(crate) first_length: Option<f64>,
     /// In the metric, as the planner found it.
     pub(crate) path_length_found: Option<f64>,
     /// In the metric, as it is written.
@@ -92,6 +96,9 @@ impl Report {
             0 => {}
             1 => row("rejected", "1 candidate path that the verifier did not pass".into()),
             n => row("rejected", format!("{} candidate paths that the verifier did not pass", grouped(n))),
+        }
+        if let (Some(time), Some(length)) = (self.first_s, self.first_length) {
+            row("first path", format!("after {}, length {}", seconds(time), brief(length)));
         }
         if let (Some(found), Some(length)) = (self.path_length_found, self.path_length) {
             let how = if self.shortened { "shortened" } else { "not shortened" };
@@ -259,6 +266,8 @@ mod tests {
             rejected: 0,
             time_s: time.unwrap_or(60.0),
             finish_s: 0.5,
+            first_s: None,
+            first_length: None,
             path_length_found: time.map(|_| 20.0),
             path_length: time.map(|_| 12.5),
             clearance: time.map(|_| 0.01),

@@ -169,6 +169,8 @@ fn one<M: Mover>(
         rejected: search.progress.rejected,
         time_s: search.time.as_secs_f64(),
         finish_s: 0.0,
+        first_s: search.first.map(|(time, _)| time.as_secs_f64()),
+        first_length: search.first.map(|(_, length)| length),
         path_length_found: None,
         path_length: None,
         clearance: None,

@@ -12,7 +12,7 @@ use mp::cspace::{
     MetricTree, MotionValidity, NearestNeighbors, Outcome, Path, Progress, Resolution, Rng, Space, Stop,
     StopReason, Straight, Validity, WithMetric,
 };
-use mp::tree::{Goals, Problem, build_with};
+use mp::tree::{Goals, Problem, build_with, improve};
 use std::time::{Duration, Instant};
 
 /// What a planner came back with.
@@ -23,6 +23,8 @@ pub(crate) struct Search<S> {
     /// Collision queries asked.
     pub(crate) queries: u64,
     pub(crate) time: Duration,
+    /// When the first path was found and how long it was in the metric, of a planner that goes on for better ones.
+    pub(crate) first: Option<(Duration, f64)>,
 }
 
 /// Plans from start to goal of `setting` with `seed`.
@@ -85,7 +87,7 @@ impl<M: Mover> Run<'_, M> {
         let Self { setting, options, .. } = self;
         let (mut robot, verifier) = (setting.robot.clone(), setting.verifier()?);
         let began = Instant::now();
-        let (outcome, progress) = {
+        let (outcome, progress, first) = {
             let check: Box<dyn MotionValidity<M::State> + Send> = match options.motion {
                 Motion::Certified => {
                     Box::new(Certified::new(&setting.space, &mut robot, setting.tolerance).into_diagnostic()?)
@@ -110,8 +112,17 @@ impl<M: Mover> Run<'_, M> {
                 .or(options.iterations.map(Iterations))
                 .or(Deadline::at(began + options.time))
                 .or(line);
-            let outcome = planner.solve(&mut Rng::seed(self.seed), &mut stop, &mut ());
-            (outcome, planner.progress())
+            let mut first = None;
+            let improves = planner.improves();
+            let (best, reason) =
+                improve(&mut *planner, &mut Rng::seed(self.seed), &mut stop, &mut (), |path, _| {
+                    first = first.or_else(|| improves.then(|| (began.elapsed(), path.length(space))));
+                });
+            let outcome = match (best, reason) {
+                (Some(path), _) => Outcome::Solved(path),
+                (None, reason) => Outcome::Stopped(reason.unwrap_or(StopReason::Cancelled)),
+            };
+            (outcome, planner.progress(), first)
         };
         let counters = robot.counters();
         Ok(Search {
@@ -119,6 +130,7 @@ impl<M: Mover> Run<'_, M> {
             progress,
             queries: counters.collision_checks + counters.clearance_checks,
             time: began.elapsed(),
+            first,
         })
     }
 }

@@ -1,6 +1,6 @@
 //! R^n, the dimension known at compile time.
 
-use super::{Factored, Metric, Space, TrueMetric, lerp, scale};
+use super::{Factored, Metric, Space, TrueMetric, ellipsoid, lerp, scale};
 use crate::{Rng, SpaceError, error::diagonal};
 use nalgebra::SVector;
 use rand::RngExt;
@@ -87,6 +87,19 @@ impl<const N: usize> Space for Rn<N> {
     #[inline]
     fn sample_uniform(&self, rng: &mut Rng) -> Self::State {
         SVector::from_fn(|i, _| scale(self.low[i], self.high[i], rng.random()))
+    }
+    fn sample_between(
+        &self,
+        from: &Self::State,
+        to: &Self::State,
+        sum: f64,
+        rng: &mut Rng,
+    ) -> Option<Self::State> {
+        let mut q = *from;
+        (0..100).find_map(|_| {
+            ellipsoid::sample(from.as_slice(), to.as_slice(), sum, rng, q.as_mut_slice());
+            self.contains(&q).then_some(q)
+        })
     }
     #[inline]
     fn contains(&self, q: &Self::State) -> bool {

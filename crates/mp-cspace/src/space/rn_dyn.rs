@@ -1,6 +1,6 @@
 //! R^n, the dimension known at run time.
 
-use super::{Factored, Metric, Space, TrueMetric, lerp, scale};
+use super::{Factored, Metric, Space, TrueMetric, ellipsoid, lerp, scale};
 use crate::{Rng, SpaceError, error::diagonal};
 use nalgebra::DVector;
 use rand::RngExt;
@@ -74,6 +74,19 @@ impl Space for RnDyn {
     }
     fn sample_uniform(&self, rng: &mut Rng) -> Self::State {
         DVector::from_fn(self.dim(), |i, _| scale(self.low[i], self.high[i], rng.random()))
+    }
+    fn sample_between(
+        &self,
+        from: &Self::State,
+        to: &Self::State,
+        sum: f64,
+        rng: &mut Rng,
+    ) -> Option<Self::State> {
+        let mut q = from.clone();
+        (0..100).find_map(|_| {
+            ellipsoid::sample(from.as_slice(), to.as_slice(), sum, rng, q.as_mut_slice());
+            self.contains(&q).then(|| q.clone())
+        })
     }
     fn contains(&self, q: &Self::State) -> bool {
         q.len() == self.dim() && (0..q.len()).all(|i| self.low[i] <= q[i] && q[i] <= self.high[i])
