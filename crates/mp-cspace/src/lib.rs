@@ -9,7 +9,7 @@
 //! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`Bounded`] |
 //! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
 //! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
-//! | how to move | [`Straight`] |
+//! | how to move | [`Straight`]; by a set of inputs: [`inputs`] |
 //! | what to reach | [`Exactly`], [`Ball`], a closure |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
 //! | what to do with a path | [`Path`], [`verify_path`], [`least_clearance`], [`shorten`] |
@@ -17,6 +17,7 @@
 
 mod error;
 mod goal;
+pub mod inputs;
 mod local;
 mod metric;
 mod motion;

@@ -86,6 +86,10 @@ impl<C: Space, M: MetricOn<C>> Space for WithMetric<C, M> {
         self.space.contains(q)
     }
     #[inline]
+    fn moved(&self, from: &C::State, velocity: &[f64], time: f64) -> Option<C::State> {
+        self.space.moved(from, velocity, time)
+    }
+    #[inline]
     fn interpolate(&self, from: &C::State, to: &C::State, t: f64) -> C::State {
         self.space.interpolate(from, to, t)
     }

@@ -86,7 +86,7 @@ impl<C: Space> Sampler<C::State> for Halton<'_, C> {
 }
 
 /// The digits of `n` in `base`, mirrored at the point: in \[0, 1).
-fn radical_inverse(mut n: u64, base: u64) -> f64 {
+pub(crate) fn radical_inverse(mut n: u64, base: u64) -> f64 {
     let step = 1.0 / base as f64;
     let (mut sum, mut scale) = (0.0, step);
     while n > 0 {
@@ -98,7 +98,7 @@ fn radical_inverse(mut n: u64, base: u64) -> f64 {
 }
 
 /// The first `count` primes.
-fn primes(count: usize) -> Vec<u64> {
+pub(crate) fn primes(count: usize) -> Vec<u64> {
     let mut primes: Vec<u64> = Vec::with_capacity(count);
     let mut n = 2;
     while primes.len() < count {

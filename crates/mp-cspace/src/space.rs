@@ -99,6 +99,17 @@ pub trait Space: Metric<Self::State> + Sync {
     /// Whether `q` is finite and within the bounds of the space.
     fn contains(&self, q: &Self::State) -> bool;
 
+    /// Where a constant velocity leads from `from` in `time` seconds (backwards when negative): one
+    /// number per degree of freedom, translations (m/s) before rotations (rad/s), about world axes.
+    /// May leave the bounds.
+    ///
+    /// Contract: by less than half a turn in any rotation, the way there is the space's own
+    /// interpolation, up to rounding. `None`, the default, where the space knows no velocities or
+    /// their number is not [`dim`](Space::dim).
+    fn moved(&self, _from: &Self::State, _velocity: &[f64], _time: f64) -> Option<Self::State> {
+        None
+    }
+
     /// As [`interpolate_into`](Space::interpolate_into), returning the state.
     #[inline]
     fn interpolate(&self, from: &Self::State, to: &Self::State, t: f64) -> Self::State {

@@ -8,7 +8,8 @@ use mp_cspace::{Hit, LocalPlanner, Motion, NodeId, Space};
 pub enum Attached {
     /// Its end is this new node, the last of the tree.
     New(NodeId),
-    /// Its end is the state of this node, which was there before: nothing was added.
+    /// Its end is the state of this node, or one that counts as the same, which was there before:
+    /// nothing was added.
     Known(NodeId),
 }
 

@@ -336,7 +336,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
             return Grown::Trapped;
         }
         match self.attach.attach(self.steer, self.tree, self.select, from, motion) {
-            Attached::Known(id) if reached => Grown::Reached(id),
+            Attached::Known(id) if reached && self.tree.state(id) == self.target => Grown::Reached(id),
             Attached::Known(_) => Grown::Trapped,
             Attached::New(id) => {
                 let parent = self.tree.parent(id);

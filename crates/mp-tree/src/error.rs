@@ -1,6 +1,7 @@
 //! Bad input, refused before planning begins.
 
 use mp_cspace::MotionCheck;
+use mp_cspace::inputs::InputError;
 use std::fmt;
 
 /// Which end of the path.
@@ -77,6 +78,9 @@ pub enum BuildError {
         /// The values allowed.
         range: String,
     },
+    /// The planner moves by a set of inputs, and there is something wrong with them.
+    #[error(transparent)]
+    Inputs(#[from] InputError),
     /// A setting is not of the form `key=value`, or its value cannot be read.
     #[error("cannot read the setting `{setting}`: expected {expected}")]
     Malformed {

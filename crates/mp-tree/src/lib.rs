@@ -9,6 +9,8 @@
 //! | [`BiRrt`] | [`algo::bi_rrt`] | from start and goal | one step toward a sample; then one step of the other tree toward it |
 //! | [`RrtConExt`] | [`algo::con_ext`] | from start and goal | all the way toward a sample; then one step of the other tree |
 //! | [`RrtConCon`] | [`algo::con_con`] | from start and goal | all the way toward a sample; then the other tree all the way to it |
+//! | [`RrtInputs`] | [`algo::rrt_inputs`] | from the start, by a set of inputs | the best of all successors free of collision |
+//! | [`Rsrt`] | [`algo::rsrt`] | from the start, by a set of inputs | the first successor free of collision, sorted by distance |
 //!
 //! A planner is made from a checked [`Problem`] and works through the trait
 //! [`Planner`](mp_cspace::Planner): one step at a time, or until a stop says so. [`build`] makes
@@ -43,7 +45,7 @@
 //! | what to grow toward | [`Propose`] | [`Samples`] |
 //! | which nodes to grow from | [`Selector`] | [`Nearest`] |
 //! | how far | [`Growth`] | [`Extend`], [`Connect`] |
-//! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`Rewire`] |
+//! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
 //! A variant is a [`Recipe`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
@@ -60,6 +62,7 @@
 //!   step it interrupts: whoever catches it may look at the trees and step on.
 
 pub mod algo;
+mod apart;
 mod attach;
 mod branch;
 mod error;
@@ -76,6 +79,7 @@ mod settings;
 mod single;
 mod tree;
 mod two;
+mod uniform;
 mod verify;
 
 pub use algo::bi_rrt::BiRrt;
@@ -84,7 +88,10 @@ pub use algo::con_ext::RrtConExt;
 pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
 pub use algo::rrt::Rrt;
 pub use algo::rrt_connect::RrtConnect;
+pub use algo::rrt_inputs::RrtInputs;
 pub use algo::rrt_star::RrtStar;
+pub use algo::rsrt::Rsrt;
+pub use apart::AppendApart;
 pub use attach::{Append, AppendDistinct, Attach, Attached};
 pub use branch::{Branch, Growing, Steer};
 pub use error::{BuildError, Endpoint};
@@ -98,7 +105,8 @@ pub use registry::{AnyPlanner, build, build_with, planner, planners};
 pub use rewire::{Near, Rewire};
 pub use select::{Nearest, Purpose, Selector};
 pub use settings::{
-    Demand, GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, Parameter, PlannerInfo, STEP, Settings, closest,
+    Demand, GOAL_BIAS, INPUTS, LEVELS, NEEDS_BOTH_ENDS, PATIENCE, Parameter, PlannerInfo, STEP, Settings,
+    closest,
 };
 pub use single::SingleTree;
 pub use tree::Tree;

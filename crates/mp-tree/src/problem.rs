@@ -69,6 +69,21 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     }
 }
 
+impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
+    /// The same problem with a local planner made from the one there, for instance around it. Start
+    /// and goals are not checked again.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    pub fn try_map_local<M: LocalPlanner<C::State, Edge = L::Edge>, E>(
+        self,
+        make: impl FnOnce(L) -> Result<M, E>,
+    ) -> Result<Problem<'c, C, M>, E> {
+        let Self { space, local, verify, start, goals } = self;
+        Ok(Problem { space, local: make(local)?, verify, start, goals })
+    }
+}
+
 impl<C: Space, L: LocalPlanner<C::State>> fmt::Debug for Problem<'_, C, L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Problem")

@@ -1,9 +1,11 @@
 //! Planners by name, for programs that choose at run time.
 
-use crate::algo::{bi_rrt, con_con, con_ext, informed_rrt_star, rrt, rrt_connect, rrt_star};
+use crate::algo::{
+    bi_rrt, con_con, con_ext, informed_rrt_star, rrt, rrt_connect, rrt_inputs, rrt_star, rsrt,
+};
 use crate::{
-    BiRrt, BuildError, InformedRrtStar, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect, RrtStar,
-    Settings, closest,
+    BiRrt, BuildError, InformedRrtStar, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect,
+    RrtInputs, RrtStar, Rsrt, Settings, closest, uniform,
 };
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Planner, Space};
 
@@ -21,6 +23,8 @@ pub fn planners() -> &'static [PlannerInfo] {
         con_con::INFO,
         rrt_star::INFO,
         informed_rrt_star::INFO,
+        rrt_inputs::INFO,
+        rsrt::INFO,
     ]
 }
 
@@ -84,6 +88,14 @@ where
         "rrt-star" => Box::new(RrtStar::with_index(problem, index, tuning, rrt_star::near(settings)?)?),
         "informed-rrt-star" => {
             Box::new(InformedRrtStar::with_index(problem, index, tuning, rrt_star::near(settings)?)?)
+        }
+        "rrt-inputs" => {
+            let problem = uniform::moved_by_inputs(problem, &tuning, settings)?;
+            Box::new(RrtInputs::with_index(problem, index, tuning)?)
+        }
+        "rsrt" => {
+            let problem = uniform::moved_by_inputs(problem, &tuning, settings)?;
+            Box::new(Rsrt::with_index(problem, index, tuning)?)
         }
         _ => return Err(unknown(name)),
     })

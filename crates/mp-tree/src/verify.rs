@@ -1,6 +1,7 @@
 //! The independent check of finished paths.
 
-use mp_cspace::{MotionCheck, MotionValidity};
+use mp_cspace::inputs::{Flow, Leg, ReplayFinely, ReplayMotions};
+use mp_cspace::{MotionCheck, MotionValidity, Space, Validity};
 
 /// Verifies states and edges of a candidate path, sharing nothing with the local planner.
 ///
@@ -19,5 +20,28 @@ impl<S, V: MotionValidity<S>> Verify<S, ()> for V {
     }
     fn verify_edge(&mut self, from: &S, _: &(), to: &S) -> MotionCheck {
         self.check_motion(from, to)
+    }
+}
+
+impl<S: PartialEq, U, F: Flow<S, U>, V: MotionValidity<S>> Verify<S, Leg<U>> for ReplayMotions<F, V> {
+    fn verify_state(&mut self, q: &S) -> MotionCheck {
+        self.check_state(q)
+    }
+    fn verify_edge(&mut self, from: &S, edge: &Leg<U>, to: &S) -> MotionCheck {
+        self.check_leg(from, edge, to)
+    }
+}
+
+impl<C, U, F, V> Verify<C::State, Leg<U>> for ReplayFinely<'_, C, F, V>
+where
+    C: Space,
+    F: Flow<C::State, U>,
+    V: Validity<C::State>,
+{
+    fn verify_state(&mut self, q: &C::State) -> MotionCheck {
+        self.check_state(q)
+    }
+    fn verify_edge(&mut self, from: &C::State, edge: &Leg<U>, to: &C::State) -> MotionCheck {
+        self.check_leg(from, edge, to)
     }
 }

@@ -214,6 +214,12 @@ impl<Q: Coordinates> Space for Joints<Q> {
                 JointRange::Circle => -PI < *x && *x <= PI,
             })
     }
+    #[inline]
+    fn moved(&self, from: &Q, velocity: &[f64], time: f64) -> Option<Q> {
+        let (n, from) = (self.ranges.len(), from.as_slice());
+        let fits = velocity.len() == n && from.len() == n;
+        fits.then(|| self.wrapped(&Q::from_fn(n, |i| from[i] + velocity[i] * time)))
+    }
 }
 
 impl<Q: Coordinates> Factored for Joints<Q> {

@@ -1,7 +1,8 @@
 //! Products of two spaces; nest them for more.
 
-use super::{Factored, Metric, Space, TrueMetric};
+use super::{Factored, Metric, Rn, RnDyn, Space, TrueMetric};
 use crate::{Rng, SpaceError, error::weight};
+use nalgebra::{DVector, SVector};
 
 /// The product of two spaces, states being pairs.
 ///
@@ -53,6 +54,52 @@ impl<A: Space, B: Space> Product<A, B> {
     }
 }
 
+impl<A: Space, const N: usize> Product<A, Rn<N>> {
+    /// The states of `positions` with a velocity each: one number per degree of freedom, no greater
+    /// than its limit. Velocities weigh (in seconds) such that the greatest distance between two
+    /// counts as much as that between two positions; [`new`](Self::new) takes weights of your own.
+    ///
+    /// ```
+    /// use mp_cspace::{Metric, Product, Se2, Space};
+    /// let space = Product::with_velocity(Se2::new([0.0; 2], [4.0, 3.0])?, [1.0, 1.0, 2.0])?;
+    /// assert_eq!(space.dim(), 6);
+    /// assert!(Product::with_velocity(Se2::new([0.0; 2], [4.0, 3.0])?, [1.0, 1.0]).is_err());
+    /// # Ok::<(), mp_cspace::SpaceError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When there are not as many limits as degrees of freedom, or one is not positive and finite.
+    pub fn with_velocity(positions: A, limits: impl Into<SVector<f64, N>>) -> Result<Self, SpaceError> {
+        let limits = limits.into();
+        check_limits(&positions, limits.as_slice())?;
+        let velocities = Rn::new(-limits, limits)?;
+        let weight = positions.extent() / velocities.extent();
+        Self::new(positions, 1.0, velocities, weight)
+    }
+}
+
+impl<A: Space> Product<A, RnDyn> {
+    /// As [`with_velocity`](Product::with_velocity), the number of degrees of freedom known at run time.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_velocity_dyn(positions: A, limits: &[f64]) -> Result<Self, SpaceError> {
+        check_limits(&positions, limits)?;
+        let limits = DVector::from_column_slice(limits);
+        let velocities = RnDyn::new(-&limits, limits)?;
+        let weight = positions.extent() / velocities.extent();
+        Self::new(positions, 1.0, velocities, weight)
+    }
+}
+
+fn check_limits<A: Space>(positions: &A, limits: &[f64]) -> Result<(), SpaceError> {
+    let (expected, found) = (positions.dim(), limits.len());
+    if expected != found {
+        return Err(SpaceError::Count { what: "limits of velocities", expected, found });
+    }
+    limits.iter().try_for_each(|&limit| weight("the limit of a velocity", limit).map(drop))
+}
+
 impl<A: Space, B: Space> Metric<(A::State, B::State)> for Product<A, B> {
     #[inline]
     fn distance(&self, from: &(A::State, B::State), to: &(A::State, B::State)) -> f64 {
@@ -94,6 +141,11 @@ impl<A: Space, B: Space> Space for Product<A, B> {
     #[inline]
     fn contains(&self, q: &Self::State) -> bool {
         self.a.contains(&q.0) && self.b.contains(&q.1)
+    }
+    #[inline]
+    fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+        let (a, b) = velocity.split_at_checked(self.a.dim())?;
+        Some((self.a.moved(&from.0, a, time)?, self.b.moved(&from.1, b, time)?))
     }
     fn interpolate(&self, from: &Self::State, to: &Self::State, t: f64) -> Self::State {
         (self.a.interpolate(&from.0, &to.0, t), self.b.interpolate(&from.1, &to.1, t))

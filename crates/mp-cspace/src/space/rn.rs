@@ -105,6 +105,10 @@ impl<const N: usize> Space for Rn<N> {
     fn contains(&self, q: &Self::State) -> bool {
         (0..N).all(|i| self.low[i] <= q[i] && q[i] <= self.high[i])
     }
+    #[inline]
+    fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+        (velocity.len() == N).then(|| SVector::from_fn(|i, _| from[i] + velocity[i] * time))
+    }
 }
 
 impl<const N: usize> Factored for Rn<N> {

@@ -91,6 +91,11 @@ impl Space for RnDyn {
     fn contains(&self, q: &Self::State) -> bool {
         q.len() == self.dim() && (0..q.len()).all(|i| self.low[i] <= q[i] && q[i] <= self.high[i])
     }
+    fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+        let n = self.dim();
+        let fits = velocity.len() == n && from.len() == n;
+        fits.then(|| DVector::from_fn(n, |i, _| from[i] + velocity[i] * time))
+    }
 }
 
 impl Factored for RnDyn {

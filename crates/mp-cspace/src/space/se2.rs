@@ -128,6 +128,12 @@ impl Space for Se2 {
     fn contains(&self, q: &Se2State) -> bool {
         self.translations.contains(&q.translation) && -PI < q.angle && q.angle <= PI
     }
+    #[inline]
+    fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+        let &[x, y, turn] = velocity else { return None };
+        let to = from.translation + Vector2::new(x, y) * time;
+        Some(Se2State::new(to.x, to.y, from.angle + turn * time))
+    }
 }
 
 /// Factors: x, y, rotation.

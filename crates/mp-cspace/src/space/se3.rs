@@ -1,6 +1,6 @@
 //! SE(3): poses in space.
 
-use super::so3::{is_unit, rotation_angle, rotation_at, slerp};
+use super::so3::{is_unit, rotation_angle, rotation_at, slerp, turned};
 use super::{Factored, Metric, Rn, Space, TrueMetric};
 use crate::{Rng, SpaceError, error::weight};
 use nalgebra::{Isometry3, Vector3};
@@ -100,6 +100,12 @@ impl Space for Se3 {
     #[inline]
     fn contains(&self, q: &Self::State) -> bool {
         self.translations.contains(&q.translation.vector) && is_unit(&q.rotation)
+    }
+    #[inline]
+    fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+        let &[x, y, z, a, b, c] = velocity else { return None };
+        let to = from.translation.vector + Vector3::new(x, y, z) * time;
+        Some(Isometry3::from_parts(to.into(), turned(&from.rotation, Vector3::new(a, b, c) * time)))
     }
 }
 

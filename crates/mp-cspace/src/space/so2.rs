@@ -93,6 +93,10 @@ impl Space for So2 {
     fn contains(&self, q: &f64) -> bool {
         -PI < *q && *q <= PI
     }
+    #[inline]
+    fn moved(&self, from: &f64, velocity: &[f64], time: f64) -> Option<f64> {
+        (velocity.len() == 1).then(|| wrap_angle(from + velocity[0] * time))
+    }
 }
 
 impl Factored for So2 {

@@ -2,7 +2,7 @@
 
 use super::{Factored, Metric, Space, TrueMetric};
 use crate::Rng;
-use nalgebra::{Quaternion, UnitQuaternion, Vector4};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use rand::RngExt;
 use std::f64::consts::{PI, TAU};
 
@@ -63,6 +63,14 @@ pub fn slerp(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>, t: f64) -> UnitQu
     UnitQuaternion::new_unchecked(Quaternion::from(q))
 }
 
+/// `q` turned by the rotation vector `turn` (rad, in the world).
+#[inline]
+pub(crate) fn turned(q: &UnitQuaternion<f64>, turn: Vector3<f64>) -> UnitQuaternion<f64> {
+    let q = UnitQuaternion::from_scaled_axis(turn).into_inner() * q.into_inner();
+    // One Newton step toward unit length, so that errors do not add up along a path.
+    UnitQuaternion::new_unchecked(q * (1.5 - 0.5 * q.norm_squared()))
+}
+
 /// Shoemake 1992, *Uniform random rotations* (Graphics Gems III).
 #[inline]
 pub(crate) fn rotation_at(u: [f64; 3]) -> UnitQuaternion<f64> {
@@ -111,6 +119,11 @@ impl Space for So3 {
     #[inline]
     fn contains(&self, q: &Self::State) -> bool {
         is_unit(q)
+    }
+    #[inline]
+    fn moved(&self, from: &UnitQuaternion<f64>, velocity: &[f64], time: f64) -> Option<UnitQuaternion<f64>> {
+        let &[x, y, z] = velocity else { return None };
+        Some(turned(from, Vector3::new(x, y, z) * time))
     }
 }
 

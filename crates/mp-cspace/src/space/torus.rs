@@ -1,7 +1,7 @@
 //! Tori: several independent angles.
 
 use super::so2::{angle_at, angle_lerp, arc};
-use super::{Factored, Metric, Space, TrueMetric};
+use super::{Factored, Metric, Space, TrueMetric, wrap_angle};
 use crate::Rng;
 use nalgebra::SVector;
 use rand::RngExt;
@@ -54,6 +54,11 @@ impl<const N: usize> Space for Torus<N> {
     #[inline]
     fn contains(&self, q: &Self::State) -> bool {
         q.iter().all(|&a| -PI < a && a <= PI)
+    }
+    #[inline]
+    fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+        let turned = |i: usize| wrap_angle(from[i] + velocity[i] * time);
+        (velocity.len() == N).then(|| SVector::from_fn(|i, _| turned(i)))
     }
 }
 

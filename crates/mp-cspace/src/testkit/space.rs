@@ -10,7 +10,8 @@ use rand::RngExt;
 /// its faces, are contained; uniform sampling is deterministic and agrees with the map from the
 /// unit cube; the metric's axioms; no distance exceeds the extent; interpolation is exact at both
 /// ends, stays inside, does not depend on what the output held, goes at constant speed, and a
-/// part of a motion is the motion between the ends of the part.
+/// part of a motion is the motion between the ends of the part; constant velocities, where the
+/// space knows them, lead along the interpolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpaceKit {
     samples: usize,
@@ -80,6 +81,7 @@ impl SpaceKit {
                 "space: no distance exceeds the extent {extent}, violated: {d}\n  from {a:?}\n  to   {b:?}"
             );
             self.interpolation(space, a, b, rng.random(), rng.random());
+            self.velocities(space, a, &mut rng);
         }
     }
 
@@ -146,6 +148,27 @@ impl SpaceKit {
                 cube[0]
             );
         }
+    }
+
+    /// A constant velocity leads along the interpolation, where the space knows velocities.
+    fn velocities<C: Space>(&self, space: &C, a: &C::State, rng: &mut Rng) {
+        let slack = self.tolerance * space.extent();
+        // Less than half a turn about all axes together.
+        let velocity: Vec<f64> = (0..space.dim()).map(|_| rng.random_range(-1.0..1.0)).collect();
+        let Some(b) = space.moved(a, &velocity, 1.0) else { return };
+        for t in [0.0, rng.random(), 1.0] {
+            let (q, way) = (space.moved(a, &velocity, t), space.interpolate(a, &b, t));
+            let gap = q.map_or(f64::INFINITY, |q| space.distance(&q, &way));
+            assert!(
+                gap <= slack,
+                "space: a velocity leads along the interpolation, violated by {gap} at {t}\n  from {a:?} at {velocity:?}"
+            );
+        }
+        assert!(
+            space.moved(a, &[&velocity[..], &[1.0]].concat(), 1.0).is_none(),
+            "space: a velocity has one number per degree of freedom, violated by one of {}",
+            velocity.len() + 1
+        );
     }
 
     fn interpolation<C: Space>(&self, space: &C, a: &C::State, b: &C::State, t: f64, part: f64) {

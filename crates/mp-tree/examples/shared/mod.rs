@@ -1,10 +1,11 @@
 //! A bug trap in the plane, and how to tell what a planner made of it.
 #![allow(clippy::print_stdout, dead_code, unreachable_pub)] // examples talk, and use their part
 
+use mp_cspace::inputs::{Along, DoubleIntegrator, InputPlanner, InputSet, Leg, OnPosition, ReplayFinely};
 use mp_cspace::{
-    Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight,
+    Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Product, Resolution, Rn, Rng, Straight,
 };
-use mp_tree::{Problem, Step, Tuning};
+use mp_tree::{Goals, Problem, Step, Tuning};
 use nalgebra::Vector2;
 
 pub type Point = Vector2<f64>;
@@ -45,6 +46,49 @@ pub fn run(mut planner: impl Planner<Point>) -> Result {
                 println!("{:8.3} {:8.3}", q.x, q.y);
             }
             println!("{} motions, {seen:?}", planner.progress().motions);
+        }
+        Outcome::Stopped(reason) => println!("no path: {reason:?}"),
+    }
+    Ok(())
+}
+
+/// A position and its velocity.
+pub type State = (Point, Point);
+type Moving = Product<Rn<2>, Rn<2>>;
+type Positions = OnPosition<fn(&Point) -> bool>;
+type ByInputs<'c> =
+    InputPlanner<'c, Moving, DoubleIntegrator<'c, Rn<2>>, Point, Along<'c, Moving, Positions>>;
+
+/// The unit square with velocities.
+pub fn moving() -> Result<Moving> {
+    Ok(Product::with_velocity(square()?, [0.4, 0.4])?)
+}
+
+/// From rest in the middle of the ring to anywhere outside, on the side away from the opening.
+pub fn moving_trap(space: &Moving) -> Result<Problem<'_, Moving, ByInputs<'_>>> {
+    let system = DoubleIntegrator::new(space.spaces().0)?;
+    let valid = OnPosition(free as fn(&Point) -> bool);
+    let check = Along::new(space, valid.clone(), Resolution::Length(0.005))?;
+    let local = InputPlanner::new(space, system, InputSet::grid([1.0, 1.0], 3)?, 0.15, check)?;
+    let verifier = ReplayFinely::new(space, system, valid, Resolution::Length(0.0005))?;
+    let beyond = Goals::region(|(q, _): &State| q.x < 0.15);
+    Ok(Problem::new(space, local, verifier, (Point::new(0.5, 0.5), Point::zeros()), beyond)?)
+}
+
+/// Plans with the seed given as the first argument, and prints the path with its inputs.
+pub fn run_legs(mut planner: impl Planner<State, Edge = Leg<Point>>) -> Result {
+    let seed = std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?;
+    match planner.solve(&mut Rng::seed(seed), &mut Iterations(500_000), &mut ()) {
+        Outcome::Solved(path) => {
+            println!("       x        y       vx       vy       ax       ay   for");
+            for ((q, v), leg) in path.states.iter().zip(&path.edges) {
+                let (a, time) = (leg.input, leg.duration);
+                println!(
+                    "{:8.3} {:8.3} {:8.3} {:8.3} {:8.3} {:8.3} {time:5.2} s",
+                    q.x, q.y, v.x, v.y, a.x, a.y
+                );
+            }
+            println!("{} nodes, {} expansions", planner.progress().nodes, planner.progress().motions);
         }
         Outcome::Stopped(reason) => println!("no path: {reason:?}"),
     }

@@ -6,4 +6,6 @@ pub mod con_ext;
 pub mod informed_rrt_star;
 pub mod rrt;
 pub mod rrt_connect;
+pub mod rrt_inputs;
 pub mod rrt_star;
+pub mod rsrt;

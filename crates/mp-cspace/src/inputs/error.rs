@@ -1,0 +1,56 @@
+//! What can be wrong with inputs and flows.
+
+use crate::{ParameterError, SpaceError};
+use thiserror::Error;
+
+/// Why an input set, a system or an input planner could not be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum InputError {
+    /// There is no input, or inputs have no entries.
+    #[error("{what} must not be empty")]
+    Empty {
+        /// What is empty.
+        what: &'static str,
+    },
+    /// An entry of an input is NaN or infinite.
+    #[error("input {index} must be finite, found {input}")]
+    NotFinite {
+        /// Which input.
+        index: usize,
+        /// The input, as `Debug` prints it.
+        input: String,
+    },
+    /// A number is out of its range, such as a duration of zero.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// Limits do not fit the space, such as their number.
+    #[error(transparent)]
+    Space(#[from] SpaceError),
+    /// The space knows no [velocities](crate::Space::moved), or inputs have not one entry for each of
+    /// its degrees of freedom.
+    #[error("an input of {entries} entries moves no state of the space, which has {dim} degrees of freedom")]
+    NoMotion {
+        /// Entries of the input.
+        entries: usize,
+        /// Degrees of freedom of the space.
+        dim: usize,
+    },
+    /// The flow leads to a state that is not finite.
+    #[error("the flow leads to a state that is not finite: input {index} from {from}")]
+    FlowNotFinite {
+        /// Which input.
+        index: usize,
+        /// From where, as `Debug` prints it.
+        from: String,
+    },
+    /// From all states tried every input leads nowhere or out of the space.
+    #[error(
+        "no input leads from any of {states} sampled states to another state of the space: \
+         the duration may be too long, or the inputs too large"
+    )]
+    LeavesSpace {
+        /// How many states were tried.
+        states: usize,
+    },
+}

@@ -1,0 +1,114 @@
+//! Inputs, and how they move states.
+
+use nalgebra::{DVector, SVector};
+use std::fmt::Debug;
+
+/// What a system can be told to do: a list of numbers.
+///
+/// Numbers, arrays and vectors are inputs.
+pub trait Input: Clone + Debug + PartialEq + Send + Sync {
+    /// Its numbers.
+    fn entries(&self) -> &[f64];
+}
+
+/// An input whose numbers can be changed, such as a velocity.
+pub trait InputMut: Input {
+    /// Its numbers.
+    fn entries_mut(&mut self) -> &mut [f64];
+
+    /// `self + factor · other`, number by number.
+    #[inline]
+    #[must_use]
+    fn plus(&self, other: &impl Input, factor: f64) -> Self {
+        let mut sum = self.clone();
+        for (a, b) in sum.entries_mut().iter_mut().zip(other.entries()) {
+            *a += b * factor;
+        }
+        sum
+    }
+}
+
+impl Input for f64 {
+    #[inline]
+    fn entries(&self) -> &[f64] {
+        std::slice::from_ref(self)
+    }
+}
+impl InputMut for f64 {
+    #[inline]
+    fn entries_mut(&mut self) -> &mut [f64] {
+        std::slice::from_mut(self)
+    }
+}
+impl<const N: usize> Input for [f64; N] {
+    #[inline]
+    fn entries(&self) -> &[f64] {
+        self
+    }
+}
+impl<const N: usize> InputMut for [f64; N] {
+    #[inline]
+    fn entries_mut(&mut self) -> &mut [f64] {
+        self
+    }
+}
+impl<const N: usize> Input for SVector<f64, N> {
+    #[inline]
+    fn entries(&self) -> &[f64] {
+        self.as_slice()
+    }
+}
+impl<const N: usize> InputMut for SVector<f64, N> {
+    #[inline]
+    fn entries_mut(&mut self) -> &mut [f64] {
+        self.as_mut_slice()
+    }
+}
+impl Input for DVector<f64> {
+    #[inline]
+    fn entries(&self) -> &[f64] {
+        self.as_slice()
+    }
+}
+impl InputMut for DVector<f64> {
+    #[inline]
+    fn entries_mut(&mut self) -> &mut [f64] {
+        self.as_mut_slice()
+    }
+}
+impl Input for Vec<f64> {
+    #[inline]
+    fn entries(&self) -> &[f64] {
+        self
+    }
+}
+impl InputMut for Vec<f64> {
+    #[inline]
+    fn entries_mut(&mut self) -> &mut [f64] {
+        self
+    }
+}
+
+/// How an input, applied for a while, moves a state. Closures `Fn(&S, &U, f64) -> S` implement it.
+///
+/// Contract: the answer depends on the arguments only, to the bit; after no time the state is where it
+/// was; over `time` from zero to a duration the answers trace the motion, so that it can be checked at
+/// any state on the way. Users' flows may answer with states that are not finite or out of bounds:
+/// these are never entered.
+pub trait Flow<S, U> {
+    /// The state reached from `from` when `input` is applied for `time` seconds.
+    fn integrate(&self, from: &S, input: &U, time: f64) -> S;
+
+    /// The state from which `input` leads to `to` in `time` seconds, up to rounding; `None`, the
+    /// default, where time cannot be turned back.
+    fn reversed(&self, _to: &S, _input: &U, _time: f64) -> Option<S> {
+        None
+    }
+}
+
+impl<S, U, F: Fn(&S, &U, f64) -> S> Flow<S, U> for F {
+    #[inline]
+    fn integrate(&self, from: &S, input: &U, time: f64) -> S {
+        self(from, input, time)
+    }
+}

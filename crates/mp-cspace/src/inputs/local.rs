@@ -1,0 +1,364 @@
+//! The local planner that chooses among inputs.
+
+use super::{Drive, Flow, FlowCheck, Input, InputError, InputSet};
+use crate::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Rng, Space};
+
+/// In which order successors are tested for collision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Order {
+    /// Every successor is tested, and the nearest to the target of those free is taken: ALG. 4 of
+    /// N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas
+    /// algorithms*, 2008. (As printed the listing forgets to lower `dmin`, and would take the last
+    /// one nearer than the node; its text asks for the closest.)
+    TestAll,
+    /// Successors are sorted by their distance to the target and tested in that order, the first that
+    /// is free is taken: RSRT, §3.2 there.
+    SortFirst,
+}
+
+/// Which successors may be taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Accept {
+    /// Only those nearer to the target than the node itself: `dmin` of ALG. 4.
+    Nearer,
+    /// Any: the sequence of RSRT has no such condition.
+    Any,
+}
+
+/// What an [`InputPlanner`] has done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InputCounters {
+    /// Extensions asked for.
+    pub expansions: u64,
+    /// Successors produced: inputs integrated.
+    pub successors: u64,
+    /// Motions tested for collision.
+    pub tested: u64,
+    /// Successors dropped because they are not finite.
+    pub not_finite: u64,
+    /// Successors dropped because they are not in the space.
+    pub outside: u64,
+    /// Successors of backward trees dropped because running forward from them does not lead to the
+    /// very state they came from, or the flow cannot be turned back.
+    pub irreversible: u64,
+}
+
+/// Something that tests successors in an order: an [`InputPlanner`], or one that is lent.
+pub trait TestOrder {
+    /// Sets the order.
+    fn set_order(&mut self, order: Order);
+}
+
+impl<L: TestOrder + ?Sized> TestOrder for &mut L {
+    fn set_order(&mut self, order: Order) {
+        (**self).set_order(order);
+    }
+}
+
+/// Extends states by the inputs of a set: each, applied for the duration, gives a successor; one that is
+/// free of collision is taken, in the [`Order`] set.
+///
+/// The length of a step is up to the inputs and the duration: [`Reach::Step`] limits nothing but exact
+/// connections. A target is reached when a successor equals it to the bit. Where the check can
+/// [connect](FlowCheck::connect) states exactly, [`Reach::Full`] does that, and so do steps toward the
+/// states given to [`reaching`](Self::reaching) from within a step of them.
+///
+/// In backward trees successors are states that lead to the node: the flow is
+/// [turned back](Flow::reversed), and where edges are replayed only successors from which it runs
+/// forward to the very same node are used. Rounding makes them rare, so backward trees are of use with
+/// [`Between`](super::Between) only.
+///
+/// Time per extension: one integration and distance per input, a sort in
+/// [`SortFirst`](Order::SortFirst), and the tests.
+#[derive(Clone, Debug)]
+pub struct InputPlanner<'c, C: Space, F, U, K> {
+    space: &'c C,
+    flow: F,
+    inputs: InputSet<U>,
+    duration: f64,
+    check: K,
+    order: Order,
+    accept: Option<Accept>,
+    exact: Exact<C::State>,
+    counters: InputCounters,
+    /// Distance to the target and input of each successor.
+    ranked: Vec<(f64, usize)>,
+    /// Successors by input.
+    ends: Vec<C::State>,
+}
+
+/// The states that are connected to exactly.
+#[derive(Clone, Debug)]
+enum Exact<S> {
+    Listed(Vec<S>),
+    All,
+}
+
+impl<S: PartialEq> Exact<S> {
+    fn has(&self, q: &S) -> bool {
+        match self {
+            Self::Listed(states) => states.contains(q),
+            Self::All => true,
+        }
+    }
+}
+
+/// States from which the flow is tried at construction.
+const PROBES: usize = 32;
+
+/// Inputs tried from each of them.
+const PROBED_INPUTS: usize = 256;
+
+impl<'c, C, F, U, K> InputPlanner<'c, C, F, U, K>
+where
+    C: Space,
+    U: Input,
+    F: Flow<C::State, U>,
+    K: FlowCheck<C::State, U, F>,
+{
+    /// Extends states of `space` by `flow`: each of the `inputs` for `duration` seconds, tested by
+    /// `check`. The order is that of RSRT until another is set.
+    ///
+    /// # Errors
+    /// When the duration is not positive and finite; when the flow leads from a state of the space,
+    /// of some that are tried, to one that is not finite, or from none of them to another state in
+    /// the space.
+    pub fn new(
+        space: &'c C,
+        flow: F,
+        inputs: InputSet<U>,
+        duration: f64,
+        check: K,
+    ) -> Result<Self, InputError> {
+        let duration = ParameterError::positive("the duration", duration)?;
+        probe(space, &flow, inputs.inputs(), duration)?;
+        Ok(Self {
+            space,
+            flow,
+            ranked: Vec::with_capacity(inputs.len()),
+            ends: Vec::with_capacity(inputs.len()),
+            inputs,
+            duration,
+            check,
+            order: Order::SortFirst,
+            accept: None,
+            exact: Exact::Listed(Vec::new()),
+            counters: InputCounters::default(),
+        })
+    }
+
+    /// The same in another order.
+    #[must_use]
+    pub fn ordered(self, order: Order) -> Self {
+        Self { order, ..self }
+    }
+
+    /// The same with a condition of its own on successors. Unless this is called it goes with the order:
+    /// [`Accept::Nearer`] with [`Order::TestAll`], as ALG. 4 has it, [`Accept::Any`] with
+    /// [`Order::SortFirst`].
+    #[must_use]
+    pub fn accepting(self, accept: Accept) -> Self {
+        Self { accept: Some(accept), ..self }
+    }
+
+    /// The same with `states` that are connected to exactly from within a step of them, as goals should
+    /// be, where the check can do that.
+    #[must_use]
+    pub fn reaching(self, states: impl IntoIterator<Item = C::State>) -> Self {
+        Self { exact: Exact::Listed(states.into_iter().collect()), ..self }
+    }
+
+    /// The same, connecting exactly to any target within a step: for goals that are not known before.
+    #[must_use]
+    pub fn reaching_all(self) -> Self {
+        Self { exact: Exact::All, ..self }
+    }
+
+    /// What was done so far.
+    #[must_use]
+    pub fn counters(&self) -> InputCounters {
+        self.counters
+    }
+
+    /// The inputs.
+    #[must_use]
+    pub fn inputs(&self) -> &InputSet<U> {
+        &self.inputs
+    }
+
+    /// The collision test.
+    #[must_use]
+    pub fn check(&self) -> &K {
+        &self.check
+    }
+
+    /// Produces the successors: those in the space, which are elsewhere than the node.
+    fn produce(&mut self, node: &C::State, toward: &C::State, direction: Direction) {
+        self.ranked.clear();
+        self.ends.clear();
+        let counters = &mut self.counters;
+        for (index, input) in self.inputs.inputs().iter().enumerate() {
+            let end = match direction {
+                Direction::Forward => Some(self.flow.integrate(node, input, self.duration)),
+                Direction::Backward => self.flow.reversed(node, input, self.duration),
+            };
+            counters.successors += 1;
+            let Some(end) = end else {
+                counters.irreversible += 1;
+                self.ends.push(node.clone());
+                continue;
+            };
+            let distance = self.space.distance(&end, toward);
+            if !distance.is_finite() {
+                counters.not_finite += 1;
+            } else if !self.space.contains(&end) {
+                counters.outside += 1;
+            } else if K::REPLAYED
+                && direction == Direction::Backward
+                && self.flow.integrate(&end, input, self.duration) != *node
+            {
+                counters.irreversible += 1;
+            } else if end != *node {
+                self.ranked.push((distance, index));
+            }
+            self.ends.push(end);
+        }
+    }
+
+    fn test(&mut self, node: &C::State, index: usize, direction: Direction) -> Option<(K::Edge, f64)> {
+        self.counters.tested += 1;
+        let (successor, input) = (&self.ends[index], &self.inputs.inputs()[index]);
+        let drive = Drive { node, successor, input, duration: self.duration, direction };
+        self.check.test(&self.flow, &drive)
+    }
+
+    /// The successor taken, its edge and cost.
+    fn choose(
+        &mut self,
+        node: &C::State,
+        direction: Direction,
+        within: f64,
+    ) -> Option<(usize, (K::Edge, f64))> {
+        match self.order {
+            Order::TestAll => {
+                let (mut least, mut best) = (within, None);
+                for i in 0..self.ranked.len() {
+                    let (distance, index) = self.ranked[i];
+                    if let Some(edge) = self.test(node, index, direction)
+                        && distance < least
+                    {
+                        (least, best) = (distance, Some((index, edge)));
+                    }
+                }
+                best
+            }
+            Order::SortFirst => {
+                self.ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                for i in 0..self.ranked.len() {
+                    let (distance, index) = self.ranked[i];
+                    if distance >= within {
+                        return None;
+                    }
+                    if let Some(edge) = self.test(node, index, direction) {
+                        return Some((index, edge));
+                    }
+                }
+                None
+            }
+        }
+    }
+
+    fn accept(&self) -> Accept {
+        self.accept.unwrap_or(match self.order {
+            Order::TestAll => Accept::Nearer,
+            Order::SortFirst => Accept::Any,
+        })
+    }
+
+    /// An exact connection, where it is wanted and can be made. `None` to go on with the inputs.
+    fn connect(
+        &mut self,
+        node: &C::State,
+        toward: &C::State,
+        direction: Direction,
+        reach: Reach,
+    ) -> Option<Extension<C::State, K::Edge>> {
+        let wanted = match reach {
+            Reach::Full => true,
+            Reach::Step(step) => self.exact.has(toward) && self.space.distance(node, toward) <= step,
+        };
+        let connected = if wanted { self.check.connect(node, toward, direction) } else { None }?;
+        self.counters.tested += 1;
+        let decided = matches!((&connected, reach), (Extension::Reached(_), _) | (_, Reach::Full));
+        decided.then_some(connected)
+    }
+}
+
+/// Tries the flow from some states of the space.
+fn probe<C: Space, U: Input, F: Flow<C::State, U>>(
+    space: &C,
+    flow: &F,
+    inputs: &[U],
+    duration: f64,
+) -> Result<(), InputError> {
+    let mut rng = Rng::seed(0);
+    let mut moves = false;
+    for _ in 0..PROBES {
+        let from = space.sample_uniform(&mut rng);
+        for (index, input) in inputs.iter().enumerate().take(PROBED_INPUTS) {
+            let to = flow.integrate(&from, input, duration);
+            if !space.distance(&from, &to).is_finite() {
+                return Err(InputError::FlowNotFinite { index, from: format!("{from:?}") });
+            }
+            moves |= to != from && space.contains(&to);
+        }
+    }
+    if moves { Ok(()) } else { Err(InputError::LeavesSpace { states: PROBES }) }
+}
+
+impl<C: Space, F, U, K> TestOrder for InputPlanner<'_, C, F, U, K> {
+    fn set_order(&mut self, order: Order) {
+        self.order = order;
+    }
+}
+
+impl<C, F, U, K> LocalPlanner<C::State> for InputPlanner<'_, C, F, U, K>
+where
+    C: Space,
+    U: Input,
+    F: Flow<C::State, U>,
+    K: FlowCheck<C::State, U, F>,
+{
+    type Edge = K::Edge;
+
+    fn extend(
+        &mut self,
+        from: &C::State,
+        toward: &C::State,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<C::State, K::Edge> {
+        self.counters.expansions += 1;
+        if let Some(connected) = self.connect(from, toward, direction, reach) {
+            return connected;
+        }
+        self.produce(from, toward, direction);
+        if reach == Reach::Full {
+            let ends = &self.ends;
+            self.ranked.retain(|&(_, index)| ends[index] == *toward);
+        }
+        let within = match self.accept() {
+            Accept::Nearer => self.space.distance(from, toward),
+            Accept::Any => f64::INFINITY,
+        };
+        let Some((index, (edge, cost))) = self.choose(from, direction, within) else {
+            return Extension::Trapped;
+        };
+        let motion = Motion { end: self.ends.swap_remove(index), edge, cost };
+        if motion.end == *toward { Extension::Reached(motion) } else { Extension::Advanced(motion) }
+    }
+
+    fn admits(&mut self, q: &C::State) -> bool {
+        self.check.admits(q)
+    }
+}

@@ -1,0 +1,36 @@
+//! Motions made by inputs: flows, input sets, and the local planner that chooses among them.
+//!
+//! A [`Flow`] says how an input, applied for a while, moves a state. An [`InputSet`] lists the inputs
+//! there are. [`InputPlanner`] is the [`LocalPlanner`](crate::LocalPlanner) of both, in either
+//! [`Order`] of testing; a [`FlowCheck`] tests a successor's motion and says what its edge remembers;
+//! [`ReplayMotions`] and [`ReplayFinely`] verify edges by running them again.
+//!
+//! | system | states | inputs |
+//! |---|---|---|
+//! | [`Kinematic`] | of any space that knows [velocities](crate::Space::moved) | velocities |
+//! | [`DoubleIntegrator`] | positions and velocities, as in [`Product::with_velocity`](crate::Product::with_velocity) | accelerations |
+//! | [`Unicycle`], [`Car`] | [`Se2State`](crate::Se2State) | speed and turning or steering |
+//! | [`Rk4`] | vectors | any: a differential equation, integrated |
+//! | a closure | any | any |
+
+mod check;
+mod double_integrator;
+mod error;
+mod flow;
+mod kinematic;
+mod local;
+mod replay;
+mod rk4;
+mod set;
+mod wheels;
+
+pub use check::{Along, Between, Drive, FlowCheck, Leg, OnPosition, Recorded};
+pub use double_integrator::DoubleIntegrator;
+pub use error::InputError;
+pub use flow::{Flow, Input, InputMut};
+pub use kinematic::Kinematic;
+pub use local::{Accept, InputCounters, InputPlanner, Order, TestOrder};
+pub use replay::{ReplayFinely, ReplayMotions};
+pub use rk4::Rk4;
+pub use set::InputSet;
+pub use wheels::{Car, Unicycle};

@@ -1,0 +1,105 @@
+//! RRT by inputs, testing all: the classical expansion of a system that moves by a set of inputs.
+//!
+//! S. M. LaValle and J. J. Kuffner, *Randomized kinodynamic planning*, ICRA 1999. As ALG. 4 of
+//! N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*,
+//! 2008.
+//!
+//! From a tree that holds the start, repeat:
+//! 1. draw a sample `q`, uniform in the space, or with a small probability a goal state;
+//! 2. find the node `q_prox` nearest to it, at distance `dmin`;
+//! 3. for each input `u`: apply it to `q_prox` for the duration, which leads to `q_tmp`;
+//! 4. test the motion to `q_tmp` for collision;
+//! 5. where it is free and `q_tmp` nearer to `q` than `dmin`, let it be `q_new` and its distance `dmin`;
+//! 6. add `q_new` as a child of `q_prox`, unless there is none or it is in the tree already;
+//! 7. where that is in the goal, verify the path: return it, or prune from the edge that failed.
+//!
+//! The listing in the paper does not lower `dmin` in step 5, and would keep the last of the nearer
+//! successors; its text asks for the closest, which is what is done here.
+//!
+//! **When to use it.** To compare with: [RSRT](super::rsrt) finds the same successors with fewer
+//! collision tests.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
+//! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 20% of the extent |
+//! | `inputs` (by name): directions of motion, 0 for both ways along each degree of freedom | 0, 1, 2, … | 0 |
+//! | `levels` (by name): lengths of motion, each a quarter of the one before | 1 to 20 | 3 |
+//!
+//! [By name](crate::build) it moves by a uniform set of inputs over the degrees of freedom, translation
+//! and rotation alike, and keeps the edges of the local planner given.
+//!
+//! A point with velocities goes around a disc, by accelerations:
+//! ```
+//! use mp_cspace::inputs::{Along, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely};
+//! use mp_cspace::{Iterations, Outcome, Planner, Product, Resolution, Rn, Rng};
+//! use mp_tree::{Goals, Problem, RrtInputs, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! type State = (Vector2<f64>, Vector2<f64>);
+//! let space = Product::with_velocity(Rn::new([0.0, 0.0], [1.0, 1.0])?, [0.5, 0.5])?;
+//! let free = OnPosition(|q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3);
+//! let system = DoubleIntegrator::new(space.spaces().0)?;
+//! let check = Along::new(&space, free.clone(), Resolution::Fraction(0.01))?;
+//! let inputs = InputSet::grid([1.0, 1.0], 3)?;
+//! let local = InputPlanner::new(&space, system, inputs, 0.2, check)?;
+//! let verifier = ReplayFinely::new(&space, system, free, Resolution::Fraction(0.0005))?;
+//! let far_side = Goals::region(|(q, _): &State| q.x > 0.9);
+//!
+//! let start = (Vector2::new(0.1, 0.5), Vector2::zeros());
+//! let problem = Problem::new(&space, local, verifier, start, far_side)?;
+//! let mut planner = RrtInputs::new(problem, Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(20_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert!(path.edges.iter().all(|leg| leg.duration == 0.2));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{GOAL_BIAS, INPUTS, LEVELS, PATIENCE, STEP};
+use crate::{
+    AppendDistinct, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, SingleTree, Tuning,
+};
+use mp_cspace::inputs::{Order, TestOrder};
+use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "rrt-inputs",
+    summary: "one tree moved by a set of inputs, all of them tested for collision; rsrt does with fewer tests",
+    citation: "LaValle and Kuffner 1999",
+    parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
+    aliases: &[],
+    cannot: &[],
+};
+
+/// RRT by inputs: see the [module](self).
+pub type RrtInputs<'c, C, L, N> =
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, AppendDistinct>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State> + TestOrder, N: NearestNeighbors<C>> RrtInputs<'c, C, L, N> {
+    /// RRT by inputs with the nearest neighbours that suit the space. Sets the order of the local
+    /// planner.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning)
+    }
+
+    /// RRT by inputs with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(mut problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+        problem.local.set_order(Order::TestAll);
+        let propose = Samples(Uniform(problem.space));
+        let attach = AppendDistinct::default();
+        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
+    }
+}

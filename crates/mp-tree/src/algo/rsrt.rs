@@ -1,0 +1,103 @@
+//! RSRT, the rapidly-exploring sorted random tree.
+//!
+//! N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*,
+//! 2008, §3.2: [ALG. 4](super::rrt_inputs) with collision tests subordinate to the metric.
+//!
+//! From a tree that holds the start, repeat:
+//! 1. draw a sample `q_rand`, uniform in the space, or with a small probability a goal state;
+//! 2. find the node `q_prox` nearest to it;
+//! 3. produce each successor of `q_prox`: every input applied for the duration, and its distance to
+//!    `q_rand`;
+//! 4. sort the successors by distance, ties by the order of inputs;
+//! 5. test them for collision in that order; the first that is free becomes a child of `q_prox`,
+//!    unless a node is there already, and no more are tested;
+//! 6. where that is in the goal, verify the path: return it, or prune from the edge that failed.
+//!
+//! As in the paper's sequence the child need not be nearer to the sample than `q_prox` is: a node near
+//! obstacles grows as often as another. [`InputPlanner::accepting`](mp_cspace::inputs::InputPlanner::accepting) asks for
+//! [`Nearer`](mp_cspace::inputs::Accept::Nearer) ones, as ALG. 4 does.
+//!
+//! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. It
+//! takes the same successors as ALG. 4 under the same condition, for fewer collision tests. Bodies that
+//! move as they like are planned faster by [RRT-Connect](super::rrt_connect).
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
+//! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 20% of the extent |
+//! | `inputs` (by name): directions of motion, 0 for both ways along each degree of freedom | 0, 1, 2, … | 0 |
+//! | `levels` (by name): lengths of motion, each a quarter of the one before | 1 to 20 | 3 |
+//!
+//! [By name](crate::build) it moves by a uniform set of inputs over the degrees of freedom, translation
+//! and rotation alike, and keeps the edges of the local planner given.
+//!
+//! A car turns round in a lane too narrow to do so in one go:
+//! ```
+//! use mp_cspace::inputs::{Along, Car, InputPlanner, ReplayFinely};
+//! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
+//! use mp_tree::{Goals, Problem, Rsrt, Tuning};
+//!
+//! let space = Se2::new([0.0, 0.0], [8.0, 3.0])?;
+//! let (car, free) = (Car::new(1.0)?, |q: &Se2State| (q.translation.y - 1.5).abs() < 1.2);
+//! let check = Along::new(&space, free, Resolution::Length(0.1))?;
+//! let mut local = InputPlanner::new(&space, car, Car::inputs(1.0, 0.6, 2)?, 0.5, check)?;
+//! let verifier = ReplayFinely::new(&space, car, free, Resolution::Length(0.005))?;
+//! let turned = Goals::region(|q: &Se2State| q.angle.abs() > 3.0);
+//!
+//! let problem = Problem::new(&space, &mut local, verifier, Se2State::new(4.0, 1.5, 0.0), turned)?;
+//! let mut planner = Rsrt::new(problem, Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(20_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert!(path.edges.iter().any(|leg| leg.input[0] < 0.0), "it must have reversed");
+//! drop(planner);
+//! let counters = local.counters();
+//! assert!(counters.tested < counters.successors / 4);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{GOAL_BIAS, INPUTS, LEVELS, PATIENCE, STEP};
+use crate::{
+    AppendApart, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, SingleTree, Tuning,
+};
+use mp_cspace::inputs::{Order, TestOrder};
+use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "rsrt",
+    summary: "one tree moved by a set of inputs, sorted by distance before any is tested for collision",
+    citation: "Jouandeau, Touati and Ali Cherif 2008",
+    parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
+    aliases: &[],
+    cannot: &[],
+};
+
+/// RSRT: see the [module](self).
+pub type Rsrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, AppendApart>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State> + TestOrder, N: NearestNeighbors<C>> Rsrt<'c, C, L, N> {
+    /// RSRT with the nearest neighbours that suit the space. Sets the order of the local planner.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning)
+    }
+
+    /// RSRT with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(mut problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+        problem.local.set_order(Order::SortFirst);
+        let propose = Samples(Uniform(problem.space));
+        let attach = AppendApart::default();
+        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
+    }
+}
