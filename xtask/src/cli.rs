@@ -2,8 +2,9 @@
 
 use crate::bench::PAIRS;
 use crate::plan::metrics;
-use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::ffi::OsStr;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -41,9 +42,10 @@ pub(crate) struct Plan {
     /// Scene files, or names of shipped scenes (default: the shipped sample).
     #[arg(value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Which planner.
+    /// Which planner. With `or-` before its name independent runs of it race on all threads; with `restart-` it
+    /// begins anew when it takes too long.
     #[arg(long, value_name = "NAME", default_value = "rrt-connect",
-          value_parser = PossibleValuesParser::new(planners()))]
+          value_parser = PlannerName)]
     pub(crate) planner: String,
     /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
     #[arg(long, value_name = "NAME", default_value = metrics::DEFAULT,
@@ -69,7 +71,7 @@ pub(crate) struct Plan {
     /// Plan this often, with seeds N, N + 1, …, and print a table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,
-    /// How many runs at once; results do not depend on it.
+    /// How many runs at once; of a single run, how many threads it may use. Results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
     /// Set a parameter of the planner.
@@ -249,6 +251,28 @@ impl FromStr for Motion {
             ("discrete", _) => Err("give the resolution, such as discrete:1% or discrete:0.05".into()),
             _ => Err("expected `certified` or `discrete:R`, such as discrete:1%".into()),
         }
+    }
+}
+
+/// Takes the name of a planner, wrapped or not.
+#[derive(Clone, Debug)]
+struct PlannerName;
+
+impl TypedValueParser for PlannerName {
+    type Value = String;
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        arg: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<String, clap::Error> {
+        match value.to_str() {
+            Some(name) if mp::tree::Named::new(name).is_ok() => Ok(name.to_owned()),
+            _ => PossibleValuesParser::new(planners()).parse_ref(command, arg, value),
+        }
+    }
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(planners().into_iter()))
     }
 }
 

@@ -167,6 +167,30 @@ fn planners_that_improve_use_the_budget_and_say_what_it_gave() {
 }
 
 #[test]
+fn planners_that_run_planners_give_the_same_bytes_on_any_number_of_threads() {
+    let dir = Dir::new();
+    for planner in ["or-rrt-connect", "or-restart-rrt", "restart-rrt-connect"] {
+        let runs = ["1", "2"].map(|threads| {
+            let out = format!("{threads}.txt");
+            let args = ["plan", "window.env", "--json", "--planner", planner, "--threads", threads];
+            let run = xtask(&dir, &[&args[..], &["--out", &out]].concat());
+            assert_eq!(run.code, 0, "{run:?}");
+            let report = run.json();
+            assert_eq!(report["planner"], planner);
+            (dir.read(&out), report["iterations"].clone(), report["collision_checks"].clone())
+        });
+        assert_eq!(runs[0], runs[1], "{planner}");
+        assert_ne!(runs[0].2, 0);
+    }
+    let run = xtask(&dir, &["plan", "window.env", "--planner", "or-rrt-conect"]);
+    assert!(run.code == 2 && run.stderr.contains("or-rrt-conect"), "{run:?}");
+    let run = xtask(&dir, &["plan", "window.env", "--planner", "restart-rrt", "--set", "runs=3"]);
+    assert!(run.code == 2 && run.stderr.contains("schedule"), "{run:?}");
+    let run = xtask(&dir, &["plan", "window.env", "--planner", "or-rrt", "--set", "runs=0"]);
+    assert!(run.code == 2 && run.stderr.contains("from 1 to 1024"), "{run:?}");
+}
+
+#[test]
 fn a_path_that_touches_something_is_refused_with_the_place() {
     let dir = Dir::new();
     dir.write("through.txt", "2\n-2 1.4 0.2 0 0 0\n2 1.3 1.8 0.7 0 0\n");

@@ -44,3 +44,16 @@ pub trait Planner<S> {
         }
     }
 }
+
+impl<S, P: Planner<S> + ?Sized> Planner<S> for Box<P> {
+    type Edge = P::Edge;
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S, P::Edge>> {
+        (**self).step(rng, observer)
+    }
+    fn progress(&self) -> Progress {
+        (**self).progress()
+    }
+    fn improves(&self) -> bool {
+        (**self).improves()
+    }
+}

@@ -81,6 +81,12 @@ pub enum BuildError {
     /// The planner moves by a set of inputs, and there is something wrong with them.
     #[error(transparent)]
     Inputs(#[from] InputError),
+    /// A factory of problems could not make one.
+    #[error("cannot make the problem: {reason}")]
+    Unmade {
+        /// Why not.
+        reason: String,
+    },
     /// A setting is not of the form `key=value`, or its value cannot be read.
     #[error("cannot read the setting `{setting}`: expected {expected}")]
     Malformed {

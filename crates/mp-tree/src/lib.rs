@@ -12,6 +12,9 @@
 //! | [`RrtInputs`] | [`algo::rrt_inputs`] | from the start, by a set of inputs | the best of all successors free of collision |
 //! | [`Rsrt`] | [`algo::rsrt`] | from the start, by a set of inputs | the first successor free of collision, sorted by distance |
 //!
+//! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
+//! ([`algo::restarts`]) one after the other. [`build_from`] makes them by name.
+//!
 //! A planner is made from a checked [`Problem`] and works through the trait
 //! [`Planner`](mp_cspace::Planner): one step at a time, or until a stop says so. [`build`] makes
 //! one by name.
@@ -81,11 +84,15 @@ mod tree;
 mod two;
 mod uniform;
 mod verify;
+mod workers;
+mod wrap;
 
 pub use algo::bi_rrt::BiRrt;
 pub use algo::con_con::RrtConCon;
 pub use algo::con_ext::RrtConExt;
 pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
+pub use algo::or_parallel::OrParallel;
+pub use algo::restarts::{Lengths, Restarts, Schedule};
 pub use algo::rrt::Rrt;
 pub use algo::rrt_connect::RrtConnect;
 pub use algo::rrt_inputs::RrtInputs;
@@ -112,3 +119,5 @@ pub use single::SingleTree;
 pub use tree::Tree;
 pub use two::TwoTrees;
 pub use verify::Verify;
+pub use workers::Workers;
+pub use wrap::{Named, Wrapper, build_from, wrappers};

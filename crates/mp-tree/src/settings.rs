@@ -142,16 +142,48 @@ impl Settings {
     /// # Errors
     /// When there is one, with the names there are.
     pub fn check(&self, planner: &PlannerInfo) -> Result<(), BuildError> {
-        let known = || planner.parameters.iter().map(|parameter| parameter.name);
-        match self.0.iter().find(|(key, _)| !known().any(|name| name == key)) {
+        self.check_among(planner.name, planner.parameters)
+    }
+
+    /// Refuses names of parameters other than `parameters`.
+    pub(crate) fn check_among<'p>(
+        &self,
+        planner: &'static str,
+        parameters: impl IntoIterator<Item = &'p Parameter>,
+    ) -> Result<(), BuildError> {
+        let known: Vec<&'static str> = parameters.into_iter().map(|parameter| parameter.name).collect();
+        match self.0.iter().find(|(key, _)| !known.iter().any(|name| name == key)) {
             None => Ok(()),
-            Some((key, _)) => Err(BuildError::UnknownParameter {
-                planner: planner.name,
-                name: key.clone(),
-                known: known().collect(),
-                suggestion: closest(key, known()),
-            }),
+            Some((key, _)) => {
+                let suggestion = closest(key, known.iter().copied());
+                Err(BuildError::UnknownParameter { planner, name: key.clone(), known, suggestion })
+            }
         }
+    }
+
+    /// What is set for `parameters`, without the rest.
+    pub(crate) fn only(&self, parameters: &[Parameter]) -> Self {
+        let known = |key: &str| parameters.iter().any(|parameter| parameter.name == key);
+        Self(self.0.iter().filter(|(key, _)| known(key)).cloned().collect())
+    }
+
+    /// The whole number set for `parameter`, or its default.
+    pub(crate) fn count_of(&self, parameter: &Parameter) -> Result<u64, BuildError> {
+        let default = || parameter.default.parse().unwrap_or_default();
+        Ok(self.count(parameter.name)?.unwrap_or_else(default))
+    }
+
+    /// What is set for `key`, if any, being one of the words that `parse` knows.
+    ///
+    /// # Errors
+    /// When it is none of them; `expected` lists them.
+    pub fn choice<T>(
+        &self,
+        key: &str,
+        expected: &'static str,
+        parse: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<T>, BuildError> {
+        self.read(key, expected, parse)
     }
 
     fn read<T>(

@@ -3,13 +3,15 @@
 use super::metrics;
 use crate::cli::{self, Motion};
 use miette::{IntoDiagnostic, Result, miette};
-use mp::tree::{PlannerInfo, Settings};
+use mp::tree::{Named, Settings, Workers};
 use std::time::Duration;
 
 /// How to plan.
 #[derive(Clone, Debug)]
 pub(crate) struct Options {
-    pub(crate) planner: &'static PlannerInfo,
+    pub(crate) planner: Named,
+    /// Threads that a planner may use.
+    pub(crate) workers: Workers,
     pub(crate) settings: Settings,
     pub(crate) metric: metrics::Kind,
     pub(crate) metric_name: String,
@@ -21,7 +23,9 @@ pub(crate) struct Options {
 
 impl Options {
     pub(crate) fn new(args: &cli::Plan) -> Result<Self> {
-        let planner = mp::tree::planner(&args.planner).into_diagnostic()?;
+        let planner = Named::new(&args.planner).into_diagnostic()?;
+        let single = args.scenes.len() <= 1 && args.runs == 1;
+        let threads = if single { usize::from(args.threads) } else { 1 };
         let mut settings = Settings::default();
         if let Some(step) = args.step {
             settings.set("step", &step.to_string());
@@ -32,12 +36,13 @@ impl Options {
                 _ => return Err(miette!(help = "write KEY=VALUE", "cannot read the setting `{text}`")),
             }
         }
-        settings.tuning(planner).into_diagnostic()?;
+        planner.check(&settings).into_diagnostic()?;
         let metric =
             metrics::named(&args.metric).ok_or_else(|| miette!("there is no metric `{}`", args.metric))?;
         let time = Duration::try_from_secs_f64(args.time).unwrap_or(Duration::MAX);
         Ok(Self {
             planner,
+            workers: Workers::new(threads).into_diagnostic()?,
             settings,
             metric,
             metric_name: args.metric.clone(),
@@ -51,7 +56,8 @@ impl Options {
     /// RRT-Connect as other programs have it, to be measured beside them.
     pub(crate) fn comparable(motion: Motion, seconds: f64) -> Result<Self> {
         Ok(Self {
-            planner: mp::tree::planner("rrt-connect").into_diagnostic()?,
+            planner: Named::new("rrt-connect").into_diagnostic()?,
+            workers: Workers::alone(),
             settings: Settings::default(),
             metric: metrics::Kind::Default,
             metric_name: metrics::DEFAULT.to_owned(),

@@ -155,7 +155,7 @@ fn one<M: Mover>(
         solved: false,
         verified: false,
         stopped_by: None,
-        planner: options.planner.name.to_owned(),
+        planner: options.planner.to_string(),
         metric: options.metric_name.clone(),
         motion: match options.motion {
             Motion::Certified => "certified".into(),

@@ -8,11 +8,13 @@ use super::setting::Setting;
 use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
-    Cancel, Certified, Deadline, DefaultNn, Discrete, Euclidean, Iterations, KdTree, Manhattan, MetricOn,
-    MetricTree, MotionValidity, NearestNeighbors, Outcome, Path, Progress, Resolution, Rng, Space, Stop,
-    StopReason, Straight, Validity, WithMetric,
+    Cancel, Certified, Clearance, Deadline, DefaultNn, Discrete, Euclidean, Iterations, KdTree, Manhattan,
+    MetricOn, MetricTree, MotionBound, MotionValidity, NearestNeighbors, Outcome, ParameterError, Path,
+    Progress, Resolution, Rng, Room, Space, Stop, StopReason, Straight, Stretch, Validity, WithMetric,
 };
-use mp::tree::{Goals, Problem, build_with, improve};
+use mp::robot::RigidBody;
+use mp::tree::{BuildError, Goals, Problem, build_from, improve};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// What a planner came back with.
@@ -55,18 +57,43 @@ fn with<C: Space + Clone, D: MetricOn<C>>(space: &C, metric: D) -> WithMetric<C,
     WithMetric::new(space.clone(), metric)
 }
 
-/// A robot used for a while: its counters are looked at afterwards.
-struct Lent<'a, R>(&'a mut R);
+/// A robot whose counters go into a common sum when it is dropped.
+struct Counted<'a, M: Mover> {
+    robot: RigidBody<M>,
+    queries: &'a AtomicU64,
+}
 
-impl<S, R: Validity<S>> Validity<S> for Lent<'_, R> {
-    fn is_valid(&mut self, q: &S) -> bool {
-        self.0.is_valid(q)
+impl<M: Mover> Drop for Counted<'_, M> {
+    fn drop(&mut self) {
+        let counters = self.robot.counters();
+        self.queries.fetch_add(counters.collision_checks + counters.clearance_checks, Ordering::Relaxed);
     }
-    fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
-        self.0.first_invalid(states)
+}
+impl<M: Mover> Validity<M::State> for Counted<'_, M> {
+    fn is_valid(&mut self, q: &M::State) -> bool {
+        self.robot.is_valid(q)
+    }
+    fn first_invalid(&mut self, states: &[M::State]) -> Option<usize> {
+        self.robot.first_invalid(states)
     }
     fn batch_size(&self) -> usize {
-        self.0.batch_size()
+        self.robot.batch_size()
+    }
+}
+impl<M: Mover> Clearance<M::State> for Counted<'_, M> {
+    fn clearance(&mut self, q: &M::State, enough: f64) -> f64 {
+        self.robot.clearance(q, enough)
+    }
+    fn in_contact(&mut self, q: &M::State) -> bool {
+        self.robot.in_contact(q)
+    }
+    fn room(&mut self, stretch: &Stretch<'_, M::State>) -> Room {
+        self.robot.room(stretch)
+    }
+}
+impl<M: Mover> MotionBound<M::State> for Counted<'_, M> {
+    fn motion_bound(&self, from: &M::State, to: &M::State) -> f64 {
+        self.robot.motion_bound(from, to)
     }
 }
 
@@ -77,7 +104,30 @@ struct Run<'a, M: Mover> {
     cancel: &'a Cancel,
 }
 
-impl<M: Mover> Run<'_, M> {
+impl<'a, M: Mover> Run<'a, M> {
+    /// The motion check that the options ask for.
+    fn check<'c, C: Space<State = M::State>>(
+        &self,
+        space: &'c C,
+        queries: &'c AtomicU64,
+    ) -> Result<Box<dyn MotionValidity<M::State> + Send + 'c>, ParameterError>
+    where
+        'a: 'c,
+    {
+        let Self { setting, options, .. } = self;
+        let robot = Counted { robot: setting.robot.clone(), queries };
+        Ok(match options.motion {
+            Motion::Certified => Box::new(Certified::new(&setting.space, robot, setting.tolerance)?),
+            Motion::Discrete(length) => {
+                let resolution = match length {
+                    Length::Absolute(v) => Resolution::Length(v),
+                    Length::Fraction(f) => Resolution::Fraction(f),
+                };
+                Box::new(Discrete::new(space, robot, resolution)?)
+            }
+        })
+    }
+
     /// Plans in `space`, which differs from that of the setting in its metric only.
     fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<M::State>>
     where
@@ -85,27 +135,25 @@ impl<M: Mover> Run<'_, M> {
         N: NearestNeighbors<C> + Clone + Send + 'static,
     {
         let Self { setting, options, .. } = self;
-        let (mut robot, verifier) = (setting.robot.clone(), setting.verifier()?);
+        let verifier = setting.verifier()?;
+        let queries = AtomicU64::new(0);
         let began = Instant::now();
         let (outcome, progress, first) = {
-            let check: Box<dyn MotionValidity<M::State> + Send> = match options.motion {
-                Motion::Certified => {
-                    Box::new(Certified::new(&setting.space, &mut robot, setting.tolerance).into_diagnostic()?)
-                }
-                Motion::Discrete(length) => {
-                    let resolution = match length {
-                        Length::Absolute(v) => Resolution::Length(v),
-                        Length::Fraction(f) => Resolution::Fraction(f),
-                    };
-                    Box::new(Discrete::new(space, Lent(&mut robot), resolution).into_diagnostic()?)
-                }
+            let problem = || {
+                let unmade = |e: ParameterError| BuildError::Unmade { reason: e.to_string() };
+                let check = self.check(space, &queries).map_err(unmade)?;
+                let goal = Goals::states([setting.goal.clone()]);
+                Problem::new(
+                    space,
+                    Straight::new(space, check),
+                    verifier.clone(),
+                    setting.start.clone(),
+                    goal,
+                )
             };
-            let goal = Goals::states([setting.goal.clone()]);
-            let local = Straight::new(space, check);
-            let problem =
-                Problem::new(space, local, verifier, setting.start.clone(), goal).into_diagnostic()?;
+            let name = options.planner.to_string();
             let mut planner =
-                build_with(options.planner.name, problem, index, &options.settings).into_diagnostic()?;
+                build_from(&name, problem, index, &options.settings, &options.workers).into_diagnostic()?;
             let mut stop = self
                 .cancel
                 .clone()
@@ -124,14 +172,7 @@ impl<M: Mover> Run<'_, M> {
             };
             (outcome, planner.progress(), first)
         };
-        let counters = robot.counters();
-        Ok(Search {
-            outcome,
-            progress,
-            queries: counters.collision_checks + counters.clearance_checks,
-            time: began.elapsed(),
-            first,
-        })
+        Ok(Search { outcome, progress, queries: queries.into_inner(), time: began.elapsed(), first })
     }
 }
 

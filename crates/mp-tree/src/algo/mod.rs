@@ -4,6 +4,8 @@ pub mod bi_rrt;
 pub mod con_con;
 pub mod con_ext;
 pub mod informed_rrt_star;
+pub mod or_parallel;
+pub mod restarts;
 pub mod rrt;
 pub mod rrt_connect;
 pub mod rrt_inputs;

@@ -1,0 +1,196 @@
+//! OR-parallel planning: independent runs of one planner, of which the first to end wins.
+//!
+//! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
+//! Italian Association for Artificial Intelligence, 2002. There the fastest processor wins; here
+//! the run with the fewest iterations does, so that the answer does not depend on the machine.
+//!
+//! With n planners for the same problem, run i drawing from stream (seed, i):
+//! 1. a round: each run makes `slice` iterations, or fewer if it finds a path; the runs are shared
+//!    out to the threads;
+//! 2. when runs have found a path, the one with the fewest iterations wins, of those the lowest i;
+//! 3. otherwise the next round. So no run goes further than one slice beyond where the winner ended,
+//!    as it could not win any more.
+//!
+//! The seed is the first number drawn from the generator of the first step. One step is one round.
+//!
+//! **When to use it.** On several cores, for problems where the time of a run depends much on luck:
+//! the shortest of n runs is then far shorter than the mean. It is worth something on a single
+//! core too where the times have a heavy tail; [restarts](super::restarts) do that with one tree in
+//! memory at a time.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `runs`: how many independent runs, whatever the number of threads | 1, 2, … 1024 | 8 |
+//! | `slice`: iterations of each run per round; budgets are kept to within one slice | 1, 2, … 10⁶ | 32 |
+//!
+//! and those of the planner that is run. By name it is `or-` and the name of that, as in
+//! `or-rrt-connect`; [`build_from`](crate::build_from) makes it.
+//!
+//! An event is reported only for what [`solve`](Planner::solve) sees. A run in which the user's code
+//! panics loses that iteration, which is [counted](OrParallel::panics), and goes on; when all runs
+//! panic in one round, the step does, in the thread that called it, with what the first said.
+//!
+//! Eight runs on two threads:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{OrParallel, Problem, RrtConnect, Tuning, Workers};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || (q.y - 0.8).abs() < 0.02;
+//! let run = |_| {
+//!     let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//!     let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//!     let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1))?;
+//!     RrtConnect::new(problem, Tuning::default())
+//! };
+//! let solve = |threads| {
+//!     let mut planner = OrParallel::new(8, 32, Workers::new(threads)?, run)?;
+//!     Ok::<_, mp_tree::BuildError>(planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ()))
+//! };
+//! let outcome = solve(2)?;
+//! assert!(matches!(outcome, Outcome::Solved(_)));
+//! assert_eq!(outcome, solve(1)?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::{BuildError, Parameter, Workers};
+use mp_cspace::{Observer, Path, Planner, Progress, Rng};
+use rand::RngExt;
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+/// How many runs.
+pub const RUNS: Parameter = Parameter {
+    name: "runs",
+    range: "a whole number from 1 to 1024",
+    default: "8",
+    doc: "independent runs, whatever the number of threads; the one with the fewest iterations wins",
+};
+
+/// How long a round is.
+pub const SLICE: Parameter = Parameter {
+    name: "slice",
+    range: "a whole number from 1 to 1000000",
+    default: "32",
+    doc: "iterations of each run per round",
+};
+
+/// One of the runs.
+#[derive(Debug)]
+struct Run<P, F> {
+    planner: P,
+    rng: Rng,
+    found: Option<F>,
+    panicked: Option<Box<dyn Any + Send>>,
+}
+
+/// OR-parallel planning: see the [module](self).
+#[derive(Debug)]
+pub struct OrParallel<S, P: Planner<S>> {
+    runs: Vec<Run<P, Path<S, P::Edge>>>,
+    slice: u64,
+    workers: Workers,
+    begun: bool,
+    winner: Option<usize>,
+    panics: u64,
+}
+
+impl<S, P: Planner<S>> OrParallel<S, P> {
+    /// `runs` planners, run `i` made by `make(i)`, in rounds of `slice` iterations.
+    ///
+    /// # Errors
+    /// When a number is out of range, or a planner cannot be made.
+    pub fn new(
+        runs: u64,
+        slice: u64,
+        workers: Workers,
+        make: impl FnMut(u64) -> Result<P, BuildError>,
+    ) -> Result<Self, BuildError> {
+        let check = |name, value: u64, most: u64| match (1..=most).contains(&value) {
+            true => Ok(()),
+            false => {
+                let range = format!("a whole number from 1 to {most}");
+                Err(BuildError::OutOfRange { name, value: value as f64, range })
+            }
+        };
+        check(RUNS.name, runs, 1024)?;
+        check(SLICE.name, slice, 1_000_000)?;
+        let planners = (0..runs).map(make).collect::<Result<Vec<P>, BuildError>>()?;
+        let run = |planner| Run { planner, rng: Rng::seed(0), found: None, panicked: None };
+        let runs = planners.into_iter().map(run).collect();
+        Ok(Self { runs, slice, workers, begun: false, winner: None, panics: 0 })
+    }
+
+    /// Which run found the path returned last.
+    #[must_use]
+    pub fn winner(&self) -> Option<usize> {
+        self.winner
+    }
+
+    /// How often a run has panicked, where not all did.
+    #[must_use]
+    pub fn panics(&self) -> u64 {
+        self.panics
+    }
+
+    /// The planners.
+    pub fn planners(&self) -> impl Iterator<Item = &P> {
+        self.runs.iter().map(|run| &run.planner)
+    }
+}
+
+impl<S: Send, P: Planner<S, Edge: Send> + Send> Planner<S> for OrParallel<S, P> {
+    type Edge = P::Edge;
+
+    fn step(&mut self, rng: &mut Rng, _: &mut dyn Observer<S>) -> Option<Path<S, P::Edge>> {
+        if !self.begun {
+            let seed = rng.random();
+            for (i, run) in self.runs.iter_mut().enumerate() {
+                run.rng = Rng::stream(seed, i as u64);
+            }
+            self.begun = true;
+        }
+        let slice = self.slice;
+        self.workers.each(&mut self.runs, |run| {
+            for _ in 0..slice {
+                let step = catch_unwind(AssertUnwindSafe(|| run.planner.step(&mut run.rng, &mut ())));
+                match step {
+                    Ok(None) => {}
+                    Ok(path) => return run.found = path,
+                    Err(why) => return run.panicked = Some(why),
+                }
+            }
+        });
+        let mut why = None;
+        let mut all = true;
+        for run in &mut self.runs {
+            let panicked = run.panicked.take();
+            self.panics += u64::from(panicked.is_some());
+            all &= panicked.is_some();
+            why = why.or(panicked);
+        }
+        if let (true, Some(why)) = (all, why) {
+            resume_unwind(why);
+        }
+        let ended = self.runs.iter().enumerate().filter(|(_, run)| run.found.is_some());
+        let iterations = |run: &Run<P, _>| run.planner.progress().iterations;
+        let winner = ended.map(|(i, run)| (iterations(run), i)).min();
+        let (_, winner) = winner?;
+        self.winner = Some(winner);
+        let mut found = self.runs.iter_mut().map(|run| run.found.take()).collect::<Vec<_>>();
+        found.swap_remove(winner)
+    }
+
+    /// Iterations are those of the run that made most; the rest are sums over all runs.
+    fn progress(&self) -> Progress {
+        let mut sum = Progress::default();
+        for progress in self.planners().map(Planner::progress) {
+            sum.iterations = sum.iterations.max(progress.iterations);
+            sum.nodes += progress.nodes;
+            sum.motions += progress.motions;
+            sum.rejected += progress.rejected;
+        }
+        sum
+    }
+}

@@ -1,0 +1,46 @@
+//! Threads for planners that work in parallel.
+
+use crate::BuildError;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A pool of threads that belongs to whoever holds it; clones share it. Nothing computed depends
+/// on how many there are.
+#[derive(Clone, Debug)]
+pub struct Workers(Option<Arc<rayon::ThreadPool>>);
+
+impl Workers {
+    /// The most threads a pool may have.
+    pub const MOST: usize = 1024;
+
+    /// Only the caller's own thread.
+    #[must_use]
+    pub fn alone() -> Self {
+        Self(None)
+    }
+
+    /// `threads` threads.
+    ///
+    /// # Errors
+    /// When that is none or more than [`MOST`](Self::MOST), or the system refuses them.
+    pub fn new(threads: usize) -> Result<Self, BuildError> {
+        let refused =
+            |range: String| BuildError::OutOfRange { name: "threads", value: threads as f64, range };
+        match threads {
+            1 => Ok(Self::alone()),
+            2..=Self::MOST => match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+                Ok(pool) => Ok(Self(Some(Arc::new(pool)))),
+                Err(error) => Err(refused(format!("fewer: {error}"))),
+            },
+            _ => Err(refused(format!("from 1 to {}", Self::MOST))),
+        }
+    }
+
+    /// Calls `work` on each item.
+    pub(crate) fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Send + Sync) {
+        match &self.0 {
+            None => items.iter_mut().for_each(work),
+            Some(pool) => pool.install(|| items.par_iter_mut().with_max_len(1).for_each(work)),
+        }
+    }
+}

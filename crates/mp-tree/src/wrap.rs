@@ -1,0 +1,197 @@
+//! Planners that run other planners, by name.
+
+use crate::algo::or_parallel::{RUNS, SLICE};
+use crate::algo::restarts::{SCHEDULE, UNIT};
+use crate::{
+    AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
+    Workers, build_with, planner,
+};
+use mp_cspace::{LocalPlanner, NearestNeighbors, Space};
+use std::fmt;
+use std::sync::Arc;
+
+/// A way to run another planner, named by what is put before that one's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wrapper {
+    /// Before the name of the planner it runs.
+    pub prefix: &'static str,
+    /// What it is and when to use it, in a line.
+    pub summary: &'static str,
+    /// Its paper.
+    pub citation: &'static str,
+    /// Its parameters; there are those of the planner it runs beside them.
+    pub parameters: &'static [Parameter],
+}
+
+const OR: Wrapper = Wrapper {
+    prefix: "or-",
+    summary: "independent runs on all threads, of which the one with the fewest iterations wins",
+    citation: "Carpin and Pagello 2002",
+    parameters: &[RUNS, SLICE],
+};
+
+const RESTART: Wrapper = Wrapper {
+    prefix: "restart-",
+    summary: "begins anew when it takes too long: fewer very long runs",
+    citation: "Luby, Sinclair and Zuckerman 1993; Amato, Ashur and Har-Peled 2025",
+    parameters: &[SCHEDULE, UNIT],
+};
+
+/// All wrappers of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
+/// that restart.
+#[must_use]
+pub fn wrappers() -> &'static [Wrapper] {
+    &[OR, RESTART]
+}
+
+/// A planner by name, with what it is wrapped in: `rrt`, `or-rrt-connect`, `restart-rrt`, …
+///
+/// ```
+/// use mp_tree::{Named, Settings};
+/// let named = Named::new("restart-rrt-connect")?;
+/// assert_eq!(named.to_string(), "restart-rrt-connect");
+/// assert!(named.check(&Settings::parse(["unit=500", "step=10%"])?).is_ok());
+/// assert!(named.check(&Settings::parse(["runs=2"])?).is_err());
+/// assert!(Named::new("or-dijkstra").is_err());
+/// # Ok::<(), mp_tree::BuildError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// The wrappers, the outermost first.
+    pub wrappers: Vec<&'static Wrapper>,
+    /// The planner inside.
+    pub planner: &'static PlannerInfo,
+}
+
+impl Named {
+    /// Most wrappers around one planner.
+    const DEEPEST: usize = 4;
+
+    /// The planner called `name`.
+    ///
+    /// # Errors
+    /// When there is none, with the names there are.
+    pub fn new(name: &str) -> Result<Self, BuildError> {
+        let mut rest = name;
+        let mut wrappers = Vec::new();
+        loop {
+            if let Ok(planner) = planner(rest) {
+                return Ok(Self { wrappers, planner });
+            }
+            let outer = self::wrappers().iter().find_map(|w| Some((w, rest.strip_prefix(w.prefix)?)));
+            match outer {
+                Some((wrapper, inner)) if wrappers.len() < Self::DEEPEST => {
+                    wrappers.push(wrapper);
+                    rest = inner;
+                }
+                _ => planner(rest).map(|_| ())?,
+            }
+        }
+    }
+
+    /// Refuses settings that neither the planner nor a wrapper has, and values that cannot be read.
+    /// The range of the planner's own parameters is checked when it is made.
+    ///
+    /// # Errors
+    /// When there is one.
+    pub fn check(&self, settings: &Settings) -> Result<(), BuildError> {
+        let own = self.wrappers.iter().flat_map(|wrapper| wrapper.parameters);
+        settings.check_among(self.planner.name, own.chain(self.planner.parameters))?;
+        self.planner_settings(settings).tuning(self.planner)?;
+        Schedule::of(settings)?;
+        [RUNS, SLICE, UNIT].iter().try_for_each(|parameter| settings.count(parameter.name).map(|_| ()))
+    }
+
+    fn planner_settings(&self, settings: &Settings) -> Settings {
+        settings.only(self.planner.parameters)
+    }
+}
+
+impl fmt::Display for Named {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.wrappers.iter().try_for_each(|wrapper| f.write_str(wrapper.prefix))?;
+        f.write_str(self.planner.name)
+    }
+}
+
+/// Makes the planner called `name`, wrapped or not, with the nearest neighbours `index`. `make` makes
+/// the problem, as often as there are runs; they use `workers`.
+///
+/// # Errors
+/// When there is no such planner, it has no such parameters or refuses their values, or `make`
+/// fails.
+pub fn build_from<'c, C, L, N>(
+    name: &str,
+    make: impl Fn() -> Result<Problem<'c, C, L>, BuildError> + Send + Sync + 'c,
+    index: N,
+    settings: &Settings,
+    workers: &Workers,
+) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
+where
+    C: Space + 'c,
+    C::State: 'c,
+    L: LocalPlanner<C::State> + Send + 'c,
+    L::Edge: 'c,
+    N: NearestNeighbors<C> + Clone + Send + 'c,
+{
+    let named = Named::new(name)?;
+    named.check(settings)?;
+    let factory =
+        Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), named };
+    factory.planner(0)
+}
+
+type Make<'c, C, L> = dyn Fn() -> Result<Problem<'c, C, L>, BuildError> + Send + Sync + 'c;
+
+/// All that is needed to make a planner any number of times.
+struct Factory<'c, C: Space, L: LocalPlanner<C::State>, N> {
+    make: Arc<Make<'c, C, L>>,
+    index: N,
+    settings: Settings,
+    workers: Workers,
+    named: Named,
+}
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: Clone> Clone for Factory<'c, C, L, N> {
+    fn clone(&self) -> Self {
+        let Self { make, index, settings, workers, named } = self;
+        Self {
+            make: Arc::clone(make),
+            index: index.clone(),
+            settings: settings.clone(),
+            workers: workers.clone(),
+            named: named.clone(),
+        }
+    }
+}
+
+impl<'c, C, L, N> Factory<'c, C, L, N>
+where
+    C: Space + 'c,
+    C::State: 'c,
+    L: LocalPlanner<C::State> + Send + 'c,
+    L::Edge: 'c,
+    N: NearestNeighbors<C> + Clone + Send + 'c,
+{
+    /// The planner inside the wrappers before `depth`.
+    fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError> {
+        let count = |parameter: Parameter| self.settings.count_of(&parameter);
+        match self.named.wrappers.get(depth) {
+            None => {
+                let settings = self.named.planner_settings(&self.settings);
+                build_with(self.named.planner.name, (self.make)()?, self.index.clone(), &settings)
+            }
+            Some(wrapper) if **wrapper == OR => {
+                let workers = self.workers.clone();
+                Ok(Box::new(OrParallel::new(count(RUNS)?, count(SLICE)?, workers, |_| {
+                    self.planner(depth + 1)
+                })?))
+            }
+            Some(_) => {
+                let inner = self.clone();
+                let attempt = move |_| inner.planner(depth + 1);
+                Ok(Box::new(Restarts::new(Schedule::of(&self.settings)?, count(UNIT)?, attempt)?))
+            }
+        }
+    }
+}

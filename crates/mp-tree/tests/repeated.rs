@@ -1,0 +1,276 @@
+//! Planners that run planners: several at once, and one after the other.
+
+mod common;
+use common::*;
+use mp_cspace::*;
+use mp_tree::*;
+use nalgebra::Vector2;
+use rand::RngExt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+type Point = Vector2<f64>;
+type Local<'c> = Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>;
+type Made<'c> = Result<Problem<'c, Rn<2>, Local<'c>>, BuildError>;
+
+fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Made<'c> {
+    let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
+    Problem::new(space, local, Exact(boxes.clone()), Point::new(0.1, 0.2), Point::new(0.9, 0.2))
+}
+
+fn tuning() -> Tuning {
+    Tuning { step: Step::Length(0.1), ..Tuning::default() }
+}
+
+fn narrow() -> Boxes<2> {
+    slit(0.2, 0.8, 0.02)
+}
+
+fn closed() -> Boxes<2> {
+    hollow([0.9, 0.2], 0.05, 0.02, 0.0)
+}
+
+/// What a planner comes to, and what it has done.
+type Came = (Outcome<Path<Point>>, Progress);
+
+fn solve(planner: &mut impl Planner<Point, Edge = ()>, seed: u64, iterations: u64) -> Came {
+    let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(iterations), &mut ());
+    (outcome, planner.progress())
+}
+
+#[test]
+fn the_run_with_fewest_iterations_wins_on_any_number_of_threads() {
+    let (space, boxes) = (square(), narrow());
+    let run = |_| RrtConnect::new(problem(&space, &boxes)?, tuning());
+    let mut winners = Vec::new();
+    for seed in 0..8 {
+        // Each run by itself.
+        let stream_seed = Rng::seed(seed).random();
+        let alone = (0..6).map(|i| {
+            let mut planner = run(i).unwrap();
+            let mut rng = Rng::stream(stream_seed, i);
+            let Outcome::Solved(path) = planner.solve(&mut rng, &mut Iterations(100_000), &mut ()) else {
+                panic!("run {i}")
+            };
+            (planner.progress().iterations, i, path)
+        });
+        let (iterations, winner, path) = alone.min_by_key(|(iterations, i, _)| (*iterations, *i)).unwrap();
+        winners.push(winner);
+        for slice in [1, 7, 1000] {
+            let mut came: Option<Came> = None;
+            for threads in 1..=4 {
+                let workers = Workers::new(threads).unwrap();
+                let mut planner = OrParallel::new(6, slice, workers, run).unwrap();
+                let now = solve(&mut planner, seed, 100_000);
+                assert_eq!(now.0, Outcome::Solved(path.clone()), "seed {seed}");
+                assert_eq!(planner.winner(), Some(winner as usize));
+                assert!(now.1.iterations >= iterations && now.1.iterations < iterations + slice);
+                assert_eq!(*came.get_or_insert(now.clone()), now, "{threads} threads");
+            }
+        }
+    }
+    winners.sort_unstable();
+    winners.dedup();
+    assert!(winners.len() > 2, "only {winners:?} ever win");
+}
+
+#[test]
+fn the_number_of_runs_matters_and_budgets_end_them_all() {
+    let (space, boxes) = (square(), closed());
+    let run = |_| RrtConnect::new(problem(&space, &boxes)?, tuning());
+    for runs in [1, 3] {
+        let mut planner = OrParallel::new(runs, 10, Workers::new(2).unwrap(), run).unwrap();
+        let (outcome, progress) = solve(&mut planner, 1, 500);
+        assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations));
+        assert_eq!(progress.iterations, 500);
+        assert!(planner.planners().all(|planner| planner.progress().iterations == 500));
+        assert_eq!(planner.planners().count() as u64, runs);
+    }
+}
+
+#[test]
+fn parallel_runs_can_be_cancelled_and_go_on() {
+    let (space, boxes) = (square(), narrow());
+    let run = |_| RrtConnect::new(problem(&space, &boxes)?, tuning());
+    let make = || OrParallel::new(4, 2, Workers::new(2).unwrap(), run).unwrap();
+    let (whole, _) = solve(&mut make(), 3, 100_000);
+    let (cancel, mut planner, mut rng) = (Cancel::new(), make(), Rng::seed(3));
+    let mut rounds = 0;
+    let mut raise = OnEvent(|event: Event<'_, Point>| {
+        rounds += u64::from(matches!(event, Event::Iteration(_)));
+        if rounds == 3 {
+            cancel.cancel();
+        }
+    });
+    let outcome = planner.solve(&mut rng, &mut cancel.clone(), &mut raise);
+    assert_eq!(outcome, Outcome::Stopped(StopReason::Cancelled));
+    assert_eq!(planner.progress().iterations, 6);
+    assert_eq!(planner.solve(&mut rng, &mut Iterations(100_000), &mut ()), whole);
+}
+
+/// Panics on each call while `trouble` is above zero.
+struct Fragile<'a, L>(L, &'a AtomicU64);
+
+impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Fragile<'_, L> {
+    type Edge = L::Edge;
+    fn extend(
+        &mut self,
+        from: &Point,
+        to: &Point,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<Point, L::Edge> {
+        assert!(self.1.load(Relaxed) == 0, "trouble");
+        self.0.extend(from, to, direction, reach)
+    }
+}
+
+#[test]
+fn a_run_that_panics_does_not_take_the_others_along() {
+    let (space, boxes) = (square(), narrow());
+    let (well, ill) = (AtomicU64::new(0), AtomicU64::new(1));
+    for threads in [1, 2] {
+        let run = |i| {
+            let local = Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
+            let local = Fragile(local, if i == 0 { &ill } else { &well });
+            let (start, goal) = (Point::new(0.1, 0.2), Point::new(0.9, 0.2));
+            RrtConnect::new(Problem::new(&space, local, Exact(boxes.clone()), start, goal)?, tuning())
+        };
+        let mut planner = OrParallel::new(3, 8, Workers::new(threads).unwrap(), run).unwrap();
+        let (outcome, _) = solve(&mut planner, 1, 100_000);
+        assert!(matches!(outcome, Outcome::Solved(_)) && planner.winner() != Some(0));
+        assert!(planner.panics() > 0);
+
+        // When all panic the caller hears of it, and may go on.
+        well.store(1, Relaxed);
+        let mut planner = OrParallel::new(3, 8, Workers::new(threads).unwrap(), run).unwrap();
+        let mut rng = Rng::seed(1);
+        let why = catch_unwind(AssertUnwindSafe(|| planner.step(&mut rng, &mut ()))).unwrap_err();
+        assert_eq!(why.downcast_ref::<&str>(), Some(&"trouble"));
+        well.store(0, Relaxed);
+        let outcome = planner.solve(&mut rng, &mut Iterations(100_000), &mut ());
+        assert!(matches!(outcome, Outcome::Solved(_)));
+    }
+}
+
+#[test]
+fn attempts_draw_from_streams_of_their_own() {
+    let (space, boxes) = (square(), narrow());
+    for schedule in [Schedule::Luby, Schedule::Counter, Schedule::Zeta] {
+        let (mut restarted, unit) = (0, 20);
+        for seed in 0..6 {
+            let stream_seed = Rng::seed(seed).random();
+            let mut spent = 0;
+            let lengths = schedule.lengths(Rng::stream(stream_seed, 0));
+            let by_hand = (1..).zip(lengths).find_map(|(attempt, length)| {
+                let mut planner = RrtConnect::new(problem(&space, &boxes).unwrap(), tuning()).unwrap();
+                let mut rng = Rng::stream(stream_seed, attempt);
+                let outcome = planner.solve(&mut rng, &mut Iterations(length * unit), &mut ());
+                spent += planner.progress().iterations;
+                matches!(outcome, Outcome::Solved(_)).then_some((attempt, outcome))
+            });
+            let make = |_| RrtConnect::new(problem(&space, &boxes)?, tuning());
+            let mut planner = Restarts::new(schedule, unit, make).unwrap();
+            let (outcome, progress) = solve(&mut planner, seed, 100_000);
+            assert_eq!(Some((planner.attempt(), outcome)), by_hand, "{schedule:?} seed {seed}");
+            assert_eq!(progress.iterations, spent);
+            restarted += planner.attempt() - 1;
+        }
+        assert!(restarted > 5, "{schedule:?}: {restarted} restarts");
+    }
+}
+
+#[test]
+fn restarts_keep_budgets_and_can_be_interrupted() {
+    let (space, boxes) = (square(), closed());
+    let make = |boxes: &Boxes<2>| {
+        let boxes = boxes.clone();
+        let space = &space;
+        let attempt = move |_| RrtConnect::new(problem(space, &boxes)?, tuning());
+        Restarts::new(Schedule::Luby, 7, attempt).unwrap()
+    };
+    let (outcome, progress) = solve(&mut make(&boxes), 1, 1_000);
+    assert_eq!((outcome, progress.iterations), (Outcome::Stopped(StopReason::Iterations), 1_000));
+
+    let (whole, _) = solve(&mut make(&narrow()), 1, 100_000);
+    let (mut parts, mut rng) = (make(&narrow()), Rng::seed(1));
+    let resumed = (1..).find_map(|n| {
+        let outcome = parts.solve(&mut rng, &mut Iterations(13 * n), &mut ());
+        matches!(outcome, Outcome::Solved(_)).then_some(outcome)
+    });
+    assert_eq!(resumed, Some(whole));
+}
+
+/// What cannot be made a second time leaves the first at work.
+#[test]
+fn an_attempt_that_cannot_be_made_is_done_without() {
+    let (space, boxes) = (square(), narrow());
+    let attempt = |k| match k {
+        1 => RrtConnect::new(problem(&space, &boxes)?, tuning()),
+        _ => Err(BuildError::Unmade { reason: "out of robots".into() }),
+    };
+    let mut planner = Restarts::new(Schedule::Luby, 5, attempt).unwrap();
+    assert!(matches!(solve(&mut planner, 1, 100_000).0, Outcome::Solved(_)));
+    assert_eq!(planner.attempt(), 1);
+}
+
+#[test]
+fn every_planner_can_be_wrapped_by_name() {
+    let (space, boxes) = (square(), slit(0.1, 0.8, 0.1));
+    for info in planners() {
+        for (prefix, settings) in
+            [("or-", "runs=3"), ("restart-", "unit=200"), ("or-restart-", "schedule=counter")]
+        {
+            let name = format!("{prefix}{}", info.name);
+            let settings = Settings::parse(["step=0.1", settings]).unwrap();
+            let come = |threads| {
+                let workers = Workers::new(threads).unwrap();
+                let make = || problem(&space, &boxes);
+                let mut planner = build_from(&name, make, KdTree::<2>::new(), &settings, &workers).unwrap();
+                solve(&mut planner, 1, 50_000)
+            };
+            let (one, two) = (come(1), come(2));
+            let Outcome::Solved(path) = &one.0 else { panic!("{name}: {one:?}") };
+            assert!(!path.states.windows(2).any(|pair| boxes.hit(&pair[0], &pair[1])));
+            assert_eq!(one, two, "{name}");
+        }
+        // Not wrapped, it is the planner itself.
+        let settings = Settings::parse(["step=0.1"]).unwrap();
+        let make = || problem(&space, &boxes);
+        let mut plain =
+            build_from(info.name, make, KdTree::<2>::new(), &settings, &Workers::alone()).unwrap();
+        let mut same = build_with(info.name, make().unwrap(), KdTree::<2>::new(), &settings).unwrap();
+        assert_eq!(solve(&mut plain, 2, 50_000), solve(&mut same, 2, 50_000));
+    }
+}
+
+#[test]
+fn bad_numbers_and_names_are_refused() {
+    let (space, boxes) = (square(), narrow());
+    let build = |name: &str, setting: &str| {
+        let settings = Settings::parse([setting]).unwrap();
+        let make = || problem(&space, &boxes);
+        build_from(name, make, Linear::new(), &settings, &Workers::alone()).map(|_| ())
+    };
+    for wrapper in wrappers() {
+        let name = format!("{}rrt-connect", wrapper.prefix);
+        for parameter in wrapper.parameters {
+            for bad in ["0", "-7", "99999999999999"] {
+                assert!(build(&name, &format!("{}={bad}", parameter.name)).is_err(), "{}", parameter.name);
+            }
+            build(&name, &format!("{}={}", parameter.name, parameter.default)).unwrap();
+        }
+        let error = build(&name, "stride=1").unwrap_err().to_string();
+        assert!(error.contains(wrapper.parameters[0].name) && error.contains("goal-bias"), "{error}");
+        let error = build(&format!("{}rrt-conect", wrapper.prefix), "step=0.1").unwrap_err();
+        assert!(error.to_string().contains("did you mean `rrt-connect`?"), "{error}");
+    }
+    assert!(matches!(build("or-or-or-or-or-rrt", "runs=1"), Err(BuildError::UnknownPlanner { .. })));
+    assert!(matches!(build("or-", "runs=1"), Err(BuildError::UnknownPlanner { .. })));
+    for threads in [0, Workers::MOST + 1] {
+        assert!(matches!(Workers::new(threads), Err(BuildError::OutOfRange { name: "threads", .. })));
+    }
+    let fails = || Made::Err(BuildError::Unmade { reason: "no robot".into() });
+    let made = build_from("or-rrt", fails, Linear::new(), &Settings::default(), &Workers::alone());
+    assert_eq!(made.map(|_| ()), Err(BuildError::Unmade { reason: "no robot".into() }));
+}
