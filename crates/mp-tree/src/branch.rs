@@ -82,6 +82,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
         self.rejected >= self.patience
     }
 
+    /// Whether the verifier passes a motion in forward time.
+    pub(crate) fn passes(&mut self, from: &C::State, edge: &L::Edge, to: &C::State) -> bool {
+        self.verify.verify_edge(from, edge, to).is_free()
+    }
+
     fn verify_edge(&mut self, tree: &Tree<C::State, L::Edge>, id: NodeId) -> MotionCheck {
         let (Some(parent), Some(edge)) = (tree.parent(id), tree.edge(id)) else {
             return self.verify.verify_state(tree.state(id));
@@ -205,6 +210,31 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         Grown::Trapped
     }
 
+    /// The selector.
+    pub(crate) fn selector(&self) -> &Se {
+        &self.select
+    }
+
+    /// Grows from node `from` toward `target`, whatever the selector would choose.
+    pub fn grow_from<G: Growth<C, L>>(
+        &mut self,
+        from: NodeId,
+        target: &C::State,
+        steer: &mut Steer<'_, C, L>,
+        growth: &mut G,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Grown {
+        if self.tree.state(from) == target {
+            return Grown::Reached(from);
+        }
+        let grown = growth.grow(from, &mut self.growing(target, steer, rng, observer));
+        if grown == Grown::Trapped {
+            observer.on(Event::Trapped { tree: self.index });
+        }
+        grown
+    }
+
     /// Tries to go from node `from` to `target` in one motion of any length.
     pub fn leap(
         &mut self,
@@ -297,6 +327,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
     /// The local planner and its settings.
     pub fn steer(&mut self) -> &mut Steer<'c, C, L> {
         self.steer
+    }
+
+    /// The selector.
+    pub fn selector(&self) -> &Se {
+        self.select
     }
 
     /// The random numbers.

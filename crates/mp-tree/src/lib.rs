@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | [`Rrt`] | [`algo::rrt`] | from the start | one step toward a sample |
 //! | [`RrtConnect`] | [`algo::rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
+//! | [`Aorrtc`] | [`algo::aorrtc`] | from start and goal, anew for each better path | as RRT-Connect, in the space of states and costs; ever better paths |
 //! | [`RrtStar`] | [`algo::rrt_star`] | from the start, rewired | one step toward a sample, attached by the cheapest way; ever better paths |
 //! | [`InformedRrtStar`] | [`algo::informed_rrt_star`] | from the start, rewired | as RRT*, toward samples that can be on a better path |
 //! | [`BiRrt`] | [`algo::bi_rrt`] | from start and goal | one step toward a sample; then one step of the other tree toward it |
@@ -87,6 +88,7 @@ mod verify;
 mod workers;
 mod wrap;
 
+pub use algo::aorrtc::Aorrtc;
 pub use algo::bi_rrt::BiRrt;
 pub use algo::con_con::RrtConCon;
 pub use algo::con_ext::RrtConExt;

@@ -1,10 +1,10 @@
 //! Planners by name, for programs that choose at run time.
 
 use crate::algo::{
-    bi_rrt, con_con, con_ext, informed_rrt_star, rrt, rrt_connect, rrt_inputs, rrt_star, rsrt,
+    aorrtc, bi_rrt, con_con, con_ext, informed_rrt_star, rrt, rrt_connect, rrt_inputs, rrt_star, rsrt,
 };
 use crate::{
-    BiRrt, BuildError, InformedRrtStar, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect,
+    Aorrtc, BiRrt, BuildError, InformedRrtStar, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect,
     RrtInputs, RrtStar, Rsrt, Settings, closest, uniform,
 };
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Planner, Space};
@@ -23,6 +23,7 @@ pub fn planners() -> &'static [PlannerInfo] {
         con_con::INFO,
         rrt_star::INFO,
         informed_rrt_star::INFO,
+        aorrtc::INFO,
         rrt_inputs::INFO,
         rsrt::INFO,
     ]
@@ -85,6 +86,7 @@ where
         "bi-rrt" => Box::new(BiRrt::with_index(problem, index, tuning)?),
         "rrt-con-ext" => Box::new(RrtConExt::with_index(problem, index, tuning)?),
         "rrt-con-con" => Box::new(RrtConCon::with_index(problem, index, tuning)?),
+        "aorrtc" => Box::new(Aorrtc::with_index(problem, index, tuning)?),
         "rrt-star" => Box::new(RrtStar::with_index(problem, index, tuning, rrt_star::near(settings)?)?),
         "informed-rrt-star" => {
             Box::new(InformedRrtStar::with_index(problem, index, tuning, rrt_star::near(settings)?)?)

@@ -101,6 +101,12 @@ impl<S, E> Tree<S, E> {
         self.link(id).map(|link| &link.edge)
     }
 
+    /// The cost of the edge between a node and its parent; `None` for a root.
+    #[must_use]
+    pub fn edge_cost(&self, id: NodeId) -> Option<f64> {
+        self.link(id).map(|link| link.cost)
+    }
+
     /// The cost of the path between a node and its root.
     #[must_use]
     pub fn cost(&self, id: NodeId) -> f64 {

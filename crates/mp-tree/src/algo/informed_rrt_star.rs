@@ -53,7 +53,7 @@ use crate::{
     BuildError, Extend, Improving, Near, Nearest, PlannerInfo, Problem, Propose, Recipe, Rewire, Selector,
     Tuning,
 };
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Rng, Space};
+use mp_cspace::{DefaultNn, Direction, LocalPlanner, NearestNeighbors, Rng, Space};
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -90,6 +90,23 @@ impl<'c, C: Space> Informed<'c, C> {
         Self::new(problem.space, problem.start.clone(), goals)
     }
 
+    /// Notes the cost of the best path.
+    pub(crate) fn found(&mut self, cost: f64) {
+        self.best = cost;
+    }
+
+    /// The least that the way between a state and the root of the tree that grows in `direction` can
+    /// cost; zero where the goals are not listed.
+    pub(crate) fn least(&self, direction: Direction, q: &C::State) -> f64 {
+        match direction {
+            Direction::Forward => self.space.distance(&self.start, q),
+            Direction::Backward => {
+                let nearest = self.goals.iter().map(|goal| self.space.distance(q, goal)).reduce(f64::min);
+                nearest.unwrap_or(0.0)
+            }
+        }
+    }
+
     /// The sample.
     pub fn sample(&mut self, rng: &mut Rng) -> C::State {
         if self.best.is_infinite() || self.goals.is_empty() {
@@ -118,7 +135,7 @@ impl<C: Space> Propose<C> for Informed<'_, C> {
         self.sample(rng)
     }
     fn improved(&mut self, cost: f64) {
-        self.best = cost;
+        self.found(cost);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The named algorithms, one file each.
 
+pub mod aorrtc;
 pub mod bi_rrt;
 pub mod con_con;
 pub mod con_ext;

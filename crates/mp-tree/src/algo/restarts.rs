@@ -44,10 +44,11 @@
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || (q.y - 0.8).abs() < 0.02;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1));
 //! let attempt = |_| {
-//!     let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
-//!     let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
-//!     let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1))?;
+//!     let problem = Problem::new(&space, local.clone(), verifier.clone(), start, goal)?;
 //!     RrtConnect::new(problem, Tuning::default())
 //! };
 //! let mut planner = Restarts::new(Schedule::Luby, 50, attempt)?;

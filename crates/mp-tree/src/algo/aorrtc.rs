@@ -1,0 +1,402 @@
+//! AORRTC: RRT-Connect over and over in the space of states and costs, so that its paths become
+//! optimal.
+//!
+//! T. S. Wilson, W. Thomason, Z. Kingston and J. D. Gammell, *AORRTC: almost-surely asymptotically
+//! optimal planning with RRT-Connect*, IEEE Robotics and Automation Letters 10(12), 2025; an
+//! instance of AO-x: K. Hauser and Y. Zhou, *Asymptotically optimal planning by feasible kinodynamic
+//! planning in a state–cost space*, IEEE T-RO 32(6), 2016.
+//!
+//! The first search is [RRT-Connect](super::rrt_connect). With the cost c of the best path, g the cost
+//! from the root of a tree and ĝ, ĥ the distances to its root and to the other's, the next searches
+//! begin with new trees and repeat:
+//! 1. draw a sample x with ĝ(x) + ĥ(x) < c as [Informed RRT*](super::informed_rrt_star) does, and a cost
+//!    b between ĝ(x) and c − ĥ(x);
+//! 2. of the nodes v with g(v) + d(v, x) ≤ b find that nearest to (x, b) in states and costs, the one with
+//!    the least d(v, x)² + (b − g(v))²; move from there one step toward x;
+//! 3. draw a smaller cost for the new state, between ĝ and what it would have, and find its nearest
+//!    node likewise: where that is cheaper and the motion free it becomes the parent; again until it is
+//!    not;
+//! 4. connect the other tree to the new state, from the node nearest to it in states and costs by which
+//!    the path would cost less than c;
+//! 5. where the trees have met, verify the path, replace parts of it by single motions where these are
+//!    free and cheaper, return it, and begin the next search with its cost;
+//! 6. the other tree has the next turn. A search without success ends after 10 000 iterations, the
+//!    next one after 10 000 more than that.
+//!
+//! The paper also smooths paths by B-splines; this is left out, being possible only for straight motions.
+//!
+//! **When to use it.** First, when the length of the path matters: there is a path as soon as
+//! RRT-Connect has one, and it gets better from then on. Both ends must be known states (or the goal a
+//! sampler), motions must run backward as well as forward, and the metric should be a true one that
+//! no motion costs less than.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point goes around a disc, by ever shorter ways:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Aorrtc, Problem, Tuning, improve};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let mut planner = Aorrtc::new(problem, Tuning::default())?;
+//! let (best, _) = improve(&mut planner, &mut Rng::seed(1), &mut Iterations(3_000), &mut (), |_, _| ());
+//! let length = best.ok_or("no path")?.length(&space);
+//! // Two tangents of 0.265 and an arc of 0.509.
+//! assert!(length > 1.038 && length < 1.07, "{length}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{
+    Append, Attach, Branch, BuildError, Connect, Goals, Growing, Grown, Growth, Informed, Nearest,
+    PlannerInfo, Problem, Selector, Steer, Tree, Tuning,
+};
+use mp_cspace::{
+    DefaultNn, Direction, Event, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path,
+    Planner, Progress, Reach, Rng, Space,
+};
+use rand::RngExt;
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "aorrtc",
+    summary: "RRT-Connect for ever shorter paths until it is stopped; the first to try for short ones",
+    citation: "Wilson, Thomason, Kingston and Gammell 2025",
+    parameters: &[STEP, GOAL_BIAS, PATIENCE],
+    aliases: &[],
+    cannot: NEEDS_BOTH_ENDS,
+};
+
+/// A search without success ends after this many iterations more than the one before.
+const PATIENT: u64 = 10_000;
+/// Most smaller costs drawn for one new state.
+const RESAMPLED: usize = 100;
+/// The least part of its cost by which a path must be better.
+const GAIN: f64 = 1e-9;
+
+/// Of the nodes through which `q` costs at most `bound`, the one nearest to it in states and costs.
+fn nearest_within<C: Space, E, Se: Selector<C>>(
+    space: &C,
+    tree: &Tree<C::State, E>,
+    select: &Se,
+    q: &C::State,
+    bound: f64,
+) -> Option<NodeId> {
+    let (mut hits, mut k): (Vec<Hit>, usize) = (Vec::new(), 8);
+    loop {
+        select.k_nearest(space, tree.states(), q, k, &mut hits);
+        let fit = hits.iter().filter(|hit| tree.cost(hit.id) + hit.distance <= bound);
+        let both = fit.map(|hit| (hit.distance.hypot(bound - tree.cost(hit.id)), hit.id));
+        let best = both.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let farthest = hits.last().map_or(f64::INFINITY, |hit| hit.distance);
+        // Nodes not seen yet are at least that far away in states alone.
+        if hits.len() < k || best.is_some_and(|(distance, _)| distance <= farthest) {
+            return best.map(|(_, id)| id);
+        }
+        k *= 2;
+    }
+}
+
+/// One step, whose end is hung on ever cheaper parents.
+struct Resampled<F>(F);
+
+impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Growth<C, L> for Resampled<F> {
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        let direction = growing.tree().direction();
+        let (origin, target) = (growing.tree().state(from).clone(), growing.target().clone());
+        let reach = Reach::Step(growing.steer().step());
+        let extension = growing.steer().extend(&origin, &target, direction, reach);
+        let (mut parent, mut motion, reached) = match extension {
+            Extension::Trapped => return Grown::Trapped,
+            Extension::Advanced(motion) => (from, motion, false),
+            Extension::Reached(motion) => (from, motion, true),
+        };
+        let least = (self.0)(direction, &motion.end);
+        for _ in 0..RESAMPLED {
+            let cost = growing.tree().cost(parent) + motion.cost;
+            if cost.partial_cmp(&least) != Some(std::cmp::Ordering::Greater) {
+                break;
+            }
+            let bound = least + (cost - least) * growing.rng().random::<f64>();
+            let space = growing.steer().space();
+            let nearest = nearest_within(space, growing.tree(), growing.selector(), &motion.end, bound);
+            let Some(id) = nearest.filter(|&id| id != parent) else { break };
+            let state = growing.tree().state(id).clone();
+            match growing.steer().reach(&state, &motion.end, direction) {
+                Some(way) if growing.tree().cost(id) + way.cost < cost => (parent, motion) = (id, way),
+                _ => break,
+            }
+        }
+        growing.settle(parent, if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) })
+    }
+}
+
+/// AORRTC: see the [module](self).
+#[derive(Debug)]
+pub struct Aorrtc<'c, C: Space, L: LocalPlanner<C::State>, N> {
+    start: C::State,
+    goals: Goals<'c, C::State>,
+    steer: Steer<'c, C, L>,
+    trees: [Branch<C, L, Nearest<N>, Append>; 2],
+    /// An empty index.
+    index: N,
+    informed: Informed<'c, C>,
+    goal_bias: f64,
+    planted: usize,
+    tried: usize,
+    best: f64,
+    turn: usize,
+    iterations: u64,
+    /// The iteration with which the search began, and how many it may take.
+    since: u64,
+    allowed: u64,
+}
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Aorrtc<'c, C, L, N> {
+    /// AORRTC with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning)
+    }
+
+    /// AORRTC with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+        if !problem.goals.can_aim() {
+            return Err(BuildError::NoGoalState { planner: INFO.name });
+        }
+        Ok(Self {
+            goal_bias: tuning.checked_bias()?,
+            informed: Informed::of(&problem),
+            trees: Self::trees_with(&index),
+            index,
+            steer: Steer::new(problem.space, problem.local, problem.verify, &tuning)?,
+            start: problem.start,
+            goals: problem.goals,
+            planted: 0,
+            tried: 0,
+            best: f64::INFINITY,
+            turn: 0,
+            iterations: 0,
+            since: 0,
+            allowed: PATIENT,
+        })
+    }
+
+    fn trees_with(index: &N) -> [Branch<C, L, Nearest<N>, Append>; 2] {
+        let tree = |i, direction| Branch::new(i, direction, Nearest(index.clone()), Append);
+        [tree(0, Direction::Forward), tree(1, Direction::Backward)]
+    }
+
+    /// The trees of the current search, from the start and from the goal.
+    #[must_use]
+    pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
+        [self.trees[0].tree(), self.trees[1].tree()]
+    }
+
+    /// Plants what is not planted yet, and tries the straight ways that were not tried yet.
+    fn begin(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        let space = self.steer.space();
+        if self.trees[0].tree().is_empty() {
+            let arrived = self.goals.reached(&self.start);
+            let root = self.trees[0].add_root(space, self.start.clone(), observer);
+            if arrived && self.best > 0.0 {
+                self.best = 0.0;
+                return Some(self.trees[0].tree().path(root));
+            }
+        }
+        while let Some(goal) = self.goals.listed().get(self.planted) {
+            self.planted += 1;
+            if !self.trees[1].knows(space, goal) {
+                self.trees[1].add_root(space, goal.clone(), observer);
+            }
+        }
+        while let Some(goal) = self.goals.listed().get(self.tried) {
+            self.tried += 1;
+            let roots = 0..self.trees[1].tree().len() as NodeId;
+            let mut roots = roots.filter(|&id| self.trees[1].tree().state(id) == goal);
+            let root = roots.find(|&id| self.trees[1].tree().parent(id).is_none());
+            let grown = self.trees[0].leap(0, goal, &mut self.steer, rng, observer);
+            if let (Grown::Reached(id), Some(root)) = (grown, root)
+                && let Some(path) = self.candidate([id, root], rng, observer)
+            {
+                return Some(path);
+            }
+        }
+        None
+    }
+
+    /// New trees.
+    fn renew(&mut self, observer: &mut dyn Observer<C::State>) {
+        self.trees = Self::trees_with(&self.index);
+        self.planted = 0;
+        self.since = self.iterations;
+        for tree in 0..2 {
+            observer.on(Event::Pruned { tree, survivors: &[] });
+        }
+    }
+
+    /// Roots the goal tree at a new sample of the goal, now and then.
+    fn sample_goal(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
+        let wanted = self.trees[1].tree().is_empty() || rng.random_bool(self.goal_bias);
+        let space = self.steer.space();
+        if wanted
+            && let Some(goal) = self.goals.sample(rng)
+            && !self.trees[1].knows(space, &goal)
+            && self.steer.accepts(&goal)
+        {
+            self.trees[1].add_root(space, goal, observer);
+        }
+    }
+
+    /// The node of a tree to grow from toward `q`, at a cost of at most `bound`.
+    fn choose(&mut self, tree: usize, q: &C::State, bound: f64) -> Option<NodeId> {
+        let space = self.steer.space();
+        let branch = &mut self.trees[tree];
+        if bound < f64::INFINITY {
+            return nearest_within(space, branch.tree(), branch.selector(), q, bound);
+        }
+        let mut hits = Vec::new();
+        branch.selector().k_nearest(space, branch.tree().states(), q, 1, &mut hits);
+        hits.first().map(|hit| hit.id)
+    }
+
+    /// The path through two nodes with the same state, shortened, if it is better and passes
+    /// verification; what fails is pruned.
+    fn candidate(
+        &mut self,
+        meeting: [NodeId; 2],
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        for (tree, id) in self.trees.iter_mut().zip(meeting) {
+            if !tree.verify(id, &mut self.steer, observer, |_| ()) {
+                return None;
+            }
+        }
+        let [a, b] = [0, 1].map(|i| self.trees[i].tree());
+        if a.cost(meeting[0]) + b.cost(meeting[1]) >= self.best * (1.0 - GAIN) {
+            return None;
+        }
+        let mut costs: Vec<f64> = a.lineage(meeting[0]).filter_map(|id| a.edge_cost(id)).collect();
+        costs.reverse();
+        costs.extend(b.lineage(meeting[1]).filter_map(|id| b.edge_cost(id)));
+        let (mut path, rest) = (a.path(meeting[0]), b.path(meeting[1]));
+        path.states.extend(rest.states.into_iter().skip(1));
+        path.edges.extend(rest.edges);
+        self.shorten(&mut path, &mut costs, rng);
+        self.best = costs.iter().sum();
+        self.informed.found(self.best);
+        self.allowed = PATIENT;
+        self.renew(observer);
+        Some(path)
+    }
+
+    /// Replaces parts of a path by single motions that are cheaper, and verified.
+    fn shorten(&mut self, path: &mut Path<C::State, L::Edge>, costs: &mut Vec<f64>, rng: &mut Rng) {
+        for _ in 0..2 * path.edges.len() {
+            if path.edges.len() < 2 {
+                return;
+            }
+            let i = rng.random_range(0..path.edges.len() - 1);
+            let j = rng.random_range(i + 2..path.states.len());
+            let cost: f64 = costs[i..j].iter().sum();
+            let (from, to) = (&path.states[i], &path.states[j]);
+            if self.steer.space().distance(from, to) >= cost * (1.0 - GAIN) {
+                continue;
+            }
+            let Some(way) = self.steer.reach(from, to, Direction::Forward) else { continue };
+            if way.cost < cost && self.steer.passes(from, &way.edge, to) {
+                path.states.drain(i + 1..j);
+                path.edges.splice(i..j, [way.edge]);
+                costs.splice(i..j, [way.cost]);
+            }
+        }
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planner<C::State>
+    for Aorrtc<'_, C, L, N>
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.iterations += 1;
+        if self.best < f64::INFINITY && self.iterations - self.since > self.allowed {
+            self.allowed += PATIENT;
+            self.renew(observer);
+        }
+        if let Some(path) = self.begin(rng, observer) {
+            return Some(path);
+        }
+        if self.goals.has_sampler() {
+            self.sample_goal(rng, observer);
+        }
+        let (turn, other) = (self.turn, 1 - self.turn);
+        self.turn = other;
+        let target = self.informed.sample(rng);
+        observer.on(Event::Sampled(&target));
+        let direction = self.trees[turn].tree().direction();
+        let least = self.informed.least(direction, &target);
+        let most = self.best - self.informed.least(self.trees[other].tree().direction(), &target);
+        if most < least {
+            return None;
+        }
+        let bound = if most < f64::INFINITY { least + (most - least) * rng.random::<f64>() } else { most };
+        let from = self.choose(turn, &target, bound)?;
+        let (branch, steer, informed) = (&mut self.trees[turn], &mut self.steer, &self.informed);
+        let mut growth = Resampled(
+            |direction, q: &C::State| if most < f64::INFINITY { informed.least(direction, q) } else { most },
+        );
+        let grown = branch.grow_from(from, &target, steer, &mut growth, rng, observer);
+        let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
+        let state = self.trees[turn].tree().state(i).clone();
+        let from = self.choose(other, &state, self.best - self.trees[turn].tree().cost(i))?;
+        let (branch, steer) = (&mut self.trees[other], &mut self.steer);
+        let joined = branch.grow_from(from, &state, steer, &mut Connect::default(), rng, observer);
+        let Grown::Reached(j) = joined else { return None };
+        self.candidate(if turn == 0 { [i, j] } else { [j, i] }, rng, observer)
+    }
+
+    fn progress(&self) -> Progress {
+        let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
+        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
+        progress.rejected = self.steer.rejected();
+        progress
+    }
+
+    fn improves(&self) -> bool {
+        true
+    }
+}
