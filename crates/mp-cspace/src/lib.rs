@@ -5,7 +5,7 @@
 //!
 //! | to say | use |
 //! |---|---|
-//! | what configurations are | [`Rn`], [`RnDyn`], [`So2`], [`So3`], [`Se2`], [`Se3`], [`Torus`], [`Joints`], [`Product`] |
+//! | what configurations are | [`Rn`], [`RnDyn`], [`So2`], [`So3`], [`Se2`], [`Se3`], [`Torus`], [`Joints`], [`Product`], [`SpaceTime`] |
 //! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`Bounded`] |
 //! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
 //! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
@@ -50,8 +50,8 @@ pub use planner::{Outcome, Planner};
 pub use rng::Rng;
 pub use sampler::{GoalBias, Halton, Sampler, Uniform};
 pub use space::{
-    Coordinates, Factored, JointRange, Joints, Metric, Product, Rn, RnDyn, Se2, Se2State, Se3, So2, So3,
-    Space, Torus, TrueMetric, rotation_angle, slerp, wrap_angle,
+    AtAnyTime, Coordinates, Factored, Forward, JointRange, Joints, Metric, Product, Rn, RnDyn, Se2, Se2State,
+    Se3, So2, So3, Space, SpaceTime, Torus, TrueMetric, rotation_angle, slerp, wrap_angle,
 };
 pub use stop::{Cancel, Deadline, Iterations, Motions, Nodes, Or, Progress, Stop, StopReason};
 pub use validity::{Clearance, KnownFree, MotionBound, MotionCheck, MotionValidity, Room, Stretch, Validity};

@@ -36,6 +36,9 @@ pub trait Planner<S> {
             if let Some(reason) = stop.check(&progress) {
                 return Outcome::Stopped(reason);
             }
+            if progress.exhausted {
+                return Outcome::Stopped(StopReason::Exhausted);
+            }
             observer.on(Event::Iteration(progress));
             if let Some(path) = self.step(rng, observer) {
                 observer.on(Event::Solved);

@@ -16,13 +16,15 @@ pub struct Progress {
     pub motions: u64,
     /// Candidate paths that failed independent verification.
     pub rejected: u64,
+    /// No node is left to grow from: more iterations change nothing.
+    pub exhausted: bool,
 }
 
 impl Progress {
     /// Progress with the given counts, nothing rejected.
     #[must_use]
     pub fn new(iterations: u64, nodes: usize, motions: u64) -> Self {
-        Self { iterations, nodes, motions, rejected: 0 }
+        Self { iterations, nodes, motions, rejected: 0, exhausted: false }
     }
 }
 
@@ -40,6 +42,8 @@ pub enum StopReason {
     Deadline,
     /// Somebody asked it to stop.
     Cancelled,
+    /// The planner has tried all it can: there is no solution at its resolution.
+    Exhausted,
 }
 
 /// When to stop. Combine with [`Stop::or`].

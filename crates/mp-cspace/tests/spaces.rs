@@ -229,3 +229,68 @@ proptest! {
         prop_assert!(So2.distance(&angle, &wrapped) < 1e-9);
     }
 }
+
+/// Space and time: all the kit asks but constant speed, which motions that are not possible lack.
+#[test]
+fn space_time_conforms() {
+    fn conforms<C: Embed>(positions: C) {
+        let space = SpaceTime::new(positions, 7.0, 0.6).unwrap();
+        SpaceKit::new().any_speed().run(&space);
+        testkit::check_nearest_neighbors(&space, &mut <SpaceTime<C> as DefaultNn>::Nn::default(), 400, 3);
+        let mut rng = mp_cspace::Rng::seed(5);
+        let (mut possible, mut not) = (0, 0);
+        for _ in 0..2000 {
+            let [a, b, c] = [0; 3].map(|_| space.sample_uniform(&mut rng));
+            let slower = space.positions().distance(&a.0, &b.0) <= 0.6 * (b.1 - a.1);
+            assert_eq!(space.leads(&a, &b), slower);
+            // What is possible is nearer than all that is not, and straight at constant speed.
+            if space.leads(&a, &b) {
+                possible += 1;
+                let t = 0.37;
+                let middle = space.interpolate(&a, &b, t);
+                assert!(space.leads(&a, &middle) && space.leads(&middle, &b));
+                let d = space.distance(&a, &b);
+                assert!((space.distance(&a, &middle) - t * d).abs() < 1e-9 * space.extent());
+                if !space.leads(&a, &c) {
+                    assert!(d <= space.distance(&a, &c));
+                    not += 1;
+                }
+                if space.leads(&b, &c) {
+                    assert!(space.leads(&a, &c), "possible motions one after the other are possible");
+                    assert!(space.distance(&a, &c) <= d + space.distance(&b, &c) + 1e-12);
+                }
+            }
+        }
+        assert!(possible > 100 && not > 100, "{possible} {not}");
+    }
+    conforms(Rn::<2>::new([0.0; 2], [1.0; 2]).unwrap());
+    conforms(Se2::new([0.0; 2], [1.0; 2]).unwrap().with_rotation_weight(0.2).unwrap());
+    conforms(Se3::new([0.0; 3], [1.0; 3]).unwrap().with_rotation_weight(0.2).unwrap());
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let line = || Rn::<1>::new([0.0], [1.0]).unwrap();
+        assert!(SpaceTime::new(line(), bad, 1.0).is_err() && SpaceTime::new(line(), 1.0, bad).is_err());
+    }
+}
+
+#[test]
+fn nothing_moves_back_in_time_or_too_fast() {
+    let space = SpaceTime::new(Rn::<1>::new([0.0], [1.0]).unwrap(), 10.0, 0.5).unwrap();
+    let at = |x: f64, t: f64| ([x].into(), t);
+    let check = Discrete::new(&space, |_: &(nalgebra::Vector1<f64>, f64)| true, Resolution::Fraction(0.01));
+    let mut check = Forward { space: &space, check: check.unwrap() };
+    assert!(check.check_motion(&at(0.0, 0.0), &at(1.0, 2.0)).is_free());
+    assert!(check.check_motion(&at(0.3, 1.0), &at(0.3, 1.0)).is_free());
+    for (from, to) in [
+        (at(0.0, 0.0), at(1.0, 1.9)),
+        (at(0.0, 2.0), at(0.0, 1.0)),
+        (at(0.0, 2.0), at(0.1, 2.0)),
+        (at(0.0, 0.0), at(f64::NAN, 2.0)),
+        (at(0.0, 0.0), at(0.0, f64::NAN)),
+    ] {
+        assert!(!check.check_motion(&from, &to).is_free(), "{from:?} {to:?}");
+    }
+    let mut rng = mp_cspace::Rng::seed(1);
+    let mut goal = space.at_any_time([0.7].into());
+    let q = goal.sample(&mut rng);
+    assert!(goal.reached(&q) && space.contains(&q) && !goal.reached(&at(0.71, 3.0)));
+}

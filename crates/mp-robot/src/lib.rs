@@ -36,12 +36,14 @@
 mod arm;
 mod bounds;
 mod explain;
+mod moving;
 mod placement;
 mod rigid;
 mod solid;
 mod verify;
 
 pub use arm::{Arm, ArmError, ArmModel, Coordinate, Joint, JointKind, Kinematics, Link, Mimic};
+pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
 pub use placement::{Placement, Planar, Point, Shape, Spatial};
 pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
 pub use verify::Verifier;

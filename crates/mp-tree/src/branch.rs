@@ -169,6 +169,12 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         near.iter().any(|hit| self.tree.state(hit.id) == q)
     }
 
+    /// Whether there are nodes and the selector has none left to grow from.
+    #[must_use]
+    pub fn is_exhausted(&self) -> bool {
+        !self.tree.is_empty() && self.select.exhausted()
+    }
+
     /// The states of the tree and its selector.
     pub fn parts(&mut self) -> (&[C::State], &mut Se) {
         (self.tree.states(), &mut self.select)

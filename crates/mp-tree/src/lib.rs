@@ -11,6 +11,8 @@
 //! | [`RrtConExt`] | [`algo::con_ext`] | from start and goal | all the way toward a sample; then one step of the other tree |
 //! | [`RrtConCon`] | [`algo::con_con`] | from start and goal | all the way toward a sample; then the other tree all the way to it |
 //! | [`RrtInputs`] | [`algo::rrt_inputs`] | from the start, by a set of inputs | the best of all successors free of collision |
+//! | [`CvpRrt`] | [`algo::cvp_rrt`] | from the start, by a set of inputs | one untried input, at a node that has not often failed |
+//! | [`RcRrt`] | [`algo::rc_rrt`] | from the start, by a set of inputs | untried inputs, until all are exhausted |
 //! | [`Rsrt`] | [`algo::rsrt`] | from the start, by a set of inputs | the first successor free of collision, sorted by distance |
 //!
 //! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
@@ -47,8 +49,8 @@
 //! | slot | trait | here |
 //! |---|---|---|
 //! | what to grow toward | [`Propose`] | [`Samples`] |
-//! | which nodes to grow from | [`Selector`] | [`Nearest`] |
-//! | how far | [`Growth`] | [`Extend`], [`Connect`] |
+//! | which nodes to grow from | [`Selector`] | [`Nearest`], [`LeastViolated`], [`Unexhausted`] |
+//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`Untried`] |
 //! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
@@ -84,6 +86,7 @@ mod single;
 mod tree;
 mod two;
 mod uniform;
+mod untried;
 mod verify;
 mod workers;
 mod wrap;
@@ -92,8 +95,10 @@ pub use algo::aorrtc::Aorrtc;
 pub use algo::bi_rrt::BiRrt;
 pub use algo::con_con::RrtConCon;
 pub use algo::con_ext::RrtConExt;
+pub use algo::cvp_rrt::{CvpRrt, LeastViolated};
 pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
 pub use algo::or_parallel::OrParallel;
+pub use algo::rc_rrt::{RcRrt, Unexhausted};
 pub use algo::restarts::{Lengths, Restarts, Schedule};
 pub use algo::rrt::Rrt;
 pub use algo::rrt_connect::RrtConnect;
@@ -120,6 +125,7 @@ pub use settings::{
 pub use single::SingleTree;
 pub use tree::Tree;
 pub use two::TwoTrees;
+pub use untried::Untried;
 pub use verify::Verify;
 pub use workers::Workers;
 pub use wrap::{Named, Wrapper, build_from, wrappers};

@@ -41,6 +41,10 @@ pub trait Selector<C: Space> {
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId, parent: Option<NodeId>);
     /// Whether the tree grew from `id` when asked for `why`.
     fn feedback(&mut self, _id: NodeId, _why: Purpose, _grew: bool) {}
+    /// Whether no node is left to grow from, whatever the target; the default knows of none such.
+    fn exhausted(&self) -> bool {
+        false
+    }
     /// Nodes were removed: node `i` was `survivors[i]`, and `points` are what remains.
     fn pruned(&mut self, space: &C, points: &[C::State], survivors: &[NodeId]);
 }

@@ -155,6 +155,7 @@ where
         let nodes = self.branch.tree().len();
         let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
         progress.rejected = self.steer.rejected();
+        progress.exhausted = self.branch.is_exhausted();
         progress
     }
 }

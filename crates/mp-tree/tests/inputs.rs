@@ -154,3 +154,120 @@ fn by_name_goals_are_reached_exactly_and_settings_checked() {
     }
     assert!(build("rrt", problem(), &Settings::parse(["inputs=3"]).unwrap()).is_err());
 }
+
+type Drawn<'c> = InputPlanner<
+    'c,
+    Rn<2>,
+    Kinematic<'c, Rn<2>>,
+    Point,
+    Recorded<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>,
+>;
+
+/// A point that moves by eight inputs, to the right of the square.
+fn drawn<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Problem<'c, Rn<2>, Drawn<'c>> {
+    let flow = Kinematic::new(space).unwrap();
+    let check = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
+    let inputs = InputSet::spread([0.06, 0.06], 8).unwrap();
+    let local = InputPlanner::new(space, flow, inputs, 1.0, Recorded(check)).unwrap();
+    let verifier = ReplayMotions::new(flow, Exact(boxes.clone()));
+    Problem::new(space, local, verifier, Point::new(0.2, 0.3), Goals::region(|q: &Point| q.x > 0.9)).unwrap()
+}
+
+/// No input is tried twice at a node, so no two children of one have the same.
+fn each_once<E: PartialEq>(tree: &Tree<Point, Leg<E>>) {
+    for a in 0..tree.len() as u32 {
+        for b in 0..a {
+            let twice = tree.parent(a).is_some() && tree.parent(a) == tree.parent(b);
+            assert!(!twice || tree.edge(a) != tree.edge(b), "{a} and {b} hang on the same input of one node");
+        }
+    }
+}
+
+#[test]
+fn untried_inputs_lead_through_a_passage() {
+    let space = square();
+    let boxes: Boxes<2> = slit(0.1, 0.8, 0.1);
+    for seed in 0..4 {
+        let mut cvp = CvpRrt::new(drawn(&space, &boxes), Tuning::default()).unwrap();
+        let mut rc = RcRrt::new(drawn(&space, &boxes), 0.015, Tuning::default()).unwrap();
+        let outcomes = [
+            cvp.solve(&mut Rng::seed(seed), &mut Iterations(50_000), &mut ()),
+            rc.solve(&mut Rng::seed(seed), &mut Iterations(50_000), &mut ()),
+        ];
+        each_once(cvp.tree());
+        each_once(rc.tree());
+        for outcome in outcomes {
+            let Outcome::Solved(path) = outcome else { panic!("seed {seed}: {outcome:?}") };
+            assert!(path.states[path.states.len() - 1].x > 0.9);
+            for (pair, leg) in path.states.windows(2).zip(&path.edges) {
+                assert_eq!(pair[0] + leg.input, pair[1]);
+                assert!(!boxes.hit(&pair[0], &pair[1]));
+            }
+        }
+    }
+}
+
+#[test]
+fn resolution_completeness_ends_where_there_is_no_path() {
+    let space = square();
+    let closed: Boxes<2> = Boxes(vec![([0.5, -1.0], [0.6, 2.0])]);
+    let mut planner = RcRrt::new(drawn(&space, &closed), 0.02, Tuning::default()).unwrap();
+    let mut rng = Rng::seed(1);
+    let outcome = planner.solve(&mut rng, &mut Iterations(1_000_000), &mut ());
+    assert_eq!(outcome, Outcome::Stopped(StopReason::Exhausted));
+    let progress = planner.progress();
+    assert!(progress.exhausted && progress.iterations < 50_000, "{progress:?}");
+    each_once(planner.tree());
+    // Asked again it says so again; a single step does no harm.
+    let again = planner.solve(&mut rng, &mut Iterations(u64::MAX), &mut ());
+    assert_eq!(again, Outcome::Stopped(StopReason::Exhausted));
+    assert!(planner.step(&mut rng, &mut ()).is_none());
+    assert_eq!(planner.progress().nodes, progress.nodes);
+    // The nodes keep apart, parents and children aside.
+    let tree = planner.tree();
+    for a in 0..tree.len() as u32 {
+        for b in 0..a {
+            let kin = tree.parent(a) == Some(b) || tree.parent(b) == Some(a);
+            assert!(kin || (tree.state(a) - tree.state(b)).norm() > 0.02);
+        }
+    }
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        assert!(RcRrt::new(drawn(&space, &closed), bad, Tuning::default()).is_err());
+    }
+}
+
+#[test]
+fn violations_are_passed_on_to_ancestors() {
+    let space = square();
+    let mut select = LeastViolated::new(Nearest(Linear::new()), 4);
+    let points = [Point::new(0.1, 0.1), Point::new(0.2, 0.1), Point::new(0.3, 0.1)];
+    for (id, parent) in [(0, None), (1, Some(0)), (2, Some(1))] {
+        select.inserted(&space, &points[..=id as usize], id, parent);
+    }
+    let feedback = |select: &mut LeastViolated<_>, id, grew| {
+        Selector::<Rn<2>>::feedback(select, id, Purpose::Explore, grew);
+    };
+    feedback(&mut select, 2, false);
+    assert_eq!([0, 1, 2].map(|id| select.frequency(id)), [1.0 / 64.0, 1.0 / 16.0, 0.25]);
+    feedback(&mut select, 2, true);
+    assert_eq!(select.frequency(2), 0.25);
+    for _ in 0..9 {
+        feedback(&mut select, 2, false);
+    }
+    assert_eq!(select.frequency(2), 1.0);
+    // Certain to fail: the next one is taken.
+    let (mut out, mut rng) = (Vec::new(), Rng::seed(1));
+    let mut taken = [0; 3];
+    for _ in 0..1000 {
+        select.select(&space, &points, &points[2], Purpose::Explore, &mut rng, &mut out);
+        out.iter().for_each(|hit| taken[hit.id as usize] += 1);
+    }
+    // Node 1 failed to 62.5 %, node 0 to 15.6 %: taken with the rest of the probability.
+    assert!(taken[2] == 0 && (310..440).contains(&taken[1]) && (460..600).contains(&taken[0]), "{taken:?}");
+    // Pruning renames parents.
+    select.pruned(&space, &[points[0], points[2]], &[0, 2]);
+    assert_eq!(select.frequency(1), 1.0);
+    let before = select.frequency(0);
+    feedback(&mut select, 1, false);
+    assert_eq!(select.frequency(0), before);
+}

@@ -55,6 +55,33 @@ impl<L: TestOrder + ?Sized> TestOrder for &mut L {
     }
 }
 
+/// Something that can try each input at most once per node, told by its caller which were tried: an
+/// [`InputPlanner`], or one that is lent.
+pub trait EachOnce {
+    /// How many inputs there are.
+    fn count(&self) -> usize;
+
+    /// From now on extends by inputs not marked in `tried`, one per input (all unmarked when it has
+    /// another length), and marks those it tries. At most `most` are tested for collision at a time.
+    /// Any successor is accepted, in the order of [`SortFirst`](Order::SortFirst).
+    fn lend_tried(&mut self, tried: Vec<bool>, most: usize);
+
+    /// The marks, now extending by all inputs again.
+    fn take_tried(&mut self) -> Vec<bool>;
+}
+
+impl<L: EachOnce + ?Sized> EachOnce for &mut L {
+    fn count(&self) -> usize {
+        (**self).count()
+    }
+    fn lend_tried(&mut self, tried: Vec<bool>, most: usize) {
+        (**self).lend_tried(tried, most);
+    }
+    fn take_tried(&mut self) -> Vec<bool> {
+        (**self).take_tried()
+    }
+}
+
 /// Extends states by the inputs of a set: each, applied for the duration, gives a successor; one that is
 /// free of collision is taken, in the [`Order`] set.
 ///
@@ -81,6 +108,8 @@ pub struct InputPlanner<'c, C: Space, F, U, K> {
     accept: Option<Accept>,
     exact: Exact<C::State>,
     counters: InputCounters,
+    /// Inputs tried before, and how many may be tested.
+    tried: Option<(Vec<bool>, usize)>,
     /// Distance to the target and input of each successor.
     ranked: Vec<(f64, usize)>,
     /// Successors by input.
@@ -144,6 +173,7 @@ where
             accept: None,
             exact: Exact::Listed(Vec::new()),
             counters: InputCounters::default(),
+            tried: None,
         })
     }
 
@@ -198,6 +228,10 @@ where
         self.ends.clear();
         let counters = &mut self.counters;
         for (index, input) in self.inputs.inputs().iter().enumerate() {
+            if self.tried.as_ref().is_some_and(|(tried, _)| tried[index]) {
+                self.ends.push(node.clone());
+                continue;
+            }
             let end = match direction {
                 Direction::Forward => Some(self.flow.integrate(node, input, self.duration)),
                 Direction::Backward => self.flow.reversed(node, input, self.duration),
@@ -223,10 +257,18 @@ where
             }
             self.ends.push(end);
         }
+        if let Some((tried, _)) = &mut self.tried {
+            // Whatever the target, the others lead nowhere from here.
+            tried.fill(true);
+            self.ranked.iter().for_each(|&(_, index)| tried[index] = false);
+        }
     }
 
     fn test(&mut self, node: &C::State, index: usize, direction: Direction) -> Option<(K::Edge, f64)> {
         self.counters.tested += 1;
+        if let Some((tried, _)) = &mut self.tried {
+            tried[index] = true;
+        }
         let (successor, input) = (&self.ends[index], &self.inputs.inputs()[index]);
         let drive = Drive { node, successor, input, duration: self.duration, direction };
         self.check.test(&self.flow, &drive)
@@ -239,8 +281,9 @@ where
         direction: Direction,
         within: f64,
     ) -> Option<(usize, (K::Edge, f64))> {
+        let most = self.tried.as_ref().map(|(_, most)| *most);
         match self.order {
-            Order::TestAll => {
+            Order::TestAll if most.is_none() => {
                 let (mut least, mut best) = (within, None);
                 for i in 0..self.ranked.len() {
                     let (distance, index) = self.ranked[i];
@@ -252,9 +295,9 @@ where
                 }
                 best
             }
-            Order::SortFirst => {
+            Order::TestAll | Order::SortFirst => {
                 self.ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                for i in 0..self.ranked.len() {
+                for i in 0..self.ranked.len().min(most.unwrap_or(usize::MAX)) {
                     let (distance, index) = self.ranked[i];
                     if distance >= within {
                         return None;
@@ -269,6 +312,9 @@ where
     }
 
     fn accept(&self) -> Accept {
+        if self.tried.is_some() {
+            return Accept::Any;
+        }
         self.accept.unwrap_or(match self.order {
             Order::TestAll => Accept::Nearer,
             Order::SortFirst => Accept::Any,
@@ -319,6 +365,21 @@ fn probe<C: Space, U: Input, F: Flow<C::State, U>>(
 impl<C: Space, F, U, K> TestOrder for InputPlanner<'_, C, F, U, K> {
     fn set_order(&mut self, order: Order) {
         self.order = order;
+    }
+}
+
+impl<C: Space, F, U: Input, K> EachOnce for InputPlanner<'_, C, F, U, K> {
+    fn count(&self) -> usize {
+        self.inputs.len()
+    }
+    fn lend_tried(&mut self, mut tried: Vec<bool>, most: usize) {
+        if tried.len() != self.inputs.len() {
+            tried = vec![false; self.inputs.len()];
+        }
+        self.tried = Some((tried, most));
+    }
+    fn take_tried(&mut self) -> Vec<bool> {
+        self.tried.take().map_or_else(Vec::new, |(tried, _)| tried)
     }
 }
 

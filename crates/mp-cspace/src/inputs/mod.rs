@@ -29,7 +29,7 @@ pub use double_integrator::DoubleIntegrator;
 pub use error::InputError;
 pub use flow::{Flow, Input, InputMut};
 pub use kinematic::Kinematic;
-pub use local::{Accept, InputCounters, InputPlanner, Order, TestOrder};
+pub use local::{Accept, EachOnce, InputCounters, InputPlanner, Order, TestOrder};
 pub use replay::{ReplayFinely, ReplayMotions};
 pub use rk4::Rk4;
 pub use set::InputSet;

@@ -1,0 +1,181 @@
+//! Positions at times, for obstacles that move.
+
+use super::{Metric, Space};
+use crate::{
+    Embed, Goal, KdTree, KnownFree, Layout, MotionCheck, MotionValidity, Rng, Sampler, SpaceError,
+    error::weight,
+};
+use rand::RngExt;
+
+/// The positions of a space at times from zero to a horizon (s), moved forward in time only and no
+/// faster than a limit, in the metric of the space per second.
+///
+/// Distance: `√(d² + (v·Δt)²)` with `d` that of the positions and `v` the limit, where the motion is
+/// possible: `d ≤ v·Δt`. Where it is not, so that no state from which the target can be reached is
+/// ever beaten by one from which it cannot, the greatest such distance is added. So the extent is
+/// **twice** the diagonal of space and time. Not symmetric, and so no true metric.
+///
+/// Interpolation is straight: a motion at constant speed. [`Forward`] keeps motion checks and verifiers
+/// to those that are possible.
+///
+/// ```
+/// use mp_cspace::{Metric, Rn, Space, SpaceTime};
+/// let space = SpaceTime::new(Rn::<1>::new([0.0], [3.0])?, 4.0, 1.0)?;
+/// let (a, b) = (([0.0].into(), 0.0), ([3.0].into(), 4.0));
+/// assert_eq!(space.distance(&a, &b), 5.0);
+/// assert!(space.leads(&a, &b) && !space.leads(&b, &a));
+/// assert!(space.distance(&b, &a) > 5.0);
+/// # Ok::<(), mp_cspace::SpaceError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpaceTime<C> {
+    positions: C,
+    horizon: f64,
+    speed: f64,
+    diagonal: f64,
+}
+
+/// Rounding, relative: of speeds, and of distances in the diagonal.
+const ROUNDING: f64 = 1e-9;
+
+impl<C: Space> SpaceTime<C> {
+    /// `positions` from time zero to `horizon`, moved at `speed` at most.
+    ///
+    /// # Errors
+    /// When the horizon or the speed is not positive and finite.
+    pub fn new(positions: C, horizon: f64, speed: f64) -> Result<Self, SpaceError> {
+        let horizon = weight("the horizon", horizon)?;
+        let speed = weight("the speed limit", speed)?;
+        let diagonal = weight("the extent of space and time", positions.extent().hypot(speed * horizon))?;
+        Ok(Self { positions, horizon, speed, diagonal })
+    }
+
+    /// The space of positions.
+    #[must_use]
+    pub fn positions(&self) -> &C {
+        &self.positions
+    }
+
+    /// The last time, seconds.
+    #[must_use]
+    pub fn horizon(&self) -> f64 {
+        self.horizon
+    }
+
+    /// The greatest speed, in the metric of the positions per second.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Whether the motion from `from` to `to` is possible: forward in time and within the speed limit,
+    /// or none at all.
+    pub fn leads(&self, from: &(C::State, f64), to: &(C::State, f64)) -> bool {
+        let (distance, time) = (self.positions.distance(&from.0, &to.0), to.1 - from.1);
+        from == to || (time > 0.0 && distance <= self.speed * time * (1.0 + ROUNDING))
+    }
+
+    /// A position at any time, as a goal and as a sampler of times.
+    #[must_use]
+    pub fn at_any_time(&self, position: C::State) -> AtAnyTime<C::State> {
+        AtAnyTime { position, horizon: self.horizon }
+    }
+}
+
+impl<C: Space> Metric<(C::State, f64)> for SpaceTime<C> {
+    #[inline]
+    fn distance(&self, from: &(C::State, f64), to: &(C::State, f64)) -> f64 {
+        let d = self.positions.distance(&from.0, &to.0);
+        let way = self.speed * (to.1 - from.1);
+        let length = (d * d + way * way).sqrt();
+        // As far as rounding can tell.
+        if d <= way * (1.0 + ROUNDING) + ROUNDING * self.diagonal { length } else { self.diagonal + length }
+    }
+}
+
+impl<C: Space> Space for SpaceTime<C> {
+    type State = (C::State, f64);
+
+    fn dim(&self) -> usize {
+        self.positions.dim() + 1
+    }
+    fn extent(&self) -> f64 {
+        2.0 * self.diagonal
+    }
+    #[inline]
+    fn interpolate_into(&self, from: &Self::State, to: &Self::State, t: f64, out: &mut Self::State) {
+        self.positions.interpolate_into(&from.0, &to.0, t, &mut out.0);
+        out.1 = super::lerp(from.1, to.1, t);
+    }
+    fn unit_cube_to_state(&self, u: &[f64]) -> Self::State {
+        let n = self.positions.dim();
+        (self.positions.unit_cube_to_state(&u[..n]), self.horizon * u[n])
+    }
+    fn sample_uniform(&self, rng: &mut Rng) -> Self::State {
+        (self.positions.sample_uniform(rng), self.horizon * rng.random::<f64>())
+    }
+    fn contains(&self, q: &Self::State) -> bool {
+        self.positions.contains(&q.0) && (0.0..=self.horizon).contains(&q.1)
+    }
+}
+
+impl<C: Embed> Embed for SpaceTime<C> {
+    fn layout(&self) -> Layout {
+        self.positions.layout().beside(Layout::flat(1))
+    }
+    #[inline]
+    fn embed(&self, state: &Self::State, out: &mut [f64]) -> usize {
+        let n = self.positions.embed(&state.0, out);
+        out[n] = self.speed * state.1;
+        n + 1
+    }
+}
+impl<C: Embed> crate::DefaultNn for SpaceTime<C> {
+    type Nn = KdTree;
+}
+
+/// A position at any time: see [`SpaceTime::at_any_time`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtAnyTime<S> {
+    position: S,
+    horizon: f64,
+}
+
+impl<S: PartialEq> Goal<(S, f64)> for AtAnyTime<S> {
+    fn reached(&self, q: &(S, f64)) -> bool {
+        q.0 == self.position
+    }
+}
+impl<S: Clone> Sampler<(S, f64)> for AtAnyTime<S> {
+    fn sample(&mut self, rng: &mut Rng) -> (S, f64) {
+        (self.position.clone(), self.horizon * rng.random::<f64>())
+    }
+}
+
+/// A motion check or verifier that refuses motions back in time and beyond the speed limit before it
+/// asks the one inside.
+#[derive(Clone, Debug)]
+pub struct Forward<'c, C, M> {
+    /// The space.
+    pub space: &'c SpaceTime<C>,
+    /// What is asked about the others.
+    pub check: M,
+}
+
+impl<C: Space, M: MotionValidity<(C::State, f64)>> MotionValidity<(C::State, f64)> for Forward<'_, C, M> {
+    fn check_motion(&mut self, from: &(C::State, f64), to: &(C::State, f64)) -> MotionCheck {
+        self.check_extension(from, to, KnownFree::Neither)
+    }
+    fn check_extension(
+        &mut self,
+        from: &(C::State, f64),
+        to: &(C::State, f64),
+        known: KnownFree,
+    ) -> MotionCheck {
+        if self.space.leads(from, to) {
+            self.check.check_extension(from, to, known)
+        } else {
+            MotionCheck::Undecided { at: 0.0 }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! A rigid body among obstacles some of which move on known trajectories.
+
+mod trajectory;
+mod verify;
+
+pub use trajectory::{Trajectory, TrajectoryError};
+pub use verify::MovingVerifier;
+
+use crate::{CheckCounters, Placement, RigidBody, RobotError};
+use mp_collide::reference::RefMesh;
+use mp_collide::{CollisionMesh, Query, Scene};
+use mp_cspace::{Clearance, MotionBound, Validity};
+use mp_geom::TriMesh;
+use nalgebra::{Isometry3, Point3};
+use std::sync::Arc;
+
+/// A moving obstacle. The scene holds it alone, at its own origin: the robot is asked about where it is
+/// as seen from there.
+#[derive(Clone, Debug)]
+pub(crate) struct Mover {
+    scene: Arc<Scene>,
+    pub(crate) trajectory: Trajectory,
+    /// The largest distance of a point from the origin of its frame.
+    pub(crate) radius: f64,
+    pub(crate) reference: Arc<RefMesh>,
+}
+
+/// A [`RigidBody`] and the bodies that move around it, each on its [`Trajectory`] whatever the robot does.
+///
+/// States are pairs, a configuration and a time (s), as in [`SpaceTime`](mp_cspace::SpaceTime). One is free
+/// where the robot touches neither what stands still nor what moves. Motion bounds hold for the robot and
+/// the fastest of the obstacles together, so [`Certified`](mp_cspace::Certified) misses neither, however
+/// thin; [`Forward`](mp_cspace::Forward) around it keeps time running forward.
+#[derive(Clone, Debug)]
+pub struct AmongMoving<P: Placement> {
+    body: RigidBody<P>,
+    movers: Arc<[Mover]>,
+    query: Query,
+    counters: CheckCounters,
+}
+
+/// Bounds are enlarged by this factor against rounding.
+const ROUND_UP: f64 = 1.0 + 1e-9;
+
+impl<P: Placement> AmongMoving<P> {
+    /// `body` among its obstacles that stand still, and `movers`: name, mesh in its own frame, and
+    /// trajectory of that frame in the world each.
+    ///
+    /// # Errors
+    /// When a mesh is too large to compute with.
+    pub fn new(
+        body: RigidBody<P>,
+        movers: impl IntoIterator<Item = (String, TriMesh, Trajectory)>,
+    ) -> Result<Self, RobotError> {
+        let make = |(name, mesh, trajectory): (String, TriMesh, Trajectory)| {
+            let mut scene = Scene::new();
+            scene.insert(name, CollisionMesh::new(&mesh), Isometry3::identity())?;
+            let radius = mesh.radius_about(&Point3::origin());
+            Ok(Mover { scene: Arc::new(scene), trajectory, radius, reference: Arc::new(RefMesh::new(&mesh)) })
+        };
+        let movers: Vec<Mover> = movers.into_iter().map(make).collect::<Result<_, RobotError>>()?;
+        Ok(Self { body, movers: movers.into(), query: Query::default(), counters: CheckCounters::default() })
+    }
+
+    /// The robot among what stands still.
+    #[must_use]
+    pub fn body(&self) -> &RigidBody<P> {
+        &self.body
+    }
+
+    /// What was done so far by this clone: against what stands still and what moves, each counted.
+    #[must_use]
+    pub fn counters(&self) -> CheckCounters {
+        let mut counters = self.body.counters();
+        counters += CheckCounters { work: self.query.counters, ..self.counters };
+        counters
+    }
+
+    /// The poses of the moving obstacles at a time, in the order in which they were given.
+    pub fn poses(&self, time: f64) -> impl Iterator<Item = Isometry3<f64>> + '_ {
+        self.movers.iter().map(move |mover| mover.trajectory.pose(time))
+    }
+
+    pub(crate) fn movers(&self) -> &Arc<[Mover]> {
+        &self.movers
+    }
+}
+
+impl<P: Placement> Validity<(P::State, f64)> for AmongMoving<P> {
+    fn is_valid(&mut self, q: &(P::State, f64)) -> bool {
+        !self.in_contact(q)
+    }
+}
+
+impl<P: Placement> Clearance<(P::State, f64)> for AmongMoving<P> {
+    fn clearance(&mut self, (q, time): &(P::State, f64), enough: f64) -> f64 {
+        let mut least = self.body.clearance(q, enough);
+        let pose = P::pose(q);
+        for mover in self.movers.iter() {
+            self.counters.clearance_checks += 1;
+            let seen = mover.trajectory.pose(*time).inv_mul(&pose);
+            let enough = enough.min(least);
+            let robot = &self.body.shared.robot;
+            least = least.min(mover.scene.clearance(&mut self.query, robot, &seen, enough).0);
+        }
+        least
+    }
+
+    fn in_contact(&mut self, (q, time): &(P::State, f64)) -> bool {
+        if self.body.in_contact(q) {
+            return true;
+        }
+        let pose = P::pose(q);
+        self.movers.iter().any(|mover| {
+            self.counters.collision_checks += 1;
+            let seen = mover.trajectory.pose(*time).inv_mul(&pose);
+            mover.scene.collides(&mut self.query, &self.body.shared.robot, &seen)
+        })
+    }
+}
+
+impl<P: Placement> MotionBound<(P::State, f64)> for AmongMoving<P> {
+    /// How far the robot and the fastest of the moving obstacles travel together.
+    fn motion_bound(&self, from: &(P::State, f64), to: &(P::State, f64)) -> f64 {
+        let speed = |mover: &Mover| mover.trajectory.speed(mover.radius, from.1, to.1);
+        let fastest = self.movers.iter().map(speed).fold(0.0, f64::max);
+        (self.body.motion_bound(&from.0, &to.0) + fastest * (to.1 - from.1).abs()) * ROUND_UP
+    }
+}

@@ -1,0 +1,105 @@
+//! The independent check of motions among moving obstacles.
+
+use super::{AmongMoving, Mover};
+use crate::{Placement, Verifier};
+use mp_collide::reference::RefMesh;
+use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space, SpaceTime};
+use nalgebra::Isometry3;
+use std::sync::Arc;
+
+/// Proves motions in space and time free of collision, by other code than planners use: a [`Verifier`]
+/// for what stands still, and for each moving obstacle distances by sphere trees against how far robot and
+/// obstacle can come nearer, halving the motion until all of it is shown free. Only the space and the
+/// trajectories are shared: they are what the motions *are*.
+///
+/// It answers [`Undecided`](MotionCheck::Undecided) to motions back in time and beyond the speed limit, and
+/// to those with a tested moment of less clearance than its tolerance.
+#[derive(Clone, Debug)]
+pub struct MovingVerifier<'c, C, P> {
+    space: &'c SpaceTime<C>,
+    standing: Verifier<'c, C, P>,
+    robot: Arc<RefMesh>,
+    radius: f64,
+    movers: Arc<[Mover]>,
+    tolerance: f64,
+}
+
+/// Parts of a motion shorter than this are not looked at: what is not shown free by then is not free.
+const SHORTEST: f64 = 1e-12;
+
+impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
+    /// A verifier for `robot` in `space`, to a tenth of its [tolerance](crate::RigidBody::tolerance).
+    ///
+    /// # Errors
+    /// When the tolerance is not positive and finite, which that of a robot always is.
+    pub fn new(space: &'c SpaceTime<C>, robot: &AmongMoving<P>) -> Result<Self, ParameterError> {
+        let standing = Verifier::new(space.positions(), robot.body())?;
+        let mesh = robot.body().mesh();
+        let radius = mesh.vertices().iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        Ok(Self {
+            space,
+            tolerance: standing.tolerance(),
+            standing,
+            robot: Arc::new(RefMesh::new(mesh)),
+            radius,
+            movers: Arc::clone(robot.movers()),
+        })
+    }
+
+    /// Motions found free keep this far from every obstacle (m).
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// The clearance kept from one mover over the motion, or where it is not shown.
+    fn against(
+        &self,
+        mover: &Mover,
+        from: &(P::State, f64),
+        to: &(P::State, f64),
+        rate: f64,
+    ) -> Result<f64, MotionCheck> {
+        let mut least = f64::INFINITY;
+        let mut open = vec![(0.0_f64, 1.0_f64)];
+        while let Some((a, b)) = open.pop() {
+            let (at, half) = (0.5 * (a + b), 0.5 * (b - a));
+            let (q, time) = self.space.interpolate(from, to, at);
+            let when = |t: f64| from.1 + (to.1 - from.1) * t;
+            let approach =
+                half * (rate + mover.trajectory.speed(mover.radius, when(a), when(b)) * (to.1 - from.1));
+            let needed = (approach + self.tolerance) * (1.0 + 1e-9);
+            let pose: Isometry3<f64> = P::pose(&q);
+            match self.robot.at_least(&pose, &mover.reference, &mover.trajectory.pose(time), needed) {
+                Ok(distance) => least = least.min(distance - approach),
+                Err(distance) if distance <= 0.0 => return Err(MotionCheck::Collides { at }),
+                Err(distance) if distance < self.tolerance || half < SHORTEST => {
+                    return Err(MotionCheck::Undecided { at });
+                }
+                Err(_) => open.extend([(at, b), (a, at)]),
+            }
+        }
+        Ok(least)
+    }
+}
+
+impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> for MovingVerifier<'_, C, P> {
+    fn check_motion(&mut self, from: &(P::State, f64), to: &(P::State, f64)) -> MotionCheck {
+        if !(self.space.contains(from) && self.space.contains(to) && self.space.leads(from, to)) {
+            return MotionCheck::Undecided { at: 0.0 };
+        }
+        let standing = self.standing.check_motion(&from.0, &to.0);
+        let MotionCheck::Free { clearance: mut least } = standing else { return standing };
+        // The origin on a line and turning about it, both at constant speed.
+        let [a, b] = [&from.0, &to.0].map(P::pose);
+        let shift = (b.translation.vector - a.translation.vector).norm();
+        let rate = shift + self.radius * a.rotation.angle_to(&b.rotation);
+        for mover in self.movers.iter() {
+            match self.against(mover, from, to, rate) {
+                Ok(clearance) => least = least.min(clearance),
+                Err(check) => return check,
+            }
+        }
+        MotionCheck::Free { clearance: least }
+    }
+}

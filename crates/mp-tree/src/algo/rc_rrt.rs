@@ -1,0 +1,152 @@
+//! RC-RRT, the resolution complete RRT.
+//!
+//! P. Cheng and S. M. LaValle, *Resolution complete rapidly-exploring random trees*, ICRA 2002.
+//!
+//! From a tree that holds the start, repeat:
+//! 1. draw a sample, uniform in the space, or with a small probability a goal state;
+//! 2. find the nearest of the nodes that have inputs left that were never tried there;
+//! 3. try those at it in the order of their successors' distances to the sample, each once and for all,
+//!    until one leads, free of collision, to a state that is not within `apart` of another node;
+//! 4. add that as a child; a node at which all inputs have failed or been used is exhausted;
+//! 5. where the child is in the goal, verify the path: return it, or prune from the edge that failed;
+//! 6. when all nodes are exhausted, stop: [`Exhausted`](mp_cspace::StopReason::Exhausted) says that there is no
+//!    path by these inputs and this duration, states within `apart` counting as one.
+//!
+//! As nodes keep apart there are finitely many, so it always ends; with `apart` no larger than rounding
+//! that may take long. (The paper derives the distance from a Lipschitz bound of the system; here it is
+//! given.)
+//!
+//! **When to use it.** To learn that there is no solution at a resolution; and where the metric misleads,
+//! so that plain RRT tries the same hopeless inputs again and again.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
+//! | `apart`: states no farther apart count as one, in the metric of the space | 0 or more | |
+//! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point finds out that it cannot leave a closed ring:
+//! ```
+//! use mp_cspace::inputs::{Along, InputPlanner, InputSet, Kinematic, ReplayFinely};
+//! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rn, Rng, StopReason};
+//! use mp_tree::{Goals, Problem, RcRrt, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| !(0.2..0.3).contains(&(q - Vector2::new(0.5, 0.5)).norm());
+//! let flow = Kinematic::new(&space)?;
+//! let check = Along::new(&space, free, Resolution::Length(0.005))?;
+//! let local = InputPlanner::new(&space, flow, InputSet::spread([0.05, 0.05], 8)?, 1.0, check)?;
+//! let verifier = ReplayFinely::new(&space, flow, free, Resolution::Length(0.0005))?;
+//! let outside = Goals::region(|q: &Vector2<f64>| q.x < 0.1);
+//!
+//! let problem = Problem::new(&space, local, verifier, Vector2::new(0.5, 0.5), outside)?;
+//! let mut planner = RcRrt::new(problem, 0.02, Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(100_000), &mut ());
+//! assert_eq!(outcome, Outcome::Stopped(StopReason::Exhausted));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::{
+    AppendApart, BuildError, Nearest, Problem, Purpose, Recipe, Samples, Selector, SingleTree, Tuning,
+    Untried,
+};
+use mp_cspace::inputs::EachOnce;
+use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space, Uniform};
+
+/// RC-RRT: see the [module](self).
+pub type RcRrt<'c, C, L, N> =
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Unexhausted<Nearest<N>>, Untried, AppendApart>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State> + EachOnce, N: NearestNeighbors<C>> RcRrt<'c, C, L, N> {
+    /// RC-RRT with the nearest neighbours that suit the space; states within `apart` count as one.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, apart: f64, tuning: Tuning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), apart, tuning)
+    }
+
+    /// RC-RRT with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        apart: f64,
+        tuning: Tuning,
+    ) -> Result<Self, BuildError> {
+        let propose = Samples(Uniform(problem.space));
+        let (select, attach) = (Unexhausted::new(Nearest(index)), AppendApart::within(apart)?);
+        Self::assemble(problem, Recipe { propose, select, grow: Untried::until_new(), attach, tuning })
+    }
+}
+
+/// The nearest node that has not yet failed to grow.
+#[derive(Clone, Debug, Default)]
+pub struct Unexhausted<Se> {
+    nearest: Se,
+    exhausted: Vec<bool>,
+    left: usize,
+}
+
+impl<Se> Unexhausted<Se> {
+    /// All nodes of `nearest` to begin with.
+    pub fn new(nearest: Se) -> Self {
+        Self { nearest, exhausted: Vec::new(), left: 0 }
+    }
+}
+
+impl<C: Space, Se: Selector<C>> Selector<C> for Unexhausted<Se> {
+    fn select(
+        &mut self,
+        space: &C,
+        points: &[C::State],
+        target: &C::State,
+        _: Purpose,
+        _: &mut Rng,
+        out: &mut Vec<Hit>,
+    ) {
+        let mut k = 1;
+        loop {
+            self.nearest.k_nearest(space, points, target, k, out);
+            let all = k >= points.len();
+            out.retain(|hit| !self.exhausted[hit.id as usize]);
+            out.truncate(1);
+            if all || !out.is_empty() {
+                return;
+            }
+            k = k.saturating_mul(4);
+        }
+    }
+    fn near(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
+        self.nearest.near(space, points, q, radius, out);
+    }
+    fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
+        self.nearest.k_nearest(space, points, q, k, out);
+    }
+    fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId, parent: Option<NodeId>) {
+        self.exhausted.push(false);
+        self.left += 1;
+        self.nearest.inserted(space, points, id, parent);
+    }
+    fn feedback(&mut self, id: NodeId, _: Purpose, grew: bool) {
+        if !grew && !std::mem::replace(&mut self.exhausted[id as usize], true) {
+            self.left -= 1;
+        }
+    }
+    fn exhausted(&self) -> bool {
+        self.left == 0
+    }
+    fn pruned(&mut self, space: &C, points: &[C::State], survivors: &[NodeId]) {
+        self.exhausted = survivors.iter().map(|&id| self.exhausted[id as usize]).collect();
+        self.left = self.exhausted.iter().filter(|exhausted| !**exhausted).count();
+        self.nearest.pruned(space, points, survivors);
+    }
+}
