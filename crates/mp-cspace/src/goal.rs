@@ -1,6 +1,6 @@
 //! Goals.
 
-use crate::{ParameterError, Rng, Sampler, Space};
+use crate::{Factored, ParameterError, Rng, Sampler, Space};
 use rand::RngExt;
 
 /// A set of states to reach.
@@ -71,11 +71,131 @@ impl<C: Space> Sampler<C::State> for Ball<'_, C> {
     }
 }
 
+/// A goal of which some components are fixed and the others free: an arm whose last joints do not
+/// matter, a body that is to get somewhere turned anyhow.
+///
+/// Components are the [factors](Factored) of the space: x, y and rotation in SE(2); x, y, z and
+/// rotation in SE(3). As a goal it holds the states whose fixed factors are within the tolerance,
+/// each by its own distance (metres or radians); as a sampler it yields states that have the fixed
+/// factors exactly, and the others at random.
+///
+/// ```
+/// use mp_cspace::{FixedFactors, Goal, Rng, Sampler, Se2, Se2State};
+/// let space = Se2::new([0.0, 0.0], [1.0, 1.0])?;
+/// let mut there = FixedFactors::new(&space, Se2State::new(0.9, 0.1, 0.0), [0, 1], 0.01)?;
+/// assert!(there.reached(&Se2State::new(0.9, 0.105, 2.0)));
+/// assert!(!there.reached(&Se2State::new(0.9, 0.2, 0.0)));
+/// assert_eq!(there.sample(&mut Rng::seed(1)).translation, [0.9, 0.1].into());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FixedFactors<'c, C: Space> {
+    space: &'c C,
+    state: C::State,
+    fixed: Vec<bool>,
+    tolerance: f64,
+}
+
+impl<'c, C: Factored> FixedFactors<'c, C> {
+    /// The states that agree with `state` in the factors listed, up to `tolerance` (0: exactly,
+    /// which only its own samples do).
+    ///
+    /// # Errors
+    /// When no factor is listed, or one that the space does not have; when the tolerance is
+    /// negative or not finite.
+    pub fn new(
+        space: &'c C,
+        state: C::State,
+        factors: impl IntoIterator<Item = usize>,
+        tolerance: f64,
+    ) -> Result<Self, ParameterError> {
+        let mut fixed = vec![false; space.factors()];
+        for factor in factors {
+            let Some(entry) = fixed.get_mut(factor) else {
+                let (name, expected) = ("a fixed factor", "below the number of factors of the space");
+                return Err(ParameterError { name, expected, value: factor as f64 });
+            };
+            *entry = true;
+        }
+        if !fixed.contains(&true) {
+            let (name, expected) = ("the number of fixed factors", "at least 1");
+            return Err(ParameterError { name, expected, value: 0.0 });
+        }
+        if !(tolerance >= 0.0 && tolerance.is_finite()) {
+            let (name, expected) = ("the tolerance", "finite and not negative");
+            return Err(ParameterError { name, expected, value: tolerance });
+        }
+        Ok(Self { space, state, fixed, tolerance })
+    }
+}
+
+impl<C: Factored> Goal<C::State> for FixedFactors<'_, C> {
+    fn reached(&self, q: &C::State) -> bool {
+        let mut off = 0.0_f64;
+        self.space.each_factor(q, &self.state, &mut |i, d| {
+            if self.fixed[i] {
+                off = off.max(d);
+            }
+        });
+        off <= self.tolerance
+    }
+}
+
+impl<C: Factored> Sampler<C::State> for FixedFactors<'_, C> {
+    fn sample(&mut self, rng: &mut Rng) -> C::State {
+        let mut q = self.space.sample_uniform(rng);
+        for factor in (0..self.fixed.len()).filter(|&i| self.fixed[i]) {
+            let from = q.clone();
+            self.space.interpolate_factor(factor, &from, &self.state, 1.0, &mut q);
+        }
+        q
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Rn;
-    use nalgebra::Vector2;
+    use crate::{Rn, RnDyn, Se3};
+    use nalgebra::{DVector, Vector2};
+
+    /// Samples have the fixed factors exactly, and all the room there is in the others.
+    fn holds<C: Factored>(space: &C, fixed: &[usize]) {
+        let mut rng = Rng::seed(2);
+        let state = space.sample_uniform(&mut rng);
+        let mut goal = FixedFactors::new(space, state.clone(), fixed.iter().copied(), 0.0).unwrap();
+        let mut farthest = vec![0.0_f64; space.factors()];
+        for _ in 0..300 {
+            let q = goal.sample(&mut rng);
+            assert!(space.contains(&q) && goal.reached(&q), "{q:?}");
+            space.each_factor(&q, &state, &mut |i, d| farthest[i] = farthest[i].max(d));
+            assert!(!goal.reached(&space.sample_uniform(&mut rng)));
+        }
+        for (i, far) in farthest.iter().enumerate() {
+            let free = *far > 0.4 * space.factor_extent(i);
+            assert_eq!(free, !fixed.contains(&i), "factor {i} varies by {far}");
+        }
+    }
+
+    #[test]
+    fn some_components_are_fixed_and_others_free() {
+        let body = Se3::new([0.0; 3], [1.0; 3]).unwrap();
+        let arm = RnDyn::new(vec![-1.0; 5], vec![1.0; 5]).unwrap();
+        for fixed in [vec![0, 1, 2], vec![3], vec![1]] {
+            holds(&body, &fixed);
+            holds(&arm, &fixed);
+        }
+        let goal = FixedFactors::new(&arm, DVector::zeros(5), [1, 1, 4], 0.1).unwrap();
+        assert!(goal.reached(&DVector::from_vec(vec![1.0, 0.1, 1.0, 1.0, -0.05])));
+        assert!(!goal.reached(&DVector::from_vec(vec![0.0, 0.0, 0.0, 0.0, 0.11])));
+        let refused = |factors: &[usize], tolerance| {
+            let goal = FixedFactors::new(&arm, DVector::zeros(5), factors.iter().copied(), tolerance);
+            goal.unwrap_err().to_string()
+        };
+        assert!(refused(&[], 0.1).contains("at least 1"));
+        assert!(refused(&[5], 0.1).contains("below the number of factors"));
+        assert!(refused(&[1], -0.1).contains("not negative"));
+        assert!(refused(&[1], f64::NAN).contains("finite"));
+    }
 
     #[test]
     fn balls_hold_their_samples() {

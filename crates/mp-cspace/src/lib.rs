@@ -10,7 +10,7 @@
 //! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
 //! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
 //! | how to move | [`Straight`]; by a set of inputs: [`inputs`] |
-//! | what to reach | [`Exactly`], [`Ball`], a closure |
+//! | what to reach | [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
 //! | what to do with a path | [`Path`], [`verify_path`], [`least_clearance`], [`shorten`] |
 //! | whether your own implementation is right | [`testkit`] |
@@ -34,7 +34,7 @@ pub mod testkit;
 mod validity;
 
 pub use error::{ParameterError, SpaceError};
-pub use goal::{Ball, Exactly, Goal};
+pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Straight};
 pub use metric::{
     Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, TrueMetricOn,

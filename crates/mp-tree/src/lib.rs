@@ -14,6 +14,10 @@
 //! | [`CvpRrt`] | [`algo::cvp_rrt`] | from the start, by a set of inputs | one untried input, at a node that has not often failed |
 //! | [`RcRrt`] | [`algo::rc_rrt`] | from the start, by a set of inputs | untried inputs, until all are exhausted |
 //! | [`Rsrt`] | [`algo::rsrt`] | from the start, by a set of inputs | the first successor free of collision, sorted by distance |
+//! | [`DdRrt`] | [`algo::dd_rrt`] | from start and goal | as RRT-Connect, without samples far from nodes that failed |
+//! | [`DdRrt`] | [`algo::add_rrt`] | from start and goal | the same, each node learning what is far |
+//! | [`MvbRrt`] | [`algo::mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
+//! | [`UtilityRrt`] | [`algo::utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
 //!
 //! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
 //! ([`algo::restarts`]) one after the other. [`build_from`] makes them by name.
@@ -48,9 +52,9 @@
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | what to grow toward | [`Propose`] | [`Samples`] |
-//! | which nodes to grow from | [`Selector`] | [`Nearest`], [`LeastViolated`], [`Unexhausted`] |
-//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`Untried`] |
+//! | what to grow toward | [`Propose`] | [`Samples`], [`Acceptable`], [`VoronoiBias`] |
+//! | which nodes to grow from | [`Selector`] | [`Nearest`], [`DynamicDomain`], [`LeastViolated`], [`Unexhausted`] |
+//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`Untried`] |
 //! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
@@ -96,7 +100,9 @@ pub use algo::bi_rrt::BiRrt;
 pub use algo::con_con::RrtConCon;
 pub use algo::con_ext::RrtConExt;
 pub use algo::cvp_rrt::{CvpRrt, LeastViolated};
+pub use algo::dd_rrt::{DdRrt, Domain, DynamicDomain};
 pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
+pub use algo::mvb_rrt::{MvbRrt, VoronoiBias};
 pub use algo::or_parallel::OrParallel;
 pub use algo::rc_rrt::{RcRrt, Unexhausted};
 pub use algo::restarts::{Lengths, Restarts, Schedule};
@@ -105,6 +111,7 @@ pub use algo::rrt_connect::RrtConnect;
 pub use algo::rrt_inputs::RrtInputs;
 pub use algo::rrt_star::RrtStar;
 pub use algo::rsrt::Rsrt;
+pub use algo::utility_rrt::{UtilityGuided, UtilityRrt};
 pub use apart::AppendApart;
 pub use attach::{Append, AppendDistinct, Attach, Attached};
 pub use branch::{Branch, Growing, Steer};
@@ -113,7 +120,7 @@ pub use goals::Goals;
 pub use grow::{Connect, Extend, Grown, Growth};
 pub use improve::{Improving, improve};
 pub use problem::Problem;
-pub use propose::{Propose, Samples};
+pub use propose::{Acceptable, Propose, Samples};
 pub use recipe::{Recipe, Step, Tuning};
 pub use registry::{AnyPlanner, build, build_with, planner, planners};
 pub use rewire::{Near, Rewire};

@@ -1,12 +1,7 @@
 //! Planners by name, for programs that choose at run time.
 
-use crate::algo::{
-    aorrtc, bi_rrt, con_con, con_ext, informed_rrt_star, rrt, rrt_connect, rrt_inputs, rrt_star, rsrt,
-};
-use crate::{
-    Aorrtc, BiRrt, BuildError, InformedRrtStar, PlannerInfo, Problem, Rrt, RrtConCon, RrtConExt, RrtConnect,
-    RrtInputs, RrtStar, Rsrt, Settings, closest, uniform,
-};
+use crate::algo::*;
+use crate::*;
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Planner, Space};
 
 /// A planner chosen at run time.
@@ -26,6 +21,10 @@ pub fn planners() -> &'static [PlannerInfo] {
         aorrtc::INFO,
         rrt_inputs::INFO,
         rsrt::INFO,
+        dd_rrt::INFO,
+        add_rrt::INFO,
+        mvb_rrt::INFO,
+        utility_rrt::INFO,
     ]
 }
 
@@ -98,6 +97,16 @@ where
         "rsrt" => {
             let problem = uniform::moved_by_inputs(problem, &tuning, settings)?;
             Box::new(Rsrt::with_index(problem, index, tuning)?)
+        }
+        "dd-rrt" => Box::new(DdRrt::with_index(problem, index, tuning, Domain::fixed().read(settings)?)?),
+        "add-rrt" => Box::new(DdRrt::with_index(problem, index, tuning, Domain::adaptive().read(settings)?)?),
+        "mvb-rrt" => {
+            let samples = settings.count("samples")?.unwrap_or(5);
+            Box::new(MvbRrt::with_index(problem, index, tuning, samples)?)
+        }
+        "utility-rrt" => {
+            let candidates = settings.count("candidates")?.unwrap_or(4);
+            Box::new(UtilityRrt::with_index(problem, index, tuning, candidates)?)
         }
         _ => return Err(unknown(name)),
     })

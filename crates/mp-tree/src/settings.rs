@@ -248,6 +248,23 @@ fn malformed(setting: String, expected: &'static str) -> BuildError {
     BuildError::Malformed { setting, expected }
 }
 
+/// `value` if it is positive and finite.
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, BuildError> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(value);
+    }
+    Err(BuildError::OutOfRange { name, value, range: "positive and finite".to_owned() })
+}
+
+/// `value` if it is from `least` to `most`.
+pub(crate) fn count_within(name: &'static str, value: u64, least: u64, most: u64) -> Result<u64, BuildError> {
+    if (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    let range = format!("a whole number from {least} to {most}");
+    Err(BuildError::OutOfRange { name, value: value as f64, range })
+}
+
 /// The name that `name` was probably meant to be: the one fewest edits away, if not too many.
 ///
 /// ```

@@ -3,79 +3,197 @@
 mod common;
 use common::*;
 use mp_cspace::*;
-use mp_tree::{Problem, Settings, Step, Tuning, build, build_with, planners};
-use nalgebra::SVector;
+use mp_tree::{AnyPlanner, Problem, Settings, Step, Tuning, build, planners};
+use nalgebra::{SVector, Vector2};
+use std::f64::consts::FRAC_PI_2;
 
-const SEEDS: u64 = 5;
+const SEEDS: u64 = 20;
+/// Of these seeds so many are planned with a discrete check as well.
+const DISCRETE: u64 = 4;
 /// Iterations given to problems that have no solution.
-const HOPELESS: u64 = 100_000;
+const HOPELESS: u64 = 10_000;
+
+type Check<'c, S> = Box<dyn MotionValidity<S> + Send + 'c>;
+
+/// One type of local planner for each space, so that every planner is compiled once for it.
+fn local<'c, C: Space>(
+    space: &'c C,
+    check: impl MotionValidity<C::State> + Send + 'c,
+) -> Straight<'c, C, Check<'c, C::State>> {
+    Straight::new(space, Box::new(check))
+}
 
 fn settings(step: f64) -> Settings {
     Settings::parse([format!("step={step}")]).unwrap()
 }
 
-/// Solves one problem among boxes with every planner, certified and discrete.
-fn solves<const N: usize>(
-    space: &Rn<N>,
-    boxes: &Boxes<N>,
-    [start, goal]: [[f64; N]; 2],
+/// A problem: a space, a robot in it, where from and where to, and a step that suits.
+struct World<'c, C: Space, V> {
+    space: &'c C,
+    robot: V,
+    ends: [C::State; 2],
     step: f64,
-    iterations: u64,
-) {
-    let (start, goal) = (SVector::from(start), SVector::from(goal));
-    for info in planners() {
-        for seed in 0..SEEDS {
-            let certified = Certified::new(space, boxes.clone(), 1e-3).unwrap();
-            let discrete = Discrete::new(space, boxes.clone(), Resolution::Length(2e-3)).unwrap();
-            let checks: [Box<dyn MotionValidity<_> + Send>; 2] = [Box::new(certified), Box::new(discrete)];
-            for check in checks {
-                let local = Straight::new(space, check);
-                let problem = Problem::new(space, local, Exact(boxes.clone()), start, goal).unwrap();
-                let mut planner = build(info.name, problem, &settings(step)).unwrap();
+}
+
+impl<'c, C, V> World<'c, C, V>
+where
+    C: DefaultNn<Nn: Send> + Sync,
+    C::State: Send,
+    V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + Clone + Send + 'c,
+{
+    fn planner(&self, name: &str, certified: bool) -> AnyPlanner<'c, C::State, ()> {
+        let proof = |tolerance| Certified::new(self.space, self.robot.clone(), tolerance).unwrap();
+        // What is found by samples is verified by proof, so that no corner is cut.
+        let (check, verifier): (Check<'c, C::State>, Check<'c, C::State>) = if certified {
+            let fine = FineDiscrete::new(self.space, self.robot.clone(), Resolution::Fraction(5e-4)).unwrap();
+            (Box::new(proof(1e-3)), Box::new(fine))
+        } else {
+            let resolution = Resolution::Fraction(2e-3);
+            let sampled = Discrete::new(self.space, self.robot.clone(), resolution).unwrap();
+            (Box::new(sampled), Box::new(proof(1e-5)))
+        };
+        let [start, goal] = self.ends.clone();
+        let problem = Problem::new(self.space, local(self.space, check), verifier, start, goal).unwrap();
+        build(name, problem, &settings(self.step)).unwrap()
+    }
+
+    /// Every planner finds a way, whatever the seed, and on the first `discrete` seeds with a discrete check
+    /// as well. `free` knows better than the verifier, where
+    /// anything does.
+    fn is_solved(&self, iterations: u64, discrete: u64, free: impl Fn(&C::State, &C::State) -> bool) {
+        for info in planners() {
+            for (seed, certified) in
+                (0..SEEDS).map(|seed| (seed, true)).chain((0..discrete).map(|seed| (seed, false)))
+            {
+                let mut planner = self.planner(info.name, certified);
                 let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(iterations), &mut ());
                 let Outcome::Solved(path) = outcome else {
                     panic!("{} seed {seed}: {:?}", info.name, planner.progress())
                 };
-                assert_path(space, &path, &start, |q| *q == goal, |q| boxes.distance(q) > 0.0);
-                assert!(!path.states.windows(2).any(|pair| boxes.hit(&pair[0], &pair[1])));
+                let ([start, goal], mut robot) = (&self.ends, self.robot.clone());
+                assert_path(self.space, &path, start, |q| q == goal, |q| robot.is_valid(q));
+                assert!(path.states.windows(2).all(|pair| free(&pair[0], &pair[1])), "{}", info.name);
             }
         }
     }
+
+    /// No planner finds a way, as there is none.
+    fn is_never_solved(&self) {
+        for info in planners() {
+            let mut planner = self.planner(info.name, true);
+            let outcome = planner.solve(&mut Rng::seed(3), &mut Iterations(HOPELESS), &mut ());
+            assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations), "{}", info.name);
+            assert_eq!(planner.progress().iterations, HOPELESS);
+        }
+    }
+}
+
+/// A point among boxes: whether an edge is free is known exactly.
+fn point<const N: usize>(space: &Rn<N>, boxes: Boxes<N>, ends: [[f64; N]; 2], step: f64)
+where
+    Rn<N>: DefaultNn<State = SVector<f64, N>, Nn: Send>,
+{
+    let world = World { space, robot: boxes.clone(), ends: ends.map(SVector::from), step };
+    world.is_solved(20_000, DISCRETE, |a, b| !boxes.hit(a, b));
 }
 
 #[test]
 fn empty_space_takes_one_motion() {
     let space = cube();
+    let (start, goal) = ([0.1; 3].into(), [0.9; 3].into());
+    let world = World { space: &space, robot: Boxes::default(), ends: [start, goal], step: 0.3 };
     for info in planners() {
-        let check = Certified::new(&space, Boxes::default(), 1e-3).unwrap();
-        let (start, goal) = ([0.1; 3].into(), [0.9; 3].into());
-        let local = Straight::new(&space, check);
-        let problem = Problem::new(&space, local, Exact(Boxes::default()), start, goal).unwrap();
-        let mut planner = build(info.name, problem, &Settings::default()).unwrap();
+        let mut planner = world.planner(info.name, true);
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
-        assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] });
+        assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] }, "{}", info.name);
         assert_eq!(planner.progress().motions, 1);
     }
 }
 
 #[test]
 fn narrow_passage_in_the_plane() {
-    solves(&square(), &slit(0.2, 0.8, 0.04), [[0.1, 0.2], [0.9, 0.2]], 0.1, 20_000);
+    point(&square(), slit(0.2, 0.8, 0.04), [[0.1, 0.2], [0.9, 0.2]], 0.1);
 }
 
 #[test]
 fn narrow_passage_in_space() {
-    solves(&cube(), &slit(0.1, 0.7, 0.15), [[0.1; 3], [0.9, 0.1, 0.1]], 0.2, 20_000);
+    point(&cube(), slit(0.1, 0.7, 0.15), [[0.1; 3], [0.9, 0.1, 0.1]], 0.2);
 }
 
 #[test]
 fn bug_trap_in_the_plane() {
-    solves(&square(), &hollow([0.4, 0.5], 0.2, 0.05, 0.03), [[0.4, 0.5], [0.05, 0.5]], 0.1, 20_000);
+    point(&square(), hollow([0.4, 0.5], 0.2, 0.05, 0.03), [[0.4, 0.5], [0.05, 0.5]], 0.1);
 }
 
 #[test]
 fn bug_trap_in_space() {
-    solves(&cube(), &hollow([0.4; 3], 0.2, 0.05, 0.08), [[0.4; 3], [0.05, 0.4, 0.4]], 0.2, 20_000);
+    point(&cube(), hollow([0.4; 3], 0.2, 0.05, 0.08), [[0.4; 3], [0.05, 0.4, 0.4]], 0.2);
+}
+
+#[test]
+fn a_closed_box_around_the_goal_is_never_solved_in_the_plane() {
+    let (space, robot) = (square(), hollow([0.7, 0.5], 0.1, 0.02, 0.0));
+    World { space: &space, robot, ends: [[0.1, 0.5].into(), [0.7, 0.5].into()], step: 0.2 }.is_never_solved();
+}
+
+/// The walls are 1e-3 thick: two points of the verifier would straddle them, a certified check does
+/// not.
+#[test]
+fn a_closed_box_around_the_goal_is_never_solved_in_space() {
+    let (space, robot) = (cube(), hollow([0.7, 0.5, 0.5], 0.1, 1e-3, 0.0));
+    let ends = [[0.1; 3].into(), [0.7, 0.5, 0.5].into()];
+    World { space: &space, robot, ends, step: 0.2 }.is_never_solved();
+}
+
+/// The plane with a rod that must turn to pass.
+fn rod(boxes: Boxes<2>) -> (Se2, Rod) {
+    (Se2::new([0.0; 2], [1.0; 2]).unwrap(), Rod { boxes, half_length: 0.1, radius: 0.01 })
+}
+
+#[test]
+fn a_rod_turns_to_pass_a_gap() {
+    let (space, robot) = rod(slit(0.05, 0.5, 0.1));
+    let ends = [Se2State::new(0.2, 0.3, FRAC_PI_2), Se2State::new(0.8, 0.3, -FRAC_PI_2)];
+    World { space: &space, robot, ends, step: 0.3 }.is_solved(40_000, DISCRETE, |_, _| true);
+}
+
+#[test]
+fn a_rod_never_leaves_a_closed_box() {
+    let (space, robot) = rod(hollow([0.7, 0.5], 0.15, 0.01, 0.0));
+    let ends = [Se2State::new(0.2, 0.5, 0.0), Se2State::new(0.7, 0.5, 0.0)];
+    World { space: &space, robot, ends, step: 0.3 }.is_never_solved();
+}
+
+/// Two links must fold to get past a disc.
+#[test]
+fn an_arm_of_two_joints_folds() {
+    let (space, discs) = (joints::<2>(), vec![(Vector2::new(0.7, 0.7), 0.3)]);
+    let robot = Arm { link: 0.5, radius: 0.02, discs };
+    let ends = [[0.0, 0.0].into(), [FRAC_PI_2, 0.0].into()];
+    World { space: &space, robot, ends, step: 0.5 }.is_solved(20_000, DISCRETE, |_, _| true);
+}
+
+/// Six links among three discs, from one side of one to the other.
+#[test]
+fn an_arm_of_six_joints_finds_its_way() {
+    let places = [(1.06, 0.51), (-0.2, 0.9), (0.0, -0.9)];
+    let discs = places.map(|(x, y)| (Vector2::new(x, y), 0.1)).to_vec();
+    let space = Rn::new([-1.5; 6], [1.5; 6]).unwrap();
+    let robot = Arm { link: 0.2, radius: 0.02, discs };
+    let ends = [[0.0; 6].into(), [0.9, 0.1, 0.0, 0.0, 0.0, 0.0].into()];
+    World { space: &space, robot, ends, step: 1.0 }.is_solved(200_000, 0, |_, _| true);
+}
+
+/// Discs above and below the base keep the first link on its side; joints cannot turn all around.
+#[test]
+fn an_arm_never_passes_what_it_cannot() {
+    let discs = [0.3, -0.3].map(|y| (Vector2::new(0.0, y), 0.1)).to_vec();
+    let two = Arm { link: 0.5, radius: 0.02, discs: discs.clone() };
+    let ends = [[0.0, 0.0].into(), [3.0, 0.0].into()];
+    World { space: &joints::<2>(), robot: two, ends, step: 0.5 }.is_never_solved();
+    let six = Arm { link: 0.5, radius: 0.02, discs };
+    let ends = [[0.0; 6].into(), [3.0, 0.0, 0.0, 0.0, 0.0, 0.0].into()];
+    World { space: &joints::<6>(), robot: six, ends, step: 2.0 }.is_never_solved();
 }
 
 /// A wall 1e-4 thick, with a way around at the top.
@@ -87,8 +205,8 @@ fn thin_walls_are_never_crossed() {
     for info in planners() {
         for seed in 0..SEEDS {
             let check = Certified::new(&space, boxes.clone(), 1e-4).unwrap();
-            let local = Straight::new(&space, check);
-            let problem = Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap();
+            let verifier = Exact(boxes.clone());
+            let problem = Problem::new(&space, local(&space, check), verifier, start, goal).unwrap();
             let mut planner = build(info.name, problem, &settings(0.2)).unwrap();
             let mut counts = EventCounts::default();
             let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut counts);
@@ -99,87 +217,14 @@ fn thin_walls_are_never_crossed() {
     }
 }
 
-fn never_solves<C, M, V>(
-    space: &C,
-    check: impl Fn() -> M,
-    verifier: impl Fn() -> V,
-    [start, goal]: [C::State; 2],
-) where
-    C: DefaultNn,
-    M: MotionValidity<C::State> + Send,
-    V: MotionValidity<C::State> + Send,
-{
-    for info in planners() {
-        let local = Straight::new(space, check());
-        let problem = Problem::new(space, local, verifier(), start.clone(), goal.clone()).unwrap();
-        let mut planner = build(info.name, problem, &settings(0.2)).unwrap();
-        // Those that rewire do several times the work per iteration.
-        let budget = if planner.improves() { HOPELESS / 10 } else { HOPELESS };
-        let outcome = planner.solve(&mut Rng::seed(3), &mut Iterations(budget), &mut ());
-        assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations), "{}", info.name);
-        assert_eq!(planner.progress().iterations, budget);
-    }
-}
-
-#[test]
-fn a_closed_box_around_the_goal_is_never_solved_in_the_plane() {
-    let space = square();
-    let boxes: Boxes<2> = hollow([0.7, 0.5], 0.1, 0.02, 0.0);
-    let check = || Certified::new(&space, boxes.clone(), 1e-3).unwrap();
-    let verifier = || Exact(boxes.clone());
-    never_solves(&space, check, verifier, [[0.1, 0.5].into(), [0.7, 0.5].into()]);
-}
-
-#[test]
-fn a_closed_box_around_the_goal_is_never_solved_in_space() {
-    let space = cube();
-    let boxes: Boxes<3> = hollow([0.7, 0.5, 0.5], 0.1, 1e-4, 0.0);
-    let check = || Certified::new(&space, boxes.clone(), 1e-3).unwrap();
-    let verifier = || Exact(boxes.clone());
-    never_solves(&space, check, verifier, [[0.1; 3].into(), [0.7, 0.5, 0.5].into()]);
-}
-
-/// The plane with a rod that must turn to pass.
-fn rod_world(boxes: Boxes<2>) -> (Se2, Rod) {
-    (Se2::new([0.0; 2], [1.0; 2]).unwrap(), Rod { boxes, half_length: 0.1, radius: 0.01 })
-}
-
-#[test]
-fn a_rod_turns_to_pass_a_gap() {
-    let (space, rod) = rod_world(slit(0.05, 0.5, 0.08));
-    let start = Se2State::new(0.2, 0.3, std::f64::consts::FRAC_PI_2);
-    let goal = Se2State::new(0.8, 0.3, -std::f64::consts::FRAC_PI_2);
-    for info in planners() {
-        for seed in 0..SEEDS {
-            let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
-            let verifier = FineDiscrete::new(&space, rod.clone(), Resolution::Length(1e-3)).unwrap();
-            let problem = Problem::new(&space, local, verifier, start, goal).unwrap();
-            let mut planner = build(info.name, problem, &settings(0.3)).unwrap();
-            let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(40_000), &mut ());
-            let Outcome::Solved(path) = outcome else { panic!("{} seed {seed}: {outcome:?}", info.name) };
-            let mut rod = rod.clone();
-            assert_path(&space, &path, &start, |q| *q == goal, |q| rod.is_valid(q));
-        }
-    }
-}
-
-#[test]
-fn a_rod_never_leaves_a_closed_box() {
-    let (space, rod) = rod_world(hollow([0.7, 0.5], 0.15, 0.01, 0.0));
-    let check = || Certified::new(&space, rod.clone(), 1e-3).unwrap();
-    let verifier = || FineDiscrete::new(&space, rod.clone(), Resolution::Length(1e-3)).unwrap();
-    let ends = [Se2State::new(0.2, 0.5, 0.0), Se2State::new(0.7, 0.5, 0.0)];
-    never_solves(&space, check, verifier, ends);
-}
-
 /// The local planner skips over a thin wall; the verifier does not.
 fn coarse<'c>(
     space: &'c Rn<2>,
     boxes: &Boxes<2>,
-) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Discrete<'c, Rn<2>, Boxes<2>>>> {
+) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Check<'c, Vector2<f64>>>> {
     let check = Discrete::new(space, boxes.clone(), Resolution::Length(0.05)).unwrap();
     let ends = [[0.1, 0.1].into(), [0.9, 0.1].into()];
-    Problem::new(space, Straight::new(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap()
+    Problem::new(space, local(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap()
 }
 
 #[test]
@@ -188,10 +233,9 @@ fn a_too_coarse_check_is_found_out_and_the_way_around_found() {
     let boxes: Boxes<2> = slit(1e-3, 0.9, 0.1);
     for info in planners() {
         for patience in ["0", "3", "10"] {
-            for seed in 0..SEEDS {
+            for seed in 0..5 {
                 let settings = Settings::parse([&format!("patience={patience}"), "step=0.2"]).unwrap();
-                let mut planner =
-                    build_with(info.name, coarse(&space, &boxes), Linear::new(), &settings).unwrap();
+                let mut planner = build(info.name, coarse(&space, &boxes), &settings).unwrap();
                 let mut counts = EventCounts::default();
                 let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut counts);
                 let Outcome::Solved(path) = outcome else { panic!("{}: {outcome:?}", info.name) };
@@ -211,7 +255,7 @@ fn a_too_coarse_check_does_not_open_a_closed_wall() {
     for info in planners() {
         // Never distrusting: every candidate is refuted anew, and pruned.
         let settings = Settings::parse(["patience=1000000", "step=0.2"]).unwrap();
-        let mut planner = build_with(info.name, coarse(&space, &boxes), Linear::new(), &settings).unwrap();
+        let mut planner = build(info.name, coarse(&space, &boxes), &settings).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(3_000), &mut ());
         assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations), "{}", info.name);
         assert!(planner.progress().rejected > 10, "{}", info.name);
@@ -231,11 +275,11 @@ fn the_direct_planner_types_agree_with_the_registry() {
         Outcome::Solved(path) => path,
         other => panic!("{other:?}"),
     };
-    let mut rrt = mp_tree::Rrt::with_index(coarse(&space, &boxes), Linear::new(), tuning).unwrap();
-    let mut connect = mp_tree::RrtConnect::with_index(coarse(&space, &boxes), Linear::new(), tuning).unwrap();
+    let mut rrt = mp_tree::Rrt::new(coarse(&space, &boxes), tuning).unwrap();
+    let mut connect = mp_tree::RrtConnect::new(coarse(&space, &boxes), tuning).unwrap();
     let paths = [("rrt", solve(&mut rrt)), ("rrt-connect", solve(&mut connect))];
     for (name, path) in paths {
-        let mut planner = build_with(name, coarse(&space, &boxes), Linear::new(), &settings(0.1)).unwrap();
+        let mut planner = build(name, coarse(&space, &boxes), &settings(0.1)).unwrap();
         assert_eq!(solve(&mut *planner), path);
     }
 }

@@ -1,11 +1,14 @@
 //! The named algorithms, one file each.
 
+pub mod add_rrt;
 pub mod aorrtc;
 pub mod bi_rrt;
 pub mod con_con;
 pub mod con_ext;
 pub mod cvp_rrt;
+pub mod dd_rrt;
 pub mod informed_rrt_star;
+pub mod mvb_rrt;
 pub mod or_parallel;
 pub mod rc_rrt;
 pub mod restarts;
@@ -14,3 +17,4 @@ pub mod rrt_connect;
 pub mod rrt_inputs;
 pub mod rrt_star;
 pub mod rsrt;
+pub mod utility_rrt;

@@ -154,6 +154,60 @@ impl MotionBound<Se2State> for Rod {
     }
 }
 
+/// A planar chain of links turned by its joints about the origin, each link a capsule, among discs.
+/// Links do not see each other: they are at different heights.
+#[derive(Clone, Debug)]
+pub struct Arm<const N: usize> {
+    pub link: f64,
+    pub radius: f64,
+    /// Centres and radii.
+    pub discs: Vec<(Vector2<f64>, f64)>,
+}
+
+impl<const N: usize> Arm<N> {
+    /// The joints and the tip.
+    pub fn joints(&self, q: &SVector<f64, N>) -> Vec<Vector2<f64>> {
+        let (mut at, mut angle) = (Vector2::zeros(), 0.0);
+        let mut joints = vec![at];
+        for turn in q.iter() {
+            angle += turn;
+            at += Vector2::new(angle.cos(), angle.sin()) * self.link;
+            joints.push(at);
+        }
+        joints
+    }
+}
+impl<const N: usize> Validity<SVector<f64, N>> for Arm<N> {
+    fn is_valid(&mut self, q: &SVector<f64, N>) -> bool {
+        self.clearance(q, 0.0) > 0.0
+    }
+}
+impl<const N: usize> Clearance<SVector<f64, N>> for Arm<N> {
+    /// Exact: the distance of a disc's centre from the axis of a link, less both radii.
+    fn clearance(&mut self, q: &SVector<f64, N>, _: f64) -> f64 {
+        let joints = self.joints(q);
+        let links = joints.windows(2).flat_map(|pair| self.discs.iter().map(move |disc| (pair, disc)));
+        let distances = links.map(|(pair, (center, radius))| {
+            let (along, to) = (pair[1] - pair[0], center - pair[0]);
+            let nearest = along * (to.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            (to - nearest).norm() - radius - self.radius
+        });
+        distances.fold(f64::INFINITY, f64::min)
+    }
+}
+impl<const N: usize> MotionBound<SVector<f64, N>> for Arm<N> {
+    /// A joint swings no point of an axis faster than by what hangs on it.
+    fn motion_bound(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> f64 {
+        let turns = (to - from).abs();
+        turns.iter().enumerate().map(|(i, turn)| turn * self.link * (N - i) as f64).sum()
+    }
+}
+
+/// Joint angles of an arm, within ±π.
+pub fn joints<const N: usize>() -> Rn<N> {
+    Rn::new([-std::f64::consts::PI; N], [std::f64::consts::PI; N]).unwrap()
+}
+
 /// Checks a path from `start` to `goal`, densely along each edge.
 pub fn assert_path<C: Space>(
     space: &C,

@@ -1,0 +1,11 @@
+//! Dynamic-domain RRT: a point leaves a bug trap in the plane.
+//!
+//! `cargo run -p mp-tree --example dd_rrt [SEED]`
+
+mod shared;
+use mp_tree::{DdRrt, Domain};
+
+fn main() -> shared::Result {
+    let space = shared::square()?;
+    shared::run(DdRrt::new(shared::bug_trap(&space)?, shared::tuning(), Domain::fixed())?)
+}

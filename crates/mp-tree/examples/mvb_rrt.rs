@@ -1,0 +1,10 @@
+//! Multi-sample RRT: a point leaves a bug trap in the plane.
+//!
+//! `cargo run -p mp-tree --example mvb_rrt [SEED]`
+
+mod shared;
+
+fn main() -> shared::Result {
+    let space = shared::square()?;
+    shared::run(mp_tree::MvbRrt::new(shared::bug_trap(&space)?, shared::tuning(), 5)?)
+}

@@ -1,0 +1,10 @@
+//! Utility-guided RRT: a point leaves a bug trap in the plane.
+//!
+//! `cargo run -p mp-tree --example utility_rrt [SEED]`
+
+mod shared;
+
+fn main() -> shared::Result {
+    let space = shared::square()?;
+    shared::run(mp_tree::UtilityRrt::new(shared::bug_trap(&space)?, shared::tuning(), 4)?)
+}

@@ -1,0 +1,244 @@
+//! Dynamic-domain RRT: nodes that failed once are only grown toward samples nearby.
+//!
+//! A. Yershova, L. Jaillet, T. Siméon and S. M. LaValle, *Dynamic-domain RRTs: efficient exploration
+//! by controlling the sampling domain*, ICRA 2005, on the two trees of
+//! [RRT-Connect](super::rrt_connect). With `adapt` above 0 it is [`add_rrt`](super::add_rrt).
+//!
+//! Each node has a radius, infinite at first. From one tree that holds the start and one that
+//! holds the goal, repeat:
+//! 1. draw samples, uniform in the space, until one is no farther from its nearest node in the tree
+//!    whose turn it is than the radius of that node; after `tries` samples take the next;
+//! 2. extend the tree from that node, one step at most, toward it; where that fails, the radius of
+//!    the node becomes `radius`;
+//! 3. if that added a node, connect the other tree to it, whatever the radii;
+//! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
+//! 5. the other tree has the next turn.
+//!
+//! **When to use it.** Where the tree is shut in, as in a bug trap: most of the space is then
+//! nearest to nodes at a wall, and plain RRT runs into the walls again and again. Pays off where
+//! checking a motion costs more than finding a nearest neighbour.
+//!
+//! The paper has steps much shorter than the space, and a radius of ten of them. Here steps are
+//! long, and the radius is a part of one. `tries` bounds what the paper does not: in spaces of
+//! many dimensions nearly every sample may be refused.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `radius`: of nodes that failed, in steps | (0, ∞) | 0.5 |
+//! | `tries`: samples refused in a row before one is taken as it is | 0, 1, 2, … | 100 |
+//! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point goes around a disc in the unit square:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Domain, DdRrt, Problem, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let mut planner = DdRrt::new(problem, Tuning::default(), Domain::fixed())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, positive};
+use crate::{
+    Acceptable, Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Problem, Purpose,
+    Recipe, Samples, Selector, Settings, Tuning, TwoTrees,
+};
+use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space, Uniform};
+
+/// [`Domain::radius`].
+pub(super) const RADIUS: Parameter = Parameter {
+    name: "radius",
+    range: "positive and finite, in steps",
+    default: "0.5",
+    doc: "how far a sample may be from a node that failed",
+};
+/// [`Domain::tries`].
+pub(super) const TRIES: Parameter = Parameter {
+    name: "tries",
+    range: "a whole number",
+    default: "100",
+    doc: "samples refused in a row before one is taken as it is",
+};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "dd-rrt",
+    summary: "RRT-Connect that takes nodes at walls for what they are; for traps and tight spaces",
+    citation: "Yershova, Jaillet, Siméon and LaValle 2005",
+    parameters: &[STEP, RADIUS, TRIES, GOAL_BIAS, PATIENCE],
+    aliases: &["dynamic-domain"],
+    cannot: NEEDS_BOTH_ENDS,
+};
+
+/// From how far away samples attract a node that failed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Domain {
+    /// The radius of a node that has failed for the first time, in steps; positive.
+    pub radius: f64,
+    /// By what part the radius grows with a success and shrinks with a failure, in \[0, 1).
+    pub adapt: f64,
+    /// Below this no radius shrinks, in steps; positive, at most `radius`.
+    pub least: f64,
+    /// After this many refusals in a row the next sample is taken as it is, so that planning never
+    /// comes to a halt.
+    pub tries: u64,
+}
+
+impl Domain {
+    /// The defaults of dynamic-domain RRT.
+    #[must_use]
+    pub fn fixed() -> Self {
+        Self { radius: 0.5, adapt: 0.0, least: 0.5, tries: 100 }
+    }
+
+    /// As set, by default where not.
+    ///
+    /// # Errors
+    /// When a value cannot be read.
+    pub(crate) fn read(self, settings: &Settings) -> Result<Self, BuildError> {
+        let radius = settings.number(RADIUS.name)?.unwrap_or(self.radius);
+        let least = settings.number("least")?.unwrap_or(self.least.min(radius));
+        let adapt = settings.number("adapt")?.unwrap_or(self.adapt);
+        Ok(Self { radius, adapt, least, tries: settings.count(TRIES.name)?.unwrap_or(self.tries) })
+    }
+}
+
+/// The nearest node, unless it has failed and the target is beyond its radius. For joining always
+/// the nearest node.
+#[derive(Clone, Debug)]
+pub struct DynamicDomain<S, N> {
+    nearest: Nearest<N>,
+    domain: Domain,
+    radii: Vec<f64>,
+    refused: u64,
+    accepted: Option<(S, Hit)>,
+}
+
+impl<S, N> DynamicDomain<S, N> {
+    /// No nodes, an empty index, and the step (a distance) that the domain is measured in.
+    ///
+    /// # Errors
+    /// When a value of the domain is out of range.
+    pub fn new(index: N, domain: Domain, step: f64) -> Result<Self, BuildError> {
+        let radius = positive(RADIUS.name, domain.radius)?;
+        if !(domain.least > 0.0 && domain.least <= radius) {
+            let range = format!("in (0, {radius}], at most the radius");
+            return Err(BuildError::OutOfRange { name: "least", value: domain.least, range });
+        }
+        if !(0.0..1.0).contains(&domain.adapt) {
+            let range = "in [0, 1)".to_owned();
+            return Err(BuildError::OutOfRange { name: "adapt", value: domain.adapt, range });
+        }
+        let domain = Domain { radius: radius * step, least: domain.least * step, ..domain };
+        Ok(Self { nearest: Nearest(index), domain, radii: Vec::new(), refused: 0, accepted: None })
+    }
+}
+
+impl<C: Space, N: NearestNeighbors<C>> Selector<C> for DynamicDomain<C::State, N> {
+    fn select(
+        &mut self,
+        space: &C,
+        points: &[C::State],
+        target: &C::State,
+        why: Purpose,
+        rng: &mut Rng,
+        out: &mut Vec<Hit>,
+    ) {
+        // What was accepted when it was proposed is not looked for again.
+        if let Some((_, hit)) = self.accepted.take_if(|(q, _)| why == Purpose::Explore && q == target) {
+            out.clear();
+            out.push(hit);
+            return;
+        }
+        self.nearest.select(space, points, target, why, rng, out);
+        let Some(hit) = out.first().filter(|_| why == Purpose::Explore) else { return };
+        if hit.distance <= self.radii[hit.id as usize] || self.refused >= self.domain.tries {
+            self.refused = 0;
+            self.accepted = Some((target.clone(), *hit));
+        } else {
+            self.refused += 1;
+            out.clear();
+        }
+    }
+    fn near(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
+        self.nearest.near(space, points, q, radius, out);
+    }
+    fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId, parent: Option<NodeId>) {
+        self.accepted = None;
+        self.radii.push(f64::INFINITY);
+        self.nearest.inserted(space, points, id, parent);
+    }
+    fn feedback(&mut self, id: NodeId, why: Purpose, grew: bool) {
+        self.accepted = None;
+        if why != Purpose::Explore {
+            return;
+        }
+        let Domain { radius, adapt, least, .. } = self.domain;
+        let known = &mut self.radii[id as usize];
+        *known = match (grew, known.is_finite()) {
+            (true, _) => *known * (1.0 + adapt),
+            (false, false) => radius,
+            (false, true) => (*known * (1.0 - adapt)).max(least),
+        };
+    }
+    fn pruned(&mut self, space: &C, points: &[C::State], survivors: &[NodeId]) {
+        self.accepted = None;
+        self.radii = survivors.iter().map(|&id| self.radii[id as usize]).collect();
+        self.nearest.pruned(space, points, survivors);
+    }
+}
+
+/// Dynamic-domain RRT: see the [module](self).
+pub type DdRrt<'c, C, L, N> = TwoTrees<
+    'c,
+    C,
+    L,
+    Acceptable<Samples<Uniform<'c, C>>>,
+    DynamicDomain<<C as Space>::State, N>,
+    Extend,
+    Connect,
+    Append,
+>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> DdRrt<'c, C, L, N> {
+    /// Dynamic-domain RRT with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning, domain: Domain) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning, domain)
+    }
+
+    /// Dynamic-domain RRT with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        tuning: Tuning,
+        domain: Domain,
+    ) -> Result<Self, BuildError> {
+        let propose = Acceptable::new(Samples(Uniform(problem.space)));
+        let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
+        let select = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space)?)?;
+        let grow = (Extend, Connect::default());
+        Self::assemble(name, problem, Recipe { propose, select, grow, attach: Append, tuning })
+    }
+}

@@ -1,0 +1,150 @@
+//! Multi-sample RRT: the tree grows where its Voronoi regions are surely large.
+//!
+//! S. R. Lindemann and S. M. LaValle, *Incrementally reducing dispersion by increasing Voronoi bias
+//! in RRTs*, ICRA 2004, with fresh samples in every iteration; here on the two trees of
+//! [RRT-Connect](super::rrt_connect).
+//!
+//! From one tree that holds the start and one that holds the goal, repeat:
+//! 1. draw `samples` samples, uniform in the space, and find for each its nearest node in the tree
+//!    whose turn it is: the node that collects most is the one whose Voronoi region seems largest
+//!    (the first of several);
+//! 2. extend the tree from there, one step at most, toward the mean of the samples collected;
+//! 3. if that added a node, connect the other tree to it;
+//! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
+//! 5. the other tree has the next turn.
+//!
+//! The mean is made by interpolation, one sample after the other. In Euclidean space Voronoi
+//! regions are convex, so the mean lies in the region of the node that collected the samples; in
+//! others the node nearest to the mean is extended, almost always the same.
+//!
+//! **When to use it.** Open spaces that are to be covered evenly with few nodes, and motions so dear
+//! that some searches for neighbours more do not matter. In a bug trap the large regions belong to
+//! nodes at walls: there rather [dynamic domains](super::dd_rrt). When the tree has many more nodes
+//! than samples are drawn it grows as RRT-Connect does.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `samples`: how many are looked at together; 1 is RRT-Connect | 1, 2, … 100 000 | 5 |
+//! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point goes around a disc in the unit square:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{MvbRrt, Problem, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let mut planner = MvbRrt::new(problem, Tuning::default(), 5)?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, count_within};
+use crate::{
+    Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Problem, Propose, Purpose, Recipe,
+    Selector, Tuning, TwoTrees,
+};
+use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space};
+
+/// How many samples are looked at together.
+pub(crate) const SAMPLES: Parameter = Parameter {
+    name: "samples",
+    range: "a whole number from 1 to 100000",
+    default: "5",
+    doc: "samples whose nearest nodes are compared",
+};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "mvb-rrt",
+    summary: "RRT-Connect by the most wanted of several samples; covers open spaces with few nodes",
+    citation: "Lindemann and LaValle 2004",
+    parameters: &[STEP, SAMPLES, GOAL_BIAS, PATIENCE],
+    aliases: &["ms-rrt"],
+    cannot: NEEDS_BOTH_ENDS,
+};
+
+/// Proposes the mean of those of several samples that have the same nearest node: the node with the
+/// most.
+#[derive(Clone, Debug)]
+pub struct VoronoiBias {
+    samples: u64,
+    hits: Vec<Hit>,
+}
+
+impl<C: Space> Propose<C> for VoronoiBias {
+    fn propose<Se: Selector<C>>(
+        &mut self,
+        rng: &mut Rng,
+        space: &C,
+        points: &[C::State],
+        select: &mut Se,
+    ) -> C::State {
+        // Of each region that was hit: its node, how often, the mean.
+        let mut regions: Vec<(NodeId, u32, C::State)> = Vec::new();
+        let mut best = 0;
+        for _ in 0..self.samples {
+            let q = space.sample_uniform(rng);
+            select.select(space, points, &q, Purpose::Explore, rng, &mut self.hits);
+            let Some(hit) = self.hits.first() else { continue };
+            let Some(i) = regions.iter().position(|(id, ..)| *id == hit.id) else {
+                regions.push((hit.id, 1, q));
+                continue;
+            };
+            let (_, count, mean) = &mut regions[i];
+            *count += 1;
+            *mean = space.interpolate(mean, &q, 1.0 / f64::from(*count));
+            if *count > regions[best].1 {
+                best = i;
+            }
+        }
+        match regions.into_iter().nth(best) {
+            Some((_, _, mean)) => mean,
+            None => space.sample_uniform(rng),
+        }
+    }
+}
+
+/// Multi-sample RRT: see the [module](self).
+pub type MvbRrt<'c, C, L, N> = TwoTrees<'c, C, L, VoronoiBias, Nearest<N>, Extend, Connect, Append>;
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> MvbRrt<'c, C, L, N> {
+    /// Multi-sample RRT with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning, samples: u64) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning, samples)
+    }
+
+    /// Multi-sample RRT with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there are no goal states to grow from.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        tuning: Tuning,
+        samples: u64,
+    ) -> Result<Self, BuildError> {
+        let samples = count_within(SAMPLES.name, samples, 1, 100_000)?;
+        let propose = VoronoiBias { samples, hits: Vec::new() };
+        let grow = (Extend, Connect::default());
+        let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };
+        Self::assemble(INFO.name, problem, recipe)
+    }
+}
