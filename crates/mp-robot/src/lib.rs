@@ -7,7 +7,8 @@
 //! | [`PointRobot`] | `Vector3<f64>`, in R³ | a point |
 //! | [`Arm`] | `SVector<f64, N>` or `DVector<f64>`, in [`Joints`](mp_cspace::Joints) | a tree of links |
 //!
-//! The first three are a [`RigidBody`]. Obstacles stand still. Robots answer the questions of planners:
+//! The first three are a [`RigidBody`]. Obstacles stand still, but for those of [`AmongMoving`], a rigid body
+//! in space and time among bodies on known trajectories. Robots answer the questions of planners:
 //! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
 //! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; and of people:
 //! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] proves

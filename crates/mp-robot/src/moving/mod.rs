@@ -28,7 +28,8 @@ pub(crate) struct Mover {
 /// A [`RigidBody`] and the bodies that move around it, each on its [`Trajectory`] whatever the robot does.
 ///
 /// States are pairs, a configuration and a time (s), as in [`SpaceTime`](mp_cspace::SpaceTime). One is free
-/// where the robot touches neither what stands still nor what moves. Motion bounds hold for the robot and
+/// where the robot touches neither what stands still nor the surface of what moves; a robot that is inside a
+/// moving body to begin with, even a point, is not in contact with it. Motion bounds hold for the robot and
 /// the fastest of the obstacles together, so [`Certified`](mp_cspace::Certified) misses neither, however
 /// thin; [`Forward`](mp_cspace::Forward) around it keeps time running forward.
 #[derive(Clone, Debug)]
