@@ -24,10 +24,17 @@
 //! The seed is the first number drawn from the generator of the first step. Stepping on after a
 //! path goes on with the same attempt.
 //!
-//! **When to use it.** When some seeds take many times longer than most: a lower 95th percentile is
-//! bought with a somewhat higher median. The unit should be about what a lucky run needs; one that
-//! is too small wastes a logarithm, one too large never restarts. Of no use where all runs take about
-//! as long.
+//! **When to use it.** When some seeds take many times longer than most: when the mean over seeds is
+//! nearly one and a half times the median, or more. The unit should be about what a lucky run needs.
+//! Where the tail is lighter than that of an exponential distribution, restarts only cost. Measured with
+//! RRT-Connect and `luby` over 100 seeds, in iterations (median, 95th percentile):
+//!
+//! | scene | mean / median | as it is | unit 250 | unit 1000 |
+//! |---|---|---|---|---|
+//! | `easy` | 1.47 | 2742, 11 320 | 1308, 8075 | 1750, 8345 |
+//! | `twisty` | 1.15 | 46 000, 116 000 | 58 000, 285 000 | 71 000, 367 000 |
+//!
+//! On `twisty` no unit does better than none, as drawing from those 100 runs shows.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
