@@ -5,7 +5,7 @@
 //! `MP_FUZZ_ITERATIONS` says; `docs/fuzzing.md` tells how to call them from a coverage-guided fuzzer.
 
 use crate::collada::Scene;
-use crate::{Environment, Error, OffDocument, OmplProblem, PathFile};
+use crate::{Environment, Error, JointPath, OffDocument, OmplProblem, PathFile, RobotFile};
 use crate::{gempa_mesh_text, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
 
@@ -13,7 +13,7 @@ use mp_geom::TriMesh;
 pub type Target = fn(&[u8]) -> bool;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 9] = [
+pub const TARGETS: [(&str, Target); 12] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -23,6 +23,9 @@ pub const TARGETS: [(&str, Target); 9] = [
     ("obj", obj),
     ("collada", collada),
     ("ompl-app", ompl_app),
+    ("robot-problem", robot_problem),
+    ("joint-path", joint_path),
+    ("json-joint-path", json_joint_path),
 ];
 
 /// OFF documents.
@@ -83,6 +86,25 @@ pub fn collada(bytes: &[u8]) -> bool {
 /// OMPL.app problems.
 pub fn ompl_app(bytes: &[u8]) -> bool {
     good(OmplProblem::parse("f.cfg", bytes)).is_some()
+}
+
+/// Robot problems.
+pub fn robot_problem(bytes: &[u8]) -> bool {
+    good(RobotFile::parse("f.toml", bytes)).is_some()
+}
+
+/// Paths of joint values.
+pub fn joint_path(bytes: &[u8]) -> bool {
+    let Some(path) = good(JointPath::parse("f.txt", bytes)) else { return false };
+    assert_eq!(good(JointPath::parse("f.txt", path.to_text().as_bytes())), Some(path));
+    true
+}
+
+/// Paths of joint values in JSON.
+pub fn json_joint_path(bytes: &[u8]) -> bool {
+    let Some(path) = good(JointPath::parse_json("f.json", bytes)) else { return false };
+    assert_eq!(good(JointPath::parse_json("f.json", path.to_json().as_bytes())), Some(path));
+    true
 }
 
 /// What was read. An error must be fit to be shown: one line, a place inside the file, a remedy.

@@ -3,17 +3,51 @@
 use crate::error::{Error, ErrorKind};
 use crate::gempa::PathFile;
 use crate::source::decode;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// What is read of a result: its path. All other members may be there and are skipped.
 #[derive(Deserialize)]
-struct HasPath {
-    path: Option<Vec<[f64; 6]>>,
+struct HasPath<R> {
+    path: Option<Vec<R>>,
 }
 
 #[derive(Serialize)]
-struct OnlyPath<'a> {
-    path: &'a [[f64; 6]],
+struct OnlyPath<'a, R> {
+    path: &'a [R],
+}
+
+/// The member `path` of an object; at least one row.
+pub(crate) fn parse_rows<R: DeserializeOwned>(file: &str, text: &str, what: &str) -> Result<Vec<R>, Error> {
+    let read: HasPath<R> = serde_json::from_str(text).map_err(|e| {
+        let at = offset(text, e.line(), e.column());
+        let shown = e.to_string();
+        let shown = shown.split(" at line ").next().unwrap_or(&shown);
+        let message = match shown.split_once(", expected") {
+            Some((found, _)) => found.to_owned(),
+            None => format!("this is not JSON: {shown}"),
+        };
+        Error::at(ErrorKind::Format, file, text, at, 1, message)
+            .expected(what)
+            .help("the format is described in docs/formats/path.md")
+    })?;
+    let content = |message: &str| {
+        Error::at(ErrorKind::Content, file, text, 0, 1, message.to_owned())
+            .expected(what)
+            .help("a result that is not solved has no path")
+    };
+    match read.path {
+        Some(rows) if !rows.is_empty() => Ok(rows),
+        Some(_) => Err(content("the path has no configurations")),
+        None => Err(content("there is no path in this file")),
+    }
+}
+
+/// An object with the member `path`, one row on a line.
+pub(crate) fn rows_text<R: Serialize>(path: &[R]) -> String {
+    // Numbers of a path are finite and its shape is fixed, so this cannot fail.
+    let one_line = serde_json::to_string(&OnlyPath { path }).unwrap_or_default();
+    one_line.replace("[[", "[\n[").replace("],[", "],\n[").replace("]]", "]\n]") + "\n"
 }
 
 impl PathFile {
@@ -24,37 +58,14 @@ impl PathFile {
     /// [`Error`] when it is not JSON or has no path, with the line and column.
     pub fn parse_json(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let what = "{\"path\": [[x, y, z, α, β, γ], …]}";
-        let read: HasPath = serde_json::from_str(text).map_err(|e| {
-            let at = offset(text, e.line(), e.column());
-            let shown = e.to_string();
-            let shown = shown.split(" at line ").next().unwrap_or(&shown);
-            let message = match shown.split_once(", expected") {
-                Some((found, _)) => found.to_owned(),
-                None => format!("this is not JSON: {shown}"),
-            };
-            Error::at(ErrorKind::Format, file, text, at, 1, message)
-                .expected(what)
-                .help("the format is described in docs/formats/path.md")
-        })?;
-        let content = |message: &str| {
-            Error::at(ErrorKind::Content, file, text, 0, 1, message.to_owned())
-                .expected(what)
-                .help("a result that is not solved has no path")
-        };
-        match read.path {
-            Some(configurations) if !configurations.is_empty() => Ok(Self { configurations }),
-            Some(_) => Err(content("the path has no configurations")),
-            None => Err(content("there is no path in this file")),
-        }
+        let configurations = parse_rows(file, text, "{\"path\": [[x, y, z, α, β, γ], …]}")?;
+        Ok(Self { configurations })
     }
 
     /// The path as JSON: an object with the member `path`, one six-tuple on a line.
     #[must_use]
     pub fn to_json(&self) -> String {
-        // Numbers of a path are finite and its shape is fixed, so this cannot fail.
-        let one_line = serde_json::to_string(&OnlyPath { path: &self.configurations }).unwrap_or_default();
-        one_line.replace("[[", "[\n[").replace("],[", "],\n[").replace("]]", "]\n]") + "\n"
+        rows_text(&self.configurations)
     }
 }
 

@@ -1,6 +1,7 @@
 //! File formats of motion planning: meshes, scenes, problems, paths.
 //!
 //! - [`Problem::load`] reads a problem and its meshes, whatever the format.
+//! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
 //! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: mesh formats.
@@ -21,6 +22,7 @@ mod obj;
 mod off;
 mod ompl;
 mod problem;
+mod robot;
 mod source;
 mod stl;
 mod text;
@@ -33,5 +35,6 @@ pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
+pub use robot::{JointPath, ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
 pub use source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, write_atomic};
 pub use stl::{parse_stl, stl_text, write_stl};

@@ -84,9 +84,14 @@ impl<'a> Text<'a> {
 
 /// At most 40 characters of `text`, with control characters replaced.
 pub(crate) fn clipped(text: &str) -> String {
+    clipped_to(text, 40)
+}
+
+/// At most `most` characters of `text`, with control characters replaced.
+pub(crate) fn clipped_to(text: &str, most: usize) -> String {
     let mut out: String =
-        text.chars().take(40).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
-    if text.chars().nth(40).is_some() {
+        text.chars().take(most).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
+    if text.chars().nth(most).is_some() {
         out.push('…');
     }
     out

@@ -48,6 +48,17 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
              volume.min.x=-1\nvolume.min.y=-1\nvolume.min.z=-1\nvolume.max.x=9\nvolume.max.y=9\nvolume.max.z=9\n[planner]\nrrt=\n",
             "[problem]\nrobot = r.dae\nstart.x = 0\nstart.y = 1\nstart.theta = 0\ngoal.x = 1\ngoal.y = 1\ngoal.theta = 0 # x\n",
         ],
+        "robot-problem" => &[
+            "# six\n[robot]\nurdf = \"a.urdf\"\nsrdf = 'a.srdf'\npackages = \"..\"\nbase = [0, 0.0, 1e-1, 0, 0, 0]\n[robot.limits]\n\
+             \"joint 1\" = [-1, 1]\nelbow = [0, 2.5]\n[motion]\nstart = [0, 1]\ngoal = [1, 0]\n[[obstacle]]\nname = \"a\"\n\
+             box = [1, 2, 3]\npose = [0, 0, 0, 0, 0, 1]\n[[obstacle]]\nsphere = 0.5\n",
+            "motion = { start = [0], goals = [[1], [2]] }\nrobot = { urdf = \"a\" }\n[[obstacle]]\ncylinder = [0.1, 1]\n\
+             [[obstacle]]\nmesh = \"w.off\"\n",
+        ],
+        "joint-path" => &["3 2\n0 0\n0.5 -1e-3\n1 1\n", "1 7\n0 0 0 0 0 0 3.25\n"],
+        "json-joint-path" => {
+            &["{\"solved\": true, \"path\": [[0, 0, 0],\n[1.5, -2e-3, 3]], \"name\": \"\\u00e9\"}"]
+        }
         other => panic!("no seeds for {other}"),
     };
     let mut all: Vec<Vec<u8>> = texts.iter().map(|t| t.as_bytes().to_vec()).collect();

@@ -11,8 +11,8 @@
 //! in space and time among bodies on known trajectories. Robots answer the questions of planners:
 //! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
 //! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; and of people:
-//! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] proves
-//! finished paths by other means.
+//! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] or
+//! [`ArmVerifier`] proves finished paths by other means.
 //!
 //! ```
 //! use mp_cspace::{Certified, MotionValidity, Se3, Validity};
@@ -43,7 +43,10 @@ mod rigid;
 mod solid;
 mod verify;
 
-pub use arm::{Arm, ArmError, ArmModel, Coordinate, Joint, JointKind, Kinematics, Link, Mimic};
+pub use arm::{
+    Arm, ArmContact, ArmError, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Kinematics, Link, Mimic,
+    UrdfError,
+};
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
 pub use placement::{Placement, Planar, Point, Shape, Spatial};
 pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};

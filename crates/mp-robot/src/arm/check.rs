@@ -159,7 +159,7 @@ impl Cover {
 impl<Q: Coordinates> MotionBound<Q> for Arm {
     /// The most that any link moves, or two links relative to each other, along the interpolation of the
     /// [space](Arm::space) of the arm: the sum over the joints above it of how far the joint goes times the
-    /// largest distance of a point of the link from the joint's axis.
+    /// largest distance of a point of the link from the joint's axis. Of configurations within the limits.
     fn motion_bound(&self, from: &Q, to: &Q) -> f64 {
         let (robot, from, to) = (&*self.robot, from.as_slice(), to.as_slice());
         let kinematics = &robot.kinematics;

@@ -3,13 +3,15 @@
 use super::kinematics::{Coordinate, Kinematics};
 use super::pairs::{Pair, pairs};
 use super::travel::Chain;
+use super::verify::Tree;
 use super::{ArmError, ArmModel};
 use crate::CheckCounters;
+use mp_collide::reference::RefMesh;
 use mp_collide::{BodyId, CollisionMesh, Counters, Query, Scene};
 use mp_cspace::{Coordinates, Joints};
 use mp_geom::{Aabb, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Most triangles: what a reference mesh can hold.
 const MAX_TRIANGLES: usize = 1 << 30;
@@ -50,6 +52,9 @@ pub(super) struct Robot {
     pub(super) pairs: Vec<Pair>,
     /// The largest distance of any of its points from the base in any configuration.
     pub(super) reach: f64,
+    pub(super) model: ArmModel,
+    /// For verifiers, made when the first one is.
+    pub(super) reference: OnceLock<Arc<Tree>>,
 }
 
 impl Robot {
@@ -84,7 +89,7 @@ impl Robot {
             first += entries;
         }
         let pairs = pairs(&kinematics, &bodies, model)?;
-        Ok(Self { kinematics, bodies, pairs, reach })
+        Ok(Self { kinematics, bodies, pairs, reach, model: model.clone(), reference: OnceLock::new() })
     }
 
     pub(super) fn name(&self, body: usize) -> &str {
@@ -114,6 +119,8 @@ pub(super) struct World {
     /// Every obstacle in the world.
     pub(super) placed: Vec<(BodyId, Arc<TriMesh>)>,
     pub(super) bounds: Aabb,
+    /// For verifiers, made when the first one is; nothing when there are no obstacles.
+    pub(super) reference: OnceLock<Option<Arc<RefMesh>>>,
 }
 
 impl World {
@@ -132,7 +139,7 @@ impl World {
         }
         scene.merge_static();
         let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
-        Ok(Self { scene, placed, bounds })
+        Ok(Self { scene, placed, bounds, reference: OnceLock::new() })
     }
 }
 
@@ -210,6 +217,12 @@ impl Arm {
         Ok(other)
     }
 
+    /// What it was made of.
+    #[must_use]
+    pub fn model(&self) -> &ArmModel {
+        &self.robot.model
+    }
+
     /// Its kinematic tree.
     #[must_use]
     pub fn kinematics(&self) -> &Kinematics {
@@ -281,7 +294,7 @@ impl Arm {
     }
 
     /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and never so small
-    /// that coordinates could not resolve it. A verifier works to a tenth of it.
+    /// that coordinates could not resolve it. An [`ArmVerifier`](crate::ArmVerifier) works to a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         let base = self.kinematics().base.translation.vector.amax();

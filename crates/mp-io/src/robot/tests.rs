@@ -1,0 +1,114 @@
+use super::*;
+
+const GOOD: &str = "[robot]\nurdf = \"arm.urdf\"\nbase = [0, 0, 0.5, 0, 0, 0]\nlimits = { elbow = [-1, 1.5] }\n\n\
+                    [motion]\nstart = [0, 0.5]\ngoals = [[1, 0], [0.0, -1]]\n\n\
+                    [[obstacle]]\nname = \"table\"\nbox = [1, 2, 0.1]\n\n\
+                    [[obstacle]]\nsphere = 0.25\npose = [1, 0, 0, 0, 0, 0]\n\n\
+                    [[obstacle]]\nmesh = \"wall.off\"\n\n[[obstacle]]\ncylinder = [0.1, 1]\n";
+
+fn folder(problem: &str) -> (tempfile::TempDir, std::path::PathBuf) {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("arm.urdf"), "<robot name=\"arm\"/>").unwrap();
+    let wall = mp_geom::primitives::cuboid(0.1, 1.0, 1.0).unwrap();
+    crate::write_off(dir.path().join("wall.off"), &wall).unwrap();
+    let path = dir.path().join("task.toml");
+    std::fs::write(&path, problem).unwrap();
+    (dir, path)
+}
+
+#[test]
+fn a_problem_and_its_files() {
+    let (_dir, path) = folder(GOOD);
+    let problem = RobotProblem::load(&path).unwrap();
+    assert_eq!((problem.name.as_str(), problem.urdf.as_str()), ("task", "<robot name=\"arm\"/>"));
+    assert_eq!(problem.base().translation.z, 0.5);
+    assert_eq!(problem.file.limits, [("elbow".to_owned(), [-1.0, 1.5])]);
+    assert_eq!(problem.file.goals, [[1.0, 0.0], [0.0, -1.0]]);
+    let names: Vec<_> = problem.obstacles.iter().map(|o| o.name.as_str()).collect();
+    assert_eq!(names, ["table", "obstacle 2", "obstacle 3", "obstacle 4"]);
+    let sizes: Vec<_> = problem.obstacles.iter().map(|o| o.mesh.aabb().max).collect();
+    assert_eq!(sizes[0], [0.5, 1.0, 0.05].into());
+    assert!(sizes[1].x >= 0.25 && sizes[1].x < 0.256 && problem.obstacles[1].pose.translation.x == 1.0);
+    assert!(sizes[3].x >= 0.1 && sizes[3].z == 0.5);
+    let error = problem.file.fault(RobotPart::Goal(1), "no", "move it");
+    assert_eq!((error.line(), error.column(), error.remedy()), (Some(8), Some(18), Some("move it")));
+}
+
+#[test]
+fn faults_have_their_place() {
+    let mut wrong = Vec::new();
+    for (from, to, line, words) in [
+        ("urdf = \"arm.urdf\"", "", 1, "urdf"),
+        ("urdf = ", "udrf = ", 2, "udrf"),
+        ("[0, 0.5]", "[0, nan]", 7, "the start has NaN"),
+        ("[0, 0.5]", "[0, 1e99]", 7, "the start"),
+        ("[0, 0.5]", "\"zero\"", 7, "zero"),
+        ("[0, 0.5]", "[0, 0.5", 8, "comma"),
+        ("goals = [[1, 0], [0.0, -1]]", "", 7, "no goal"),
+        ("[[1, 0], [0.0, -1]]", "[]", 8, "no goals"),
+        ("goals = [[1, 0], [0.0, -1]]", "goal = [1, 0]\ngoals = [[1, 0]]", 9, "a goal and a list"),
+        ("[-1, 1.5]", "[1.5, -1]", 4, "limits of elbow"),
+        ("[1, 2, 0.1]", "[1, 0, 0.1]", 12, "side of the box"),
+        ("sphere = 0.25", "sphere = -0.25", 15, "radius"),
+        ("sphere = 0.25", "sphere = 0.25\nbox = [1, 1, 1]", 14, "2 shapes"),
+        ("sphere = 0.25", "", 14, "0 shapes"),
+        ("0.5, 0, 0, 0]", "0.5]", 3, ""),
+        ("wall.off", "wal.off", 19, "wal.off"),
+        ("arm.urdf", "leg.urdf", 2, "leg.urdf"),
+    ] {
+        assert!(GOOD.contains(from), "{from}");
+        let (_dir, path) = folder(&GOOD.replacen(from, to, 1));
+        let error = RobotProblem::load(&path).unwrap_err();
+        let shown = error.to_string();
+        let placed = error.line() == Some(line) && shown.contains(words);
+        if !placed || error.remedy().is_none() || shown.contains('\n') {
+            wrong.push(format!("{to}: {shown}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn meshes_are_found() {
+    let (dir, path) = folder(GOOD);
+    let package = dir.path().join("parts/meshes");
+    std::fs::create_dir_all(&package).unwrap();
+    std::fs::copy(dir.path().join("wall.off"), package.join("a.off")).unwrap();
+    let mut problem = RobotProblem::load(&path).unwrap();
+    for name in ["wall.off", "parts/meshes/a.off", "package://parts/meshes/a.off"] {
+        assert!(problem.mesh(name).is_ok(), "{name}");
+    }
+    let error = problem.mesh("package://legs/a.off").unwrap_err();
+    assert!(error.contains("packages = ") && error.contains("legs"), "{error}");
+    assert!(problem.mesh("b.off").unwrap_err().contains("no such file"));
+    problem.packages = Some(dir.path().to_owned());
+    assert!(problem.mesh("package://parts/meshes/a.off").is_ok());
+    assert!(problem.mesh("package://meshes/a.off").unwrap_err().contains("no such file"));
+}
+
+#[test]
+fn paths_round_trip_and_faults_are_placed() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = JointPath { configurations: vec![vec![0.1, -0.0, 1e-9], vec![1.0, 2.0, 3.0]] };
+    for name in ["p.txt", "p.json"] {
+        path.write(dir.path().join(name)).unwrap();
+        assert_eq!(JointPath::read(dir.path().join(name)).unwrap(), path);
+    }
+    for (text, line, words) in [
+        ("", None, "empty"),
+        ("2\n0 0\n", Some(1), "two counts"),
+        ("2 2 2\n0 0\n", Some(1), "two counts"),
+        ("0 2\n", Some(1), "without"),
+        ("2 2\n0 0\n", Some(2), "configuration 2 of 2"),
+        ("1 2\n0 0\n1 1\n", Some(3), "follows"),
+        ("1 2\n0 0 0\n", Some(2), "3 numbers"),
+        ("1 2\n0 x\n", Some(2), "not a number"),
+    ] {
+        let error = JointPath::parse("p.txt", text.as_bytes()).unwrap_err();
+        assert!(line.is_none() || error.line() == line, "{error}");
+        assert!(error.to_string().contains(words), "{error}");
+    }
+    for text in ["{}", "[]", "{\"path\": []}", "{\"path\": [[]]}", "{\"path\": [[1], [1, 2]]}"] {
+        assert!(JointPath::parse_json("p.json", text.as_bytes()).is_err(), "{text}");
+    }
+}

@@ -1,0 +1,371 @@
+//! The independent check of arm motions.
+
+use super::{Arm, ArmModel, JointKind};
+use mp_collide::reference::RefMesh;
+use mp_cspace::{Coordinates, MotionCheck, MotionValidity, ParameterError, Space};
+use mp_geom::TriMesh;
+use nalgebra::{Isometry3, Matrix3, Matrix4, Rotation3, Translation3, UnitQuaternion, Vector3};
+use std::collections::VecDeque;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// The arm as verifiers see it: made of the model anew, by names.
+#[derive(Debug)]
+pub(super) struct Tree {
+    /// Parents before children.
+    links: Vec<Part>,
+    coordinates: Vec<bool>,
+    base: Matrix4<f64>,
+}
+
+/// A link and the joint it hangs on.
+#[derive(Debug)]
+struct Part {
+    name: String,
+    parent: Option<usize>,
+    origin: Matrix4<f64>,
+    axis: Vector3<f64>,
+    moves: Moves,
+    /// Its value: coordinate, factor, offset.
+    value: (usize, f64, f64),
+    mesh: Option<RefMesh>,
+    /// The largest distance of a point of its mesh from its origin.
+    radius: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Moves {
+    No,
+    Turns,
+    Slides,
+}
+
+impl Tree {
+    pub(super) fn new(model: &ArmModel) -> Self {
+        let own: Vec<_> =
+            model.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none()).collect();
+        let mut tree = Self {
+            links: Vec::new(),
+            coordinates: own.iter().map(|j| j.kind == JointKind::Continuous).collect(),
+            base: model.base.to_homogeneous(),
+        };
+        let coordinate = |name: &str| own.iter().position(|j| j.name == name);
+        // What a joint follows, however long that takes: the model is known to have no loops.
+        let value = |name: &str| {
+            let (mut at, mut factor, mut offset) = (name.to_owned(), 1.0, 0.0);
+            loop {
+                if let Some(i) = coordinate(&at) {
+                    return (i, factor, offset);
+                }
+                let mimic = model.joints.iter().find(|j| j.name == at).and_then(|j| j.mimic.as_ref());
+                let Some(mimic) = mimic else { return (0, 0.0, 0.0) };
+                (offset, factor) = (offset + factor * mimic.offset, factor * mimic.multiplier);
+                at.clone_from(&mimic.joint);
+            }
+        };
+        let above = |link: &str| model.joints.iter().find(|j| j.child == link);
+        let mut todo: Vec<usize> = (0..model.links.len()).collect();
+        while !todo.is_empty() {
+            let before = todo.len();
+            todo.retain(|&i| {
+                let link = &model.links[i];
+                let joint = above(&link.name);
+                let parent = joint.and_then(|j| tree.links.iter().position(|p| p.name == j.parent));
+                if joint.is_some() && parent.is_none() {
+                    return true;
+                }
+                let mesh = TriMesh::merged(&link.shapes);
+                let moves = match joint.map(|j| j.kind) {
+                    None | Some(JointKind::Fixed) => Moves::No,
+                    Some(JointKind::Prismatic { .. }) => Moves::Slides,
+                    Some(_) => Moves::Turns,
+                };
+                tree.links.push(Part {
+                    name: link.name.clone(),
+                    parent,
+                    origin: joint.map_or_else(Matrix4::identity, |j| j.origin.to_homogeneous()),
+                    axis: joint.map_or_else(Vector3::x, |j| j.axis.normalize()),
+                    moves,
+                    value: joint.map_or((0, 0.0, 0.0), |j| value(&j.name)),
+                    radius: mesh
+                        .iter()
+                        .flat_map(|m| m.vertices())
+                        .map(|p| p.coords.norm())
+                        .fold(0.0, f64::max),
+                    mesh: mesh.as_ref().map(RefMesh::new),
+                });
+                false
+            });
+            if todo.len() == before {
+                break;
+            }
+        }
+        tree
+    }
+
+    /// Where the links are, by homogeneous matrices.
+    fn place(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
+        out.clear();
+        for link in &self.links {
+            let above = link.parent.map_or(self.base, |p| out[p]);
+            let value = q[link.value.0] * link.value.1 + link.value.2;
+            let mut motion = Matrix4::identity();
+            match link.moves {
+                Moves::No => {}
+                Moves::Slides => motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value)),
+                Moves::Turns => {
+                    let across = link.axis.cross_matrix();
+                    let turn =
+                        Matrix3::identity() + across * value.sin() + across * across * (1.0 - value.cos());
+                    motion.fixed_view_mut::<3, 3>(0, 0).copy_from(&turn);
+                }
+            }
+            out.push(above * link.origin * motion);
+        }
+    }
+
+    /// How far the joints below `stop` (not included; all when `None`) move a point of a link, relative to it,
+    /// while every coordinate goes `ways` from where the links are at `places`.
+    ///
+    /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
+    /// That distance is at most the one at `places` plus what the joints nearer to the link have moved it.
+    fn travel(&self, link: usize, stop: Option<usize>, ways: &[f64], places: &[Matrix4<f64>]) -> f64 {
+        let origin = |i: usize| Vector3::from(places[i].fixed_view::<3, 1>(0, 3));
+        let tip = origin(link);
+        let mut moved = 0.0;
+        let mut at = Some(link);
+        while at != stop {
+            let Some(i) = at else { break };
+            let part = &self.links[i];
+            let way = ways[part.value.0] * part.value.1.abs();
+            match part.moves {
+                Moves::No => {}
+                Moves::Slides => moved += way,
+                Moves::Turns => {
+                    let now = (tip - origin(i)).norm() + self.links[link].radius;
+                    moved += way * (now + moved);
+                }
+            }
+            at = part.parent;
+        }
+        // Rounding.
+        moved * (1.0 + 1e-9)
+    }
+
+    /// The links above `link`, itself first.
+    fn above(&self, link: usize) -> Vec<usize> {
+        std::iter::successors(Some(link), |&i| self.links[i].parent).collect()
+    }
+
+    fn find(&self, name: &str) -> Option<usize> {
+        self.links.iter().position(|link| link.name == name)
+    }
+
+    /// Whether any joint above moves it.
+    fn is_moved(&self, link: usize) -> bool {
+        self.above(link).into_iter().any(|i| self.links[i].moves != Moves::No)
+    }
+}
+
+/// What must be kept apart: a link, and another or the obstacles.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    link: usize,
+    other: Option<usize>,
+    /// The nearest link that both hang on.
+    meet: Option<usize>,
+}
+
+/// Proves motions of an [`Arm`] free of collision, by other code than planners use: its own kinematic tree, made
+/// anew of the names of the model and multiplied out as homogeneous matrices; its own bounds on how far links
+/// move; its own subdivision; and the sphere trees of `mp_collide::reference`. Shared are only the space, whose
+/// interpolation is what a motion *is*, and the list of [pairs of links](Arm::checked_pairs) that must not touch.
+///
+/// - free means: links keep at least the tolerance from obstacles and from each other all along;
+/// - a motion with a tested state of less than twice the tolerance is [`Undecided`](MotionCheck::Undecided), as
+///   are motions that take more than a million parts, or of a million radians.
+///
+/// Coordinates must go at constant speed, and by no more than a turn, as in [`Arm::space`].
+#[derive(Clone, Debug)]
+pub struct ArmVerifier<'c, C> {
+    space: &'c C,
+    tree: Arc<Tree>,
+    world: Option<Arc<RefMesh>>,
+    pairs: Vec<Pair>,
+    tolerance: f64,
+    parts: u64,
+}
+
+/// Motions of a coordinate longer than this (rad or m) are refused.
+const MAX_WAY: f64 = 1e6;
+
+/// Motions are not cut into more parts than this.
+const MAX_PARTS: u64 = 1_000_000;
+
+impl<'c, C> ArmVerifier<'c, C>
+where
+    C: Space,
+    C::State: Coordinates,
+{
+    /// A verifier for `arm` in `space`, to a tenth of the arm's [tolerance](Arm::tolerance).
+    ///
+    /// # Errors
+    /// When the tolerance is not positive and finite, which that of an arm always is.
+    pub fn new(space: &'c C, arm: &Arm) -> Result<Self, ParameterError> {
+        Self::with_tolerance(space, arm, arm.tolerance() * 0.1)
+    }
+
+    /// A verifier to a tolerance of your own (m).
+    ///
+    /// # Errors
+    /// When it is not positive and finite.
+    pub fn with_tolerance(space: &'c C, arm: &Arm, tolerance: f64) -> Result<Self, ParameterError> {
+        if !(tolerance > 0.0 && tolerance.is_finite()) {
+            let (name, expected) = ("the tolerance", "positive and finite");
+            return Err(ParameterError { name, expected, value: tolerance });
+        }
+        let tree = Arc::clone(arm.robot.reference.get_or_init(|| Arc::new(Tree::new(&arm.robot.model))));
+        let world = arm.world.reference.get_or_init(|| {
+            let merged = TriMesh::merged(arm.world.placed.iter().map(|(_, mesh)| &**mesh));
+            merged.map(|mesh| Arc::new(RefMesh::new(&mesh)))
+        });
+        let mut pairs = Vec::new();
+        for link in (0..tree.links.len()).filter(|&i| tree.links[i].mesh.is_some() && tree.is_moved(i)) {
+            if world.is_some() {
+                pairs.push(Pair { link, other: None, meet: None });
+            }
+        }
+        for [a, b] in arm.checked_pairs() {
+            if let (Some(link), Some(other)) = (tree.find(a), tree.find(b)) {
+                let on_b = tree.above(other);
+                let meet = tree.above(link).into_iter().find(|i| on_b.contains(i));
+                pairs.push(Pair { link, other: Some(other), meet });
+            }
+        }
+        Ok(Self { space, tree, world: world.clone(), pairs, tolerance, parts: 0 })
+    }
+
+    /// Motions found free keep links this far from everything (m).
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Parts of motions looked at so far.
+    #[must_use]
+    pub fn parts(&self) -> u64 {
+        self.parts
+    }
+
+    /// The way of each coordinate between two configurations: what is less than half a turn apart goes there
+    /// directly.
+    fn ways(&self, a: &C::State, b: &C::State) -> Vec<f64> {
+        let (a, b) = (a.as_slice(), b.as_slice());
+        let way = |(i, endless): (usize, &bool)| {
+            let d = (b[i] - a[i]).abs();
+            if *endless && d > PI { (d % TAU).min(TAU - d % TAU) } else { d }
+        };
+        self.tree.coordinates.iter().enumerate().map(way).collect()
+    }
+
+    /// A bound on the distance of a pair, at least `enough`, or that of some of their triangles that is less.
+    fn distance(&self, pair: &Pair, places: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
+        let part = &self.tree.links[pair.link];
+        let Some(mesh) = &part.mesh else { return Ok(f64::INFINITY) };
+        let pose = isometry(&places[pair.link]);
+        match pair.other {
+            None => self.world.as_ref().map_or(Ok(f64::INFINITY), |world| {
+                mesh.at_least(&pose, world, &Isometry3::identity(), enough)
+            }),
+            Some(other) => self.tree.links[other].mesh.as_ref().map_or(Ok(f64::INFINITY), |mesh_b| {
+                mesh.at_least(&pose, mesh_b, &isometry(&places[other]), enough)
+            }),
+        }
+    }
+
+    /// How much nearer the two of a pair can come.
+    fn approach(&self, pair: &Pair, ways: &[f64], places: &[Matrix4<f64>]) -> f64 {
+        let moved = |link| self.tree.travel(link, pair.meet, ways, places);
+        moved(pair.link) + pair.other.map_or(0.0, moved)
+    }
+
+    /// Proves the motion, in longer and then in shorter parts.
+    fn prove(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
+        let mut least = f64::INFINITY;
+        let mut places = Vec::new();
+        let all: Vec<usize> = (0..self.pairs.len()).collect();
+        let mut open = VecDeque::from([(0.0, 1.0, all)]);
+        let limit = self.parts + MAX_PARTS;
+        while let Some((a, b, pairs)) = open.pop_front() {
+            let at = 0.5 * (a + b);
+            self.parts += 1;
+            if self.parts > limit {
+                return MotionCheck::Undecided { at };
+            }
+            let [qa, qm, qb] = [a, at, b].map(|t| self.space.interpolate(from, to, t));
+            let (before, after) = (self.ways(&qa, &qm), self.ways(&qm, &qb));
+            let ways: Vec<f64> = before.iter().zip(&after).map(|(x, y)| x.max(*y)).collect();
+            self.tree.place(qm.as_slice(), &mut places);
+            let mut near = Vec::new();
+            for i in pairs {
+                let pair = &self.pairs[i];
+                let approach = self.approach(pair, &ways, &places);
+                match self.distance(pair, &places, approach + self.tolerance) {
+                    Ok(distance) => least = least.min(distance - approach),
+                    // What was found first need not be the nearest.
+                    Err(_) if self.distance(pair, &places, 0.0).is_err() => {
+                        return MotionCheck::Collides { at };
+                    }
+                    Err(distance) if distance < 2.0 * self.tolerance => {
+                        return MotionCheck::Undecided { at };
+                    }
+                    Err(_) => near.push(i),
+                }
+            }
+            if !near.is_empty() {
+                open.push_back((a, at, near.clone()));
+                open.push_back((at, b, near));
+            }
+        }
+        MotionCheck::Free { clearance: least }
+    }
+
+    /// Whether anything touches at `q`.
+    fn touches(&self, q: &C::State) -> bool {
+        let mut places = Vec::new();
+        self.tree.place(q.as_slice(), &mut places);
+        let touching = |pair| self.distance(pair, &places, self.tolerance).is_err_and(|d| d <= 0.0);
+        self.pairs.iter().any(touching)
+    }
+}
+
+fn isometry(m: &Matrix4<f64>) -> Isometry3<f64> {
+    let turn = Rotation3::from_matrix_unchecked(m.fixed_view::<3, 3>(0, 0).into_owned());
+    let place: Vector3<f64> = m.fixed_view::<3, 1>(0, 3).into_owned();
+    Isometry3::from_parts(Translation3::from(place), UnitQuaternion::from_rotation_matrix(&turn))
+}
+
+impl<C> MotionValidity<C::State> for ArmVerifier<'_, C>
+where
+    C: Space,
+    C::State: Coordinates,
+{
+    fn check_motion(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
+        let count = self.tree.coordinates.len();
+        let is_sound = |q: &[f64]| q.len() == count && q.iter().all(|x| x.is_finite());
+        if !(is_sound(from.as_slice()) && is_sound(to.as_slice())) {
+            return MotionCheck::Undecided { at: 0.0 };
+        }
+        let mut ways = from.as_slice().iter().zip(to.as_slice()).map(|(a, b)| (b - a).abs());
+        let provable = ways.all(|way| way < MAX_WAY);
+        if !provable {
+            return MotionCheck::Undecided { at: 0.0 };
+        }
+        match self.prove(from, to) {
+            MotionCheck::Free { clearance } => MotionCheck::Free { clearance },
+            _ if self.touches(from) => MotionCheck::Collides { at: 0.0 },
+            _ if self.touches(to) => MotionCheck::Collides { at: 1.0 },
+            other => other,
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! Arms from URDF and SRDF.
+
+use mp_cspace::JointRange;
+use mp_geom::{TriMesh, primitives::cuboid};
+use mp_robot::{Arm, ArmModel, JointKind, UrdfError};
+use nalgebra::{Point3, Vector3};
+
+const GRIPPER: &str = r#"<?xml version="1.0"?>
+<robot name="gripper">
+  <!-- links and joints in any order -->
+  <joint name="lift" type="prismatic">
+    <parent link="base"/><child link="carriage"/>
+    <origin xyz="0 0 0.1" rpy="0 0 1.5707963267948966"/>
+    <axis xyz="0 0 2"/>
+    <limit lower="0" upper="0.5" effort="1" velocity="1"/>
+  </joint>
+  <link name="base">
+    <visual><geometry><box size="9 9 9"/></geometry></visual>
+    <collision><geometry><box size="0.2 0.2 0.1"/></geometry></collision>
+  </link>
+  <link name="carriage">
+    <collision><origin xyz="0.1 0 0" rpy="0 1.5707963267948966 0"/><geometry><cylinder radius="0.05" length="0.2"/></geometry></collision>
+    <collision><geometry><sphere radius="0.06"/></geometry></collision>
+  </link>
+  <link name="left"><collision><geometry><mesh filename="package://gripper/finger.stl" scale="1 -1 2"/></geometry></collision></link>
+  <link name="right"/>
+  <link name="spin"/>
+  <joint name="open" type="revolute">
+    <parent link="carriage"/><child link="left"/><origin xyz="0.3 0 0"/>
+    <limit lower="-0.5" upper="0.5" velocity="1"/>
+  </joint>
+  <joint name="close" type="revolute">
+    <parent link="carriage"/><child link="right"/>
+    <axis xyz="0 1 0"/><mimic joint="open" multiplier="-1"/><limit lower="-0.25" upper="1" velocity="1"/>
+  </joint>
+  <joint name="turn" type="continuous"><parent link="left"/><child link="spin"/></joint>
+</robot>"#;
+
+fn finger(name: &str) -> Result<TriMesh, String> {
+    if name == "package://gripper/finger.stl" {
+        Ok(cuboid(0.1, 0.2, 0.3).unwrap().transformed(&nalgebra::Isometry3::translation(0.0, 0.1, 0.0)))
+    } else {
+        Err(format!("no file {name}"))
+    }
+}
+
+fn read(text: &str) -> Result<ArmModel, UrdfError> {
+    ArmModel::from_urdf(text, finger)
+}
+
+#[test]
+fn everything_that_counts_is_read() {
+    let model = read(GRIPPER).unwrap();
+    let arm = Arm::new(&model, []).unwrap();
+    let coordinates: Vec<_> = arm.coordinates().iter().map(|c| (c.name.as_str(), c.range)).collect();
+    // The follower narrows its leader: -0.25 … 1 the other way round.
+    assert_eq!(
+        coordinates,
+        [
+            ("lift", JointRange::Interval { low: 0.0, high: 0.5 }),
+            ("open", JointRange::Interval { low: -0.5, high: 0.25 }),
+            ("turn", JointRange::Circle),
+        ]
+    );
+    // Up by 0.1 + 0.25 and a quarter turn to the left, then 0.3 along what is Y now.
+    let poses = arm.kinematics().link_poses(&[0.25, 0.0, 1.0]).unwrap();
+    let left = arm.kinematics().links().position(|name| name == "left").unwrap();
+    assert!((poses[left].translation.vector - Vector3::new(0.0, 0.3, 0.35)).norm() < 1e-15);
+    let mesh = |name: &str| {
+        let link = model.links.iter().find(|link| link.name == name).unwrap();
+        link.shapes.iter().map(TriMesh::aabb).collect::<Vec<_>>()
+    };
+    assert_eq!(mesh("base")[0].max, Point3::new(0.1, 0.1, 0.05));
+    // The cylinder lies along X, and the mesh around it is a little larger than it.
+    let [rod, ball] = mesh("carriage")[..] else { panic!() };
+    assert!((rod.max.x - 0.2).abs() < 1e-12 && rod.min.x.abs() < 1e-12);
+    assert!(rod.max.z >= 0.05 && rod.max.z < 0.0505, "{}", rod.max.z);
+    assert!(ball.max.x >= 0.06 && ball.max.x < 0.0612);
+    let sphere = &model.links.iter().find(|l| l.name == "carriage").unwrap().shapes[1];
+    for i in 0..sphere.triangles().len() {
+        let [a, b, c] = sphere.triangle(i);
+        let n = (b - a).cross(&(c - a)).normalize();
+        assert!(n.dot(&a.coords) >= 0.06 - 1e-12, "a face cuts the ball");
+    }
+    // Scaled by 1, -1, 2: mirrored, still facing outward.
+    assert_eq!((mesh("left")[0].min.y, mesh("left")[0].max.z), (-0.2, 0.3));
+    assert!(model.links.iter().find(|l| l.name == "left").unwrap().shapes[0].signed_volume() > 0.0);
+    assert!(mesh("right").is_empty());
+}
+
+#[test]
+fn limits_can_be_set_and_pairs_given() {
+    let model = read(GRIPPER).unwrap();
+    let set = model.clone().with_limits("turn", -1.0, 2.0).unwrap();
+    assert_eq!(set.joints[3].kind, JointKind::Revolute { low: -1.0, high: 2.0 });
+    let error = model.clone().with_limits("close", 0.0, 1.0).unwrap_err().to_string();
+    assert!(error.contains("close") && error.contains("mimics \"open\""), "{error}");
+    let error = model.clone().with_limits("up", 0.0, 1.0).unwrap_err().to_string();
+    assert!(error.contains("\"up\"") && error.contains("\"lift\", \"open\", \"turn\""), "{error}");
+    let pairs = |model: &ArmModel| Arm::new(model, []).unwrap().checked_pairs().len();
+    assert_eq!(pairs(&model), 1);
+    let srdf = r#"<robot name="gripper"><group name="all"/>
+        <disable_collisions link1="left" link2="base" reason="Never"/></robot>"#;
+    assert_eq!(pairs(&model.clone().with_srdf(srdf).unwrap()), 0);
+    assert_eq!(pairs(&model.clone().with_srdf("<robot/>").unwrap()), 1);
+    let error = model.clone().with_srdf(&srdf.replace("link2", "link3")).unwrap_err().to_string();
+    assert!(error.contains("line 2") && error.contains("link2"), "{error}");
+    let unknown = model.clone().with_srdf(&srdf.replace("\"base\"", "\"foot\"")).unwrap();
+    let Err(error) = Arm::new(&unknown, []) else { panic!() };
+    assert!(error.to_string().contains("\"foot\""));
+    assert!(model.with_srdf("<srdf/>").is_err());
+}
+
+#[test]
+fn faults_are_named() {
+    let says = |from: &str, to: &str, words: &[&str]| {
+        assert!(GRIPPER.contains(from), "{from}");
+        let error = match read(&GRIPPER.replacen(from, to, 1)) {
+            Ok(model) => match Arm::new(&model, []) {
+                Ok(_) => panic!("{to} is accepted"),
+                Err(error) => error.to_string(),
+            },
+            Err(error) => error.to_string(),
+        };
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    };
+    says("</robot>", "", &["not a URDF"]);
+    says("<robot name", "<model name", &["not a URDF"]);
+    says("type=\"continuous\"", "type=\"floating\"", &["turn", "floating", "base pose"]);
+    says("type=\"continuous\"", "type=\"planar\"", &["turn", "planar"]);
+    says("type=\"continuous\"", "type=\"screw\"", &["not a URDF"]);
+    says("finger.stl", "thumb.stl", &["left", "shape 1", "thumb.stl"]);
+    says("1 -1 2", "1 0 2", &["left", "scale"]);
+    says("radius=\"0.05\"", "radius=\"-0.05\"", &["carriage", "shape 1", "radius"]);
+    says("0.1 0 0\" rpy", "0.1 nan 0\" rpy", &["carriage", "origin"]);
+    says("0 0 0.1\" rpy", "0 0 inf\" rpy", &["lift", "origin"]);
+    says("0 0 2", "0 0 0", &["lift", "axis"]);
+    says("lower=\"0\" upper=\"0.5\"", "", &["lift", "0 to 0", "fixed"]);
+    says("mimic joint=\"open\"", "mimic joint=\"shut\"", &["close", "shut"]);
+    says("mimic joint=\"open\"", "mimic joint=\"close\"", &["close", "itself"]);
+    says("child link=\"right\"", "child link=\"left\"", &["left", "open", "close"]);
+    says("<link name=\"spin\"/>", "", &["turn", "child", "spin"]);
+    let deep = format!("<robot name=\"x\">{}{}</robot>", "<link>".repeat(100), "</link>".repeat(100));
+    assert!(matches!(read(&deep), Err(UrdfError::Syntax { .. })));
+    assert!(matches!(read(""), Err(UrdfError::Syntax { .. })));
+}

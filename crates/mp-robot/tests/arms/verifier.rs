@@ -1,0 +1,178 @@
+//! The independent check, and answers for people.
+
+use crate::common::{clutter, obstacle, random_tree, six};
+use mp_cspace::{
+    Certified, Clearance, Joints, Metric, MotionCheck, MotionValidity, Rng, Space, TrueMetric, Validity,
+};
+use mp_geom::primitives::cuboid;
+use mp_robot::{Arm, ArmVerifier};
+use nalgebra::{DVector, SVector};
+
+type Six = SVector<f64, 6>;
+
+/// The verifier proves what is certified, finds what sampling finds, and claims no more clearance than there is.
+fn agree<C: Space<State = DVector<f64>> + TrueMetric<DVector<f64>>>(
+    arm: &Arm,
+    space: &C,
+    motions: usize,
+) -> [usize; 2] {
+    let tolerance = arm.tolerance();
+    let mut certified = Certified::new(space, arm.clone(), tolerance).unwrap();
+    let mut verifier = ArmVerifier::new(space, arm).unwrap();
+    let mut exact = arm.clone();
+    let mut rng = Rng::seed(13);
+    let mut counts = [0, 0];
+    for i in 0..motions {
+        let a = space.sample_uniform(&mut rng);
+        let b = space.interpolate(&a, &space.sample_uniform(&mut rng), [1.0, 0.3, 0.05][i % 3]);
+        let verified = verifier.check_motion(&a, &b);
+        let accepted = certified.check_motion(&a, &b).is_free();
+        assert!(
+            verified.is_free() || !accepted,
+            "the verifier does not prove what was certified: {verified:?}"
+        );
+        match verified {
+            MotionCheck::Free { clearance } => {
+                counts[1] += 1;
+                assert!(clearance >= verifier.tolerance() * (1.0 - 1e-9));
+                for k in 0..=40 {
+                    let q = space.interpolate(&a, &b, f64::from(k) / 40.0);
+                    assert!(exact.clearance(&q, 1e9) >= clearance - 1e-9);
+                }
+            }
+            MotionCheck::Collides { at } => {
+                counts[0] += 1;
+                assert!(exact.clearance(&space.interpolate(&a, &b, at), 1.0) < 1e-11);
+            }
+            MotionCheck::Undecided { at } => {
+                assert!(exact.clearance(&space.interpolate(&a, &b, at), 1.0) < 2.0 * tolerance);
+            }
+        }
+    }
+    counts
+}
+
+#[test]
+fn it_agrees_with_certified_motions_and_samples() {
+    let arm = Arm::new(&six(), clutter()).unwrap();
+    let counts = agree(&arm, &arm.space().unwrap(), 300);
+    assert!(counts.into_iter().all(|n| n > 40), "{counts:?}");
+    let alone = arm.among([]).unwrap();
+    let counts = agree(&alone, &alone.space().unwrap(), 200);
+    assert!(counts[0] > 3 && counts[1] > 100, "{counts:?}");
+    // Trees with joints of all kinds.
+    let mut rng = Rng::seed(8);
+    let mut sum = [0, 0];
+    for count in 4..12 {
+        let Ok(arm) = Arm::new(&random_tree(&mut rng, count), clutter()) else { continue };
+        let counts = agree(&arm, &arm.space().unwrap(), 30);
+        sum = [sum[0] + counts[0], sum[1] + counts[1]];
+    }
+    assert!(sum.into_iter().all(|n| n > 10), "{sum:?}");
+}
+
+#[test]
+fn it_sees_thin_walls_and_edges_whose_ends_are_free() {
+    let sheet = obstacle("wall", cuboid(1e-7, 4.0, 4.0).unwrap(), [0.35, 0.0, 0.0, 0.2, 0.1, 0.0]);
+    let plane = sheet.2.inverse();
+    let mut arm = Arm::new(&six(), [sheet]).unwrap();
+    let space: Joints<Six> = arm.space().unwrap();
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    let mut rng = Rng::seed(3);
+    let mut crossings = 0;
+    while crossings < 100 {
+        let [a, b] = [0, 1].map(|_| space.sample_uniform(&mut rng));
+        let side = |q: &Six| {
+            let pose = arm.kinematics().link_poses(q.as_slice()).unwrap()[6];
+            (plane * nalgebra::Point3::from(pose.translation.vector)).x > 0.0
+        };
+        if side(&a) != side(&b) && arm.is_valid(&a) && arm.is_valid(&b) {
+            crossings += 1;
+            assert!(!verifier.check_motion(&a, &b).is_free());
+        }
+    }
+    // A pole between two free ends.
+    let pole = obstacle("pole", cuboid(0.05, 0.05, 2.0).unwrap(), [0.5, 0.0, 0.5, 0.0, 0.0, 0.0]);
+    let mut arm = Arm::new(&six(), [pole]).unwrap();
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    let at = |turn: f64| Six::from([turn, 1.2, 0.4, 0.0, 0.0, 0.0]);
+    assert!(arm.is_valid(&at(-1.0)) && arm.is_valid(&at(1.0)));
+    let found = verifier.check_motion(&at(-1.0), &at(1.0));
+    let MotionCheck::Collides { at: t } = found else { panic!("{found:?}") };
+    assert!(!arm.is_valid(&space.interpolate(&at(-1.0), &at(1.0), t)));
+    assert!(verifier.check_motion(&at(1.0), &at(2.0)).is_free());
+    assert_eq!(verifier.check_motion(&at(0.0), &at(0.0)), MotionCheck::Collides { at: 0.0 });
+}
+
+#[test]
+fn it_refuses_what_is_no_motion() {
+    let arm = Arm::new(&six(), clutter()).unwrap();
+    let space: Joints<DVector<f64>> = arm.space().unwrap();
+    let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
+    let zero = DVector::zeros(6);
+    for x in [f64::NAN, f64::INFINITY, 1e300] {
+        assert!(!verifier.check_motion(&zero, &DVector::repeat(6, x)).is_free());
+    }
+    assert!(!verifier.check_motion(&DVector::zeros(5), &DVector::zeros(5)).is_free());
+    for tolerance in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(ArmVerifier::with_tolerance(&space, &arm, tolerance).is_err());
+    }
+    assert!(verifier.check_motion(&zero, &zero).is_free() && verifier.parts() > 0);
+}
+
+#[test]
+fn contacts_are_named() {
+    let wall = obstacle("wall", cuboid(0.2, 2.0, 2.0).unwrap(), [0.9, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    let mut arm = Arm::new(&six(), [wall]).unwrap();
+    // Stretched out toward the wall at a height of 0.3 m: the tool ends at 0.42 + 0.32 + 0.11 + 0.09 + 0.1 m.
+    let q = Six::from([0.0, std::f64::consts::FRAC_PI_2, 0.0, 0.0, 0.0, 0.0]);
+    let contacts = arm.explain(q.as_slice());
+    let names: Vec<_> = contacts.iter().map(|c| (c.link.as_str(), c.other.as_str())).collect();
+    // The link between is inside the wall, but touches its surface nowhere.
+    assert_eq!(names, [("roll", "wall"), ("tool", "wall")]);
+    assert!(contacts.iter().all(|c| !c.with_itself && c.depth > 0.01 && c.depth < 0.3), "{contacts:?}");
+    // Alone it hits itself only, wherever it is not free.
+    let mut alone = arm.among([]).unwrap();
+    let space: Joints<Six> = alone.space().unwrap();
+    let mut rng = Rng::seed(6);
+    let mut hits = 0;
+    for _ in 0..300 {
+        let q = space.sample_uniform(&mut rng);
+        let contacts = alone.explain(q.as_slice());
+        assert_eq!(contacts.is_empty(), alone.is_valid(&q));
+        assert!(contacts.iter().all(|c| c.with_itself && c.depth >= 0.0), "{contacts:?}");
+        hits += usize::from(!contacts.is_empty());
+    }
+    assert!(hits > 3);
+    let free = Six::from([3.0, 0.3, 0.3, 0.0, 0.3, 0.0]);
+    assert!(arm.explain(free.as_slice()).is_empty() && arm.is_valid(&free));
+    assert!(arm.explain(&[0.0; 5]).is_empty() && arm.explain(&[f64::NAN; 6]).is_empty());
+}
+
+#[test]
+fn nearest_free_is_free_and_near() {
+    let mut arm = Arm::new(&six(), clutter()).unwrap();
+    let space: Joints<Six> = arm.space().unwrap();
+    let (mut rng, margin) = (Rng::seed(23), arm.tolerance());
+    let mut tried = 0;
+    while tried < 10 {
+        let q = space.sample_uniform(&mut rng);
+        if arm.clearance(&q, margin) >= margin {
+            assert_eq!(arm.nearest_free(&q, &space, margin), Some(q));
+            continue;
+        }
+        tried += 1;
+        let free = arm.nearest_free(&q, &space, margin).unwrap();
+        assert!(arm.clearance(&free, 1.0) >= margin && space.contains(&free));
+        assert_eq!(arm.nearest_free(&q, &space, margin), Some(free));
+        let samples = (0..2000).map(|_| space.sample_uniform(&mut rng)).collect::<Vec<_>>();
+        let valid = samples.iter().filter(|p| arm.is_valid(*p));
+        let best = valid.map(|p| space.distance(&q, p)).fold(f64::INFINITY, f64::min);
+        assert!(space.distance(&q, &free) <= 1.2 * best);
+    }
+    // In a cage that holds it fast.
+    let cage = obstacle("cage", cuboid(0.1, 0.1, 0.2).unwrap(), [0.0, 0.0, 0.3, 0.0, 0.0, 0.0]);
+    let mut caged = arm.among([cage]).unwrap();
+    assert_eq!(caged.nearest_free(&Six::zeros(), &space, margin), None);
+    assert_eq!(caged.nearest_free(&Six::repeat(f64::NAN), &space, margin), None);
+}
