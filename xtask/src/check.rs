@@ -6,10 +6,10 @@ use crate::output::print;
 use crate::plan::mover::Mover;
 use crate::plan::setting::{Ready, Setting};
 use crate::plan::tuples::travel;
-use crate::scenes;
+use crate::{arm, scenes};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use mp::cspace::{MotionCheck, Path, PathFault, Space, least_clearance, verify_path};
-use mp::io::{PathFile, SpaceKind};
+use mp::io::{JointPath, PathFile, RobotProblem, SpaceKind};
 use serde::Serialize;
 
 /// A path begins at the start and ends at the goal if no point of the robot is farther off than this, in
@@ -19,7 +19,7 @@ const MATCH: f64 = 1e-3;
 const PLANAR: f64 = 1e-9;
 
 #[derive(Clone, Debug, Serialize)]
-struct Verdict {
+pub(crate) struct Verdict {
     scene: String,
     path: String,
     /// Free all along, from the start of the scene to its goal.
@@ -36,11 +36,14 @@ struct Verdict {
 /// Verifies a path. True when it is certified free.
 pub(crate) fn run(args: &Check) -> Result<bool> {
     let scene = scenes::find(&args.scene)?;
-    let ready = Ready::load(&scene)?;
-    let file = PathFile::read(&args.path)?;
-    let mut verdict = match &ready {
-        Ready::Space(setting) => verify(setting, &file)?,
-        Ready::Plane(setting) => verify(setting, &file)?,
+    let mut verdict = if RobotProblem::is_named(&scene) {
+        arm::check(&arm::Task::load(&scene)?, &JointPath::read(&args.path)?)?
+    } else {
+        let (ready, file) = (Ready::load(&scene)?, PathFile::read(&args.path)?);
+        match &ready {
+            Ready::Space(setting) => verify(setting, &file)?,
+            Ready::Plane(setting) => verify(setting, &file)?,
+        }
     };
     (verdict.scene, verdict.path) = (scene.display().to_string(), args.path.display().to_string());
     if args.json {
@@ -52,6 +55,12 @@ pub(crate) fn run(args: &Check) -> Result<bool> {
 }
 
 impl Verdict {
+    /// Free when there are no faults.
+    pub(crate) fn new(configurations: usize, path_length: f64, clearance: f64, faults: Vec<String>) -> Self {
+        let (scene, path, free) = (String::new(), String::new(), faults.is_empty());
+        Self { scene, path, free, configurations, path_length, clearance, faults }
+    }
+
     fn told(&self) -> String {
         if self.free {
             return format!(
@@ -96,15 +105,7 @@ fn verify<M: Mover>(setting: &Setting<M>, file: &PathFile) -> Result<Verdict> {
         }
         false => 0.0,
     };
-    Ok(Verdict {
-        scene: String::new(),
-        path: String::new(),
-        free: faults.is_empty(),
-        configurations: poses.len(),
-        path_length: report.length,
-        clearance,
-        faults,
-    })
+    Ok(Verdict::new(poses.len(), report.length, clearance, faults))
 }
 
 /// The fault with the configuration at which it is, and the bodies that touch.

@@ -2,6 +2,7 @@
 //!
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
 
+mod arm;
 mod assets;
 mod bench;
 mod check;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// The scene planned on when none is named.
 pub(crate) const SAMPLE: &str = "cubicles";
 
-const ENDINGS: [&str; 3] = ["env", "txt", "cfg"];
+const ENDINGS: [&str; 4] = ["env", "txt", "cfg", "toml"];
 
 /// The folder of the workspace.
 pub(crate) fn root() -> PathBuf {

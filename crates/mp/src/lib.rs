@@ -50,7 +50,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Scenes from files are [`io::Problem`]s; `examples/scene.rs` plans on one. The command line
+//! Scenes from files are [`io::Problem`]s, those of arms [`io::RobotProblem`]s; `examples/scene.rs` and
+//! `examples/arm.rs` plan on one. The command line
 //! (`cargo xtask plan`) does the same with shortening, pictures and a report.
 
 pub use mp_collide as collide;
@@ -66,6 +67,6 @@ pub mod prelude {
         Certified, Discrete, Goal, Iterations, LocalPlanner, Metric, MotionCheck, MotionValidity, Outcome,
         Path, Planner, Resolution, Rn, Rng, Sampler, Se2, Se3, Space, Stop, Straight, Validity,
     };
-    pub use mp_robot::{FreeFlyer, PlanarFlyer, PointRobot, Verifier};
+    pub use mp_robot::{Arm, ArmModel, ArmVerifier, FreeFlyer, PlanarFlyer, PointRobot, Verifier};
     pub use mp_tree::{Goals, Problem, Rrt, RrtConnect, Tuning};
 }

@@ -5,6 +5,7 @@
 
 mod alpha;
 mod apartment;
+mod arm;
 mod bugtrap;
 mod cubicles;
 mod flat;
@@ -65,6 +66,7 @@ fn generate() -> Files {
     apartment::add(&mut files);
     alpha::add(&mut files);
     flat::add(&mut files);
+    arm::add(&mut files);
     files
 }
 

@@ -42,7 +42,7 @@ fn committed_files_are_regenerated_bit_for_bit() {
 #[test]
 fn nothing_else_is_shipped() {
     let files = generate();
-    for folder in ["scenes", "meshes", "paths"] {
+    for folder in ["scenes", "meshes", "paths", "robots"] {
         let mut pending = vec![assets().join(folder)];
         while let Some(dir) = pending.pop() {
             for entry in std::fs::read_dir(dir).unwrap() {
@@ -126,5 +126,18 @@ fn the_alphas_come_apart() {
         for (i, step) in path.windows(2).enumerate() {
             assert!(verifier.check_motion(&step[0], &step[1]).is_free(), "{}: motion {i}", p.name);
         }
+    }
+}
+
+/// Start and goals of the arm are free, and the straight way from one to the other is not.
+#[test]
+fn the_arm_has_something_to_do() {
+    let task = crate::arm::Task::load(&assets().join("scenes/arm.toml")).unwrap();
+    task.check_ends().unwrap();
+    assert!(task.overlaps().is_empty() && task.arm.dof() == 6);
+    let mut verifier = task.verifier().unwrap();
+    for goal in &task.goals {
+        assert!(verifier.check_motion(goal, goal).is_free());
+        assert!(!verifier.check_motion(&task.start, goal).is_free());
     }
 }

@@ -8,6 +8,7 @@ use crate::cli::Info;
 use crate::output::print;
 use crate::scenes;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use mp::io::PathFile;
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
@@ -17,7 +18,9 @@ use std::path::Path;
 enum Kind {
     Mesh,
     Scene,
+    Robot,
     Path,
+    JointPath,
 }
 
 /// Says what is in the file. True: bad files are errors.
@@ -27,6 +30,8 @@ pub(crate) fn run(args: &Info) -> Result<bool> {
     match kind(&file)? {
         Kind::Mesh => show(&mesh::Facts::read(&file)?, args.json),
         Kind::Scene => show(&scene::Facts::read(&file)?, args.json),
+        Kind::Robot => show(&crate::arm::Facts::read(&file)?, args.json),
+        Kind::JointPath => show(&path::JointFacts::read(&file)?, args.json),
         Kind::Path => show(&path::Facts::read(&file)?, args.json),
     }?;
     Ok(true)
@@ -45,7 +50,8 @@ fn kind(file: &Path) -> Result<Kind> {
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
         "env" | "cfg" => return Ok(Kind::Scene),
-        "json" => return Ok(Kind::Path),
+        "toml" => return Ok(Kind::Robot),
+        "json" => return Ok(if PathFile::read(file).is_ok() { Kind::Path } else { Kind::JointPath }),
         "off" | "stl" | "obj" | "dae" => return Ok(Kind::Mesh),
         _ => {}
     }
@@ -58,8 +64,15 @@ fn kind(file: &Path) -> Result<Kind> {
     let head = String::from_utf8_lossy(&head);
     let mut lines = head.lines().map(str::trim).filter(|l| !l.is_empty());
     let (first, second) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
-    let alone = first.split_whitespace().count() == 1;
-    Ok(match (first, second.split_whitespace().count()) {
+    let counts: Vec<Option<usize>> = first.split_whitespace().map(|w| w.parse().ok()).collect();
+    let numbers = second.split_whitespace().count();
+    if let [Some(_), Some(joints)] = counts[..]
+        && joints == numbers
+    {
+        return Ok(Kind::JointPath);
+    }
+    let alone = counts.len() == 1;
+    Ok(match (first, numbers) {
         ("Robot", _) => Kind::Scene,
         (_, 6) if alone && first.parse::<u64>().is_ok() => Kind::Path,
         _ => Kind::Mesh,
@@ -67,7 +80,7 @@ fn kind(file: &Path) -> Result<Kind> {
 }
 
 /// `1 triangle`, `2 triangles`.
-fn count(n: usize, what: &str) -> String {
+pub(crate) fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
@@ -96,6 +109,7 @@ mod tests {
             ("Robot\nr.off\n", Kind::Scene),
             ("\n  2 \n0 0 0 0 0 0\n1 0 0 0 0 0\n", Kind::Path),
             ("1\n0 0 0 1 0 0 0 1 0\n", Kind::Mesh),
+            ("2 3\n0 0 0\n1 0 0\n", Kind::JointPath),
             ("OFF\n3 1 0\n", Kind::Mesh),
             ("", Kind::Mesh),
         ];

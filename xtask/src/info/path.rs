@@ -2,7 +2,7 @@
 
 use super::{brief, count};
 use miette::Result;
-use mp::io::PathFile;
+use mp::io::{JointPath, PathFile};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
@@ -70,5 +70,52 @@ impl fmt::Display for Facts {
         writeln!(f, "  length    {} m, turning {} rad", brief(self.length), brief(self.turned))?;
         writeln!(f, "  within    ({}) to ({})", row(&self.min), row(&self.max))?;
         self.warnings.iter().try_for_each(|w| writeln!(f, "  warning   {w}"))
+    }
+}
+
+/// What is in a path of joint values.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct JointFacts {
+    kind: &'static str,
+    file: String,
+    units: &'static str,
+    configurations: usize,
+    joints: usize,
+    start: Vec<f64>,
+    goal: Vec<f64>,
+    /// The least and the largest value of each joint.
+    min: Vec<f64>,
+    max: Vec<f64>,
+}
+
+impl JointFacts {
+    pub(crate) fn read(file: &Path) -> Result<Self> {
+        let all = JointPath::read(file)?.configurations;
+        let (first, last) = (all[0].clone(), all[all.len() - 1].clone());
+        let fold = |pick: fn(f64, f64) -> f64| {
+            all.iter().fold(first.clone(), |m, q| m.iter().zip(q).map(|(a, b)| pick(*a, *b)).collect())
+        };
+        Ok(Self {
+            kind: "joint path",
+            file: file.display().to_string(),
+            units: "metres and radians",
+            configurations: all.len(),
+            joints: first.len(),
+            min: fold(f64::min),
+            max: fold(f64::max),
+            start: first,
+            goal: last,
+        })
+    }
+}
+
+impl fmt::Display for JointFacts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let row = |v: &[f64]| v.iter().map(|v| brief(*v)).collect::<Vec<_>>().join(" ");
+        writeln!(f, "{}: a path of {}", self.file, count(self.joints, "joint"))?;
+        writeln!(f, "  {}", count(self.configurations, "configuration"))?;
+        writeln!(f, "  start     {}", row(&self.start))?;
+        writeln!(f, "  goal      {}", row(&self.goal))?;
+        writeln!(f, "  within    ({}) to ({})", row(&self.min), row(&self.max))
     }
 }

@@ -12,11 +12,11 @@ use mp::io::PathFile;
 use std::sync::atomic::Ordering;
 
 /// Which stream of random numbers shortening draws from: planning draws from another.
-const STREAM: u64 = 1;
+pub(crate) const STREAM: u64 = 1;
 
 /// Shortcuts keep this many tolerances away from obstacles, where planning may go as near as one: a path that
 /// grazes every corner is of no use to anybody.
-const ROOM: f64 = 20.0;
+pub(crate) const ROOM: f64 = 20.0;
 
 /// A path that the verifier passed as it will be read.
 #[derive(Clone, Debug)]
@@ -30,7 +30,7 @@ pub(crate) struct Finished {
 }
 
 /// A check that finds nothing free any more once the flag is raised: whatever shortens with it comes to an end.
-struct Until<'a, V>(V, &'a Cancel);
+pub(crate) struct Until<'a, V>(pub(crate) V, pub(crate) &'a Cancel);
 
 impl<S, V: MotionValidity<S>> MotionValidity<S> for Until<'_, V> {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {

@@ -1,15 +1,16 @@
 //! `plan`.
 
 mod files;
-mod finish;
+pub(crate) mod finish;
 mod interrupt;
 pub(crate) mod metrics;
 pub(crate) mod mover;
 mod options;
-mod progress;
+pub(crate) mod progress;
 mod report;
 mod run;
-mod search;
+mod scene;
+pub(crate) mod search;
 pub(crate) mod setting;
 pub(crate) mod tuples;
 

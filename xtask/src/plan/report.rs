@@ -41,7 +41,7 @@ pub(crate) struct Report {
     pub(crate) shortened: bool,
     pub(crate) path_file: Option<String>,
     pub(crate) picture_file: Option<String>,
-    pub(crate) path: Option<Vec<[f64; 6]>>,
+    pub(crate) path: Option<Vec<Vec<f64>>>,
 }
 
 /// What the runs on one scene came to. Medians are over the solved runs.
@@ -274,7 +274,7 @@ mod tests {
             shortened: true,
             path_file: None,
             picture_file: None,
-            path: time.map(|_| vec![[0.0; 6]]),
+            path: time.map(|_| vec![vec![0.0; 6]]),
         }
     }
 

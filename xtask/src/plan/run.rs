@@ -5,8 +5,10 @@ use super::mover::Mover;
 use super::options::Options;
 use super::progress::{self, Line};
 use super::report::{Medians, Report, Runs, medians, table};
+use super::scene::Scene;
 use super::setting::{Ready, Setting};
 use super::{finish, interrupt, search};
+use crate::arm::{self, Task};
 use crate::cli::{self, Motion};
 use crate::output::{note, print, write};
 use crate::{render, scenes};
@@ -31,11 +33,11 @@ pub(crate) fn run(args: &cli::Plan) -> Result<bool> {
     let last = last.ok_or_else(|| miette!("the seeds from {} on are too large", args.seed))?;
 
     let found = named.iter().map(|given| scenes::find(given)).collect::<Result<Vec<_>>>()?;
-    let ready = found.iter().map(|file| Ready::load(file)).collect::<Result<Vec<_>>>()?;
+    let ready = found.iter().map(|file| Scene::load(file)).collect::<Result<Vec<_>>>()?;
     let jobs: Vec<(usize, u64)> =
         (0..ready.len()).flat_map(|scene| (args.seed..=last).map(move |seed| (scene, seed))).collect();
     check_files(&files, &ready, &jobs)?;
-    ready.iter().try_for_each(Ready::check_ends)?;
+    ready.iter().try_for_each(Scene::check_ends)?;
     if let Some(folder) = &args.export {
         export(folder, &ready)?;
     }
@@ -44,8 +46,13 @@ pub(crate) fn run(args: &cli::Plan) -> Result<bool> {
     let job = |(scene, seed): (usize, u64), quiet: bool| -> Result<Report> {
         let source = found[scene].display().to_string();
         match &ready[scene] {
-            Ready::Space(setting) => one(setting, &source, &options, seed, &cancel, &files, quiet),
-            Ready::Plane(setting) => one(setting, &source, &options, seed, &cancel, &files, quiet),
+            Scene::Rigid(Ready::Space(setting)) => {
+                one(setting, &source, &options, seed, &cancel, &files, quiet)
+            }
+            Scene::Rigid(Ready::Plane(setting)) => {
+                one(setting, &source, &options, seed, &cancel, &files, quiet)
+            }
+            Scene::Arm(task) => one_of_arm(task, &source, &options, seed, &cancel, &files, quiet),
         }
     };
     let reports = match jobs.as_slice() {
@@ -86,7 +93,7 @@ pub(crate) fn planned(ready: &Ready, options: &Options, seed: u64) -> Result<Pla
     }
 }
 
-fn check_files(files: &Files, ready: &[Ready], jobs: &[(usize, u64)]) -> Result<()> {
+fn check_files(files: &Files, ready: &[Scene], jobs: &[(usize, u64)]) -> Result<()> {
     let mut taken = HashSet::new();
     for &(scene, seed) in jobs {
         let name = ready[scene].name();
@@ -148,37 +155,7 @@ fn one<M: Mover>(
     let problem = &setting.problem;
     let mut line = Line::new(&problem.name, options.time, !quiet);
     let search = search::search(setting, options, seed, cancel, &mut line)?;
-    let mut report = Report {
-        scene: problem.name.clone(),
-        scene_file: source.to_owned(),
-        space: problem.space.to_string(),
-        solved: false,
-        verified: false,
-        stopped_by: None,
-        planner: options.planner.to_string(),
-        metric: options.metric_name.clone(),
-        motion: match options.motion {
-            Motion::Certified => "certified".into(),
-            Motion::Discrete(length) => format!("discrete:{length}"),
-        },
-        seed,
-        iterations: search.progress.iterations,
-        nodes: search.progress.nodes,
-        motion_checks: search.progress.motions,
-        collision_checks: search.queries,
-        rejected: search.progress.rejected,
-        time_s: search.time.as_secs_f64(),
-        finish_s: 0.0,
-        first_s: search.first.map(|(time, _)| time.as_secs_f64()),
-        first_length: search.first.map(|(_, length)| length),
-        path_length_found: None,
-        path_length: None,
-        clearance: None,
-        shortened: false,
-        path_file: None,
-        picture_file: None,
-        path: None,
-    };
+    let mut report = begun(&problem.name, source, problem.space.to_string(), options, seed, &search);
     let path = match search.outcome {
         Outcome::Stopped(reason) => {
             report.stopped_by = Some(search::word(reason));
@@ -208,7 +185,103 @@ fn one<M: Mover>(
     }
     if let Some(file) = picture {
         line.say("drawing the picture");
-        let subject = render::subject(problem, finished.file.poses(), report.caption());
+        let subject = render::subject(problem, &finished.file.poses(), report.caption());
+        render::write(&file, &render::draw(&subject, render::SIZE))?;
+        report.picture_file = Some(file.display().to_string());
+    }
+    report.path = Some(finished.file.configurations.iter().map(|c| c.to_vec()).collect());
+    line.clear();
+    Ok(report)
+}
+
+/// The report of a run that has been planned but not finished.
+fn begun<S>(
+    name: &str,
+    source: &str,
+    space: String,
+    options: &Options,
+    seed: u64,
+    search: &search::Search<S>,
+) -> Report {
+    Report {
+        scene: name.to_owned(),
+        scene_file: source.to_owned(),
+        space,
+        solved: false,
+        verified: false,
+        stopped_by: None,
+        planner: options.planner.to_string(),
+        metric: options.metric_name.clone(),
+        motion: match options.motion {
+            Motion::Certified => "certified".into(),
+            Motion::Discrete(length) => format!("discrete:{length}"),
+        },
+        seed,
+        iterations: search.progress.iterations,
+        nodes: search.progress.nodes,
+        motion_checks: search.progress.motions,
+        collision_checks: search.queries,
+        rejected: search.progress.rejected,
+        time_s: search.time.as_secs_f64(),
+        finish_s: 0.0,
+        first_s: search.first.map(|(time, _)| time.as_secs_f64()),
+        first_length: search.first.map(|(_, length)| length),
+        path_length_found: None,
+        path_length: None,
+        clearance: None,
+        shortened: false,
+        path_file: None,
+        picture_file: None,
+        path: None,
+    }
+}
+
+/// One run of an arm: plan, finish, write.
+fn one_of_arm(
+    task: &Task,
+    source: &str,
+    options: &Options,
+    seed: u64,
+    cancel: &Cancel,
+    files: &Files,
+    quiet: bool,
+) -> Result<Report> {
+    let mut line = Line::new(task.name(), options.time, !quiet);
+    let search = arm::search(task, options, seed, cancel, &mut line)?;
+    let space = format!("{} joints", task.arm.dof());
+    let mut report = begun(task.name(), source, space, options, seed, &search);
+    let path = match search.outcome {
+        Outcome::Stopped(reason) => {
+            report.stopped_by = Some(search::word(reason));
+            line.clear();
+            return Ok(report);
+        }
+        Outcome::Solved(path) => path,
+    };
+    report.path_length_found = Some(path.length(&task.space));
+    line.say("solved; shortening and verifying the path");
+    let began = Instant::now();
+    let finished = arm::finish(task, &path, options.shorten, seed, cancel)?;
+    report.finish_s = began.elapsed().as_secs_f64();
+    let Some(finished) = finished else {
+        report.stopped_by = Some("verification");
+        line.clear();
+        return Ok(report);
+    };
+    (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
+    report.path_length = Some(finished.length);
+    report.clearance = Some(finished.clearance);
+    let (out, picture) = files.of(task.name(), seed);
+    if let Some(file) = out {
+        line.say("writing the path");
+        let json = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let text = if json { finished.file.to_json() } else { finished.file.to_text() };
+        write(&file, text.as_bytes())?;
+        report.path_file = Some(file.display().to_string());
+    }
+    if let Some(file) = picture {
+        line.say("drawing the picture");
+        let subject = arm::subject(task, &task.states(&finished.file), report.caption());
         render::write(&file, &render::draw(&subject, render::SIZE))?;
         report.picture_file = Some(file.display().to_string());
     }
@@ -248,7 +321,7 @@ fn show(args: &cli::Plan, reports: &[Report]) -> Result<()> {
 }
 
 /// Writes every scene as one JSON and two OFF files.
-fn export(folder: &Path, ready: &[Ready]) -> Result<()> {
+fn export(folder: &Path, ready: &[Scene]) -> Result<()> {
     std::fs::create_dir_all(folder)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot make the folder {}", folder.display()))?;

@@ -12,7 +12,7 @@ use mp::cspace::{
     MetricOn, MetricTree, MotionBound, MotionValidity, NearestNeighbors, Outcome, ParameterError, Path,
     Progress, Resolution, Rng, Room, Space, Stop, StopReason, Straight, Stretch, Validity, WithMetric,
 };
-use mp::robot::RigidBody;
+use mp::robot::{Arm, RigidBody};
 use mp::tree::{BuildError, Goals, Problem, build_from, improve};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -37,8 +37,18 @@ pub(crate) fn search<M: Mover>(
     cancel: &Cancel,
     line: &mut Line,
 ) -> Result<Search<M::State>> {
-    let run = Run { setting, options, seed, cancel };
     let space = &setting.space;
+    let run = Run {
+        space,
+        robot: &setting.robot,
+        verifier: setting.verifier()?,
+        start: &setting.start,
+        goals: vec![setting.goal.clone()],
+        tolerance: setting.tolerance,
+        options,
+        seed,
+        cancel,
+    };
     match options.metric {
         metrics::Kind::Default => run.on(space, <M::Space as DefaultNn>::Nn::default(), line),
         metrics::Kind::Euclidean => run.on(&with(space, Euclidean), <KdTree>::default(), line),
@@ -53,71 +63,103 @@ pub(crate) fn search<M: Mover>(
     }
 }
 
-fn with<C: Space + Clone, D: MetricOn<C>>(space: &C, metric: D) -> WithMetric<C, D> {
+pub(crate) fn with<C: Space + Clone, D: MetricOn<C>>(space: &C, metric: D) -> WithMetric<C, D> {
     WithMetric::new(space.clone(), metric)
 }
 
+/// What counts collision queries.
+pub(crate) trait Queries {
+    /// How many were asked so far.
+    fn queries(&self) -> u64;
+}
+
+impl<M: Mover> Queries for RigidBody<M> {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
+impl Queries for Arm {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
 /// A robot whose counters go into a common sum when it is dropped.
-struct Counted<'a, M: Mover> {
-    robot: RigidBody<M>,
+struct Counted<'a, R: Queries> {
+    robot: R,
     queries: &'a AtomicU64,
 }
 
-impl<M: Mover> Drop for Counted<'_, M> {
+impl<R: Queries> Drop for Counted<'_, R> {
     fn drop(&mut self) {
-        let counters = self.robot.counters();
-        self.queries.fetch_add(counters.collision_checks + counters.clearance_checks, Ordering::Relaxed);
+        self.queries.fetch_add(self.robot.queries(), Ordering::Relaxed);
     }
 }
-impl<M: Mover> Validity<M::State> for Counted<'_, M> {
-    fn is_valid(&mut self, q: &M::State) -> bool {
+impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
+    fn is_valid(&mut self, q: &S) -> bool {
         self.robot.is_valid(q)
     }
-    fn first_invalid(&mut self, states: &[M::State]) -> Option<usize> {
+    fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
         self.robot.first_invalid(states)
     }
     fn batch_size(&self) -> usize {
         self.robot.batch_size()
     }
 }
-impl<M: Mover> Clearance<M::State> for Counted<'_, M> {
-    fn clearance(&mut self, q: &M::State, enough: f64) -> f64 {
+impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
+    fn clearance(&mut self, q: &S, enough: f64) -> f64 {
         self.robot.clearance(q, enough)
     }
-    fn in_contact(&mut self, q: &M::State) -> bool {
+    fn in_contact(&mut self, q: &S) -> bool {
         self.robot.in_contact(q)
     }
-    fn room(&mut self, stretch: &Stretch<'_, M::State>) -> Room {
+    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
         self.robot.room(stretch)
     }
 }
-impl<M: Mover> MotionBound<M::State> for Counted<'_, M> {
-    fn motion_bound(&self, from: &M::State, to: &M::State) -> f64 {
+impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
+    fn motion_bound(&self, from: &S, to: &S) -> f64 {
         self.robot.motion_bound(from, to)
     }
 }
 
-struct Run<'a, M: Mover> {
-    setting: &'a Setting<M>,
-    options: &'a Options,
-    seed: u64,
-    cancel: &'a Cancel,
+/// One run: the same for robots of all kinds.
+pub(crate) struct Run<'a, B: Space, R, V> {
+    /// The space with its own metric.
+    pub(crate) space: &'a B,
+    pub(crate) robot: &'a R,
+    pub(crate) verifier: V,
+    pub(crate) start: &'a B::State,
+    pub(crate) goals: Vec<B::State>,
+    /// Of certified motions, metres.
+    pub(crate) tolerance: f64,
+    pub(crate) options: &'a Options,
+    pub(crate) seed: u64,
+    pub(crate) cancel: &'a Cancel,
 }
 
-impl<'a, M: Mover> Run<'a, M> {
+impl<'a, B, R, V> Run<'a, B, R, V>
+where
+    B: Space,
+    R: Validity<B::State> + Clearance<B::State> + MotionBound<B::State> + Queries + Clone + Send + Sync,
+    V: MotionValidity<B::State> + Clone + Send + Sync,
+{
     /// The motion check that the options ask for.
-    fn check<'c, C: Space<State = M::State>>(
+    fn check<'c, C: Space<State = B::State>>(
         &self,
         space: &'c C,
         queries: &'c AtomicU64,
-    ) -> Result<Box<dyn MotionValidity<M::State> + Send + 'c>, ParameterError>
+    ) -> Result<Box<dyn MotionValidity<B::State> + Send + 'c>, ParameterError>
     where
         'a: 'c,
+        R: 'c,
     {
-        let Self { setting, options, .. } = self;
-        let robot = Counted { robot: setting.robot.clone(), queries };
-        Ok(match options.motion {
-            Motion::Certified => Box::new(Certified::new(&setting.space, robot, setting.tolerance)?),
+        let robot = Counted { robot: self.robot.clone(), queries };
+        Ok(match self.options.motion {
+            Motion::Certified => Box::new(Certified::new(self.space, robot, self.tolerance)?),
             Motion::Discrete(length) => {
                 let resolution = match length {
                     Length::Absolute(v) => Resolution::Length(v),
@@ -128,26 +170,25 @@ impl<'a, M: Mover> Run<'a, M> {
         })
     }
 
-    /// Plans in `space`, which differs from that of the setting in its metric only.
-    fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<M::State>>
+    /// Plans in `space`, which differs from that of the run in its metric only.
+    pub(crate) fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<B::State>>
     where
-        C: Space<State = M::State>,
+        C: Space<State = B::State>,
         N: NearestNeighbors<C> + Clone + Send + 'static,
     {
-        let Self { setting, options, .. } = self;
-        let verifier = setting.verifier()?;
+        let options = self.options;
         let queries = AtomicU64::new(0);
         let began = Instant::now();
         let (outcome, progress, first) = {
             let problem = || {
                 let unmade = |e: ParameterError| BuildError::Unmade { reason: e.to_string() };
                 let check = self.check(space, &queries).map_err(unmade)?;
-                let goal = Goals::states([setting.goal.clone()]);
+                let goal = Goals::states(self.goals.iter().cloned());
                 Problem::new(
                     space,
                     Straight::new(space, check),
-                    verifier.clone(),
-                    setting.start.clone(),
+                    self.verifier.clone(),
+                    self.start.clone(),
                     goal,
                 )
             };

@@ -1,11 +1,12 @@
 //! `render`, and writing pictures.
 
-use super::{Subject, draw};
+use super::{Shown, Subject, draw, sweep};
+use crate::arm::{Task, draw_task};
 use crate::cli::Render;
 use crate::{output, scenes};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use mp::io::{PathFile, Problem, SpaceKind};
-use nalgebra::Isometry3;
+use mp::io::{JointPath, PathFile, Problem, RobotProblem, SpaceKind};
+use nalgebra::{Isometry3, Point3};
 use std::io::Cursor;
 use std::path::Path;
 
@@ -16,13 +17,24 @@ pub(crate) const SIZE: (usize, usize) = (1280, 960);
 pub(crate) fn run(args: &Render) -> Result<bool> {
     wanted(&args.picture)?;
     output::writable(&args.picture)?;
-    let problem = Problem::load(scenes::find(&args.scene)?)?;
-    let path = args.path.as_ref().map(PathFile::read).transpose()?.map(|p| p.poses()).unwrap_or_default();
-    let subtitle = match path.len() {
+    let scene = scenes::find(&args.scene)?;
+    let subtitle = |configurations: usize| match configurations {
         0 => String::new(),
         n => format!("{n} configurations"),
     };
-    let picture = draw(&subject(&problem, path, subtitle), args.size);
+    let picture = if RobotProblem::is_named(&scene) {
+        let task = Task::load(&scene)?;
+        let states = match &args.path {
+            Some(path) => task.path(&JointPath::read(path)?)?,
+            None => Vec::new(),
+        };
+        draw_task(&task, &states, subtitle(states.len()), args.size)
+    } else {
+        let problem = Problem::load(scene)?;
+        let path = args.path.as_ref().map(PathFile::read).transpose()?.map(|p| p.poses()).unwrap_or_default();
+        let subtitle = subtitle(path.len());
+        draw(&subject(&problem, &path, subtitle), args.size)
+    };
     write(&args.picture, &picture)?;
     output::note(&format!("wrote {}", args.picture.display()));
     Ok(true)
@@ -43,16 +55,17 @@ pub(crate) fn wanted(file: &Path) -> Result<()> {
 }
 
 /// The picture of `problem` with `path` in it.
-pub(crate) fn subject(problem: &Problem, path: Vec<Isometry3<f64>>, subtitle: String) -> Subject<'_> {
+pub(crate) fn subject<'a>(problem: &'a Problem, path: &[Isometry3<f64>], subtitle: String) -> Subject<'a> {
+    let start = Shown::new(Some(&problem.robot.mesh), problem.start);
     Subject {
         title: problem.name.clone(),
         subtitle,
         planar: problem.space == SpaceKind::Se2,
-        robot: &problem.robot.mesh,
         obstacles: problem.obstacles.iter().map(|o| (&o.mesh, o.pose)).collect(),
-        start: problem.start,
-        goal: problem.goal,
-        path,
+        goal: start.at(problem.goal),
+        copies: sweep::copies(&start, path),
+        trace: path.iter().map(|pose| Point3::from(pose.translation.vector)).collect(),
+        start,
         bounds: problem.bounds.map(|b| (b.min, b.max)),
     }
 }

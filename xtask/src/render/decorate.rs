@@ -165,7 +165,7 @@ pub(crate) fn labels(layer: &mut Layer, size: (usize, usize), subject: &Subject<
     write(&subject.subtitle, 28.0 * unit, 70.0 * unit, 11.5 * unit, 1.0, grey);
     let (y, cap) = (h - 26.0 * unit, 11.5 * unit);
     let bar = 120.0 * unit;
-    let has_path = !subject.path.is_empty();
+    let has_path = !subject.trace.is_empty();
     let words = [text::width("start", cap), text::width("goal", cap)];
     let gap = 10.0 * unit;
     let total = words[0] + words[1] + 2.0 * gap + bar;

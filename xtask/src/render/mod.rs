@@ -15,12 +15,14 @@ mod view;
 
 pub(crate) use command::{SIZE, run, subject, wanted, write};
 pub(crate) use plot::{Series, plot};
+pub(crate) use sweep::evenly;
 
 use camera::Camera;
 use canvas::{Colour, Layer, Veil, mix, scaled, srgb};
 use model::{Lights, Model};
 use mp::geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
+use std::sync::Arc;
 
 /// Samples per pixel in each direction.
 const SUPERSAMPLING: usize = 2;
@@ -43,14 +45,39 @@ pub(crate) struct Subject<'a> {
     pub(crate) subtitle: String,
     /// Seen from above, as a map.
     pub(crate) planar: bool,
-    pub(crate) robot: &'a TriMesh,
     pub(crate) obstacles: Vec<(&'a TriMesh, Isometry3<f64>)>,
-    pub(crate) start: Isometry3<f64>,
-    pub(crate) goal: Isometry3<f64>,
-    /// Poses of the robot, in order; empty when there is no path.
-    pub(crate) path: Vec<Isometry3<f64>>,
+    /// The robot at the start, at the goal, and on its way between; nothing there when there is no path.
+    pub(crate) start: Shown,
+    pub(crate) goal: Shown,
+    pub(crate) copies: Vec<Shown>,
+    /// The line that some point of the robot traces.
+    pub(crate) trace: Vec<Point3<f64>>,
     /// Bounds of the robot's position, where there are any.
     pub(crate) bounds: Option<(Point3<f64>, Point3<f64>)>,
+}
+
+/// The robot somewhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Shown {
+    model: Arc<Model>,
+    pose: Isometry3<f64>,
+}
+
+impl Shown {
+    /// The robot `mesh` at `pose`; nothing to be seen when there is no mesh.
+    pub(crate) fn new(mesh: Option<&TriMesh>, pose: Isometry3<f64>) -> Self {
+        let point = || TriMesh::from_soup(&[[Point3::origin(); 3]]).ok();
+        let model = match mesh {
+            Some(mesh) => Model::new(mesh),
+            None => point().map_or_else(Model::default, |mesh| Model::new(&mesh)),
+        };
+        Self { model: Arc::new(model), pose }
+    }
+
+    /// The same robot elsewhere.
+    fn at(&self, pose: Isometry3<f64>) -> Self {
+        Self { model: Arc::clone(&self.model), pose }
+    }
 }
 
 /// A model somewhere.
@@ -69,22 +96,19 @@ fn gradient(t: f32) -> Colour {
 /// Draws `subject` in `width` × `height` pixels.
 pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> image::RgbImage {
     let size = (width * SUPERSAMPLING, height * SUPERSAMPLING);
-    let robot = Model::new(subject.robot);
     let models: Vec<Model> = subject.obstacles.iter().map(|(mesh, _)| Model::new(mesh)).collect();
     let obstacles: Vec<Placed<'_>> = models
         .iter()
         .zip(&subject.obstacles)
         .map(|(model, (_, pose))| Placed { model, pose: *pose })
         .collect();
-    let copies = sweep::copies(&robot, &subject.path);
-    let mut shown: Vec<Isometry3<f64>> = vec![subject.start, subject.goal];
-    shown.extend(&copies);
+    let shown: Vec<&Shown> = [&subject.start, &subject.goal].into_iter().chain(&subject.copies).collect();
 
-    let frame = frame(subject, &obstacles, &robot, &shown);
+    let frame = frame(subject, &obstacles, &shown);
     let (camera, half_angle) = if subject.planar {
         (Camera::top(&frame, size, MARGINS), 0.4)
     } else {
-        let view = view::choose(&frame, &obstacles, &robot, &shown);
+        let view = view::choose(&frame, &obstacles, &shown);
         // The less of the path is in sight the wider it is opened, but a level floor stays.
         let half_angle = (view.elevation - 0.1) * (1.0 - 0.7 * view.visible);
         (Camera::three_quarter(&frame, view.azimuth, view.elevation, size, MARGINS), half_angle)
@@ -94,10 +118,10 @@ pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> im
 
     // Where the path is nearest to the eye, and what must give way to it.
     let mut nearest = vec![f32::INFINITY; samples];
-    for pose in &shown {
-        robot.faces(&camera, pose, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
+    for robot in &shown {
+        robot.model.faces(&camera, &robot.pose, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
     }
-    let slack = 0.02 * robot.radius as f32;
+    let slack = 0.02 * subject.start.model.radius as f32;
     let cut = match subject.planar {
         true => vec![f32::NEG_INFINITY; samples],
         false => cutaway::thresholds(&camera, &nearest, 1.0 / half_angle.tan() as f32, slack),
@@ -119,39 +143,37 @@ pub(crate) fn draw(subject: &Subject<'_>, (width, height): (usize, usize)) -> im
             }
         });
     }
-    for (pose, colour) in [(&subject.start, srgb(START)), (&subject.goal, srgb(GOAL))] {
-        robot.faces(&camera, pose, &lights, |i, key, light| layer.put(i, key, scaled(colour, light)));
+    for (robot, colour) in [(&subject.start, srgb(START)), (&subject.goal, srgb(GOAL))] {
+        robot
+            .model
+            .faces(&camera, &robot.pose, &lights, |i, key, light| layer.put(i, key, scaled(colour, light)));
     }
     decorate::shade_corners(&mut layer, &camera, extent(&frame));
     decorate::outlines(&mut layer, &mut ghosts, &camera, &obstacles, &cut);
-    for pose in [&subject.start, &subject.goal] {
-        decorate::outline(&mut layer, &camera, &robot, pose, 0.55);
+    for robot in [&subject.start, &subject.goal] {
+        decorate::outline(&mut layer, &camera, &robot.model, &robot.pose, 0.55);
     }
     if !subject.planar {
         decorate::floor(&mut layer, &camera, &frame);
     } else if let Some((lo, hi)) = &subject.bounds {
         decorate::border(&mut layer, &camera, lo, hi);
     }
-    sweep::draw(&mut layer, &camera, &lights, &robot, &copies);
-    sweep::trace(&mut layer, &camera, &subject.path);
+    sweep::draw(&mut layer, &camera, &lights, &subject.copies);
+    sweep::trace(&mut layer, &camera, &subject.trace);
     ghosts.over(&mut layer.colour, 0.5);
     decorate::labels(&mut layer, size, subject);
     canvas::resolve(&layer.colour, size, SUPERSAMPLING)
 }
 
 /// The points that the picture must hold.
-fn frame(
-    subject: &Subject<'_>,
-    obstacles: &[Placed<'_>],
-    robot: &Model,
-    shown: &[Isometry3<f64>],
-) -> Vec<Point3<f64>> {
+fn frame(subject: &Subject<'_>, obstacles: &[Placed<'_>], shown: &[&Shown]) -> Vec<Point3<f64>> {
     let mut points: Vec<Point3<f64>> =
-        shown.iter().flat_map(|pose| robot.points().iter().map(move |p| pose * p)).collect();
+        shown.iter().flat_map(|robot| robot.model.points().iter().map(|p| robot.pose * p)).collect();
+    let of_robot = points.len();
     let placed = |o: &Placed<'_>| o.model.points().iter().map(|p| o.pose * p).collect::<Vec<_>>();
     points.extend(obstacles.iter().flat_map(placed));
     // Vast obstacles (a floor that never ends) are shown only near the path.
-    let (lo, hi) = corners(&points[..shown.len() * robot.points().len()]);
+    let (lo, hi) = corners(&points[..of_robot]);
     let reach = 3.0 * (hi - lo).norm();
     let (lo, hi) = subject.bounds.map_or((lo, hi), |(a, b)| (lo.inf(&a), hi.sup(&b)));
     if let (true, Some((lo, hi))) = (subject.planar, subject.bounds) {

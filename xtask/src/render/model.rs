@@ -10,7 +10,7 @@ use std::collections::HashMap;
 const SMOOTH: f64 = 0.82;
 
 /// A mesh with what drawing it again and again needs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Model {
     points: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,

@@ -1,9 +1,9 @@
 //! From where a scene shows its path best.
 
-use super::Placed;
 use super::camera::Camera;
-use super::model::{Lights, Model};
-use nalgebra::{Isometry3, Point3};
+use super::model::Lights;
+use super::{Placed, Shown};
+use nalgebra::Point3;
 
 /// A coarse picture is enough to judge a view.
 const COARSE: (usize, usize) = (160, 120);
@@ -17,17 +17,12 @@ pub(crate) struct View {
 
 /// Tries views all around and takes the one with the most of `path` in sight and the widest on the picture;
 /// the customary one, from the front right, when others are hardly better.
-pub(crate) fn choose(
-    frame: &[Point3<f64>],
-    obstacles: &[Placed<'_>],
-    robot: &Model,
-    path: &[Isometry3<f64>],
-) -> View {
+pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Placed<'_>], path: &[&Shown]) -> View {
     let marks: Vec<Point3<f64>> = path
         .iter()
-        .flat_map(|pose| {
-            let every = robot.points().len().div_ceil(12);
-            robot.points().iter().step_by(every.max(1)).map(move |p| pose * p)
+        .flat_map(|robot| {
+            let points = robot.model.points();
+            points.iter().step_by(points.len().div_ceil(12).max(1)).map(|p| robot.pose * p)
         })
         .collect();
     let mut best: Option<(f64, View)> = None;

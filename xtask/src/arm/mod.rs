@@ -1,0 +1,13 @@
+//! Arms on the command line: what is their own in `plan`, `check`, `info` and `render`.
+
+mod check;
+mod info;
+mod picture;
+mod plan;
+mod task;
+
+pub(crate) use check::check;
+pub(crate) use info::Facts;
+pub(crate) use picture::{draw_task, subject};
+pub(crate) use plan::{finish, search};
+pub(crate) use task::Task;
