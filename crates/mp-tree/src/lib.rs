@@ -19,6 +19,7 @@
 //! | [`MvbRrt`] | [`algo::mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
 //! | [`UtilityRrt`] | [`algo::utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
 //!
+//! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
 //! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
 //! ([`algo::restarts`]) one after the other. [`build_from`] makes them by name.
 //!
@@ -111,6 +112,7 @@ pub use algo::rrt_connect::RrtConnect;
 pub use algo::rrt_inputs::RrtInputs;
 pub use algo::rrt_star::RrtStar;
 pub use algo::rsrt::Rsrt;
+pub use algo::shared_tree::SharedTree;
 pub use algo::utility_rrt::{UtilityGuided, UtilityRrt};
 pub use apart::AppendApart;
 pub use attach::{Append, AppendDistinct, Attach, Attached};

@@ -2,9 +2,10 @@
 
 use crate::algo::or_parallel::{RUNS, SLICE};
 use crate::algo::restarts::{SCHEDULE, UNIT};
+use crate::algo::shared_tree::BATCH;
 use crate::{
     AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
-    Workers, build_with, planner,
+    SharedTree, Workers, build_with, planner,
 };
 use mp_cspace::{LocalPlanner, NearestNeighbors, Space};
 use std::fmt;
@@ -21,6 +22,8 @@ pub struct Wrapper {
     pub citation: &'static str,
     /// Its parameters; there are those of the planner it runs beside them.
     pub parameters: &'static [Parameter],
+    /// The planners it can run, not wrapped themselves; `None`: any, wrapped or not.
+    pub around: Option<&'static [&'static str]>,
 }
 
 const OR: Wrapper = Wrapper {
@@ -28,6 +31,15 @@ const OR: Wrapper = Wrapper {
     summary: "independent runs on all threads, of which the one with the fewest iterations wins",
     citation: "Carpin and Pagello 2002",
     parameters: &[RUNS, SLICE],
+    around: None,
+};
+
+const SHARED: Wrapper = Wrapper {
+    prefix: "shared-",
+    summary: "one tree grown by all threads, many samples at a time",
+    citation: "Carpin and Pagello 2002",
+    parameters: &[BATCH],
+    around: Some(&["rrt"]),
 };
 
 const RESTART: Wrapper = Wrapper {
@@ -35,13 +47,14 @@ const RESTART: Wrapper = Wrapper {
     summary: "begins anew when it takes too long: fewer very long runs",
     citation: "Luby, Sinclair and Zuckerman 1993; Amato, Ashur and Har-Peled 2025",
     parameters: &[SCHEDULE, UNIT],
+    around: None,
 };
 
 /// All wrappers of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
 /// that restart.
 #[must_use]
 pub fn wrappers() -> &'static [Wrapper] {
-    &[OR, RESTART]
+    &[OR, SHARED, RESTART]
 }
 
 /// A planner by name, with what it is wrapped in: `rrt`, `or-rrt-connect`, `restart-rrt`, …
@@ -75,8 +88,15 @@ impl Named {
         let mut rest = name;
         let mut wrappers = Vec::new();
         loop {
-            if let Ok(planner) = planner(rest) {
-                return Ok(Self { wrappers, planner });
+            if let Ok(inner) = planner(rest) {
+                let innermost = wrappers.len().wrapping_sub(1);
+                let runs = |(i, wrapper): (usize, &&Wrapper)| {
+                    wrapper.around.is_none_or(|names| i == innermost && names.contains(&inner.name))
+                };
+                if !wrappers.iter().enumerate().all(runs) {
+                    planner(name).map(|_| ())?;
+                }
+                return Ok(Self { wrappers, planner: inner });
             }
             let outer = self::wrappers().iter().find_map(|w| Some((w, rest.strip_prefix(w.prefix)?)));
             match outer {
@@ -99,7 +119,7 @@ impl Named {
         settings.check_among(self.planner.name, own.chain(self.planner.parameters))?;
         self.planner_settings(settings).tuning(self.planner)?;
         Schedule::of(settings)?;
-        [RUNS, SLICE, UNIT].iter().try_for_each(|parameter| settings.count(parameter.name).map(|_| ()))
+        [RUNS, SLICE, UNIT, BATCH].iter().try_for_each(|parameter| settings.count(parameter.name).map(|_| ()))
     }
 
     fn planner_settings(&self, settings: &Settings) -> Settings {
@@ -132,7 +152,7 @@ where
     C::State: 'c,
     L: LocalPlanner<C::State> + Send + 'c,
     L::Edge: 'c,
-    N: NearestNeighbors<C> + Clone + Send + 'c,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
     let named = Named::new(name)?;
     named.check(settings)?;
@@ -171,7 +191,7 @@ where
     C::State: 'c,
     L: LocalPlanner<C::State> + Send + 'c,
     L::Edge: 'c,
-    N: NearestNeighbors<C> + Clone + Send + 'c,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
     /// The planner inside the wrappers before `depth`.
     fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError> {
@@ -186,6 +206,13 @@ where
                 Ok(Box::new(OrParallel::new(count(RUNS)?, count(SLICE)?, workers, |_| {
                     self.planner(depth + 1)
                 })?))
+            }
+            Some(wrapper) if **wrapper == SHARED => {
+                let tuning = self.named.planner_settings(&self.settings).tuning(self.named.planner)?;
+                let (workers, index) = (self.workers.clone(), self.index.clone());
+                let shared =
+                    SharedTree::with_index(count(BATCH)?, workers, index, tuning, |_| (self.make)())?;
+                Ok(Box::new(shared))
             }
             Some(_) => {
                 let inner = self.clone();

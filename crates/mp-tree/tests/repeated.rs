@@ -253,7 +253,8 @@ fn bad_numbers_and_names_are_refused() {
         build_from(name, make, Linear::new(), &settings, &Workers::alone()).map(|_| ())
     };
     for wrapper in wrappers() {
-        let name = format!("{}rrt-connect", wrapper.prefix);
+        let inner = wrapper.around.map_or("rrt-connect", |names| names[0]);
+        let name = format!("{}{inner}", wrapper.prefix);
         for parameter in wrapper.parameters {
             for bad in ["0", "-7", "99999999999999"] {
                 assert!(build(&name, &format!("{}={bad}", parameter.name)).is_err(), "{}", parameter.name);
@@ -266,6 +267,10 @@ fn bad_numbers_and_names_are_refused() {
         assert!(error.to_string().contains("did you mean `rrt-connect`?"), "{error}");
     }
     assert!(matches!(build("or-or-or-or-or-rrt", "runs=1"), Err(BuildError::UnknownPlanner { .. })));
+    for name in ["shared-rrt-connect", "shared-or-rrt", "or-shared-rsrt"] {
+        assert!(matches!(build(name, "step=0.1"), Err(BuildError::UnknownPlanner { .. })), "{name}");
+    }
+    build("or-shared-rrt", "batch=3").unwrap();
     assert!(matches!(build("or-", "runs=1"), Err(BuildError::UnknownPlanner { .. })));
     for threads in [0, Workers::MOST + 1] {
         assert!(matches!(Workers::new(threads), Err(BuildError::OutOfRange { name: "threads", .. })));

@@ -174,7 +174,7 @@ where
     pub(crate) fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<B::State>>
     where
         C: Space<State = B::State>,
-        N: NearestNeighbors<C> + Clone + Send + 'static,
+        N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
     {
         let options = self.options;
         let queries = AtomicU64::new(0);

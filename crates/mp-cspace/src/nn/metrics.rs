@@ -10,7 +10,7 @@ use crate::{
 /// [`WithMetric`] a space with a [default index](DefaultNn).
 pub trait NnOn<C: Space>: MetricOn<C> + Sized {
     /// The index.
-    type Nn: NearestNeighbors<WithMetric<C, Self>> + Default + Clone + std::fmt::Debug + Send;
+    type Nn: NearestNeighbors<WithMetric<C, Self>> + Default + Clone + std::fmt::Debug + Send + Sync;
 }
 
 impl<C: Space, M: NnOn<C>> DefaultNn for WithMetric<C, M> {

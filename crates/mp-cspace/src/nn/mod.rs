@@ -81,5 +81,5 @@ pub trait NearestNeighbors<C: Space> {
 /// A space of your own without a better idea says `type Nn = Linear;`.
 pub trait DefaultNn: Space + Sized {
     /// The index.
-    type Nn: NearestNeighbors<Self> + Default + Clone + std::fmt::Debug + Send;
+    type Nn: NearestNeighbors<Self> + Default + Clone + std::fmt::Debug + Send + Sync;
 }

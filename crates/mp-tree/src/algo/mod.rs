@@ -17,4 +17,5 @@ pub mod rrt_connect;
 pub mod rrt_inputs;
 pub mod rrt_star;
 pub mod rsrt;
+pub mod shared_tree;
 pub mod utility_rrt;

@@ -1,0 +1,355 @@
+//! One RRT grown by all threads: the *embarrassingly parallel* RRT.
+//!
+//! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
+//! Italian Association for Artificial Intelligence, 2002; told of in N. Jouandeau, Y. Touati and
+//! A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*, 2008, §3: processors share
+//! the tree and sample in parallel. There each adds to it as it comes; here they take turns in
+//! batches, so that the answer does not depend on the machine.
+//!
+//! From a tree that holds the start, repeat:
+//! 1. draw `batch` samples, number i of the planner from stream (seed, i): uniform in the space, or with
+//!    a small probability a goal state;
+//! 2. in parallel, for each of them: find the node nearest to it, in the tree as it was before the
+//!    batch, and move from there toward the sample, one step at most;
+//! 3. add the ends of the motions found free, in the order of the samples, but none that is there
+//!    already;
+//! 4. where one is in the goal, verify the path: return it, or prune from the edge that failed.
+//!
+//! The seed is the first number drawn from the generator of the first step. One step is one batch.
+//!
+//! **When to use it.** Where [RRT](super::rrt) is right, its motions are slow to check (a millisecond
+//! and more) and there are several cores. The samples of a batch do not know of each other, so that
+//! more motions are needed, the more so the smaller the tree: on average over 200 seeds of the example
+//! `shared_tree`, whose tree has some 200 nodes, 14% more with batches of 4, 18% with 8, 60% with 16,
+//! and 3.3 times as many with 64. Take at least as many as there are threads, and few for easy
+//! problems. Where the time of a run depends much on luck, [independent runs](super::or_parallel)
+//! gain more.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `batch`: samples per iteration, whatever the number of threads | 1, 2, … 1024 | 8 |
+//!
+//! and those of [RRT](super::rrt). By name it is `shared-rrt`; [`build_from`](crate::build_from) makes it.
+//!
+//! Each sample of a batch has a local planner of its own, so there are `batch` and one more for the way
+//! straight to the goal. One that panics loses its sample, which is [counted](SharedTree::panics); when
+//! all of a batch panic, the step does, in the thread that called it, with what the first said. The tree
+//! stays. Verifying is left to the thread that calls, so with a verifier that is slow and a local
+//! planner no longer believed (`patience`) nothing is gained.
+//!
+//! Two threads, the same answer as one:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Goals, Problem, SharedTree, Tuning, Workers};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let problem = |_| {
+//!     let far_side = Goals::region(|q: &Vector2<f64>| q.x > 0.95);
+//!     Problem::new(&space, local.clone(), verifier.clone(), Vector2::new(0.1, 0.5), far_side)
+//! };
+//! let solve = |threads| {
+//!     let mut planner = SharedTree::new(8, Workers::new(threads)?, Tuning::default(), problem)?;
+//!     Ok::<_, mp_tree::BuildError>(planner.solve(&mut Rng::seed(1), &mut Iterations(1_000), &mut ()))
+//! };
+//! let outcome = solve(2)?;
+//! assert!(matches!(outcome, Outcome::Solved(_)));
+//! assert_eq!(outcome, solve(1)?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::{
+    AppendDistinct, Attach, Branch, BuildError, Goals, Growing, Grown, Growth, Nearest, Parameter, Problem,
+    Purpose, Selector, Steer, Tree, Tuning, Workers,
+};
+use mp_cspace::{
+    DefaultNn, Direction, Event, Extension, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Progress, Reach, Rng, Space,
+};
+use rand::RngExt;
+use std::any::Any;
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+/// How many samples at a time.
+pub const BATCH: Parameter = Parameter {
+    name: "batch",
+    range: "a whole number from 1 to 1024",
+    default: "8",
+    doc: "samples per iteration, whatever the number of threads; their motions are checked in parallel",
+};
+
+/// One sample of a batch: where to, and what came of it.
+struct Slot<S, L: LocalPlanner<S>> {
+    local: L,
+    rng: Rng,
+    target: Option<S>,
+    why: Purpose,
+    found: Option<(NodeId, Extension<S, L::Edge>)>,
+    panicked: Option<Box<dyn Any + Send>>,
+}
+
+impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
+    fn work<C: Space<State = S>, N: NearestNeighbors<C>>(
+        &mut self,
+        (space, step): (&C, f64),
+        points: &[S],
+        index: &N,
+    ) {
+        let target = self.target.get_or_insert_with(|| space.sample_uniform(&mut self.rng));
+        let Some(hit) = index.nearest(space, points, target) else { return };
+        let from = &points[hit.id as usize];
+        let extension = match from == target {
+            true => Extension::Trapped,
+            false => self.local.extend(from, target, Direction::Forward, Reach::Step(step)),
+        };
+        self.found = Some((hit.id, extension));
+    }
+}
+
+/// The extension found before.
+struct Found<S, E>(Option<Extension<S, E>>);
+
+impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Found<C::State, L::Edge> {
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        self.0.take().map_or(Grown::Trapped, |extension| growing.settle(from, extension))
+    }
+}
+
+/// One RRT grown by all threads: see the [module](self).
+pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
+    start: C::State,
+    tried: usize,
+    goals: Goals<'c, C::State>,
+    steer: Steer<'c, C, L>,
+    branch: Branch<C, L, Nearest<N>, AppendDistinct>,
+    slots: Vec<Slot<C::State, L>>,
+    workers: Workers,
+    goal_bias: f64,
+    seed: Option<u64>,
+    drawn: u64,
+    /// Nodes in the goal, to be verified.
+    arrived: Vec<NodeId>,
+    iterations: u64,
+    motions: u64,
+    panics: u64,
+}
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree<'c, C, L, N> {
+    /// A tree grown by `batch` samples at a time, with the nearest neighbours that suit the space.
+    /// `make(i)` makes the problem, always the same, once for each sample of a batch and once more; of
+    /// all but the first only the local planner is used.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or `make` fails.
+    pub fn new(
+        batch: u64,
+        workers: Workers,
+        tuning: Tuning,
+        make: impl FnMut(u64) -> Result<Problem<'c, C, L>, BuildError>,
+    ) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(batch, workers, N::default(), tuning, make)
+    }
+
+    /// As [`new`](Self::new), with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or `make` fails.
+    pub fn with_index(
+        batch: u64,
+        workers: Workers,
+        index: N,
+        tuning: Tuning,
+        mut make: impl FnMut(u64) -> Result<Problem<'c, C, L>, BuildError>,
+    ) -> Result<Self, BuildError> {
+        if !(1..=1024).contains(&batch) {
+            let range = BATCH.range.to_owned();
+            return Err(BuildError::OutOfRange { name: BATCH.name, value: batch as f64, range });
+        }
+        let goal_bias = tuning.checked_bias()?;
+        let Problem { space, local, verify, start, goals } = make(0)?;
+        let steer = Steer::new(space, local, verify, &tuning)?;
+        let slot = |i| {
+            let local = make(i)?.local;
+            let why = Purpose::Explore;
+            Ok(Slot { local, rng: Rng::seed(0), target: None, why, found: None, panicked: None })
+        };
+        let slots = (1..=batch).map(slot).collect::<Result<Vec<_>, BuildError>>()?;
+        Ok(Self {
+            start,
+            tried: 0,
+            goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
+            goals,
+            steer,
+            branch: Branch::new(0, Direction::Forward, Nearest(index), AppendDistinct::default()),
+            slots,
+            workers,
+            seed: None,
+            drawn: 0,
+            arrived: Vec::new(),
+            iterations: 0,
+            motions: 0,
+            panics: 0,
+        })
+    }
+
+    /// The tree; empty before the first step.
+    #[must_use]
+    pub fn tree(&self) -> &Tree<C::State, L::Edge> {
+        self.branch.tree()
+    }
+
+    /// How many samples were lost to a panic of the local planner, but for batches that were lost whole.
+    #[must_use]
+    pub fn panics(&self) -> u64 {
+        self.panics
+    }
+
+    /// Plants the root and tries the straight ways to the goal.
+    fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
+        if self.branch.tree().is_empty() {
+            let arrived = self.goals.reached(&self.start);
+            let root = self.branch.add_root(self.steer.space(), self.start.clone(), observer);
+            self.arrived.extend(arrived.then_some(root));
+        }
+        while let Some(goal) = self.goals.listed().get(self.tried) {
+            self.tried += 1;
+            let grown = self.branch.leap(0, goal, &mut self.steer, rng, observer);
+            if let Grown::Reached(id) = grown {
+                return self.arrived.push(id);
+            }
+        }
+    }
+
+    fn draw(&mut self, seed: u64) {
+        for slot in &mut self.slots {
+            slot.rng = Rng::stream(seed, self.drawn);
+            self.drawn += 1;
+            (slot.target, slot.why, slot.found) = (None, Purpose::Explore, None);
+            if self.goal_bias > 0.0 && slot.rng.random_bool(self.goal_bias) {
+                slot.target = self.goals.aim(&mut slot.rng);
+                slot.why = if slot.target.is_some() { Purpose::Join } else { Purpose::Explore };
+            }
+        }
+    }
+
+    fn work(&mut self)
+    where
+        L: Send,
+        N: Sync,
+    {
+        let (space, points) = (self.steer.space(), self.branch.tree().states());
+        let (step, index) = (self.steer.step(), &self.branch.selector().0);
+        self.workers.each(&mut self.slots, |slot| {
+            let work = AssertUnwindSafe(|| slot.work((space, step), points, index));
+            slot.panicked = catch_unwind(work).err();
+        });
+        let lost = self.slots.iter().filter(|slot| slot.panicked.is_some()).count();
+        if lost < self.slots.len() {
+            self.panics += lost as u64;
+        } else if let Some(why) = self.slots.iter_mut().find_map(|slot| slot.panicked.take()) {
+            resume_unwind(why);
+        }
+    }
+
+    fn merge(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
+        for slot in &mut self.slots {
+            let Some(target) = slot.target.take() else { continue };
+            observer.on(Event::Sampled(&target));
+            let Some((from, extension)) = slot.found.take() else {
+                observer.on(Event::Trapped { tree: 0 });
+                continue;
+            };
+            let new = self.branch.tree().len();
+            self.motions += u64::from(*self.branch.tree().state(from) != target);
+            let mut found = Found(Some(extension));
+            let grown = self.branch.grow_from(from, &target, &mut self.steer, &mut found, rng, observer);
+            let entered = match (slot.why, grown) {
+                (Purpose::Join, Grown::Reached(id)) => Some(id),
+                _ => {
+                    let state = self.branch.tree().states().get(new);
+                    state.is_some_and(|state| self.goals.reached(state)).then_some(new as NodeId)
+                }
+            };
+            // Several samples of a batch may be the same goal.
+            self.arrived.extend(entered.filter(|id| !self.arrived.contains(id)));
+        }
+    }
+
+    /// The first path to a node in the goal that passes verification. What is pruned meanwhile is
+    /// struck off the others.
+    fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+        while !self.arrived.is_empty() {
+            let id = self.arrived.remove(0);
+            let rest = &mut self.arrived;
+            let passed = self.branch.verify(id, &mut self.steer, observer, |survivors| {
+                let renamed = rest.iter().filter_map(|old| survivors.binary_search(old).ok());
+                *rest = renamed.map(|new| new as NodeId).collect();
+            });
+            if passed {
+                return Some(self.branch.tree().path(id));
+            }
+        }
+        None
+    }
+}
+
+impl<C, L, N> Planner<C::State> for SharedTree<'_, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State> + Send,
+    N: NearestNeighbors<C> + Sync,
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.iterations += 1;
+        let seed = *self.seed.get_or_insert_with(|| rng.random());
+        self.begin(rng, observer);
+        if let Some(path) = self.arrive(observer) {
+            return Some(path);
+        }
+        self.draw(seed);
+        self.work();
+        self.merge(rng, observer);
+        self.arrive(observer)
+    }
+
+    /// An iteration is a batch.
+    fn progress(&self) -> Progress {
+        let motions = self.motions + self.steer.motions();
+        let mut progress = Progress::new(self.iterations, self.branch.tree().len(), motions);
+        progress.rejected = self.steer.rejected();
+        progress
+    }
+}
+
+impl<C, L, N> fmt::Debug for SharedTree<'_, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+{
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SharedTree")
+            .field("batch", &self.slots.len())
+            .field("iterations", &self.iterations)
+            .field("motions", &self.motions)
+            .field("panics", &self.panics)
+            .finish_non_exhaustive()
+    }
+}
