@@ -3,6 +3,7 @@
 //! | algorithm | | trees | per iteration |
 //! |---|---|---|---|
 //! | [`Rrt`] | [`algo::rrt`] | from the start | one step toward a sample |
+//! | [`CyclicRrt`] | [`algo::cyclic_rrt`] | from the start, with cycles | as RRT, or an edge to a similar node; lists alternative paths |
 //! | [`RrtConnect`] | [`algo::rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
 //! | [`Aorrtc`] | [`algo::aorrtc`] | from start and goal, anew for each better path | as RRT-Connect, in the space of states and costs; ever better paths |
 //! | [`RrtStar`] | [`algo::rrt_star`] | from the start, rewired | one step toward a sample, attached by the cheapest way; ever better paths |
@@ -55,7 +56,7 @@
 //! |---|---|---|
 //! | what to grow toward | [`Propose`] | [`Samples`], [`Acceptable`], [`VoronoiBias`] |
 //! | which nodes to grow from | [`Selector`] | [`Nearest`], [`DynamicDomain`], [`LeastViolated`], [`Unexhausted`] |
-//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`Untried`] |
+//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`Untried`], [`Cyclic`] |
 //! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
@@ -95,12 +96,14 @@ mod untried;
 mod verify;
 mod workers;
 mod wrap;
+mod yen;
 
 pub use algo::aorrtc::Aorrtc;
 pub use algo::bi_rrt::BiRrt;
 pub use algo::con_con::RrtConCon;
 pub use algo::con_ext::RrtConExt;
 pub use algo::cvp_rrt::{CvpRrt, LeastViolated};
+pub use algo::cyclic_rrt::{Cyclic, CyclicRrt, Listed};
 pub use algo::dd_rrt::{DdRrt, Domain, DynamicDomain};
 pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
 pub use algo::mvb_rrt::{MvbRrt, VoronoiBias};

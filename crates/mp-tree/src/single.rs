@@ -27,6 +27,13 @@ pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     iterations: u64,
 }
 
+/// A tree, how it moves and how it grows.
+type Parts<'a, 'c, C, L, G> = (
+    &'a Tree<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>,
+    &'a mut Steer<'c, C, L>,
+    &'a mut G,
+);
+
 impl<'c, C, L, P, Se, G, A> SingleTree<'c, C, L, P, Se, G, A>
 where
     C: Space,
@@ -59,6 +66,16 @@ where
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
         self.branch.tree()
+    }
+
+    /// How it grows.
+    pub(crate) fn growth(&self) -> &G {
+        &self.growth
+    }
+
+    /// The tree, how it moves and how it grows.
+    pub(crate) fn parts(&mut self) -> Parts<'_, 'c, C, L, G> {
+        (self.branch.tree(), &mut self.steer, &mut self.growth)
     }
 
     /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the

@@ -6,6 +6,7 @@ pub mod bi_rrt;
 pub mod con_con;
 pub mod con_ext;
 pub mod cvp_rrt;
+pub mod cyclic_rrt;
 pub mod dd_rrt;
 pub mod informed_rrt_star;
 pub mod mvb_rrt;

@@ -1,0 +1,376 @@
+//! The cyclic variant of RRT: a graph with cycles, which lists alternative paths.
+//!
+//! N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas
+//! algorithms*, 2008, §2.3, after S. M. LaValle, *Rapidly-exploring random trees: a new tool for path
+//! planning*, TR 98-11, 1998. Alternatives are listed as in J. Y. Yen, *Finding the k shortest loopless
+//! paths in a network*, Management Science 17, 1971.
+//!
+//! From a tree that holds the start, repeat:
+//! 1. choose a sample and the node q_prox nearest to it, and move one step at most toward the sample, to
+//!    q_new, as [RRT](super::rrt) does;
+//! 2. find the node q_exist most similar to q_new, within `tolerance`, that is neither q_prox nor joined
+//!    to it by an edge;
+//! 3. where there is one and the local planner has a motion from q_prox exactly to it, add that motion
+//!    as an edge beside the tree, which closes a cycle, and no node;
+//! 4. otherwise add q_new to the tree;
+//! 5. where that is in the goal, verify the path: return it, or prune from the edge that failed.
+//!
+//! A listed goal state is always added. Stepping on after a path is found adds more edges.
+//! [`alternatives`](CyclicRrt::alternatives) then lists the cheapest paths through both kinds of edges,
+//! each run either way where the local planner has the motion back, and
+//! [`routes`](CyclicRrt::routes) paths that are far apart (I. Abraham, D. Delling, A. V. Goldberg and
+//! R. F. Werneck, *Alternative routes in road networks*, ACM J. of Experimental Algorithmics 18, 2013).
+//!
+//! **When to use it.** To be given a choice of paths, or to see which ways round the obstacles there
+//! are. For one path RRT is better: edges that close cycles explore nothing (§2.3).
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `tolerance`: how far apart similar states are, in steps | \[0, 1\] | none; 0.5 does |
+//!
+//! and those of [RRT](super::rrt). A small tolerance makes few cycles; a large one makes many, and many
+//! paths that differ little. A passage may need nodes closer together than the tolerance: they are
+//! added as soon as those similar to them are joined. It has no name in
+//! [`planners`](crate::planners): through those it would be but a slower RRT.
+//!
+//! Two ways round a block:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Planner, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{CyclicRrt, Problem, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).amax() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5))?;
+//!
+//! let mut planner = CyclicRrt::new(problem, Tuning::default(), 0.5)?;
+//! let mut rng = Rng::seed(1);
+//! while planner.progress().iterations < 1_000 {
+//!     planner.step(&mut rng, &mut ());
+//! }
+//! let routes = planner.routes(2, 0.3)?;
+//! let above = |i: usize| routes[i].0.states.iter().any(|q| q.y > 0.8);
+//! assert!(routes.len() == 2 && above(0) != above(1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::yen::{shortest_paths, shortest_via};
+use crate::{
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Problem, Recipe, Samples, Selector,
+    SingleTree, Steer, Tree, Tuning,
+};
+use mp_cspace::{
+    DefaultNn, Direction, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Progress, Reach, Rng, Space, Uniform,
+};
+use std::collections::BTreeMap;
+
+/// Paths and their costs.
+pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;
+
+/// From which node to which, in forward time.
+type Ends = (NodeId, NodeId);
+
+/// One step, or an edge to a similar node: the slot of [`CyclicRrt`], which keeps its edges.
+#[derive(Clone, Debug)]
+pub struct Cyclic<S, E> {
+    tolerance: f64,
+    /// States that are added however similar to others.
+    goals: Vec<S>,
+    edges: BTreeMap<Ends, (E, f64)>,
+    /// What the verifier, and for ways back the local planner, had to say.
+    asked: BTreeMap<Ends, Option<(E, f64)>>,
+    near: Vec<Hit>,
+}
+
+impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
+    /// Whether two nodes are the same or have an edge between them.
+    fn joined(&self, tree: &Tree<S, E>, a: NodeId, b: NodeId) -> bool {
+        let edge = self.edges.contains_key(&(a, b)) || self.edges.contains_key(&(b, a));
+        a == b || edge || tree.parent(a) == Some(b) || tree.parent(b) == Some(a)
+    }
+
+    /// Both kinds of edges with their costs.
+    fn all_edges(&self, tree: &Tree<S, E>) -> Vec<(Ends, f64)> {
+        let hanging = (0..tree.len() as NodeId)
+            .filter_map(|id| Some(((tree.parent(id)?, id), tree.edge_cost(id).unwrap_or_default())));
+        hanging.chain(self.edges.iter().map(|(&ends, &(_, cost))| (ends, cost))).collect()
+    }
+
+    /// The arcs that leave each node, without dead ends, and of goals only that to a last node, where
+    /// all end. What was not asked yet is believed, and to cost the same either way.
+    fn arcs(&self, tree: &Tree<S, E>, goals: &[NodeId]) -> Vec<Vec<(u32, f64)>> {
+        let edges = self.all_edges(tree);
+        let mut around = vec![Vec::new(); tree.len()];
+        for &((a, b), _) in &edges {
+            around[a as usize].push(b);
+            around[b as usize].push(a);
+        }
+        let mut degree: Vec<usize> = around.iter().map(Vec::len).collect();
+        let kept = |id: NodeId| id == 0 || goals.contains(&id);
+        let mut dead: Vec<NodeId> =
+            (0..tree.len() as NodeId).filter(|&id| degree[id as usize] < 2 && !kept(id)).collect();
+        while let Some(id) = dead.pop() {
+            degree[id as usize] = 0;
+            for &other in &around[id as usize] {
+                let left = &mut degree[other as usize];
+                *left = left.saturating_sub(1);
+                if *left == 1 && !kept(other) {
+                    dead.push(other);
+                }
+            }
+        }
+        let mut arcs = vec![Vec::new(); tree.len() + 1];
+        for ((a, b), cost) in edges {
+            for (from, to) in [(a, b), (b, a)] {
+                let cost = match self.asked.get(&(from, to)) {
+                    Some(answer) => answer.as_ref().map(|&(_, cost)| cost),
+                    None => Some(cost),
+                };
+                let alive = [from, to].iter().all(|&id| degree[id as usize] > 0 || kept(id));
+                if let (Some(cost), true, false) = (cost, alive, goals.contains(&from)) {
+                    arcs[from as usize].push((to, cost));
+                }
+            }
+        }
+        for &goal in goals {
+            arcs[goal as usize].push((tree.len() as u32, 0.0));
+        }
+        arcs
+    }
+
+    /// Verifies an edge in one direction; once. Whether that changes what there is to choose from.
+    fn ask<C, L>(&mut self, tree: &Tree<S, E>, steer: &mut Steer<'_, C, L>, (from, to): Ends) -> bool
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+    {
+        if self.asked.contains_key(&(from, to)) {
+            return false;
+        }
+        let (a, b) = (tree.state(from), tree.state(to));
+        let hangs = |child: NodeId, parent| match (tree.parent(child) == Some(parent), tree.edge(child)) {
+            (true, Some(edge)) => Some((edge.clone(), tree.edge_cost(child).unwrap_or_default())),
+            _ => None,
+        };
+        let verified = tree.parent(to) == Some(from) && tree.is_verified(to);
+        let (believed, forward) = match hangs(to, from).or_else(|| self.edges.get(&(from, to)).cloned()) {
+            Some(edge) => (edge.1, Some(edge)),
+            None => {
+                let back = hangs(from, to).or_else(|| self.edges.get(&(to, from)).cloned());
+                let way = steer.reach(a, b, Direction::Forward).map(|motion| (motion.edge, motion.cost));
+                (back.map_or(f64::NAN, |edge| edge.1), way)
+            }
+        };
+        let answer = forward.filter(|(edge, _)| verified || steer.passes(a, edge, b));
+        let changed = answer.as_ref().is_none_or(|&(_, cost)| cost != believed);
+        self.asked.insert((from, to), answer);
+        changed
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Cyclic<C::State, L::Edge> {
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (direction, target) = (growing.tree().direction(), growing.target().clone());
+        let a = growing.tree().state(from).clone();
+        let extension = growing.steer().extend(&a, &target, direction, Reach::Step(step));
+        let (Extension::Advanced(motion) | Extension::Reached(motion)) = &extension else {
+            return Grown::Trapped;
+        };
+        if !self.goals.contains(&motion.end) {
+            let tree = growing.tree();
+            growing.selector().near(space, tree.states(), &motion.end, self.tolerance, &mut self.near);
+            let other = self.near.iter().map(|hit| hit.id).find(|&id| !self.joined(tree, from, id));
+            let state = other.map(|id| (id, tree.state(id).clone()));
+            if let Some((to, b)) = state
+                && let Some(way) = growing.steer().reach(&a, &b, direction)
+            {
+                self.edges.insert((from, to), (way.edge, way.cost));
+                return Grown::Trapped;
+            }
+        }
+        growing.settle(from, extension)
+    }
+
+    fn pruned(&mut self, _: Direction, survivors: &[NodeId]) {
+        let renamed = |old| survivors.binary_search(&old).ok().map(|new| new as NodeId);
+        let both = |(from, to)| Some((renamed(from)?, renamed(to)?));
+        let edges = std::mem::take(&mut self.edges).into_iter();
+        self.edges = edges.filter_map(|(ends, edge)| Some((both(ends)?, edge))).collect();
+        let asked = std::mem::take(&mut self.asked).into_iter();
+        self.asked = asked.filter_map(|(ends, answer)| Some((both(ends)?, answer))).collect();
+    }
+}
+
+type Inner<'c, C, L, N, S, E> =
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Cyclic<S, E>, AppendDistinct>;
+
+/// The cyclic variant of RRT: see the [module](self).
+#[derive(Debug)]
+pub struct CyclicRrt<'c, C: Space, L: LocalPlanner<C::State>, N> {
+    inner: Inner<'c, C, L, N, C::State, L::Edge>,
+    /// Where paths returned so far ended.
+    arrived: Vec<C::State>,
+}
+
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<'c, C, L, N> {
+    /// States within `tolerance` steps are similar. With the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning, tolerance: f64) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), tuning, tolerance)
+    }
+
+    /// As [`new`](Self::new), with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        tuning: Tuning,
+        tolerance: f64,
+    ) -> Result<Self, BuildError> {
+        if !(0.0..=1.0).contains(&tolerance) {
+            let range = "in [0, 1], in steps".to_owned();
+            return Err(BuildError::OutOfRange { name: "tolerance", value: tolerance, range });
+        }
+        let grow = Cyclic {
+            tolerance: tolerance * tuning.step.length_in(problem.space)?,
+            goals: problem.goals.listed().to_vec(),
+            edges: BTreeMap::new(),
+            asked: BTreeMap::new(),
+            near: Vec::new(),
+        };
+        let (propose, attach) = (Samples(Uniform(problem.space)), AppendDistinct::default());
+        let recipe = Recipe { propose, select: Nearest(index), grow, attach, tuning };
+        Ok(Self { inner: SingleTree::assemble(problem, recipe)?, arrived: Vec::new() })
+    }
+
+    /// The tree; empty before the first step.
+    #[must_use]
+    pub fn tree(&self) -> &Tree<C::State, L::Edge> {
+        self.inner.tree()
+    }
+
+    /// The edges beside the tree: from which node to which.
+    pub fn cycles(&self) -> impl Iterator<Item = (NodeId, NodeId)> {
+        self.inner.growth().edges.keys().copied()
+    }
+
+    /// The `k` cheapest paths, each with its cost, that visit no node twice, from the start to where
+    /// paths returned so far ended; the cheapest first, ties by node. None before the first path is
+    /// returned. The cheapest often differ little: [`routes`](Self::routes) are far apart.
+    ///
+    /// Each edge has passed the verifier; those that do not are left out from then on. Motions back
+    /// are asked of the local planner. Both are remembered. Costs a search of the graph for each node
+    /// of each path.
+    pub fn alternatives(&mut self, k: usize) -> Listed<C::State, L::Edge> {
+        self.list(|_, tree, arcs| shortest_paths(arcs, 0, tree.len() as u32, k))
+    }
+
+    /// At most `k` paths, of which each goes somewhere the ones before do not: the first is the
+    /// cheapest, and each other the cheapest of those straight to and straight on from a node farther
+    /// than `apart`, in the metric of the space, from all of the paths before (from points half a step
+    /// apart, interpolated between their nodes). Else as [`alternatives`](Self::alternatives); costs two
+    /// searches for each path. In the open a detour will do as a route: take `apart` at least as large
+    /// as the passages are wide.
+    ///
+    /// # Errors
+    /// When `apart` is negative or not a number.
+    pub fn routes(&mut self, k: usize, apart: f64) -> Result<Listed<C::State, L::Edge>, BuildError> {
+        if apart.is_nan() || apart < 0.0 {
+            let range = "not negative, a distance".to_owned();
+            return Err(BuildError::OutOfRange { name: "apart", value: apart, range });
+        }
+        let step = self.inner.parts().1.step();
+        Ok(self.list(|space, tree, arcs| {
+            let mut found: Vec<(f64, Vec<u32>)> = Vec::new();
+            let mut open: Vec<NodeId> = (0..tree.len() as NodeId).collect();
+            while found.len() < k {
+                let via = open.iter().copied();
+                let Some(route) = shortest_via(arcs, 0, tree.len() as u32, via) else { break };
+                let states: Vec<&C::State> =
+                    route.1[..route.1.len() - 1].iter().map(|&id| tree.state(id)).collect();
+                let between = states.windows(2).flat_map(|pair| {
+                    let pieces = (2.0 * space.distance(pair[0], pair[1]) / step).ceil().clamp(1.0, 1e4);
+                    (0..pieces as u32).map(move |i| (pair, f64::from(i) / pieces))
+                });
+                let mut on: Vec<C::State> =
+                    between.map(|(pair, t)| space.interpolate(pair[0], pair[1], t)).collect();
+                on.extend(states.last().map(|&end| end.clone()));
+                open.retain(|&id| on.iter().all(|on| space.distance(on, tree.state(id)) > apart));
+                found.push(route);
+            }
+            found
+        }))
+    }
+
+    /// Lists what `choose` finds between node 0 and the last, until it finds only what is verified.
+    fn list(
+        &mut self,
+        choose: impl Fn(&C, &Tree<C::State, L::Edge>, &[Vec<(u32, f64)>]) -> Vec<(f64, Vec<u32>)>,
+    ) -> Listed<C::State, L::Edge> {
+        let (tree, steer, cyclic) = self.inner.parts();
+        let is_goal = |id: &NodeId| self.arrived.contains(tree.state(*id));
+        let goals: Vec<NodeId> = (0..tree.len() as NodeId).filter(is_goal).collect();
+        if goals.is_empty() {
+            return Vec::new();
+        }
+        loop {
+            let mut found = choose(steer.space(), tree, &cyclic.arcs(tree, &goals));
+            let mut changed = false;
+            for (_, nodes) in &mut found {
+                nodes.pop();
+                for pair in nodes.windows(2) {
+                    changed |= cyclic.ask(tree, steer, (pair[0], pair[1]));
+                }
+            }
+            if changed {
+                continue;
+            }
+            let edge = |pair: &[NodeId]| Some(cyclic.asked.get(&(pair[0], pair[1]))?.as_ref()?.0.clone());
+            let path = |nodes: &[NodeId]| Path {
+                states: nodes.iter().map(|&id| tree.state(id).clone()).collect(),
+                edges: nodes.windows(2).filter_map(edge).collect(),
+            };
+            return found.iter().map(|(cost, nodes)| (path(nodes), *cost)).collect();
+        }
+    }
+}
+
+impl<C, L, N> Planner<C::State> for CyclicRrt<'_, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    N: NearestNeighbors<C>,
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        let path = self.inner.step(rng, observer)?;
+        let end = path.states.last().filter(|end| !self.arrived.contains(end));
+        self.arrived.extend(end.cloned());
+        Some(path)
+    }
+
+    fn progress(&self) -> Progress {
+        self.inner.progress()
+    }
+}

@@ -1,0 +1,203 @@
+//! The shortest simple paths of a directed graph.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeSet, BinaryHeap};
+
+/// A length that is ordered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Length(f64);
+
+impl Eq for Length {}
+impl Ord for Length {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+impl PartialOrd for Length {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The nodes of the `k` shortest paths between two nodes that visit none twice, with their lengths,
+/// the shortest first, ties by nodes. `arcs[i]` are the ends and lengths, not negative, of the arcs
+/// that leave node i, at most one to each.
+///
+/// J. Y. Yen, *Finding the k shortest loopless paths in a network*, Management Science 17, 1971. One
+/// search (Dijkstra 1959) for each node of each path found.
+pub(crate) fn shortest_paths(arcs: &[Vec<(u32, f64)>], from: u32, to: u32, k: usize) -> Vec<(f64, Vec<u32>)> {
+    let mut found: Vec<(Length, Vec<u32>)> = Vec::new();
+    let mut waiting: BTreeSet<_> = shortest(arcs, &[from], to, &[]).into_iter().collect();
+    while found.len() < k {
+        let Some(next) = waiting.pop_first() else { break };
+        found.push(next.clone());
+        for end in 1..next.1.len() {
+            let stem = &next.1[..end];
+            let taken: Vec<u32> =
+                found.iter().filter(|(_, path)| path.starts_with(stem)).map(|(_, path)| path[end]).collect();
+            waiting.extend(shortest(arcs, stem, to, &taken));
+        }
+    }
+    found.into_iter().map(|(length, path)| (length.0, path)).collect()
+}
+
+/// The shortest path that begins with `stem` and goes on to none of `taken`.
+fn shortest(arcs: &[Vec<(u32, f64)>], stem: &[u32], to: u32, taken: &[u32]) -> Option<(Length, Vec<u32>)> {
+    let (&spur, before) = stem.split_last()?;
+    // Lengths are summed from the beginning, so that the same path always has the same.
+    let mut length = 0.0;
+    for pair in stem.windows(2) {
+        length += arcs[pair[0] as usize].iter().find(|arc| arc.0 == pair[1])?.1;
+    }
+    let mut best = vec![f64::INFINITY; arcs.len()];
+    let mut came = vec![spur; arcs.len()];
+    for &node in before {
+        best[node as usize] = f64::NEG_INFINITY;
+    }
+    best[spur as usize] = length;
+    let mut open = BinaryHeap::from([Reverse((Length(length), spur))]);
+    while let Some(Reverse((Length(length), at))) = open.pop() {
+        if at == to {
+            let way = std::iter::successors(Some(at), |&at| (at != spur).then(|| came[at as usize]));
+            let mut path: Vec<u32> = way.collect();
+            path.extend(before.iter().rev());
+            path.reverse();
+            return Some((Length(length), path));
+        }
+        if length > best[at as usize] {
+            continue;
+        }
+        for &(next, more) in &arcs[at as usize] {
+            if length + more < best[next as usize] && !(at == spur && taken.contains(&next)) {
+                best[next as usize] = length + more;
+                came[next as usize] = at;
+                open.push(Reverse((Length(length + more), next)));
+            }
+        }
+    }
+    None
+}
+
+/// The shortest of the paths that lead straight to one of the nodes `via` and straight on, visiting
+/// none twice; ties by that node. Arcs as in [`shortest_paths`]. Two searches.
+///
+/// I. Abraham, D. Delling, A. V. Goldberg and R. F. Werneck, *Alternative routes in road networks*, ACM
+/// J. of Experimental Algorithmics 18, 2013.
+pub(crate) fn shortest_via(
+    arcs: &[Vec<(u32, f64)>],
+    from: u32,
+    to: u32,
+    via: impl Iterator<Item = u32>,
+) -> Option<(f64, Vec<u32>)> {
+    let mut back = vec![Vec::new(); arcs.len()];
+    for (node, leaving) in (0..).zip(arcs) {
+        leaving.iter().for_each(|&(next, length)| back[next as usize].push((node, length)));
+    }
+    let (ahead, back) = (lengths(arcs, from), lengths(&back, to));
+    let mut promises: Vec<(Length, u32)> =
+        via.map(|node| (Length(ahead[node as usize].0 + back[node as usize].0), node)).collect();
+    promises.retain(|(length, _)| length.0.is_finite());
+    promises.sort_unstable();
+    promises.into_iter().find_map(|(length, node)| {
+        let way = |tree: &[(f64, u32)], end| {
+            let next = |at: &u32| (*at != end).then(|| tree[*at as usize].1);
+            std::iter::successors(Some(node), next).collect::<Vec<u32>>()
+        };
+        let mut path = way(&ahead, from);
+        path.reverse();
+        path.extend(&way(&back, to)[1..]);
+        let distinct: BTreeSet<u32> = path.iter().copied().collect();
+        (distinct.len() == path.len()).then_some((length.0, path))
+    })
+}
+
+/// How far it is to each node, and the node before it on the way.
+fn lengths(arcs: &[Vec<(u32, f64)>], from: u32) -> Vec<(f64, u32)> {
+    let mut best = vec![(f64::INFINITY, from); arcs.len()];
+    best[from as usize].0 = 0.0;
+    let mut open = BinaryHeap::from([Reverse((Length(0.0), from))]);
+    while let Some(Reverse((Length(length), at))) = open.pop() {
+        if length > best[at as usize].0 {
+            continue;
+        }
+        for &(next, more) in &arcs[at as usize] {
+            if length + more < best[next as usize].0 {
+                best[next as usize] = (length + more, at);
+                open.push(Reverse((Length(length + more), next)));
+            }
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All simple paths, by trying everything.
+    fn all(
+        arcs: &[Vec<(u32, f64)>],
+        to: u32,
+        path: &mut Vec<u32>,
+        length: f64,
+        out: &mut Vec<(f64, Vec<u32>)>,
+    ) {
+        let at = path[path.len() - 1];
+        if at == to {
+            return out.push((length, path.clone()));
+        }
+        for &(next, more) in &arcs[at as usize] {
+            if !path.contains(&next) {
+                path.push(next);
+                all(arcs, to, path, length + more, out);
+                path.pop();
+            }
+        }
+    }
+
+    #[test]
+    fn as_trying_everything() {
+        let mut seed = 1_u32;
+        let mut pick = |n: u32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) % n
+        };
+        let mut most = 0;
+        for _ in 0..300 {
+            let n = 2 + pick(6);
+            let mut arcs = vec![Vec::new(); n as usize];
+            for a in 0..n {
+                for b in 0..n {
+                    if a != b && pick(2) == 0 {
+                        // Quarters: sums are exact, and ties are many.
+                        arcs[a as usize].push((b, f64::from(pick(8)) / 4.0));
+                    }
+                }
+            }
+            let mut expected = Vec::new();
+            all(&arcs, n - 1, &mut vec![0], 0.0, &mut expected);
+            expected.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            most = most.max(expected.len());
+            let found = shortest_paths(&arcs, 0, n - 1, usize::MAX);
+            assert!(found.is_sorted_by(|a, b| a.0 <= b.0));
+            let mut sorted = found.clone();
+            sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            assert_eq!(sorted, expected, "{arcs:?}");
+            for node in 0..n {
+                let via = shortest_via(&arcs, 0, n - 1, [node].into_iter());
+                if let Some(path) = &via {
+                    assert!(expected.contains(path) && path.1.contains(&node));
+                }
+                let best = expected.first().filter(|path| path.1.contains(&node));
+                assert!(best.is_none_or(|best| via.is_none_or(|via| via.0 == best.0)));
+            }
+            let any = shortest_via(&arcs, 0, n - 1, 0..n);
+            assert_eq!(any.map(|path| path.0), expected.first().map(|path| path.0));
+            for k in [0, 1, 3] {
+                let few = shortest_paths(&arcs, 0, n - 1, k);
+                assert_eq!(few, found[..k.min(found.len())]);
+            }
+        }
+        assert!(most > 50, "at most {most} paths");
+    }
+}
