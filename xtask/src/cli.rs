@@ -154,6 +154,23 @@ pub(crate) struct Bench {
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) collide: BenchCollide,
+    #[command(flatten)]
+    pub(crate) rsrt: BenchRsrt,
+}
+
+/// What only the suite `rsrt` has.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Of the suite `rsrt`")]
+pub(crate) struct BenchRsrt {
+    /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6; 0.25 with --quick].
+    #[arg(long, value_name = "S", value_parser = positive)]
+    pub(crate) cap: Option<f64>,
+    /// How many runs at once [default: one for each core]; what is found does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Measure anew what was measured before and is in the folder for results.
+    #[arg(long)]
+    pub(crate) fresh: bool,
 }
 
 /// What only the suite `collide` has.
@@ -188,8 +205,12 @@ pub(crate) struct BenchCollide {
 pub(crate) enum Suite {
     /// RRT-Connect on rigid bodies, to the first solution.
     Rigid,
+    /// Every planner on shipped scenes, to the first solution.
+    Planners,
     /// Queries between two meshes.
     Collide,
+    /// Experiments of Jouandeau et al. 2008: natural expansion; RSRT and RRT in growing clutter.
+    Rsrt,
     /// Growth of an RRT where nothing is in the way, against its size.
     Scaling,
 }

@@ -1,8 +1,11 @@
 //! `bench`: measurements, as Markdown on standard output and as CSV and JSON in a folder.
 
+mod chart;
 mod collide;
 mod growth;
+mod planners;
 mod rigid;
+mod rsrt;
 mod scaling;
 
 pub(crate) use collide::PAIRS;
@@ -15,7 +18,9 @@ use miette::Result;
 pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     match args.suite {
         cli::Suite::Collide => collide::run(args),
+        cli::Suite::Planners => planners::run(args),
         cli::Suite::Rigid => rigid::run(args),
+        cli::Suite::Rsrt => rsrt::run(args),
         cli::Suite::Scaling => growth::run(args),
     }
 }

@@ -38,7 +38,7 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         given => given.to_vec(),
     };
     let seeds = args.runs.unwrap_or(if args.quick { 3 } else { 20 });
-    let options = Options::comparable(Motion::Discrete(Length::Fraction(0.01)), args.time)?;
+    let options = Options::comparable("rrt-connect", Motion::Discrete(Length::Fraction(0.01)), args.time)?;
     let problems = tempfile::tempdir().into_diagnostic()?;
     let mut each = Table::new([
         "scene",

@@ -2,7 +2,7 @@
 
 mod files;
 pub(crate) mod finish;
-mod interrupt;
+pub(crate) mod interrupt;
 pub(crate) mod metrics;
 pub(crate) mod mover;
 mod options;

@@ -53,10 +53,10 @@ impl Options {
         })
     }
 
-    /// RRT-Connect as other programs have it, to be measured beside them.
-    pub(crate) fn comparable(motion: Motion, seconds: f64) -> Result<Self> {
+    /// A planner with its defaults, to be measured beside others.
+    pub(crate) fn comparable(planner: &str, motion: Motion, seconds: f64) -> Result<Self> {
         Ok(Self {
-            planner: Named::new("rrt-connect").into_diagnostic()?,
+            planner: Named::new(planner).into_diagnostic()?,
             workers: Workers::alone(),
             settings: Settings::default(),
             metric: metrics::Kind::Default,

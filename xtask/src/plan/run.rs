@@ -74,6 +74,7 @@ pub(crate) struct Planned {
     /// Until a verified path, or the end of the budget.
     pub(crate) seconds: f64,
     pub(crate) queries: u64,
+    pub(crate) iterations: u64,
 }
 
 /// Plans, and neither shortens nor writes.
@@ -85,6 +86,7 @@ pub(crate) fn planned(ready: &Ready, options: &Options, seed: u64) -> Result<Pla
             solved: matches!(search.outcome, Outcome::Solved(_)),
             seconds: search.time.as_secs_f64(),
             queries: search.queries,
+            iterations: search.progress.iterations,
         })
     }
     match ready {
