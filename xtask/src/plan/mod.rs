@@ -3,6 +3,7 @@
 mod files;
 pub(crate) mod finish;
 pub(crate) mod interrupt;
+mod measured;
 pub(crate) mod metrics;
 pub(crate) mod mover;
 mod options;

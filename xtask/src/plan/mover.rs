@@ -10,7 +10,7 @@ use nalgebra::{Point2, Point3};
 use std::fmt::Debug;
 
 /// A kind of rigid body.
-pub(crate) trait Mover: Placement {
+pub(crate) trait Mover: Placement<State: PartialEq + Send + Sync> {
     type Space: Embed
         + EmbedFactors
         + DefaultNn<Nn: 'static>

@@ -84,7 +84,7 @@ pub(crate) fn planned(ready: &Ready, options: &Options, seed: u64) -> Result<Pla
         let search = search::search(setting, options, seed, &Cancel(interrupt::flag()), &mut line)?;
         Ok(Planned {
             solved: matches!(search.outcome, Outcome::Solved(_)),
-            seconds: search.time.as_secs_f64(),
+            seconds: search.first.map_or(search.time, |(first, _)| first).as_secs_f64(),
             queries: search.queries,
             iterations: search.progress.iterations,
         })

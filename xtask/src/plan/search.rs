@@ -1,5 +1,6 @@
 //! One run of a planner.
 
+use super::measured::Measured;
 use super::metrics;
 use super::mover::Mover;
 use super::options::Options;
@@ -8,9 +9,9 @@ use super::setting::Setting;
 use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
-    Cancel, Certified, Clearance, Deadline, DefaultNn, Discrete, Euclidean, Iterations, KdTree, Manhattan,
-    MetricOn, MetricTree, MotionBound, MotionValidity, NearestNeighbors, Outcome, ParameterError, Path,
-    Progress, Resolution, Rng, Room, Space, Stop, StopReason, Straight, Stretch, Validity, WithMetric,
+    Cancel, Certified, Clearance, Deadline, DefaultNn, Discrete, Iterations, MetricOn, MotionBound,
+    MotionValidity, NearestNeighbors, Outcome, ParameterError, Path, Progress, Resolution, Rng, Room, Space,
+    Stop, StopReason, Straight, Stretch, Validity, WithMetric,
 };
 use mp::robot::{Arm, RigidBody};
 use mp::tree::{BuildError, Goals, Problem, build_from, improve};
@@ -49,18 +50,13 @@ pub(crate) fn search<M: Mover>(
         seed,
         cancel,
     };
-    match options.metric {
-        metrics::Kind::Default => run.on(space, <M::Space as DefaultNn>::Nn::default(), line),
-        metrics::Kind::Euclidean => run.on(&with(space, Euclidean), <KdTree>::default(), line),
-        metrics::Kind::Manhattan => run.on(&with(space, Manhattan), <KdTree>::default(), line),
-        metrics::Kind::Scaled => {
-            run.on(&with(space, M::scaled(space, setting.radius)?), <KdTree>::default(), line)
-        }
-        metrics::Kind::MaxDisplacement => {
-            let metric = M::displacement(&setting.problem.robot.mesh)?;
-            run.on(&with(space, metric), MetricTree::default(), line)
-        }
+    if options.metric == metrics::Kind::Default {
+        return run.on(space, <M::Space as DefaultNn>::Nn::default(), line);
     }
+    let scaled = || M::scaled(space, setting.radius);
+    let displacement = || M::displacement(&setting.problem.robot.mesh);
+    let measured = Measured::<M>::new(space, options.metric, scaled, displacement)?;
+    run.on(&measured, measured.index(), line)
 }
 
 pub(crate) fn with<C: Space + Clone, D: MetricOn<C>>(space: &C, metric: D) -> WithMetric<C, D> {
