@@ -147,20 +147,29 @@ fn missing_paths(root: &Path, architecture: &str) -> Vec<Finding> {
 }
 
 /// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one called
-/// so, or in one that names it).
+/// so, in one that names it or its type, or, when it can be made by name, in one that runs all that can).
 fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str> {
     if !path.parent().is_some_and(|p| p.ends_with("src/algo")) || path.ends_with("mod.rs") {
         return None;
     }
     let name = path.file_name()?;
-    let word = format!("\"{}\"", path.file_stem()?.to_string_lossy().replace('_', "-"));
+    let stem = path.file_stem()?.to_string_lossy();
+    let word = format!("\"{}\"", stem.replace('_', "-"));
+    let made_by_name = |(s, text): &(PathBuf, String)| s == path && text.contains("const INFO: PlannerInfo");
+    let registered = sources.iter().any(made_by_name);
+    let capital = |part: &str| part[..1].to_uppercase() + &part[1..];
+    let kind: String = stem.split('_').filter(|part| !part.is_empty()).map(capital).collect();
     let within = |s: &Path, folder: &str| s.parent().is_some_and(|p| p.ends_with(folder));
     if !sources.iter().any(|(s, _)| s.file_name() == Some(name) && within(s, "examples")) {
         return Some("example of its name");
     }
     let tests = |(s, text): &(PathBuf, String)| {
         (s == path && text.contains("#[cfg(test)]"))
-            || (within(s, "tests") && (s.file_name() == Some(name) || text.contains(&word)))
+            || (within(s, "tests")
+                && (s.file_name() == Some(name)
+                    || text.contains(&word)
+                    || text.contains(&kind)
+                    || (registered && text.contains("in planners()"))))
     };
     if sources.iter().any(tests) { None } else { Some("test") }
 }
@@ -197,5 +206,9 @@ mod tests {
         sources.push(("crates/mp-x/tests/all.rs".into(), "run(\"fast\")".into()));
         assert_eq!(algorithm(&sources, &file), None);
         assert_eq!(algorithm(&sources, Path::new("crates/mp-x/src/other.rs")), None);
+        sources[2].1 = "for info in planners() {}".into();
+        assert_eq!(algorithm(&sources, &file), Some("test"));
+        sources[0].1 = "pub const INFO: PlannerInfo = PlannerInfo {}".into();
+        assert_eq!(algorithm(&sources, &file), None);
     }
 }

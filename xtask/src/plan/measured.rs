@@ -50,8 +50,8 @@ impl<M: Mover> Measured<M> {
     /// The index that suits the metric.
     pub(crate) fn index(&self) -> Index {
         match self {
-            Self::Displacement(_) => Index::Metric(MetricTree::default()),
-            _ => Index::Coordinates(KdTree::default()),
+            Self::Displacement(_) => Index::Metric(Box::default()),
+            _ => Index::Coordinates(Box::default()),
         }
     }
 }
@@ -119,8 +119,8 @@ impl<M: Mover> Embed for Measured<M> {
 /// By coordinates where the metric has them, else by the metric alone.
 #[derive(Clone, Debug)]
 pub(crate) enum Index {
-    Coordinates(KdTree),
-    Metric(MetricTree),
+    Coordinates(Box<KdTree>),
+    Metric(Box<MetricTree>),
 }
 
 impl<M: Mover> NearestNeighbors<Measured<M>> for Index {
@@ -132,8 +132,8 @@ impl<M: Mover> NearestNeighbors<Measured<M>> for Index {
     }
     fn clear(&mut self) {
         match self {
-            Self::Coordinates(tree) => NearestNeighbors::<Measured<M>>::clear(tree),
-            Self::Metric(tree) => NearestNeighbors::<Measured<M>>::clear(tree),
+            Self::Coordinates(tree) => NearestNeighbors::<Measured<M>>::clear(&mut **tree),
+            Self::Metric(tree) => NearestNeighbors::<Measured<M>>::clear(&mut **tree),
         }
     }
     fn nearest(&self, space: &Measured<M>, points: &[M::State], q: &M::State) -> Option<Hit> {
