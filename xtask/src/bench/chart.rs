@@ -39,6 +39,10 @@ pub(crate) struct Labels<'a> {
     pub(crate) y: &'a str,
 }
 
+/// Width of a chart, and what of it is for the names of the curves, pixels.
+const WIDTH: u32 = 1100;
+const LEGEND: u32 = 250;
+
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0x1f, 0x77, 0xb4),
     RGBColor(0xd6, 0x27, 0x28),
@@ -67,12 +71,13 @@ pub(crate) fn log_log(labels: Labels<'_>, marks: &[f64], curves: &[Curve]) -> Re
     }
     let mut text = String::new();
     {
-        let area = SVGBackend::with_string(&mut text, (960, 600)).into_drawing_area();
+        let area = SVGBackend::with_string(&mut text, (WIDTH, 600)).into_drawing_area();
         let drawn = || -> std::result::Result<(), DrawingAreaErrorKind<_>> {
             area.fill(&WHITE)?;
             let mut chart = ChartBuilder::on(&area)
                 .caption(labels.title, ("sans-serif", 20))
                 .margin(16)
+                .margin_right(LEGEND)
                 .x_label_area_size(48)
                 .y_label_area_size(72)
                 .build_cartesian_2d(
@@ -88,15 +93,16 @@ pub(crate) fn log_log(labels: Labels<'_>, marks: &[f64], curves: &[Curve]) -> Re
                 .x_label_formatter(&|v| number(*v))
                 .y_label_formatter(&|v| number(*v))
                 .draw()?;
-            for curve in curves {
+            for (i, curve) in curves.iter().enumerate() {
                 let colour = COLOURS[curve.colour % COLOURS.len()];
                 let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
                 let points: Vec<_> =
                     curve.points.iter().copied().filter(|p| shown(p.0) && shown(p.1)).collect();
-                chart
-                    .draw_series(LineSeries::new(points.iter().copied(), style))?
-                    .label(&curve.name)
-                    .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+                chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
+                // Beside the curves, where it hides none.
+                let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
+                area.draw(&PathElement::new([(x, y), (x + 18, y)], style))?;
+                area.draw(&Text::new(curve.name.clone(), (x + 24, y - 6), ("sans-serif", 12)))?;
                 if points.len() <= 40 && !curve.thin {
                     chart.draw_series(points.iter().map(|p| Circle::new(*p, 3, colour.filled())))?;
                 }
@@ -105,12 +111,6 @@ pub(crate) fn log_log(labels: Labels<'_>, marks: &[f64], curves: &[Curve]) -> Re
                     PathElement::new([(x, low), (x, high)], colour.mix(0.5).stroke_width(1))
                 }))?;
             }
-            chart
-                .configure_series_labels()
-                .position(SeriesLabelPosition::UpperLeft)
-                .background_style(WHITE.mix(0.8))
-                .border_style(RGBColor(0xdd, 0xe1, 0xe6))
-                .draw()?;
             area.present()
         };
         drawn().map_err(|e| miette!("cannot draw the chart `{}`: {e}", labels.title))?;
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn charts_have_their_curves_and_names() {
+    fn charts_have_curves_and_names() {
         let curve = Curve {
             ranges: vec![(2.0, 0.5, 4.0), (4.0, 0.0, 1.0)],
             ..Curve::new("RSRT", 0, vec![(2.0, 1.0), (4.0, 8.0), (8.0, f64::INFINITY)])
