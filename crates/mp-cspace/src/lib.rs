@@ -9,6 +9,7 @@
 //! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`Bounded`] |
 //! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
 //! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
+//! | where obstacles lead along | [`ObstacleHints`] |
 //! | how to move | [`Straight`]; by a set of inputs: [`inputs`] |
 //! | what to reach | [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
@@ -17,6 +18,7 @@
 
 mod error;
 mod goal;
+mod hints;
 pub mod inputs;
 mod local;
 mod metric;
@@ -35,6 +37,7 @@ mod validity;
 
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
+pub use hints::ObstacleHints;
 pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Straight};
 pub use metric::{
     Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, TrueMetricOn,

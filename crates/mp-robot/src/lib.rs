@@ -10,7 +10,8 @@
 //! The first three are a [`RigidBody`]. Obstacles stand still, but for those of [`AmongMoving`], a rigid body
 //! in space and time among bodies on known trajectories. Robots answer the questions of planners:
 //! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
-//! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; and of people:
+//! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; a [`RigidBody`] gives
+//! [`ObstacleHints`](mp_cspace::ObstacleHints) too; and of people:
 //! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] or
 //! [`ArmVerifier`] proves finished paths by other means.
 //!
@@ -37,6 +38,7 @@
 mod arm;
 mod bounds;
 mod explain;
+mod hints;
 mod moving;
 mod placement;
 mod rigid;

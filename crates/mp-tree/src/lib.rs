@@ -19,6 +19,7 @@
 //! | [`DdRrt`] | [`algo::add_rrt`] | from start and goal | the same, each node learning what is far |
 //! | [`MvbRrt`] | [`algo::mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
 //! | [`UtilityRrt`] | [`algo::utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
+//! | [`Obrrt`] | [`algo::obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
 //!
 //! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
 //! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
@@ -56,7 +57,7 @@
 //! |---|---|---|
 //! | what to grow toward | [`Propose`] | [`Samples`], [`Acceptable`], [`VoronoiBias`] |
 //! | which nodes to grow from | [`Selector`] | [`Nearest`], [`DynamicDomain`], [`LeastViolated`], [`Unexhausted`] |
-//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`Untried`], [`Cyclic`] |
+//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`ObstacleGuided`], [`Untried`], [`Cyclic`] |
 //! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
@@ -107,6 +108,7 @@ pub use algo::cyclic_rrt::{Cyclic, CyclicRrt, Listed};
 pub use algo::dd_rrt::{DdRrt, Domain, DynamicDomain};
 pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
 pub use algo::mvb_rrt::{MvbRrt, VoronoiBias};
+pub use algo::obrrt::{GrowthWeights, Obrrt, ObstacleGuided};
 pub use algo::or_parallel::OrParallel;
 pub use algo::rc_rrt::{RcRrt, Unexhausted};
 pub use algo::restarts::{Lengths, Restarts, Schedule};

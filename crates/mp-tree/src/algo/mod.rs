@@ -10,6 +10,7 @@ pub mod cyclic_rrt;
 pub mod dd_rrt;
 pub mod informed_rrt_star;
 pub mod mvb_rrt;
+pub mod obrrt;
 pub mod or_parallel;
 pub mod rc_rrt;
 pub mod restarts;

@@ -1,0 +1,90 @@
+//! Along which way an obstacle runs, by its triangles.
+
+use crate::{Placement, RigidBody};
+use mp_cspace::{ObstacleHints, Rng};
+use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use rand::RngExt;
+
+impl<P: Placement> RigidBody<P> {
+    /// A triangle (world) of the first obstacle touched at `q`.
+    fn hit_triangle(&mut self, q: &P::State) -> Option<[Point3<f64>; 3]> {
+        let (pose, shared) = (P::pose(q), &*self.shared);
+        shared.placed.iter().find_map(|(id, mesh)| {
+            let body = shared.scene.body(*id)?;
+            let (_, triangle) =
+                self.query.intersecting_triangles(&shared.robot, &pose, body.mesh(), body.pose())?;
+            Some(mesh.triangle(triangle))
+        })
+    }
+
+    /// Any triangle (world) of any obstacle, each obstacle as likely.
+    fn any_triangle(&self, rng: &mut Rng) -> Option<[Point3<f64>; 3]> {
+        let placed = &self.shared.placed;
+        if placed.is_empty() {
+            return None;
+        }
+        let (_, mesh) = &placed[rng.random_range(0..placed.len())];
+        let triangles = mesh.triangles().len();
+        (triangles > 0).then(|| mesh.triangle(rng.random_range(0..triangles)))
+    }
+}
+
+/// A unit vector along the triangle that the robot can follow, drawn: one of the edges, either way. A robot that
+/// stays in the plane follows the line in which the triangle cuts the plane.
+fn along<P: Placement>([a, b, c]: [Point3<f64>; 3], rng: &mut Rng) -> Option<Vector3<f64>> {
+    let edges = [b - a, c - b, a - c];
+    let first = rng.random_range(0..3_usize);
+    let sign = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+    let unit = |v: Vector3<f64>| Unit::try_new(v, 0.0).map(Unit::into_inner).filter(|v| v.norm() > 0.5);
+    let mut edges = (0..3).filter_map(|i| unit(edges[(first + i) % 3]));
+    let edge = if P::MOVES.contains(&2) {
+        edges.next()
+    } else {
+        let normal = unit((b - a).cross(&(c - a)));
+        let cut = normal.and_then(|n| unit(n.cross(&Vector3::z())));
+        cut.or_else(|| edges.find(|v| v.z == 0.0))
+    };
+    edge.map(|v| v * sign)
+}
+
+/// By the triangles of the obstacles: where the robot touches one, along that triangle.
+impl<P: Placement> ObstacleHints<P::State> for RigidBody<P> {
+    fn touches(&mut self, q: &P::State) -> bool {
+        !mp_cspace::Validity::is_valid(self, q)
+    }
+
+    /// In the direction of an edge of the triangle hit, or of any triangle, either way; in the plane, of the line
+    /// in which the triangle cuts it. A point inside a solid touches no triangle.
+    fn along(
+        &mut self,
+        from: &P::State,
+        toward: &P::State,
+        hit: Option<&P::State>,
+        rng: &mut Rng,
+    ) -> Option<P::State> {
+        let pose = P::pose(from);
+        let far = (P::pose(toward).translation.vector - pose.translation.vector).norm();
+        let triangle = match hit {
+            Some(q) => self.hit_triangle(q)?,
+            None => self.any_triangle(rng)?,
+        };
+        let translation = Translation3::from(pose.translation.vector + along::<P>(triangle, rng)? * far);
+        Some(P::configuration(&Isometry3::from_parts(translation, pose.rotation)))
+    }
+
+    fn turned(&self, position: &P::State, rotation: &P::State) -> P::State {
+        let (position, rotation) = (P::pose(position), P::pose(rotation));
+        P::configuration(&Isometry3::from_parts(position.translation, rotation.rotation))
+    }
+
+    /// Rotations are carried in the world: by the turn that leads from one to the other.
+    fn carried(&self, q: &P::State, from: &P::State, to: &P::State) -> P::State {
+        let [q, from, to] = [q, from, to].map(P::pose);
+        let shift = to.translation.vector - from.translation.vector;
+        let turned = to.rotation * from.rotation.inverse() * q.rotation;
+        P::configuration(&Isometry3::from_parts(
+            Translation3::from(q.translation.vector + shift),
+            UnitQuaternion::new_normalize(turned.into_inner()),
+        ))
+    }
+}

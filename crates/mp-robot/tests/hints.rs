@@ -1,0 +1,80 @@
+//! Hints lead along what is hit.
+
+mod common;
+
+use common::{clutter, robot};
+use mp_collide::reference::triangle_distance;
+use mp_cspace::{Metric, ObstacleHints, Rn, Rng, Se2, Se3, Space, Validity, rotation_angle};
+use mp_robot::{FreeFlyer, Placement, PlanarFlyer, PointRobot, RigidBody};
+use nalgebra::{Point3, Vector3};
+
+fn world_triangles() -> Vec<[Point3<f64>; 3]> {
+    let meshes = clutter().into_iter().map(|(_, mesh, pose)| mesh.transformed(&pose));
+    meshes.flat_map(|m| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>()).collect()
+}
+
+fn parallel(way: &Vector3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> bool {
+    (b - a).cross(&(c - a)).normalize().dot(way).abs() < 1e-9
+}
+
+/// Each hint at a hit is parallel to a triangle of an obstacle that the robot touches there, as long as asked, and
+/// turns nothing; each without a hit is parallel to some triangle.
+fn hints<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBody<P>) {
+    let (mut rng, triangles) = (Rng::seed(5), world_triangles());
+    let mut hit = 0;
+    for _ in 0..400 {
+        let [from, toward, q] = [(); 3].map(|()| space.sample_uniform(&mut rng));
+        let touching = body.touches(&q);
+        assert_eq!(touching, !body.is_valid(&q));
+        let offset = |to: &P::State| P::pose(to).translation.vector - P::pose(&from).translation.vector;
+        let checked = |to: &P::State| {
+            assert!((offset(to).norm() - offset(&toward).norm()).abs() < 1e-12);
+            assert!(rotation_angle(&P::pose(to).rotation, &P::pose(&from).rotation) < 1e-7);
+            offset(to).normalize()
+        };
+        let any = body.along(&from, &toward, None, &mut rng).unwrap();
+        let way = checked(&any);
+        assert!(triangles.iter().any(|t| parallel(&way, t)));
+        let along = body.along(&from, &toward, Some(&q), &mut rng);
+        assert_eq!(along.is_some(), touching);
+        let Some(along) = along else { continue };
+        let way = checked(&along);
+        let placed = body.mesh().transformed(&P::pose(&q));
+        let touched = |t: &&[Point3<f64>; 3]| {
+            (0..placed.triangles().len()).any(|i| triangle_distance(&placed.triangle(i), t) < 1e-9)
+        };
+        assert!(triangles.iter().filter(touched).any(|t| parallel(&way, t)), "{way:?}");
+        hit += 1;
+    }
+    assert!(hit > 20, "{hit}");
+}
+
+#[test]
+fn hints_are_parallel_to_what_is_hit() {
+    hints(&Se3::new([-2.0; 3], [2.0; 3]).unwrap(), FreeFlyer::new(&robot(), clutter()).unwrap());
+    hints(&Se2::new([-2.0; 2], [2.0; 2]).unwrap(), PlanarFlyer::new(&robot(), clutter()).unwrap());
+}
+
+#[test]
+fn positions_and_rotations_are_taken_apart() {
+    let body = FreeFlyer::new(&robot(), []).unwrap();
+    let space = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
+    let mut rng = Rng::seed(8);
+    for _ in 0..100 {
+        let [p, q, r] = [(); 3].map(|()| space.sample_uniform(&mut rng));
+        let turned = body.turned(&p, &q);
+        assert_eq!((turned.translation, turned.rotation), (p.translation, q.rotation));
+        assert!(space.distance(&body.carried(&p, &p, &q), &q) < 1e-7);
+        assert!(space.distance(&body.carried(&r, &q, &q), &r) < 1e-7);
+        // There and back.
+        let there = body.carried(&r, &p, &q);
+        assert!(space.distance(&body.carried(&there, &q, &p), &r) < 1e-6);
+        assert!(body.clone().along(&p, &q, None, &mut rng).is_none(), "there is no obstacle");
+    }
+    let mut point = PointRobot::new(clutter()).unwrap();
+    let space = Rn::<3>::new([-2.0; 3], [2.0; 3]).unwrap();
+    let [p, q] = [(); 2].map(|()| space.sample_uniform(&mut rng));
+    assert_eq!(point.turned(&p, &q), p);
+    assert_eq!(point.carried(&p, &p, &q), p + (q - p));
+    assert!(point.along(&p, &q, None, &mut rng).is_some());
+}

@@ -1,0 +1,328 @@
+//! Obstacle-based RRT: the tree grows along obstacles as well as toward samples.
+//!
+//! S. Rodriguez, X. Tang, J.-M. Lien and N. M. Amato, *An obstacle-based rapidly-exploring random tree*,
+//! ICRA 2006.
+//!
+//! From a tree that holds the start, repeat:
+//! 1. draw a sample, uniform in the space (or aim at a goal), and find the node nearest to it;
+//! 2. draw one of the growth methods below, by weight;
+//! 3. extend the tree from the node, one step at most, in the direction of the method;
+//! 4. where a goal is reached, verify the path: return it, or prune from the edge that failed.
+//!
+//! | method | grows |
+//! |---|---|
+//! | G0 | toward the sample, as RRT |
+//! | G1 | toward the position of the sample, with the rotation of the node |
+//! | G2 | along a random obstacle, toward the rotation of the sample |
+//! | G3 | along a random obstacle, with the rotation of the node |
+//! | G4 | in place toward the rotation of the sample; then another step toward the sample |
+//! | G5 | toward the sample; where that fails, along the obstacle hit, toward the rotation of the sample |
+//! | G6 | toward the sample; where that fails, along the obstacle hit, with the rotation of the node |
+//! | G7 | toward the sample; where that fails, and so does a ray beside it, by what leads from where the one hits to where the other does: along the C-obstacle, either way |
+//!
+//! Which way obstacles run is told by [`ObstacleHints`], which rigid bodies among meshes are and you may write for
+//! your own robots. Where they know nothing, all but G1 and G4 extend toward the sample.
+//! Directions that lead out of the space are followed as far as is within, to an eighth of a step.
+//!
+//! Not here: the paper's push to the medial axis. Different from it: how far along an obstacle is as far as the
+//! sample is in position; rays of G7 are no longer than a step, and the second leads toward a state a tenth of the
+//! way from the sample to another.
+//!
+//! Against RRT, means of 100 seeds, in the tests' worlds: 290 iterations instead of 740 through a narrow passage in
+//! the plane, 1400 instead of 2200 in space, 1500 instead of 1800 for a rod that must turn in a gap; 610 instead of
+//! 680 and 1070 instead of 1240 out of bug traps. An iteration costs a fifth to a
+//! third more motions, and looks for hits.
+//!
+//! **When to use it.** One-way motions and goal regions beyond narrow passages, where the walls lead through them
+//! and a robot that turns as it goes gets stuck. Where there are goal states and motions can be reversed,
+//! try [RRT-Connect](super::rrt_connect) first; its loop takes these growth methods too:
+//! [`ObstacleGuided`] as the first of its two growths in a [`Recipe`] for
+//! [`TwoTrees`](crate::TwoTrees). As it needs hints it cannot be made by name.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | weights of G0 … G7 | each 0 or more, finite, some positive | see [`GrowthWeights`] |
+//! | `goal_bias`: probability of aiming at a goal | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//!
+//! A point goes around discs in the unit square, along their tangents:
+//! ```
+//! use mp_cspace::{
+//!     Discrete, FineDiscrete, Iterations, ObstacleHints, Outcome, Planner, Resolution, Rn, Rng, Straight,
+//! };
+//! use mp_tree::{GrowthWeights, Obrrt, Problem, Tuning};
+//! use nalgebra::Vector2;
+//! use rand::RngExt;
+//!
+//! type Point = Vector2<f64>;
+//! const DISCS: [(Point, f64); 2] = [(Point::new(0.5, 0.3), 0.29), (Point::new(0.5, 0.8), 0.19)];
+//!
+//! struct Tangents;
+//! impl ObstacleHints<Point> for Tangents {
+//!     fn touches(&mut self, q: &Point) -> bool {
+//!         DISCS.iter().any(|(center, radius)| (q - center).norm() <= *radius)
+//!     }
+//!     fn along(&mut self, from: &Point, toward: &Point, hit: Option<&Point>, rng: &mut Rng) -> Option<Point> {
+//!         let (center, _) = match hit {
+//!             Some(q) => DISCS.into_iter().find(|(center, radius)| (q - center).norm() <= *radius)?,
+//!             None => DISCS[rng.random_range(0..DISCS.len())],
+//!         };
+//!         let out = (from - center).try_normalize(0.0)? * (toward - from).norm();
+//!         let tangent = Point::new(-out.y, out.x);
+//!         Some(if rng.random_bool(0.5) { from + tangent } else { from - tangent })
+//!     }
+//!     // A point has no rotation.
+//!     fn turned(&self, position: &Point, _: &Point) -> Point {
+//!         *position
+//!     }
+//!     fn carried(&self, q: &Point, from: &Point, to: &Point) -> Point {
+//!         q + (to - from)
+//!     }
+//! }
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Point| !Tangents.touches(q);
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.005))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let mut planner = Obrrt::new(problem, Tangents, Tuning::default(), GrowthWeights::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::{
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Problem, Recipe, Samples, Selector,
+    SingleTree, Tuning,
+};
+use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Rng, Space, Uniform};
+use rand::RngExt;
+
+/// States looked at on a way that failed, for where it collides.
+const LOOKS: u32 = 10;
+/// How often a C-obstacle vector is doubled at most to make a step of it.
+const DOUBLINGS: u32 = 8;
+
+/// How often each growth method is used, against the others: of G0 to G7, in this order. Each is zero or more
+/// and finite, and one at least is positive. The default, 0.3, 0.05, 0.025, 0.025, 0.1, 0.1, 0.1 and 0.3, was chosen
+/// by measurement: methods that follow what was hit gain most, G7 before all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrowthWeights(pub [f64; 8]);
+
+impl Default for GrowthWeights {
+    fn default() -> Self {
+        Self([0.3, 0.05, 0.025, 0.025, 0.1, 0.1, 0.1, 0.3])
+    }
+}
+
+impl GrowthWeights {
+    fn checked(self) -> Result<Self, BuildError> {
+        let bad = |value| {
+            let range = "0 or more and finite, one of them positive".to_owned();
+            Err(BuildError::OutOfRange { name: "weights", value, range })
+        };
+        if let Some(&value) = self.0.iter().find(|w| !(**w >= 0.0 && w.is_finite())) {
+            return bad(value);
+        }
+        let sum = self.0.iter().sum::<f64>();
+        if sum > 0.0 && sum.is_finite() { Ok(self) } else { bad(sum) }
+    }
+
+    fn draw(&self, rng: &mut Rng) -> usize {
+        let mut left = rng.random::<f64>() * self.0.iter().sum::<f64>();
+        let mut last = 0;
+        for (method, &weight) in self.0.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+            last = method;
+            left -= weight;
+            if left < 0.0 {
+                break;
+            }
+        }
+        last
+    }
+}
+
+/// Grows by one of the methods of obstacle-based RRT: see the [module](self).
+#[derive(Clone, Debug)]
+pub struct ObstacleGuided<H> {
+    hints: H,
+    weights: GrowthWeights,
+}
+
+impl<H> ObstacleGuided<H> {
+    /// Growth by `hints`.
+    ///
+    /// # Errors
+    /// When a weight is negative or not finite, or none is positive.
+    pub fn new(hints: H, weights: GrowthWeights) -> Result<Self, BuildError> {
+        Ok(Self { hints, weights: weights.checked()? })
+    }
+
+    /// The hints.
+    pub fn hints(&self) -> &H {
+        &self.hints
+    }
+
+    /// Where the robot first touches something on the step from `from` toward `target`, as far as is seen.
+    fn hit<C: Space>(&mut self, space: &C, step: f64, from: &C::State, target: &C::State) -> Option<C::State>
+    where
+        H: ObstacleHints<C::State>,
+    {
+        let end = (step / space.distance(from, target)).min(1.0);
+        (1..=LOOKS)
+            .map(|i| space.interpolate(from, target, end * f64::from(i) / f64::from(LOOKS)))
+            .find(|q| self.hints.touches(q))
+    }
+
+    /// A step from a node along the C-obstacle between it and `target`.
+    fn along_c_obstacle<C: Space>(
+        &mut self,
+        space: &C,
+        step: f64,
+        from: &C::State,
+        target: &C::State,
+        rng: &mut Rng,
+    ) -> Option<C::State>
+    where
+        H: ObstacleHints<C::State>,
+    {
+        let beside = space.interpolate(target, &space.sample_uniform(rng), 0.1);
+        let mut ends = [self.hit(space, step, from, target)?, self.hit(space, step, from, &beside)?];
+        if rng.random_bool(0.5) {
+            ends.reverse();
+        }
+        let mut along = self.hints.carried(from, &ends[0], &ends[1]);
+        for _ in 0..DOUBLINGS {
+            if space.distance(from, &along) >= step {
+                break;
+            }
+            along = self.hints.carried(&along, from, &along);
+        }
+        Some(along)
+    }
+}
+
+/// One step in the direction of `along`, as far as is within the space.
+fn follow<C, L, Se, A>(from: NodeId, along: &C::State, growing: &mut Growing<'_, '_, C, L, Se, A>) -> Grown
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    Se: Selector<C>,
+    A: Attach<C, L>,
+{
+    let (space, step) = (growing.steer().space(), growing.steer().step());
+    let state = growing.tree().state(from);
+    let distance = space.distance(state, along);
+    if !(distance > 0.0 && distance.is_finite()) {
+        return Grown::Trapped;
+    }
+    let most = (step / distance).min(1.0);
+    let ends = [1.0, 0.5, 0.25, 0.125].map(|part| space.interpolate(state, along, most * part));
+    match ends.iter().find(|q| space.contains(q)) {
+        Some(end) => growing.step_toward(from, end),
+        None => Grown::Trapped,
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Growth<C, L> for ObstacleGuided<H> {
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (state, sample) = (growing.tree().state(from).clone(), growing.target().clone());
+        let method = self.weights.draw(growing.rng());
+        let grown = match method {
+            1 => follow(from, &self.hints.turned(&sample, &state), growing),
+            2 | 3 => match self.hints.along(&state, &sample, None, growing.rng()) {
+                Some(along) if method == 2 => follow(from, &self.hints.turned(&along, &sample), growing),
+                Some(along) => follow(from, &along, growing),
+                None => growing.step(from),
+            },
+            4 => match follow(from, &self.hints.turned(&state, &sample), growing) {
+                Grown::Advanced(turned) | Grown::Reached(turned) => match growing.step(turned) {
+                    Grown::Trapped => Grown::Advanced(turned),
+                    grown => grown,
+                },
+                // There is nothing to turn, or no room for it.
+                Grown::Trapped => growing.step(from),
+            },
+            5 | 6 => match growing.step(from) {
+                Grown::Trapped => {
+                    let hit = self.hit(space, step, &state, &sample);
+                    let rng = growing.rng();
+                    match hit.and_then(|hit| self.hints.along(&state, &sample, Some(&hit), rng)) {
+                        Some(along) if method == 5 => {
+                            follow(from, &self.hints.turned(&along, &sample), growing)
+                        }
+                        Some(along) => follow(from, &along, growing),
+                        None => Grown::Trapped,
+                    }
+                }
+                grown => grown,
+            },
+            7 => match growing.step(from) {
+                Grown::Trapped => match self.along_c_obstacle(space, step, &state, &sample, growing.rng()) {
+                    Some(along) => follow(from, &along, growing),
+                    None => Grown::Trapped,
+                },
+                grown => grown,
+            },
+            _ => growing.step(from),
+        };
+        match grown {
+            Grown::Reached(id) if growing.tree().state(id) != growing.target() => Grown::Advanced(id),
+            grown => grown,
+        }
+    }
+}
+
+/// Obstacle-based RRT: see the [module](self).
+pub type Obrrt<'c, C, L, N, H> =
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, ObstacleGuided<H>, AppendDistinct>;
+
+impl<'c, C, L, N, H> Obrrt<'c, C, L, N, H>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    N: NearestNeighbors<C>,
+    H: ObstacleHints<C::State>,
+{
+    /// Obstacle-based RRT with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(
+        problem: Problem<'c, C, L>,
+        hints: H,
+        tuning: Tuning,
+        weights: GrowthWeights,
+    ) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), hints, tuning, weights)
+    }
+
+    /// Obstacle-based RRT with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        hints: H,
+        tuning: Tuning,
+        weights: GrowthWeights,
+    ) -> Result<Self, BuildError> {
+        let (propose, grow) = (Samples(Uniform(problem.space)), ObstacleGuided::new(hints, weights)?);
+        let attach = AppendDistinct::default();
+        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow, attach, tuning })
+    }
+}
