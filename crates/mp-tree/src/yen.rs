@@ -79,7 +79,8 @@ fn shortest(arcs: &[Vec<(u32, f64)>], stem: &[u32], to: u32, taken: &[u32]) -> O
 }
 
 /// The shortest of the paths that lead straight to one of the nodes `via` and straight on, visiting
-/// none twice; ties by that node. Arcs as in [`shortest_paths`]. Two searches.
+/// none twice and without a detour: within `window` before and behind the node there is no shorter way.
+/// Ties by node. Arcs as in [`shortest_paths`]. Two searches, and one for each path tried.
 ///
 /// I. Abraham, D. Delling, A. V. Goldberg and R. F. Werneck, *Alternative routes in road networks*, ACM
 /// J. of Experimental Algorithmics 18, 2013.
@@ -87,6 +88,7 @@ pub(crate) fn shortest_via(
     arcs: &[Vec<(u32, f64)>],
     from: u32,
     to: u32,
+    window: f64,
     via: impl Iterator<Item = u32>,
 ) -> Option<(f64, Vec<u32>)> {
     let mut back = vec![Vec::new(); arcs.len()];
@@ -107,7 +109,17 @@ pub(crate) fn shortest_via(
         path.reverse();
         path.extend(&way(&back, to)[1..]);
         let distinct: BTreeSet<u32> = path.iter().copied().collect();
-        (distinct.len() == path.len()).then_some((length.0, path))
+        if distinct.len() < path.len() {
+            return None;
+        }
+        let before = |at: &u32| ahead[node as usize].0 - ahead[*at as usize].0;
+        let behind = |at: &u32| back[node as usize].0 - back[*at as usize].0;
+        let turn = path.iter().position(|at| *at == node)?;
+        let first = path[..=turn].iter().rev().find(|at| before(at) >= window).unwrap_or(&from);
+        let last = path[turn..].iter().find(|at| behind(at) >= window).unwrap_or(&to);
+        let way = before(first) + behind(last);
+        let straight = lengths(arcs, *first)[*last as usize].0 >= way * (1.0 - 1e-9);
+        straight.then_some((length.0, path))
     })
 }
 
@@ -133,6 +145,22 @@ fn lengths(arcs: &[Vec<(u32, f64)>], from: u32) -> Vec<(f64, u32)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// From 0 to 4: straight on by 1, or by 2 and 3. A detour leads from 2 to 3 by 5.
+    #[test]
+    fn detours_are_not_ways() {
+        let mut arcs = vec![Vec::new(); 6];
+        for (a, b, length) in [(0, 1, 1.0), (1, 4, 1.0), (0, 2, 2.0), (2, 3, 2.0), (3, 4, 2.0)] {
+            arcs[a].push((b, length));
+        }
+        arcs[2].push((5, 1.5));
+        arcs[5].push((3, 1.5));
+        let via = |node, window| shortest_via(&arcs, 0, 4, window, [node].into_iter());
+        assert_eq!(via(2, 1.0), Some((6.0, vec![0, 2, 3, 4])));
+        assert_eq!(via(5, 0.0), Some((7.0, vec![0, 2, 5, 3, 4])));
+        assert_eq!(via(5, 1.0), None);
+        assert_eq!(via(2, 10.0), None);
+    }
 
     /// All simple paths, by trying everything.
     fn all(
@@ -184,14 +212,14 @@ mod tests {
             sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             assert_eq!(sorted, expected, "{arcs:?}");
             for node in 0..n {
-                let via = shortest_via(&arcs, 0, n - 1, [node].into_iter());
+                let via = shortest_via(&arcs, 0, n - 1, 0.0, [node].into_iter());
                 if let Some(path) = &via {
                     assert!(expected.contains(path) && path.1.contains(&node));
                 }
                 let best = expected.first().filter(|path| path.1.contains(&node));
                 assert!(best.is_none_or(|best| via.is_none_or(|via| via.0 == best.0)));
             }
-            let any = shortest_via(&arcs, 0, n - 1, 0..n);
+            let any = shortest_via(&arcs, 0, n - 1, f64::INFINITY, 0..n);
             assert_eq!(any.map(|path| path.0), expected.first().map(|path| path.0));
             for k in [0, 1, 3] {
                 let few = shortest_paths(&arcs, 0, n - 1, k);

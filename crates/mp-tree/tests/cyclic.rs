@@ -224,3 +224,22 @@ fn bad_tolerances_are_refused() {
         assert!(matches!(error, BuildError::OutOfRange { name: n, .. } if n == name), "{error}");
     }
 }
+
+/// A way below two blocks, one between them and one above: each is listed once.
+#[test]
+fn three_routes_are_three_ways() {
+    let (space, boxes) = (square(), Boxes(vec![([0.3, 0.2], [0.7, 0.55]), ([0.3, 0.67], [0.7, 0.85])]));
+    for seed in 0..6 {
+        let mut planner = planner(&space, &boxes, (1e-3, -1.0));
+        grow(&mut planner, seed, 3_000);
+        let routes = planner.routes(3, 0.25).unwrap();
+        assert_alternatives(&routes, &boxes);
+        let way = |path: &Path<Point, Ends>| {
+            let inside = path.states.iter().find(|q| q.x > 0.35 && q.x < 0.65).unwrap();
+            u8::from(inside.y > 0.4) + u8::from(inside.y > 0.75)
+        };
+        let mut ways: Vec<u8> = routes.iter().map(|(path, _)| way(path)).collect();
+        ways.sort_unstable();
+        assert_eq!(ways, [0, 1, 2], "seed {seed}");
+    }
+}

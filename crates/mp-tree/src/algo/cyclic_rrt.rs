@@ -284,9 +284,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
     /// At most `k` paths, of which each goes somewhere the ones before do not: the first is the
     /// cheapest, and each other the cheapest of those straight to and straight on from a node farther
     /// than `apart`, in the metric of the space, from all of the paths before (from points half a step
-    /// apart, interpolated between their nodes). Else as [`alternatives`](Self::alternatives); costs two
-    /// searches for each path. In the open a detour will do as a route: take `apart` at least as large
-    /// as the passages are wide.
+    /// apart, interpolated between their nodes), and without a detour there: within a cost of `apart`
+    /// before and behind that node no way is cheaper. Else as [`alternatives`](Self::alternatives);
+    /// costs a search of the graph for each node tried.
     ///
     /// # Errors
     /// When `apart` is negative or not a number.
@@ -301,7 +301,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
             let mut open: Vec<NodeId> = (0..tree.len() as NodeId).collect();
             while found.len() < k {
                 let via = open.iter().copied();
-                let Some(route) = shortest_via(arcs, 0, tree.len() as u32, via) else { break };
+                let Some(route) = shortest_via(arcs, 0, tree.len() as u32, apart, via) else { break };
                 let states: Vec<&C::State> =
                     route.1[..route.1.len() - 1].iter().map(|&id| tree.state(id)).collect();
                 let between = states.windows(2).flat_map(|pair| {
