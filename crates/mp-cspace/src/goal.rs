@@ -85,7 +85,8 @@ impl<C: Space> Sampler<C::State> for Ball<'_, C> {
 /// let mut there = FixedFactors::new(&space, Se2State::new(0.9, 0.1, 0.0), [0, 1], 0.01)?;
 /// assert!(there.reached(&Se2State::new(0.9, 0.105, 2.0)));
 /// assert!(!there.reached(&Se2State::new(0.9, 0.2, 0.0)));
-/// assert_eq!(there.sample(&mut Rng::seed(1)).translation, [0.9, 0.1].into());
+/// let sample = there.sample(&mut Rng::seed(1));
+/// assert_eq!([sample.translation.x, sample.translation.y], [0.9, 0.1]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
