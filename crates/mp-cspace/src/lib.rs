@@ -10,6 +10,7 @@
 //! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
 //! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
 //! | where obstacles lead along | [`ObstacleHints`] |
+//! | which way clearance grows | [`ClearanceGradient`] |
 //! | how to move | [`Straight`]; by a set of inputs: [`inputs`] |
 //! | what to reach | [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
@@ -18,6 +19,7 @@
 
 mod error;
 mod goal;
+mod gradient;
 mod hints;
 pub mod inputs;
 mod local;
@@ -37,6 +39,7 @@ mod validity;
 
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
+pub use gradient::ClearanceGradient;
 pub use hints::ObstacleHints;
 pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Straight};
 pub use metric::{

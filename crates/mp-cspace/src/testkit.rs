@@ -10,11 +10,13 @@
 //! # Ok::<(), mp_cspace::SpaceError>(())
 //! ```
 
+mod gradient;
 mod local;
 mod metric;
 mod neighbors;
 mod space;
 
+pub use gradient::check_clearance_gradient;
 pub use local::check_local_planner;
 pub use metric::{check_metric, check_true_metric};
 pub use neighbors::check_nearest_neighbors;

@@ -1,0 +1,41 @@
+//! Clearance and which way it grows: what bends motions away from obstacles.
+
+/// How far from the nearest obstacle a state is, and in which direction of the space that grows.
+///
+/// Answers guide: nothing accepts a motion by them, so they may be rough (an image, a blurred map, a field
+/// that a user wrote down), and closures are fields too.
+///
+/// ```
+/// use mp_cspace::ClearanceGradient;
+/// use nalgebra::Vector2;
+/// // A point, one metre or more from the origin.
+/// let mut field = |q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]| {
+///     let distance = q.norm();
+///     gradient.copy_from_slice((q / distance).as_slice());
+///     distance - 1.0
+/// };
+/// let mut gradient = [0.0; 2];
+/// let clearance = field.clearance_gradient(&Vector2::new(3.0, 4.0), f64::INFINITY, &mut gradient);
+/// assert_eq!((clearance, gradient), (4.0, [0.6, 0.8]));
+/// ```
+pub trait ClearanceGradient<S> {
+    /// The signed clearance (m) of `q`, and its gradient.
+    ///
+    /// - Free: the distance to the nearest obstacle. A state at least `reach` (m) away may be answered by any
+    ///   number of at least `reach`, with a gradient of zeros: what is so far does not matter to the caller.
+    /// - In collision: zero or less, minus the depth where depth is known. The gradient then should point
+    ///   the way out; zeros where no way is known.
+    /// - `gradient` has one number per degree of freedom, in the order of the velocities of
+    ///   [`Space::moved`](crate::Space::moved): translations (m/m) before rotations (m/rad), about world axes.
+    ///   So the clearance after moving at velocity `v` for a short time `t` is `clearance + t·gradient·v`. All
+    ///   of it is written, and all of it is finite; where the clearance has a kink, any of the gradients
+    ///   around will do.
+    fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64;
+}
+
+impl<S, F: FnMut(&S, f64, &mut [f64]) -> f64> ClearanceGradient<S> for F {
+    #[inline]
+    fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
+        self(q, reach, gradient)
+    }
+}
