@@ -13,6 +13,7 @@
 //! | which way clearance grows | [`ClearanceGradient`] |
 //! | how to move | [`Straight`]; by a set of inputs: [`inputs`] |
 //! | what to reach | [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
+//! | what to plan | [`Problem`], with [`Goals`] and a [verifier](Verify); by names: [`PlannerInfo`], [`Settings`] |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
 //! | what to do with a path | [`Path`], [`verify_path`], [`least_clearance`], [`shorten`] |
 //! | whether your own implementation is right | [`testkit`] |
@@ -29,9 +30,11 @@ pub mod nn;
 mod observer;
 mod path;
 mod planner;
+mod problem;
 mod rng;
 mod sampler;
 pub mod shorten;
+pub mod shortest;
 mod space;
 mod stop;
 pub mod testkit;
@@ -53,6 +56,10 @@ pub use nn::{
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
+pub use problem::{
+    BoxedVerify, BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, ProblemParts,
+    Settings, Step, Verify, Workers, closest,
+};
 pub use rng::Rng;
 pub use sampler::{GoalBias, Halton, Sampler, Uniform};
 pub use space::{

@@ -5,7 +5,8 @@ use crate::{
     Tree,
 };
 use mp_cspace::{
-    Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space, Stop, StopReason,
+    Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, ProblemParts, Progress, Rng, Space,
+    Stop, StopReason,
 };
 use rand::RngExt;
 
@@ -52,11 +53,12 @@ where
     /// When a parameter is out of range.
     pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
         let goal_bias = recipe.tuning.checked_bias()?;
+        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            steer: Steer::new(problem.space, problem.local, problem.verify, &recipe.tuning)?,
-            start: problem.start,
-            goal_bias: if problem.goals.can_aim() { goal_bias } else { 0.0 },
-            goals: problem.goals,
+            steer: Steer::new(space, local, verify, &recipe.tuning)?,
+            start,
+            goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
+            goals,
             tried: 0,
             branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
             propose: recipe.propose,

@@ -78,11 +78,8 @@ pub mod algo;
 mod apart;
 mod attach;
 mod branch;
-mod error;
-mod goals;
 mod grow;
 mod improve;
-mod problem;
 mod propose;
 mod recipe;
 mod registry;
@@ -94,10 +91,7 @@ mod tree;
 mod two;
 mod uniform;
 mod untried;
-mod verify;
-mod workers;
 mod wrap;
-mod yen;
 
 pub use algo::aorrtc::Aorrtc;
 pub use algo::bi_rrt::BiRrt;
@@ -122,24 +116,20 @@ pub use algo::utility_rrt::{UtilityGuided, UtilityRrt};
 pub use apart::AppendApart;
 pub use attach::{Append, AppendDistinct, Attach, Attached};
 pub use branch::{Branch, Growing, Steer};
-pub use error::{BuildError, Endpoint};
-pub use goals::Goals;
 pub use grow::{Connect, Extend, Grown, Growth};
 pub use improve::{Improving, improve};
-pub use problem::Problem;
+pub use mp_cspace::{
+    BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step, Verify, Workers,
+    closest,
+};
 pub use propose::{Acceptable, Propose, Samples};
-pub use recipe::{Recipe, Step, Tuning};
+pub use recipe::{Recipe, Tuning};
 pub use registry::{AnyPlanner, build, build_with, planner, planners};
 pub use rewire::{Near, Rewire};
 pub use select::{Nearest, Purpose, Selector};
-pub use settings::{
-    Demand, GOAL_BIAS, INPUTS, LEVELS, NEEDS_BOTH_ENDS, PATIENCE, Parameter, PlannerInfo, STEP, Settings,
-    closest,
-};
+pub use settings::{GOAL_BIAS, INPUTS, LEVELS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 pub use single::SingleTree;
 pub use tree::Tree;
 pub use two::TwoTrees;
 pub use untried::Untried;
-pub use verify::Verify;
-pub use workers::Workers;
 pub use wrap::{Named, Wrapper, build_from, wrappers};

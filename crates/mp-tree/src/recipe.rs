@@ -1,38 +1,7 @@
 //! What makes one variant of the family differ from another.
 
-use crate::BuildError;
-use mp_cspace::Space;
-
-/// How far one step goes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Step {
-    /// A distance in the metric of the space.
-    Length(f64),
-    /// A fraction of the extent of the space.
-    Fraction(f64),
-}
-
-impl Step {
-    /// The step as a distance in `space`.
-    ///
-    /// # Errors
-    /// When it is not positive, not finite, or longer than the extent of the space.
-    pub fn length_in<C: Space>(self, space: &C) -> Result<f64, BuildError> {
-        let extent = space.extent();
-        let (value, most, length) = match self {
-            Self::Length(length) => (length, extent, length),
-            Self::Fraction(fraction) => (fraction, 1.0, fraction * extent),
-        };
-        if value > 0.0 && value <= most && length > 0.0 && length.is_finite() {
-            return Ok(length);
-        }
-        let unit = match self {
-            Self::Length(_) => "the extent of the space",
-            Self::Fraction(_) => "as a fraction of the extent of the space",
-        };
-        Err(BuildError::OutOfRange { name: "step", value, range: format!("in (0, {most}], {unit}") })
-    }
-}
+use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::{BuildError, PlannerInfo, Settings, Step};
 
 /// The parameters every planner of the family has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,6 +24,21 @@ impl Default for Tuning {
 }
 
 impl Tuning {
+    /// The parameters that are set, the others by default. Their range is checked when the planner is
+    /// made.
+    ///
+    /// # Errors
+    /// When `planner` has no parameter of a name that is set, or a value cannot be read.
+    pub fn read(settings: &Settings, planner: &PlannerInfo) -> Result<Self, BuildError> {
+        settings.check(planner)?;
+        let default = Self::default();
+        Ok(Self {
+            step: settings.step(STEP.name)?.unwrap_or(default.step),
+            goal_bias: settings.number(GOAL_BIAS.name)?.unwrap_or(default.goal_bias),
+            patience: settings.count(PATIENCE.name)?.unwrap_or(default.patience),
+        })
+    }
+
     pub(crate) fn checked_bias(&self) -> Result<f64, BuildError> {
         if (0.0..=1.0).contains(&self.goal_bias) {
             return Ok(self.goal_bias);
@@ -79,4 +63,46 @@ pub struct Recipe<P, Se, G, A> {
     pub attach: A,
     /// The parameters.
     pub tuning: Tuning,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const INFO: PlannerInfo = PlannerInfo {
+        name: "p",
+        summary: "",
+        citation: "",
+        parameters: &[STEP, GOAL_BIAS, PATIENCE],
+        aliases: &[],
+        cannot: &[],
+    };
+
+    #[test]
+    fn reads_what_is_set() {
+        let settings = Settings::parse(["step = 2.5", "patience=3", "step=10%"]).unwrap();
+        let tuning = Tuning::read(&settings, &INFO).unwrap();
+        assert_eq!(tuning, Tuning { step: Step::Fraction(0.1), patience: 3, ..Tuning::default() });
+        assert_eq!(Tuning::read(&Settings::default(), &INFO).unwrap(), Tuning::default());
+    }
+
+    #[test]
+    fn the_tables_defaults_are_the_defaults() {
+        let settings =
+            Settings::parse(INFO.parameters.iter().map(|p| format!("{}={}", p.name, p.default))).unwrap();
+        assert_eq!(Tuning::read(&settings, &INFO).unwrap(), Tuning::default());
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_read() {
+        for text in ["step=far", "step=%", "goal-bias=", "patience=-1", "patience=1.5"] {
+            let error = Tuning::read(&Settings::parse([text]).unwrap(), &INFO).unwrap_err();
+            assert!(matches!(error, BuildError::Malformed { .. }), "{text}: {error}");
+        }
+        let error = Tuning::read(&Settings::parse(["stepp=1"]).unwrap(), &INFO).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "p has no parameter `stepp` (did you mean `step`?); it has: step, goal-bias, patience"
+        );
+    }
 }

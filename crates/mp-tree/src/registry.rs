@@ -78,7 +78,7 @@ where
     N: NearestNeighbors<C> + Clone + Send + 'c,
 {
     let info = planner(name)?;
-    let tuning = settings.tuning(info)?;
+    let tuning = Tuning::read(settings, info)?;
     Ok(match info.name {
         "rrt" => Box::new(Rrt::with_index(problem, index, tuning)?),
         "rrt-connect" => Box::new(RrtConnect::with_index(problem, index, tuning)?),

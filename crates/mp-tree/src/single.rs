@@ -4,7 +4,9 @@ use crate::{
     Attach, Branch, BuildError, Goals, Grown, Growth, Problem, Propose, Purpose, Recipe, Selector, Steer,
     Tree,
 };
-use mp_cspace::{Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
+use mp_cspace::{
+    Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, ProblemParts, Progress, Rng, Space,
+};
 use rand::RngExt;
 
 /// A planner that grows one tree from the start until it enters the goal.
@@ -49,12 +51,13 @@ where
     /// When a parameter is out of range.
     pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
         let goal_bias = recipe.tuning.checked_bias()?;
+        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            steer: Steer::new(problem.space, problem.local, problem.verify, &recipe.tuning)?,
-            start: problem.start,
+            steer: Steer::new(space, local, verify, &recipe.tuning)?,
+            start,
             tried: 0,
-            goal_bias: if problem.goals.can_aim() { goal_bias } else { 0.0 },
-            goals: problem.goals,
+            goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
+            goals,
             branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
             propose: recipe.propose,
             growth: recipe.grow,

@@ -4,7 +4,9 @@ use crate::{
     Attach, Branch, BuildError, Goals, Grown, Growth, Problem, Propose, Purpose, Recipe, Selector, Steer,
     Tree,
 };
-use mp_cspace::{Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
+use mp_cspace::{
+    Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, ProblemParts, Progress, Rng, Space,
+};
 use rand::RngExt;
 
 /// A planner that grows one tree from the start and one from the goal until they meet.
@@ -57,19 +59,20 @@ where
         Se: Clone,
         A: Clone,
     {
-        if !problem.goals.can_aim() {
+        if !problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner });
         }
         let goal_bias = recipe.tuning.checked_bias()?;
         let forward = Branch::new(0, Direction::Forward, recipe.select.clone(), recipe.attach.clone());
         let backward = Branch::new(1, Direction::Backward, recipe.select, recipe.attach);
+        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            steer: Steer::new(problem.space, problem.local, problem.verify, &recipe.tuning)?,
-            start: problem.start,
+            steer: Steer::new(space, local, verify, &recipe.tuning)?,
+            start,
             planted: 0,
             roots: 0,
             tried: 0,
-            goals: problem.goals,
+            goals,
             trees: [forward, backward],
             propose: recipe.propose,
             explore: recipe.grow.0,

@@ -15,14 +15,14 @@ pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     tuning: &Tuning,
     settings: &Settings,
 ) -> Result<Problem<'c, C, ByVelocities<'c, C, L>>, BuildError> {
-    let space = problem.space;
+    let space = problem.space();
     let reach = tuning.step.length_in(space)?;
     let directions = settings.count(INPUTS.name)?.unwrap_or(0);
     let directions = in_range(INPUTS.name, directions, 0, 1 << 20)?;
     let levels = in_range(LEVELS.name, settings.count(LEVELS.name)?.unwrap_or(3), 1, 20)?;
     let inputs = InputSet::uniform(space, reach, directions as usize, levels)?;
     let flow = Kinematic::new(space)?;
-    let (goals, sampled) = (problem.goals.listed().to_vec(), problem.goals.has_sampler());
+    let (goals, sampled) = (problem.goals().listed().to_vec(), problem.goals().has_sampler());
     problem.try_map_local(|local| {
         let planner = InputPlanner::new(space, flow, inputs, 1.0, Between(local))?;
         Ok(if sampled { planner.reaching_all() } else { planner.reaching(goals) })

@@ -5,7 +5,7 @@ use crate::algo::restarts::{SCHEDULE, UNIT};
 use crate::algo::shared_tree::BATCH;
 use crate::{
     AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
-    SharedTree, Workers, build_with, planner,
+    SharedTree, Tuning, Workers, build_with, planner,
 };
 use mp_cspace::{LocalPlanner, NearestNeighbors, Space};
 use std::fmt;
@@ -117,7 +117,7 @@ impl Named {
     pub fn check(&self, settings: &Settings) -> Result<(), BuildError> {
         let own = self.wrappers.iter().flat_map(|wrapper| wrapper.parameters);
         settings.check_among(self.planner.name, own.chain(self.planner.parameters))?;
-        self.planner_settings(settings).tuning(self.planner)?;
+        Tuning::read(&self.planner_settings(settings), self.planner)?;
         Schedule::of(settings)?;
         [RUNS, SLICE, UNIT, BATCH].iter().try_for_each(|parameter| settings.count(parameter.name).map(|_| ()))
     }
@@ -208,7 +208,7 @@ where
                 })?))
             }
             Some(wrapper) if **wrapper == SHARED => {
-                let tuning = self.named.planner_settings(&self.settings).tuning(self.named.planner)?;
+                let tuning = Tuning::read(&self.named.planner_settings(&self.settings), self.named.planner)?;
                 let (workers, index) = (self.workers.clone(), self.index.clone());
                 let shared =
                     SharedTree::with_index(count(BATCH)?, workers, index, tuning, |_| (self.make)())?;

@@ -64,7 +64,7 @@ use crate::{
 };
 use mp_cspace::{
     DefaultNn, Direction, Event, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path,
-    Planner, Progress, Reach, Rng, Space,
+    Planner, ProblemParts, Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 
@@ -185,17 +185,19 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     /// # Errors
     /// When a parameter is out of range, or there are no goal states to grow from.
     pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
-        if !problem.goals.can_aim() {
+        if !problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner: INFO.name });
         }
+        let informed = Informed::of(&problem);
+        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
             goal_bias: tuning.checked_bias()?,
-            informed: Informed::of(&problem),
+            informed,
             trees: Self::trees_with(&index),
             index,
-            steer: Steer::new(problem.space, problem.local, problem.verify, &tuning)?,
-            start: problem.start,
-            goals: problem.goals,
+            steer: Steer::new(space, local, verify, &tuning)?,
+            start,
+            goals,
             planted: 0,
             tried: 0,
             best: f64::INFINITY,

@@ -78,8 +78,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State> + EachOnce, N: NearestNeighbors<C>>
     /// # Errors
     /// When a parameter is out of range.
     pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
-        let propose = Samples(Uniform(problem.space));
-        let select = LeastViolated::new(Nearest(index), problem.local.count());
+        let propose = Samples(Uniform(problem.space()));
+        let select = LeastViolated::new(Nearest(index), problem.local().count());
         let attach = AppendApart::default();
         Self::assemble(problem, Recipe { propose, select, grow: Untried::one(), attach, tuning })
     }

@@ -56,11 +56,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::yen::{shortest_paths, shortest_via};
 use crate::{
     AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Problem, Recipe, Samples, Selector,
     SingleTree, Steer, Tree, Tuning,
 };
+use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
     DefaultNn, Direction, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
     Progress, Reach, Rng, Space, Uniform,
@@ -248,13 +248,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
             return Err(BuildError::OutOfRange { name: "tolerance", value: tolerance, range });
         }
         let grow = Cyclic {
-            tolerance: tolerance * tuning.step.length_in(problem.space)?,
-            goals: problem.goals.listed().to_vec(),
+            tolerance: tolerance * tuning.step.length_in(problem.space())?,
+            goals: problem.goals().listed().to_vec(),
             edges: BTreeMap::new(),
             asked: BTreeMap::new(),
             near: Vec::new(),
         };
-        let (propose, attach) = (Samples(Uniform(problem.space)), AppendDistinct::default());
+        let (propose, attach) = (Samples(Uniform(problem.space())), AppendDistinct::default());
         let recipe = Recipe { propose, select: Nearest(index), grow, attach, tuning };
         Ok(Self { inner: SingleTree::assemble(problem, recipe)?, arrived: Vec::new() })
     }

@@ -50,7 +50,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, positive};
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Acceptable, Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Problem, Purpose,
     Recipe, Samples, Selector, Settings, Tuning, TwoTrees,
@@ -132,7 +132,7 @@ impl<S, N> DynamicDomain<S, N> {
     /// # Errors
     /// When a value of the domain is out of range.
     pub fn new(index: N, domain: Domain, step: f64) -> Result<Self, BuildError> {
-        let radius = positive(RADIUS.name, domain.radius)?;
+        let radius = BuildError::positive(RADIUS.name, domain.radius)?;
         if !(domain.least > 0.0 && domain.least <= radius) {
             let range = format!("in (0, {radius}], at most the radius");
             return Err(BuildError::OutOfRange { name: "least", value: domain.least, range });
@@ -235,9 +235,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Dd
         tuning: Tuning,
         domain: Domain,
     ) -> Result<Self, BuildError> {
-        let propose = Acceptable::new(Samples(Uniform(problem.space)));
+        let propose = Acceptable::new(Samples(Uniform(problem.space())));
         let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
-        let select = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space)?)?;
+        let select = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;
         let grow = (Extend, Connect::default());
         Self::assemble(name, problem, Recipe { propose, select, grow, attach: Append, tuning })
     }

@@ -85,9 +85,9 @@ impl<'c, C: Space> Informed<'c, C> {
 
     /// For the paths of a problem.
     pub fn of<L: LocalPlanner<C::State>>(problem: &Problem<'c, C, L>) -> Self {
-        let known = !problem.goals.has_region() && !problem.goals.has_sampler();
-        let goals = if known { problem.goals.listed().to_vec() } else { Vec::new() };
-        Self::new(problem.space, problem.start.clone(), goals)
+        let known = !problem.goals().has_region() && !problem.goals().has_sampler();
+        let goals = if known { problem.goals().listed().to_vec() } else { Vec::new() };
+        Self::new(problem.space(), problem.start().clone(), goals)
     }
 
     /// Notes the cost of the best path.

@@ -49,7 +49,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, count_within};
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Problem, Propose, Purpose, Recipe,
     Selector, Tuning, TwoTrees,
@@ -141,7 +141,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Mv
         tuning: Tuning,
         samples: u64,
     ) -> Result<Self, BuildError> {
-        let samples = count_within(SAMPLES.name, samples, 1, 100_000)?;
+        let samples = BuildError::count_within(SAMPLES.name, samples, 1, 100_000)?;
         let propose = VoronoiBias { samples, hits: Vec::new() };
         let grow = (Extend, Connect::default());
         let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };

@@ -321,7 +321,7 @@ where
         tuning: Tuning,
         weights: GrowthWeights,
     ) -> Result<Self, BuildError> {
-        let (propose, grow) = (Samples(Uniform(problem.space)), ObstacleGuided::new(hints, weights)?);
+        let (propose, grow) = (Samples(Uniform(problem.space())), ObstacleGuided::new(hints, weights)?);
         let attach = AppendDistinct::default();
         Self::assemble(problem, Recipe { propose, select: Nearest(index), grow, attach, tuning })
     }

@@ -82,7 +82,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State> + EachOnce, N: NearestNeighbors<C>>
         apart: f64,
         tuning: Tuning,
     ) -> Result<Self, BuildError> {
-        let propose = Samples(Uniform(problem.space));
+        let propose = Samples(Uniform(problem.space()));
         let (select, attach) = (Unexhausted::new(Nearest(index)), AppendApart::within(apart)?);
         Self::assemble(problem, Recipe { propose, select, grow: Untried::until_new(), attach, tuning })
     }

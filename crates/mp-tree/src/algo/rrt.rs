@@ -77,7 +77,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> Rrt<'c, C,
     /// # Errors
     /// When a parameter is out of range.
     pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
-        let propose = Samples(Uniform(problem.space));
+        let propose = Samples(Uniform(problem.space()));
         let recipe = Recipe { propose, select: Nearest(index), grow: Extend, attach: Append, tuning };
         Self::assemble(problem, recipe)
     }

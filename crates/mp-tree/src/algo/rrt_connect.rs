@@ -79,7 +79,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Rr
     /// # Errors
     /// When a parameter is out of range, or there are no goal states to grow from.
     pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
-        let propose = Samples(Uniform(problem.space));
+        let propose = Samples(Uniform(problem.space()));
         let grow = (Extend, Connect::default());
         let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };
         Self::assemble(INFO.name, problem, recipe)

@@ -97,8 +97,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State> + TestOrder, N: NearestNeighbors<C>
     /// # Errors
     /// When a parameter is out of range.
     pub fn with_index(mut problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
-        problem.local.set_order(Order::TestAll);
-        let propose = Samples(Uniform(problem.space));
+        problem.local_mut().set_order(Order::TestAll);
+        let propose = Samples(Uniform(problem.space()));
         let attach = AppendDistinct::default();
         Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
     }

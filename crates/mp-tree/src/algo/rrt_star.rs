@@ -120,7 +120,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> RrtStar<'c
         tuning: Tuning,
         near: Near,
     ) -> Result<Self, BuildError> {
-        let propose = Samples(Uniform(problem.space));
+        let propose = Samples(Uniform(problem.space()));
         let attach = Rewire::new(near)?;
         Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
     }

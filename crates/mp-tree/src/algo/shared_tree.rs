@@ -67,7 +67,7 @@ use crate::{
 };
 use mp_cspace::{
     DefaultNn, Direction, Event, Extension, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
-    Progress, Reach, Rng, Space,
+    ProblemParts, Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 use std::any::Any;
@@ -178,10 +178,10 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             return Err(BuildError::OutOfRange { name: BATCH.name, value: batch as f64, range });
         }
         let goal_bias = tuning.checked_bias()?;
-        let Problem { space, local, verify, start, goals } = make(0)?;
+        let ProblemParts { space, local, verify, start, goals } = make(0)?.into_parts();
         let steer = Steer::new(space, local, verify, &tuning)?;
         let slot = |i| {
-            let local = make(i)?.local;
+            let local = make(i)?.into_parts().local;
             let why = Purpose::Explore;
             Ok(Slot { local, rng: Rng::seed(0), target: None, why, found: None, panicked: None })
         };

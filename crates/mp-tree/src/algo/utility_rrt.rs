@@ -53,7 +53,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP, count_within};
+use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, Attach, BuildError, Connect, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo,
     Problem, Recipe, Samples, Selector, Tuning, TwoTrees,
@@ -232,10 +232,10 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ut
         tuning: Tuning,
         candidates: u64,
     ) -> Result<Self, BuildError> {
-        let candidates = count_within(CANDIDATES.name, candidates, 1, 100_000)?;
+        let candidates = BuildError::count_within(CANDIDATES.name, candidates, 1, 100_000)?;
         let explore = UtilityGuided { candidates, past: [Vec::new(), Vec::new()] };
         let recipe = Recipe {
-            propose: Samples(Uniform(problem.space)),
+            propose: Samples(Uniform(problem.space())),
             select: Nearest(index),
             grow: (explore, Connect::default()),
             attach: AppendDistinct::default(),

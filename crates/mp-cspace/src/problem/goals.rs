@@ -1,6 +1,6 @@
 //! What to reach.
 
-use mp_cspace::{Goal, Rng, Sampler};
+use crate::{Goal, Rng, Sampler};
 use rand::RngExt;
 use std::fmt;
 
@@ -10,7 +10,7 @@ use std::fmt;
 /// grows a tree from the goal, needs states or a sampler.
 ///
 /// ```
-/// use mp_tree::Goals;
+/// use mp_cspace::Goals;
 /// let _ = Goals::from(0.7_f64);
 /// let _ = Goals::states([0.7, 0.9]);
 /// let _ = Goals::region(|q: &f64| *q > 0.7);
@@ -57,11 +57,11 @@ impl<'g, S> Goals<'g, S> {
         &self.states
     }
 
-    pub(crate) fn listed_mut(&mut self) -> &mut Vec<S> {
+    pub(super) fn listed_mut(&mut self) -> &mut Vec<S> {
         &mut self.states
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
+    pub(super) fn is_empty(&self) -> bool {
         self.region.is_none() && !self.can_aim()
     }
 

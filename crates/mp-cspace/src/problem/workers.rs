@@ -1,6 +1,6 @@
 //! Threads for planners that work in parallel.
 
-use crate::BuildError;
+use super::BuildError;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -36,8 +36,8 @@ impl Workers {
         }
     }
 
-    /// Calls `work` on each item.
-    pub(crate) fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Send + Sync) {
+    /// Calls `work` on each item, at the same time on several where there are threads.
+    pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Send + Sync) {
         match &self.0 {
             None => items.iter_mut().for_each(work),
             Some(pool) => pool.install(|| items.par_iter_mut().with_max_len(1).for_each(work)),

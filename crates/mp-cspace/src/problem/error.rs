@@ -1,7 +1,7 @@
 //! Bad input, refused before planning begins.
 
-use mp_cspace::MotionCheck;
-use mp_cspace::inputs::InputError;
+use crate::MotionCheck;
+use crate::inputs::InputError;
 use std::fmt;
 
 /// Which end of the path.
@@ -117,6 +117,31 @@ pub enum BuildError {
         /// The one it resembles.
         suggestion: Option<&'static str>,
     },
+}
+
+impl BuildError {
+    /// `value` if it is positive and finite.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](Self::OutOfRange) otherwise.
+    pub fn positive(name: &'static str, value: f64) -> Result<f64, Self> {
+        if value > 0.0 && value.is_finite() {
+            return Ok(value);
+        }
+        Err(Self::OutOfRange { name, value, range: "positive and finite".to_owned() })
+    }
+
+    /// `value` if it is from `least` to `most`.
+    ///
+    /// # Errors
+    /// [`OutOfRange`](Self::OutOfRange) otherwise.
+    pub fn count_within(name: &'static str, value: u64, least: u64, most: u64) -> Result<u64, Self> {
+        if (least..=most).contains(&value) {
+            return Ok(value);
+        }
+        let range = format!("a whole number from {least} to {most}");
+        Err(Self::OutOfRange { name, value: value as f64, range })
+    }
 }
 
 fn describe(check: &MotionCheck) -> &'static str {

@@ -1,7 +1,7 @@
 //! The independent check of finished paths.
 
-use mp_cspace::inputs::{Flow, Leg, ReplayFinely, ReplayMotions};
-use mp_cspace::{MotionCheck, MotionValidity, Space, Validity};
+use crate::inputs::{Flow, Leg, ReplayFinely, ReplayMotions};
+use crate::{MotionCheck, MotionValidity, Space, Validity};
 
 /// Verifies states and edges of a candidate path, sharing nothing with the local planner.
 ///

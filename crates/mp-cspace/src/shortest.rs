@@ -1,4 +1,4 @@
-//! The shortest simple paths of a directed graph.
+//! The shortest simple paths of a directed graph, and alternatives far from them.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -25,7 +25,7 @@ impl PartialOrd for Length {
 ///
 /// J. Y. Yen, *Finding the k shortest loopless paths in a network*, Management Science 17, 1971. One
 /// search (Dijkstra 1959) for each node of each path found.
-pub(crate) fn shortest_paths(arcs: &[Vec<(u32, f64)>], from: u32, to: u32, k: usize) -> Vec<(f64, Vec<u32>)> {
+pub fn shortest_paths(arcs: &[Vec<(u32, f64)>], from: u32, to: u32, k: usize) -> Vec<(f64, Vec<u32>)> {
     let mut found: Vec<(Length, Vec<u32>)> = Vec::new();
     let mut waiting: BTreeSet<_> = shortest(arcs, &[from], to, &[]).into_iter().collect();
     while found.len() < k {
@@ -84,7 +84,7 @@ fn shortest(arcs: &[Vec<(u32, f64)>], stem: &[u32], to: u32, taken: &[u32]) -> O
 ///
 /// I. Abraham, D. Delling, A. V. Goldberg and R. F. Werneck, *Alternative routes in road networks*, ACM
 /// J. of Experimental Algorithmics 18, 2013.
-pub(crate) fn shortest_via(
+pub fn shortest_via(
     arcs: &[Vec<(u32, f64)>],
     from: u32,
     to: u32,

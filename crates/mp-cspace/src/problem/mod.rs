@@ -1,17 +1,49 @@
 //! What to plan: checked before any planner sees it.
 
-use crate::{BuildError, Endpoint, Goals, Verify};
-use mp_cspace::{LocalPlanner, Space};
+mod error;
+mod goals;
+mod settings;
+mod step;
+mod verify;
+mod workers;
+
+pub use error::{BuildError, Endpoint};
+pub use goals::Goals;
+pub use settings::{Demand, Parameter, PlannerInfo, Settings, closest};
+pub use step::Step;
+pub use verify::Verify;
+pub use workers::Workers;
+
+use crate::{LocalPlanner, Space};
 use std::fmt;
 
 /// A space, the local planner that moves in it, the verifier of finished paths, a start and
 /// goals.
 pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
-    pub(crate) space: &'c C,
-    pub(crate) local: L,
-    pub(crate) verify: Box<dyn Verify<C::State, L::Edge> + Send + 'c>,
-    pub(crate) start: C::State,
-    pub(crate) goals: Goals<'c, C::State>,
+    space: &'c C,
+    local: L,
+    verify: BoxedVerify<'c, C, L>,
+    start: C::State,
+    goals: Goals<'c, C::State>,
+}
+
+/// The verifier of the paths of a local planner.
+pub type BoxedVerify<'c, C, L> =
+    Box<dyn Verify<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge> + Send + 'c>;
+
+/// What a [`Problem`] consists of, for planners: [`Problem::into_parts`].
+#[allow(missing_debug_implementations)] // verifiers need not have any
+pub struct ProblemParts<'c, C: Space, L: LocalPlanner<C::State>> {
+    /// The space.
+    pub space: &'c C,
+    /// How to move in it.
+    pub local: L,
+    /// The independent check of paths.
+    pub verify: BoxedVerify<'c, C, L>,
+    /// Where paths begin.
+    pub start: C::State,
+    /// Where they end.
+    pub goals: Goals<'c, C::State>,
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
@@ -70,6 +102,42 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
+    /// The space.
+    #[must_use]
+    pub fn space(&self) -> &'c C {
+        self.space
+    }
+
+    /// The local planner.
+    #[must_use]
+    pub fn local(&self) -> &L {
+        &self.local
+    }
+
+    /// The local planner, to set it up.
+    pub fn local_mut(&mut self) -> &mut L {
+        &mut self.local
+    }
+
+    /// Where paths begin.
+    #[must_use]
+    pub fn start(&self) -> &C::State {
+        &self.start
+    }
+
+    /// Where they end.
+    #[must_use]
+    pub fn goals(&self) -> &Goals<'c, C::State> {
+        &self.goals
+    }
+
+    /// All there is, to plan with.
+    #[must_use]
+    pub fn into_parts(self) -> ProblemParts<'c, C, L> {
+        let Self { space, local, verify, start, goals } = self;
+        ProblemParts { space, local, verify, start, goals }
+    }
+
     /// The same problem with a local planner made from the one there, for instance around it. Start
     /// and goals are not checked again.
     ///

@@ -1,0 +1,254 @@
+//! Parameters by name: what a planner is told at run time.
+
+use super::{BuildError, Step};
+
+/// A parameter of a planner, for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parameter {
+    /// Its name in settings.
+    pub name: &'static str,
+    /// The values allowed.
+    pub range: &'static str,
+    /// Its default, as it would be set.
+    pub default: &'static str,
+    /// What it does.
+    pub doc: &'static str,
+}
+
+/// A planner, for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlannerInfo {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it is and when to use it, in a line.
+    pub summary: &'static str,
+    /// Its paper.
+    pub citation: &'static str,
+    /// Its parameters.
+    pub parameters: &'static [Parameter],
+    /// Other names it goes by.
+    pub aliases: &'static [&'static str],
+    /// What it by its nature cannot do, each with the reason.
+    pub cannot: &'static [(Demand, &'static str)],
+}
+
+impl PlannerInfo {
+    /// Whether it can do what is demanded.
+    #[must_use]
+    pub fn can(&self, demand: Demand) -> bool {
+        self.cannot.iter().all(|(kind, _)| *kind != demand)
+    }
+
+    /// Whether `name` is its name or one of its other names.
+    #[must_use]
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.aliases.contains(&name)
+    }
+}
+
+/// What a problem may demand that not every planner can do by its nature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Demand {
+    /// To reach a goal that is only a test: no state to aim at.
+    Region,
+    /// To plan with motions that cannot run backward.
+    OneWay,
+}
+
+/// Values of parameters by name.
+///
+/// ```
+/// use mp_cspace::Settings;
+/// let settings = Settings::parse(["step=15%", "goal-bias=0.1"])?;
+/// assert_eq!(settings.number("goal-bias")?, Some(0.1));
+/// assert!(Settings::parse(["step"]).is_err());
+/// # Ok::<(), mp_cspace::BuildError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Settings(Vec<(String, String)>);
+
+impl Settings {
+    /// Settings from texts of the form `key=value`.
+    ///
+    /// # Errors
+    /// When a text has no `=`, or nothing before it.
+    pub fn parse<T: AsRef<str>>(texts: impl IntoIterator<Item = T>) -> Result<Self, BuildError> {
+        let mut settings = Self::default();
+        for text in texts {
+            let text = text.as_ref();
+            match text.split_once('=') {
+                Some((key, value)) if !key.trim().is_empty() => settings.set(key.trim(), value.trim()),
+                _ => return Err(malformed(text.to_owned(), "KEY=VALUE")),
+            }
+        }
+        Ok(settings)
+    }
+
+    /// Sets a parameter; the last value counts.
+    pub fn set(&mut self, key: &str, value: &str) {
+        self.0.retain(|(known, _)| known != key);
+        self.0.push((key.to_owned(), value.to_owned()));
+    }
+
+    /// Refuses names that `planner` does not have.
+    ///
+    /// # Errors
+    /// When there is one, with the names there are.
+    pub fn check(&self, planner: &PlannerInfo) -> Result<(), BuildError> {
+        self.check_among(planner.name, planner.parameters)
+    }
+
+    /// Refuses names of parameters other than `parameters`.
+    ///
+    /// # Errors
+    /// When there is one, with the names there are.
+    pub fn check_among<'p>(
+        &self,
+        planner: &'static str,
+        parameters: impl IntoIterator<Item = &'p Parameter>,
+    ) -> Result<(), BuildError> {
+        let known: Vec<&'static str> = parameters.into_iter().map(|parameter| parameter.name).collect();
+        match self.0.iter().find(|(key, _)| !known.iter().any(|name| name == key)) {
+            None => Ok(()),
+            Some((key, _)) => {
+                let suggestion = closest(key, known.iter().copied());
+                Err(BuildError::UnknownParameter { planner, name: key.clone(), known, suggestion })
+            }
+        }
+    }
+
+    /// What is set for `parameters`, without the rest.
+    #[must_use]
+    pub fn only(&self, parameters: &[Parameter]) -> Self {
+        let known = |key: &str| parameters.iter().any(|parameter| parameter.name == key);
+        Self(self.0.iter().filter(|(key, _)| known(key)).cloned().collect())
+    }
+
+    /// The whole number set for `parameter`, or its default.
+    ///
+    /// # Errors
+    /// When it is not a whole number, or negative.
+    pub fn count_of(&self, parameter: &Parameter) -> Result<u64, BuildError> {
+        let default = || parameter.default.parse().unwrap_or_default();
+        Ok(self.count(parameter.name)?.unwrap_or_else(default))
+    }
+
+    /// What is set for `key`, if any, being one of the words that `parse` knows.
+    ///
+    /// # Errors
+    /// When it is none of them; `expected` lists them.
+    pub fn choice<T>(
+        &self,
+        key: &str,
+        expected: &'static str,
+        parse: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<T>, BuildError> {
+        self.read(key, expected, parse)
+    }
+
+    fn read<T>(
+        &self,
+        key: &str,
+        expected: &'static str,
+        parse: impl Fn(&str) -> Option<T>,
+    ) -> Result<Option<T>, BuildError> {
+        let Some((_, value)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
+        match parse(value) {
+            Some(parsed) => Ok(Some(parsed)),
+            None => Err(malformed(format!("{key}={value}"), expected)),
+        }
+    }
+
+    /// The number set for `key`, if any.
+    ///
+    /// # Errors
+    /// When it is not a number.
+    pub fn number(&self, key: &str) -> Result<Option<f64>, BuildError> {
+        self.read(key, "a number", |value| value.parse().ok())
+    }
+
+    /// The whole number set for `key`, if any.
+    ///
+    /// # Errors
+    /// When it is not a whole number, or negative.
+    pub fn count(&self, key: &str) -> Result<Option<u64>, BuildError> {
+        self.read(key, "a whole number, not negative", |value| value.parse().ok())
+    }
+
+    /// The step set for `key`, if any: a length, or with `%` a part of the extent.
+    ///
+    /// # Errors
+    /// When it is neither.
+    pub fn step(&self, key: &str) -> Result<Option<Step>, BuildError> {
+        self.read(key, "a length, or a percentage of the extent like 20%", |value| {
+            match value.strip_suffix('%') {
+                Some(percent) => percent.trim().parse().ok().map(|p: f64| Step::Fraction(p / 100.0)),
+                None => value.parse().ok().map(Step::Length),
+            }
+        })
+    }
+}
+
+fn malformed(setting: String, expected: &'static str) -> BuildError {
+    BuildError::Malformed { setting, expected }
+}
+
+/// The name that `name` was probably meant to be: the one fewest edits away, if not too many.
+///
+/// ```
+/// assert_eq!(mp_cspace::closest("rrt-conect", ["rrt", "rrt-connect"]), Some("rrt-connect"));
+/// assert_eq!(mp_cspace::closest("dijkstra", ["rrt", "rrt-connect"]), None);
+/// ```
+pub fn closest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let fold = |text: &str| -> Vec<char> { text.to_lowercase().replace('_', "-").chars().take(64).collect() };
+    let name = fold(name);
+    let most = name.len().div_ceil(3);
+    let near = known.into_iter().map(|other| (edits(&name, &fold(other)), other));
+    near.filter(|&(edits, _)| edits <= most).min_by_key(|&(edits, _)| edits).map(|(_, other)| other)
+}
+
+/// Levenshtein's distance: insertions, deletions and substitutions from `a` to `b`.
+fn edits(a: &[char], b: &[char]) -> usize {
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.iter().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refuses_what_it_cannot_read() {
+        assert!(matches!(Settings::parse(["=3"]), Err(BuildError::Malformed { .. })));
+        let settings = Settings::parse(["near=far", "count = -1", "count=1.5"]).unwrap();
+        assert!(matches!(settings.step("near"), Err(BuildError::Malformed { .. })));
+        assert!(matches!(settings.count("count"), Err(BuildError::Malformed { .. })));
+        assert_eq!(settings.number("count"), Ok(Some(1.5)));
+        assert_eq!(settings.number("none"), Ok(None));
+    }
+
+    #[test]
+    fn counts_edits() {
+        let count = |a: &str, b: &str| edits(&a.chars().collect::<Vec<_>>(), &b.chars().collect::<Vec<_>>());
+        assert_eq!(count("kitten", "sitting"), 3);
+        assert_eq!(count("", "abc"), 3);
+        assert_eq!(count("same", "same"), 0);
+    }
+
+    #[test]
+    fn suggests_only_what_is_near() {
+        assert_eq!(closest("RRT_Connect", ["rrt", "rrt-connect"]), Some("rrt-connect"));
+        assert_eq!(closest("rtt", ["rrt", "rrt-connect"]), Some("rrt"));
+        assert_eq!(closest("", ["rrt"]), None);
+    }
+}
