@@ -44,7 +44,7 @@ pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use gradient::ClearanceGradient;
 pub use hints::ObstacleHints;
-pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Straight};
+pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Reversible, Straight};
 pub use metric::{
     Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, TrueMetricOn,
     WithMetric,

@@ -63,6 +63,17 @@ pub trait LocalPlanner<S> {
     }
 }
 
+/// An edge that can be run the other way: what roadmaps demand, as their edges have no direction.
+pub trait Reversible {
+    /// The edge of the same motion from its end to its beginning.
+    #[must_use]
+    fn reversed(&self) -> Self;
+}
+
+impl Reversible for () {
+    fn reversed(&self) {}
+}
+
 impl<S, L: LocalPlanner<S> + ?Sized> LocalPlanner<S> for &mut L {
     type Edge = L::Edge;
     fn extend(&mut self, from: &S, toward: &S, direction: Direction, reach: Reach) -> Extension<S, L::Edge> {

@@ -10,7 +10,7 @@ pub enum Event<'a, S> {
     Iteration(Progress),
     /// A state was sampled.
     Sampled(&'a S),
-    /// A root was added to tree `tree`.
+    /// A root was added to tree `tree`, or a node to a roadmap (0).
     Rooted {
         /// Which tree (0 from the start, 1 from the goal).
         tree: usize,
@@ -38,6 +38,13 @@ pub enum Event<'a, S> {
         id: NodeId,
         /// Its new parent.
         parent: NodeId,
+    },
+    /// An edge was added between two nodes of a roadmap.
+    Linked {
+        /// The node it leads from.
+        from: NodeId,
+        /// The node it leads to.
+        to: NodeId,
     },
     /// An extension of `tree` failed.
     Trapped {
@@ -116,7 +123,7 @@ pub struct EventCounts {
 impl<S> Observer<S> for EventCounts {
     fn on(&mut self, event: Event<'_, S>) {
         match event {
-            Event::Iteration(_) | Event::Rewired { .. } | Event::Pruned { .. } => {}
+            Event::Iteration(_) | Event::Rewired { .. } | Event::Linked { .. } | Event::Pruned { .. } => {}
             Event::Sampled(_) => self.sampled += 1,
             Event::Rooted { .. } | Event::Added { .. } => self.added += 1,
             Event::Trapped { .. } => self.trapped += 1,

@@ -7,6 +7,7 @@
 //! | [`cspace`] | spaces, metrics, samplers, motion checks, neighbours, paths: the traits |
 //! | [`robot`] | what a configuration places where, and when it is free |
 //! | [`tree`] | the RRT family |
+//! | [`roadmap`] | the PRM family |
 //! | [`io`] | meshes, scenes, problems and paths in files |
 //!
 //! # A tour
@@ -58,6 +59,7 @@ pub use mp_collide as collide;
 pub use mp_cspace as cspace;
 pub use mp_geom as geom;
 pub use mp_io as io;
+pub use mp_roadmap as roadmap;
 pub use mp_robot as robot;
 pub use mp_tree as tree;
 

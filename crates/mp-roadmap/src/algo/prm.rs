@@ -1,0 +1,311 @@
+//! PRM: the probabilistic roadmap, with its expansion where connecting is difficult.
+//!
+//! L. E. Kavraki, P. Švestka, J.-C. Latombe and M. H. Overmars, *Probabilistic roadmaps for path planning
+//! in high-dimensional configuration spaces*, IEEE Transactions on Robotics and Automation 12, 1996. As in
+//! §3.1 of A. Benitez, I. Huitzil, D. Vallejo, J. de la Calleja and M. A. Medina, *Key elements for motion
+//! planning algorithms*, 2010.
+//!
+//! The learning phase repeats two steps. Construction, until `learn` more nodes are there:
+//! 1. draw a sample, uniform in the space; go on when it is free;
+//! 2. add it as a node q;
+//! 3. N_q: the nodes within `radius` (MAXDIST) of q, at most `neighbours` (K) of them;
+//! 4. in order of distance, ask the local planner for a motion from each to q, unless both are in the same
+//!    component by now; where there is one, it becomes an edge.
+//!
+//! Expansion, until `expand` times as many nodes more are there:
+//! 1. when it begins, weigh each node c by its failure ratio f(c) / (n(c) + 1), of n(c) attempts to connect
+//!    it to others f(c) failed;
+//! 2. draw a node by these weights;
+//! 3. go on a random-bounce walk from there: `bounces` times, move toward a uniform sample, as far as a
+//!    random length of at most `walk`, halved up to four times where something is in the way;
+//! 4. take in where each of its motions ends as a node, with that motion as an edge, and connect it as above.
+//!
+//! (The paper keeps only the end of the walk, and the walk as its edge. Here its corners are nodes, so that
+//! each edge is one motion.) A query takes start and goal in as nodes; as long as they are in different
+//! components learning goes on, so that roadmaps grow during queries. The path found is verified; an edge
+//! that fails is blocked.
+//!
+//! **When to use it.** To answer many queries in one scene. For a single one RRT-Connect is faster.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `neighbours`: most neighbours tried per node, K | 1, 2, … 10⁶ | 15 |
+//! | `radius`: none farther than this, MAXDIST, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `learn`: nodes of a construction step | 1, 2, … 10⁹ | 500 |
+//! | `expand`: nodes of an expansion step, as a part of those | \[0, 10\] | 0.5 |
+//! | `bounces`: motions of a random-bounce walk | 1, 2, … 100 | 3 |
+//! | `walk`: longest motion of such a walk, in the metric of the space or with % of its extent | positive | 10% |
+//!
+//! K and MAXDIST are the paper's to choose for each problem; twice as many nodes are constructed as are
+//! added by expansion, as there.
+//!
+//! A point goes around a disc in the unit square:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Problem, Resolution, Rn, Rng, Straight};
+//! use mp_roadmap::{Learning, Prm, Reachable};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! let reach = Reachable { neighbours: 10, radius: 0.5, cycles: false };
+//! let mut planner = Prm::new(problem, reach, Learning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
+use crate::{
+    AStar, Came, Candidate, Free, Kind, Nearest, NodeGenerator, Reachable, Recipe, Roadmap, RoadmapPlanner,
+    Steer,
+};
+use mp_cspace::{
+    BuildError, DefaultNn, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo,
+    Problem, Reach, Reversible, Rng, Settings, Space, Step, Uniform,
+};
+use rand::RngExt;
+
+/// How the learning phase goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Learning {
+    /// Nodes of a construction step; 1 or more.
+    pub learn: usize,
+    /// Nodes of an expansion step, as a part of those; 0 for none.
+    pub expand: f64,
+    /// Motions of a random-bounce walk; 1 or more.
+    pub bounces: usize,
+    /// The longest motion of such a walk.
+    pub walk: Step,
+}
+
+impl Default for Learning {
+    fn default() -> Self {
+        Self { learn: 500, expand: 0.5, bounces: 3, walk: Step::Fraction(0.1) }
+    }
+}
+
+impl Learning {
+    /// The values that are set, the others by default.
+    ///
+    /// # Errors
+    /// When a value cannot be read.
+    pub fn read(settings: &Settings) -> Result<Self, BuildError> {
+        let default = Self::default();
+        Ok(Self {
+            learn: settings.count_of(&LEARN)? as usize,
+            expand: settings.number(EXPAND.name)?.unwrap_or(default.expand),
+            bounces: settings.count_of(&BOUNCES)? as usize,
+            walk: settings.step(WALK.name)?.unwrap_or(default.walk),
+        })
+    }
+}
+
+const LEARN: Parameter = Parameter {
+    name: "learn",
+    range: "a whole number, 1 to 10⁹",
+    default: "500",
+    doc: "nodes of a construction step",
+};
+const EXPAND: Parameter = Parameter {
+    name: "expand",
+    range: "in [0, 10]",
+    default: "0.5",
+    doc: "nodes of an expansion step, as a part of those of a construction step",
+};
+const BOUNCES: Parameter = Parameter {
+    name: "bounces",
+    range: "a whole number, 1 to 100",
+    default: "3",
+    doc: "motions of a random-bounce walk",
+};
+const WALK: Parameter = Parameter {
+    name: "walk",
+    range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
+    default: "10%",
+    doc: "longest motion of a random-bounce walk",
+};
+
+/// The entry of [`planners`](crate::planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "prm",
+    summary: "a roadmap of uniform samples, expanded where connecting is difficult; to answer many queries",
+    citation: "Kavraki, Švestka, Latombe and Overmars 1996",
+    parameters: &[NEIGHBOURS, RADIUS, CYCLES, LEARN, EXPAND, BOUNCES, WALK],
+    aliases: &["basic-prm"],
+    cannot: crate::settings::UNDIRECTED,
+};
+
+/// The two steps of the learning phase in turn: the generator of PRM.
+#[derive(Clone, Debug)]
+pub struct Learn<'c, C> {
+    free: Free<Uniform<'c, C>>,
+    learning: Learning,
+    walk: f64,
+    /// The roadmap has so many nodes when this step ends.
+    until: usize,
+    /// In an expansion step: the sums of the weights of nodes up to each.
+    weights: Option<Vec<f64>>,
+}
+
+impl<'c, C: Space> Learn<'c, C> {
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(space: &'c C, learning: Learning) -> Result<Self, BuildError> {
+        BuildError::count_within(LEARN.name, learning.learn as u64, 1, 1_000_000_000)?;
+        BuildError::count_within(BOUNCES.name, learning.bounces as u64, 1, 100)?;
+        if !(0.0..=10.0).contains(&learning.expand) {
+            let (value, range) = (learning.expand, EXPAND.range.to_owned());
+            return Err(BuildError::OutOfRange { name: EXPAND.name, value, range });
+        }
+        let walk = length(&WALK, learning.walk, space)?;
+        Ok(Self { free: Free::uniform(space), learning, walk, until: learning.learn, weights: None })
+    }
+
+    /// Goes from one step to the next when there are enough nodes.
+    fn turn<S, E>(&mut self, map: &Roadmap<S, E>) {
+        if map.len() < self.until {
+            return;
+        }
+        let more = match self.weights {
+            None => (self.learning.expand * self.learning.learn as f64).round() as usize,
+            Some(_) => 0,
+        };
+        if more > 0 {
+            let mut sum = 0.0;
+            let ratio = |id: usize| {
+                let tag = map.tag(id as NodeId);
+                f64::from(tag.failed) / (f64::from(tag.tried) + 1.0)
+            };
+            let sums = (0..map.len()).map(|id| {
+                sum += ratio(id);
+                sum
+            });
+            self.weights = Some(sums.collect());
+            self.until = map.len() + more;
+        } else {
+            self.weights = None;
+            self.until = map.len() + self.learning.learn;
+        }
+    }
+}
+
+impl<C, L> NodeGenerator<C, L> for Learn<'_, C>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    fn generate(
+        &mut self,
+        attempt: u64,
+        map: &Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        rng: &mut Rng,
+        out: &mut Vec<Candidate<C::State, L::Edge>>,
+    ) {
+        self.turn(map);
+        // Where no connection failed nowhere is difficult.
+        let Some(sums) = self.weights.as_ref().filter(|sums| sums.last().is_some_and(|sum| *sum > 0.0))
+        else {
+            return self.free.generate(attempt, map, steer, rng, out);
+        };
+        let at = rng.random::<f64>() * sums.last().copied().unwrap_or_default();
+        let first = sums.partition_point(|sum| *sum <= at).min(sums.len() - 1) as NodeId;
+        let (space, mut here) = (steer.space(), map.state(first).clone());
+        for bounce in 0..self.learning.bounces {
+            let toward = space.sample_uniform(rng);
+            let mut length = self.walk * rng.random::<f64>();
+            for _ in 0..=4 {
+                let step = steer.extend(&here, &toward, Reach::Step(length));
+                let (Extension::Advanced(motion) | Extension::Reached(motion)) = step else {
+                    length /= 2.0;
+                    continue;
+                };
+                // A step that is lost in rounding is none.
+                if motion.end == here {
+                    break;
+                }
+                here = motion.end.clone();
+                let from = (bounce == 0 || out.is_empty()).then_some(first);
+                let mut candidate = Candidate::new(here.clone(), Kind::Expanded);
+                candidate.came = Some(Came { from, motion });
+                out.push(candidate);
+                break;
+            }
+        }
+    }
+
+    fn independent(&self, map: &Roadmap<C::State, L::Edge>) -> u64 {
+        match self.weights {
+            // An attempt adds at most one node.
+            None => self.until.saturating_sub(map.len()) as u64,
+            Some(_) => 0,
+        }
+    }
+}
+
+/// PRM: see the [module](self).
+pub type Prm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Learn<'c, C>, Nearest, AStar, N>;
+
+impl<'c, C, L, N> Prm<'c, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+{
+    /// PRM with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, learning: Learning) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), reach, learning)
+    }
+
+    /// PRM with an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        reach: Reachable,
+        learning: Learning,
+    ) -> Result<Self, BuildError> {
+        let recipe = recipe(problem.space(), reach, learning)?;
+        Ok(Self::assemble(problem, index, recipe))
+    }
+}
+
+/// The recipe of PRM.
+///
+/// # Errors
+/// When a parameter is out of range.
+pub fn recipe<C: Space>(
+    space: &C,
+    reach: Reachable,
+    learning: Learning,
+) -> Result<Recipe<Learn<'_, C>, Nearest, AStar>, BuildError> {
+    Ok(Recipe {
+        generate: Learn::new(space, learning)?,
+        connect: Nearest::new(reach)?,
+        query: AStar::new(),
+        improves: false,
+    })
+}
+
+pub(crate) fn read<'c, C: Space>(
+    space: &'c C,
+    settings: &Settings,
+) -> Result<Recipe<Learn<'c, C>, Nearest, AStar>, BuildError> {
+    recipe(space, reachable(space, settings)?, Learning::read(settings)?)
+}

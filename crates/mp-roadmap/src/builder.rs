@@ -1,0 +1,165 @@
+//! The one loop that builds roadmaps.
+
+use crate::{Candidate, Connector, Growing, NodeGenerator, Roadmap, Steer};
+use mp_cspace::{
+    BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
+    Stop, StopReason,
+};
+use rand::RngExt;
+use std::ops::Range;
+
+/// One variant of the family: a policy for each slot.
+#[derive(Clone, Copy, Debug)]
+pub struct Recipe<G, K, Q> {
+    /// What configurations are tried as nodes.
+    pub generate: G,
+    /// Which become nodes, and with which edges.
+    pub connect: K,
+    /// How ways are looked for.
+    pub query: Q,
+    /// Whether stepping on after a path is found pays: only better ones are returned then.
+    pub improves: bool,
+}
+
+/// Builds a roadmap: attempt after attempt, generate and connect.
+///
+/// Attempt i draws from stream (seed, i), where the seed is the first number drawn from the generator of
+/// the first step.
+#[derive(Debug)]
+pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+    pub(crate) steer: Steer<'c, C, L>,
+    pub(crate) map: Roadmap<C::State, L::Edge>,
+    pub(crate) index: N,
+    generate: G,
+    connect: K,
+    seed: Option<u64>,
+    attempts: u64,
+    candidates: Vec<Candidate<C::State, L::Edge>>,
+}
+
+impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    G: NodeGenerator<C, L>,
+    K: Connector<C, L>,
+    N: NearestNeighbors<C>,
+{
+    /// With no nodes yet; `index` is empty.
+    pub fn new(steer: Steer<'c, C, L>, generate: G, connect: K, index: N) -> Self {
+        let map = Roadmap::new();
+        Self { steer, map, index, generate, connect, seed: None, attempts: 0, candidates: Vec::new() }
+    }
+
+    /// Goes on with a roadmap there is already, instead of none.
+    ///
+    /// # Errors
+    /// When a state of it is outside the space.
+    pub fn resume(mut self, map: Roadmap<C::State, L::Edge>) -> Result<Self, BuildError> {
+        let space = self.steer.space();
+        if let Some(state) = map.states().iter().find(|q| !space.contains(q)) {
+            let reason = format!("a node of the roadmap is outside the space: {state:?}");
+            return Err(BuildError::Unmade { reason });
+        }
+        self.index.clear();
+        for id in 0..map.len() as NodeId {
+            self.index.inserted(space, map.states(), id);
+        }
+        self.map = map;
+        Ok(self)
+    }
+
+    /// The roadmap.
+    #[must_use]
+    pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
+        &self.map
+    }
+
+    /// The roadmap, to ask for its components.
+    pub fn map_mut(&mut self) -> &mut Roadmap<C::State, L::Edge> {
+        &mut self.map
+    }
+
+    /// The connector.
+    #[must_use]
+    pub fn connector(&self) -> &K {
+        &self.connect
+    }
+
+    /// The roadmap alone.
+    #[must_use]
+    pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
+        self.map
+    }
+
+    /// One attempt: generate, and connect what comes of it. The ids of the nodes that were added.
+    pub fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Range<NodeId> {
+        let seed = *self.seed.get_or_insert_with(|| rng.random());
+        let before = self.map.len() as NodeId;
+        let mut candidates = std::mem::take(&mut self.candidates);
+        let mut stream = Rng::stream(seed, self.attempts);
+        self.generate.generate(self.attempts, &self.map, &mut self.steer, &mut stream, &mut candidates);
+        self.attempts += 1;
+        let mut last = None;
+        for candidate in candidates.drain(..) {
+            observer.on(Event::Sampled(&candidate.state));
+            last = self.take(candidate, last, observer);
+        }
+        self.candidates = candidates;
+        before..self.map.len() as NodeId
+    }
+
+    /// Connects a candidate.
+    fn take(
+        &mut self,
+        mut candidate: Candidate<C::State, L::Edge>,
+        last: Option<NodeId>,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<NodeId> {
+        if let Some(came) = &mut candidate.came {
+            came.from = Some(came.from.or(last)?);
+        }
+        let mut growing =
+            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer };
+        self.connect.connect(candidate, &mut growing)
+    }
+
+    /// Adds a configuration whatever the connector thinks of it: an end of a path.
+    pub fn adopt(
+        &mut self,
+        candidate: Candidate<C::State, L::Edge>,
+        observer: &mut dyn Observer<C::State>,
+    ) -> NodeId {
+        let mut growing =
+            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer };
+        self.connect.adopt(candidate, &mut growing)
+    }
+
+    /// Builds until stopped. Call again to go on.
+    pub fn build(
+        &mut self,
+        rng: &mut Rng,
+        stop: &mut dyn Stop,
+        observer: &mut dyn Observer<C::State>,
+    ) -> StopReason {
+        loop {
+            let progress = self.progress();
+            if let Some(reason) = stop.check(&progress) {
+                return reason;
+            }
+            if progress.exhausted {
+                return StopReason::Exhausted;
+            }
+            observer.on(Event::Iteration(progress));
+            self.step(rng, observer);
+        }
+    }
+
+    /// What has been done so far.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let mut progress = Progress::new(self.attempts, self.map.len(), self.steer.motions);
+        (progress.rejected, progress.exhausted) = (self.steer.rejected, self.connect.exhausted());
+        progress
+    }
+}

@@ -1,0 +1,73 @@
+//! The probabilistic roadmap family: one engine, and one file per named algorithm.
+//!
+//! | algorithm | | nodes | edges |
+//! |---|---|---|---|
+//! | [`Prm`] | [`algo::prm`] | uniform, then more where connecting is difficult | to near nodes of other components |
+//!
+//! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
+//! [`build`] makes planners of the second kind by name.
+//!
+//! ```
+//! use mp_cspace::{
+//!     Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Settings, Straight,
+//! };
+//! use mp_roadmap::build;
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let free = |q: &Vector2<f64>| (q.x - 0.5).abs() > 0.1 || q.y > 0.8;
+//! let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! let problem = Problem::new(&space, local, verifier, Vector2::new(0.1, 0.1), Vector2::new(0.9, 0.1))?;
+//!
+//! let settings = Settings::parse(["neighbours=10"])?;
+//! let mut planner = build("prm", problem, &settings)?;
+//! match planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ()) {
+//!     Outcome::Solved(path) => assert!(path.states.len() > 2),
+//!     Outcome::Stopped(reason) => panic!("stopped: {reason:?}"),
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The engine
+//! Every attempt of every variant is: generate candidates, connect each to the [`Roadmap`] or refuse it.
+//! Queries look for a way through it. Each verb is a slot:
+//!
+//! | slot | trait | here |
+//! |---|---|---|
+//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`] |
+//! | what becomes a node, with which edges | [`Connector`] | [`Nearest`] |
+//! | how a way is looked for | [`Query`] | [`AStar`] |
+//! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
+//!
+//! A variant is a [`Recipe`] for the two loops: [`Builder`] builds until stopped, [`RoadmapPlanner`] until
+//! start and goal are connected.
+//!
+//! # What is promised
+//! - A path is returned only after the verifier has passed each of its edges, in the direction in which it
+//!   is run. An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
+//! - Bad input is a [`BuildError`](mp_cspace::BuildError) before planning begins.
+//! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
+//!   and going on changes nothing.
+
+pub mod algo;
+mod builder;
+mod connect;
+mod generate;
+mod planner;
+mod registry;
+mod roadmap;
+mod search;
+mod settings;
+mod steer;
+
+pub use algo::prm::{Learn, Learning, Prm};
+pub use builder::{Builder, Recipe};
+pub use connect::{Connector, Growing, Nearest, Reachable};
+pub use generate::{Came, Candidate, Free, NodeGenerator};
+pub use planner::{PATIENCE, RoadmapPlanner};
+pub use registry::{AnyPlanner, build, build_with, planner, planners};
+pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};
+pub use search::{AStar, Entry, Query};
+pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
+pub use steer::Steer;

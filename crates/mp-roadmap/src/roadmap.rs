@@ -1,0 +1,329 @@
+//! The graph: configurations, and the motions between them.
+
+use mp_cspace::{Motion, NodeId, Path, Reversible};
+use petgraph::graph::{EdgeIndex, NodeIndex, UnGraph};
+use petgraph::unionfind::UnionFind;
+use petgraph::visit::EdgeRef;
+
+/// What a node is there for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Kind {
+    /// Nothing in particular.
+    #[default]
+    Plain,
+    /// Where a path is to begin or end.
+    End,
+    /// Added where connecting is difficult.
+    Expanded,
+    /// Sees what no other guard did.
+    Guard,
+    /// Sees guards of several components.
+    Connection,
+    /// In contact with an obstacle, up to a tolerance.
+    Contact,
+    /// Close to an obstacle.
+    Near,
+    /// Away from all obstacles, free to turn any way.
+    Far,
+    /// Was in collision, and was moved until free.
+    Salvaged,
+}
+
+impl Kind {
+    /// All kinds, each at the place of its number in files.
+    pub const ALL: [Self; 9] = [
+        Self::Plain,
+        Self::End,
+        Self::Expanded,
+        Self::Guard,
+        Self::Connection,
+        Self::Contact,
+        Self::Near,
+        Self::Far,
+        Self::Salvaged,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plain => "plain",
+            Self::End => "end",
+            Self::Expanded => "expanded",
+            Self::Guard => "guard",
+            Self::Connection => "connection",
+            Self::Contact => "contact",
+            Self::Near => "near",
+            Self::Far => "far",
+            Self::Salvaged => "salvaged",
+        }
+    }
+}
+
+/// What is known of a node beside its state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tag {
+    /// What it is there for.
+    pub kind: Kind,
+    /// The obstacle it belongs to, if any.
+    pub obstacle: Option<u32>,
+    /// How often a connection to another node was tried.
+    pub tried: u32,
+    /// How often that failed.
+    pub failed: u32,
+}
+
+/// What is known of an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LinkState {
+    /// Nothing: the local planner was not asked.
+    Unchecked,
+    /// The local planner has a motion.
+    Free,
+    /// It has none, or the verifier did not pass it: as if the edge were not there.
+    Blocked,
+}
+
+/// An edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link<E> {
+    /// How to get from the source of the edge to its target; `None` while nobody knows.
+    pub edge: Option<E>,
+    /// Its length, not negative.
+    pub length: f64,
+    /// What is known of it.
+    pub state: LinkState,
+    /// Whether the verifier has passed it, from source to target and from target to source.
+    pub verified: [bool; 2],
+}
+
+/// A roadmap: configurations as nodes and motions as edges that can be run either way.
+///
+/// Nodes are numbered in the order in which they came, and stay; edges are blocked rather than removed.
+/// Components are kept up to date; blocking an edge costs a sweep over all edges when they are next asked
+/// for.
+#[derive(Clone, Debug)]
+pub struct Roadmap<S, E = ()> {
+    states: Vec<S>,
+    graph: UnGraph<Tag, Link<E>>,
+    sets: UnionFind<u32>,
+    components: usize,
+    stale: bool,
+}
+
+impl<S, E> Default for Roadmap<S, E> {
+    fn default() -> Self {
+        let (graph, sets) = (UnGraph::default(), UnionFind::new_empty());
+        Self { states: Vec::new(), graph, sets, components: 0, stale: false }
+    }
+}
+
+impl<S, E> Roadmap<S, E> {
+    /// Without nodes.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// How many nodes there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.states.len()
+    }
+
+    /// Whether there is no node.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.states.is_empty()
+    }
+
+    /// The states of all nodes, in order.
+    #[must_use]
+    pub fn states(&self) -> &[S] {
+        &self.states
+    }
+
+    /// The state of a node.
+    ///
+    /// # Panics
+    /// When there is no such node, as in all that takes an id.
+    #[must_use]
+    pub fn state(&self, id: NodeId) -> &S {
+        &self.states[id as usize]
+    }
+
+    /// What else is known of a node.
+    #[must_use]
+    pub fn tag(&self, id: NodeId) -> &Tag {
+        &self.graph[NodeIndex::from(id)]
+    }
+
+    /// The graph: nodes have their numbers as indices.
+    #[must_use]
+    pub fn graph(&self) -> &UnGraph<Tag, Link<E>> {
+        &self.graph
+    }
+
+    /// How many edges there are that are not blocked.
+    #[must_use]
+    pub fn edges(&self) -> usize {
+        self.graph.edge_weights().filter(|link| link.state != LinkState::Blocked).count()
+    }
+
+    /// The edges of a node that are not blocked, each with its other end.
+    pub fn links(&self, id: NodeId) -> impl Iterator<Item = (EdgeIndex, NodeId, &Link<E>)> {
+        let edges = self.graph.edges(NodeIndex::from(id));
+        edges
+            .filter(|edge| edge.weight().state != LinkState::Blocked)
+            .map(|edge| (edge.id(), edge.target().index() as NodeId, edge.weight()))
+    }
+
+    /// Adds a node, a component of its own.
+    pub fn add(&mut self, state: S, tag: Tag) -> NodeId {
+        self.states.push(state);
+        self.graph.add_node(tag);
+        self.sets.new_set();
+        self.components += 1;
+        (self.states.len() - 1) as NodeId
+    }
+
+    /// Adds the edge of a motion between two nodes.
+    pub fn link(&mut self, from: NodeId, to: NodeId, edge: E, length: f64) -> EdgeIndex {
+        self.insert(from, to, Link { edge: Some(edge), length, state: LinkState::Free, verified: [false; 2] })
+    }
+
+    /// Adds an edge of which nothing is known but how long it will be.
+    pub fn guess(&mut self, from: NodeId, to: NodeId, length: f64) -> EdgeIndex {
+        self.insert(from, to, Link { edge: None, length, state: LinkState::Unchecked, verified: [false; 2] })
+    }
+
+    pub(crate) fn insert(&mut self, from: NodeId, to: NodeId, link: Link<E>) -> EdgeIndex {
+        let joins = link.state != LinkState::Blocked;
+        let edge = self.graph.add_edge(NodeIndex::from(from), NodeIndex::from(to), link);
+        if joins && !self.stale && self.sets.union(from, to) {
+            self.components -= 1;
+        }
+        edge
+    }
+
+    /// Whether there is an edge between two nodes, blocked or not.
+    #[must_use]
+    pub fn has_link(&self, a: NodeId, b: NodeId) -> bool {
+        self.graph.contains_edge(NodeIndex::from(a), NodeIndex::from(b))
+    }
+
+    /// The two ends of an edge, source first.
+    #[must_use]
+    pub fn ends(&self, edge: EdgeIndex) -> [NodeId; 2] {
+        let (a, b) = self.graph.edge_endpoints(edge).unwrap_or_default();
+        [a.index() as NodeId, b.index() as NodeId]
+    }
+
+    /// Marks an edge as leading nowhere.
+    pub fn block(&mut self, edge: EdgeIndex) {
+        let link = &mut self.graph[edge];
+        self.stale |= link.state != LinkState::Blocked;
+        link.state = LinkState::Blocked;
+    }
+
+    /// Notes the motion of an edge that was only guessed.
+    pub fn settle(&mut self, edge: EdgeIndex, motion: E, length: f64) {
+        let link = &mut self.graph[edge];
+        if link.state == LinkState::Unchecked {
+            (link.edge, link.length, link.state) = (Some(motion), length, LinkState::Free);
+        }
+    }
+
+    pub(crate) fn passed(&mut self, edge: EdgeIndex, backward: bool) {
+        self.graph[edge].verified[usize::from(backward)] = true;
+    }
+
+    /// Counts an attempt to connect two nodes, or one node to something not in the roadmap.
+    pub(crate) fn tried(&mut self, id: NodeId, failed: bool) {
+        let tag = &mut self.graph[NodeIndex::from(id)];
+        tag.tried = tag.tried.saturating_add(1);
+        tag.failed = tag.failed.saturating_add(u32::from(failed));
+    }
+
+    /// Works the components out anew, when an edge was blocked.
+    fn refresh(&mut self) {
+        if !self.stale {
+            return;
+        }
+        self.sets = UnionFind::new(self.states.len());
+        self.components = self.states.len();
+        for edge in self.graph.edge_references() {
+            let ends = [edge.source(), edge.target()].map(|end| end.index() as u32);
+            if edge.weight().state != LinkState::Blocked && self.sets.union(ends[0], ends[1]) {
+                self.components -= 1;
+            }
+        }
+        self.stale = false;
+    }
+
+    /// The component of a node: the number of one of its nodes.
+    pub fn component(&mut self, id: NodeId) -> NodeId {
+        self.refresh();
+        self.sets.find_mut(id)
+    }
+
+    /// Whether two nodes are in the same component.
+    pub fn connected(&mut self, a: NodeId, b: NodeId) -> bool {
+        self.component(a) == self.component(b)
+    }
+
+    /// How many components there are.
+    pub fn components(&mut self) -> usize {
+        self.refresh();
+        self.components
+    }
+
+    /// How many nodes each component has, the largest first.
+    pub fn component_sizes(&mut self) -> Vec<usize> {
+        self.refresh();
+        let mut count = vec![0; self.states.len()];
+        for id in 0..self.states.len() as NodeId {
+            count[self.sets.find_mut(id) as usize] += 1;
+        }
+        count.retain(|&size| size > 0);
+        count.sort_unstable_by(|a, b| b.cmp(a));
+        count
+    }
+}
+
+/// A way through a roadmap: the nodes it visits and the edges between them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Way {
+    /// The nodes, one more than edges.
+    pub nodes: Vec<NodeId>,
+    /// The edges.
+    pub edges: Vec<EdgeIndex>,
+    /// Its length.
+    pub length: f64,
+}
+
+impl<S: Clone, E: Clone + Reversible> Roadmap<S, E> {
+    /// The motion along an edge that leaves `from`, if the edge has one.
+    #[must_use]
+    pub fn motion(&self, edge: EdgeIndex, from: NodeId) -> Option<Motion<S, E>> {
+        let link = &self.graph[edge];
+        let [a, b] = self.ends(edge);
+        let run = link.edge.as_ref()?;
+        let (end, edge) = if from == a { (b, run.clone()) } else { (a, run.reversed()) };
+        Some(Motion { end: self.state(end).clone(), edge, cost: link.length })
+    }
+
+    /// The path along a way; `None` when some edge of it has no motion.
+    #[must_use]
+    pub fn path(&self, way: &Way) -> Option<Path<S, E>> {
+        let mut states = vec![self.state(*way.nodes.first()?).clone()];
+        let mut edges = Vec::with_capacity(way.edges.len());
+        for (&edge, &from) in way.edges.iter().zip(&way.nodes) {
+            let motion = self.motion(edge, from)?;
+            states.push(motion.end);
+            edges.push(motion.edge);
+        }
+        Some(Path { states, edges })
+    }
+}

@@ -1,0 +1,156 @@
+//! What the engine promises.
+
+use crate::common::*;
+use mp_cspace::*;
+use mp_roadmap::*;
+use nalgebra::Vector2;
+
+type Point = Vector2<f64>;
+type Local<'c> = Straight<'c, Rn<2>, Box<dyn MotionValidity<Point> + Send + 'c>>;
+
+/// A point among boxes with an exact check of motions, or one that believes everything.
+pub(crate) fn problem<'c>(
+    space: &'c Rn<2>,
+    boxes: &Boxes<2>,
+    ends: [[f64; 2]; 2],
+    gullible: bool,
+) -> Problem<'c, Rn<2>, Local<'c>> {
+    let check: Box<dyn MotionValidity<Point> + Send> = match gullible {
+        true => Box::new(FineDiscrete::new(space, |_: &Point| true, Resolution::Length(1.0)).unwrap()),
+        false => Box::new(Exact(boxes.clone())),
+    };
+    let [start, goal] = ends.map(Point::from);
+    Problem::new(space, Straight::new(space, check), Exact(boxes.clone()), start, goal).unwrap()
+}
+
+const ENDS: [[f64; 2]; 2] = [[0.1, 0.2], [0.9, 0.2]];
+
+fn prm<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, gullible: bool) -> Prm<'c, Rn<2>, Local<'c>, KdTree<2>> {
+    let reach = Reachable { neighbours: 8, radius: 0.4, cycles: false };
+    let learning = Learning { learn: 60, ..Learning::default() };
+    Prm::new(problem(space, boxes, ENDS, gullible), reach, learning).unwrap()
+}
+
+#[test]
+fn what_the_verifier_refuses_is_blocked_and_never_returned() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let mut planner = prm(&space, &boxes, true);
+    let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(20_000), &mut ());
+    let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+    assert!(path.states.windows(2).all(|pair| !boxes.hit(&pair[0], &pair[1])));
+    let blocked = planner.map().graph().edge_weights().filter(|link| link.state == LinkState::Blocked);
+    assert_eq!(blocked.count() as u64, planner.progress().rejected);
+    assert!(planner.progress().rejected > 0);
+}
+
+#[test]
+fn without_cycles_the_roadmap_is_a_forest() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let mut builder = prm(&space, &boxes, false).into_builder();
+    assert_eq!(builder.build(&mut Rng::seed(2), &mut Nodes(500), &mut ()), StopReason::Nodes);
+    let map = builder.map_mut();
+    assert_eq!(map.edges() + map.components(), map.len());
+    let sizes = map.component_sizes();
+    assert_eq!((sizes.len(), sizes.iter().sum::<usize>()), (map.components(), map.len()));
+    let near = map.graph().edge_indices().all(|edge| {
+        let [a, b] = map.ends(edge);
+        space.distance(map.state(a), map.state(b)) <= 0.4 && !boxes.hit(map.state(a), map.state(b))
+    });
+    assert!(near);
+    let expanded = (0..500).filter(|&id| map.tag(id).kind == Kind::Expanded).count();
+    assert!((100..250).contains(&expanded), "{expanded} of 500 by expansion");
+}
+
+/// Expansion goes where connecting fails: about the slit, and little elsewhere.
+#[test]
+fn expansion_is_where_it_is_difficult() {
+    let (space, boxes) = (square(), slit(0.1, 0.5, 0.05));
+    let mut builder = prm(&space, &boxes, false).into_builder();
+    builder.build(&mut Rng::seed(3), &mut Nodes(3_000), &mut ());
+    let map = builder.map();
+    let near = |kind: Kind| {
+        let of = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == kind);
+        let (all, near) = of.fold((0, 0), |(all, near), id| {
+            (all + 1, near + usize::from((map.state(id).x - 0.5).abs() < 0.15))
+        });
+        f64::from(near as u32) / f64::from(all)
+    };
+    assert!(near(Kind::Expanded) > 1.5 * near(Kind::Plain), "{} {}", near(Kind::Expanded), near(Kind::Plain));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_and_stopping_changes_nothing() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.04));
+    let run = |slices: &[u64]| {
+        let mut planner = prm(&space, &boxes, false);
+        let mut rng = Rng::seed(5);
+        let mut path = None;
+        for &slice in slices {
+            let outcome = planner.solve(&mut rng, &mut Iterations(slice), &mut ());
+            if let Outcome::Solved(found) = outcome {
+                path = Some(found);
+                break;
+            }
+        }
+        (path, planner.map().states().to_vec())
+    };
+    let whole = run(&[20_000]);
+    assert!(whole.0.is_some());
+    assert_eq!(whole, run(&[1, 7, 50, 20_000]));
+}
+
+#[test]
+fn goals_may_be_regions_or_sampled() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let beyond = |q: &Point| q.x > 0.8;
+    for sampled in [false, true] {
+        let corner = Ball::new(&space, Point::new(0.9, 0.2), 0.05).unwrap();
+        let goals = match sampled {
+            true => Goals::sampled(corner),
+            false => Goals::region(beyond),
+        };
+        let local = Straight::new(&space, Exact(boxes.clone()));
+        let problem = Problem::new(&space, local, Exact(boxes.clone()), ENDS[0].into(), goals).unwrap();
+        let mut planner = build("prm", problem, &Settings::default()).unwrap();
+        let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());
+        let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+        assert_eq!(path.states[0], Point::from(ENDS[0]));
+        assert!(beyond(path.states.last().unwrap()));
+    }
+}
+
+#[test]
+fn a_start_in_the_goal_is_a_path() {
+    let (space, boxes) = (square(), Boxes::default());
+    let mut planner =
+        build("prm", problem(&space, &boxes, [[0.3; 2]; 2], false), &Settings::default()).unwrap();
+    let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
+    assert_eq!(path.states, [Point::new(0.3, 0.3)]);
+}
+
+#[test]
+fn bad_settings_are_refused() {
+    let (space, boxes) = (square(), Boxes::default());
+    for (text, part) in [
+        ("neighbours=0", "neighbours is 0"),
+        ("radius=-1", "radius is -1"),
+        ("radius=3", "extent"),
+        ("cycles=maybe", "yes or no"),
+        ("learn=0", "learn is 0"),
+        ("expand=11", "expand is 11"),
+        ("bounces=0", "bounces is 0"),
+        ("walk=0", "walk is 0"),
+        ("neighbors=3", "did you mean `neighbours`"),
+    ] {
+        let settings = Settings::parse([text]).unwrap();
+        let error = build("prm", problem(&space, &boxes, ENDS, false), &settings).err().unwrap().to_string();
+        assert!(error.contains(part), "{text}: {error}");
+    }
+    let error = planner("prn").err().unwrap().to_string();
+    assert!(error.contains("did you mean `prm`"), "{error}");
+    for info in planners() {
+        let defaults = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));
+        let settings = Settings::parse(defaults).unwrap();
+        assert!(build(info.name, problem(&space, &boxes, ENDS, false), &settings).is_ok(), "{}", info.name);
+    }
+}

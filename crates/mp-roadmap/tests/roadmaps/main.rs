@@ -1,0 +1,6 @@
+//! Roadmaps on problems whose answer is known.
+
+#[path = "../../../mp-tree/tests/common/mod.rs"]
+mod common;
+mod conformance;
+mod engine;
