@@ -90,6 +90,10 @@ impl<C: Space, M: MetricOn<C>> Space for WithMetric<C, M> {
         self.space.moved(from, velocity, time)
     }
     #[inline]
+    fn velocity_into(&self, from: &C::State, to: &C::State, out: &mut [f64]) -> bool {
+        self.space.velocity_into(from, to, out)
+    }
+    #[inline]
     fn interpolate(&self, from: &C::State, to: &C::State, t: f64) -> C::State {
         self.space.interpolate(from, to, t)
     }

@@ -112,6 +112,13 @@ pub trait Space: Metric<Self::State> + Sync {
         None
     }
 
+    /// The constant velocity that leads from `from` to `to` in one second along the interpolation, written
+    /// to `out`: the inverse of [`moved`](Space::moved). `false`, the default, where the space knows no velocities
+    /// or `out` has not [`dim`](Space::dim) numbers.
+    fn velocity_into(&self, _from: &Self::State, _to: &Self::State, _out: &mut [f64]) -> bool {
+        false
+    }
+
     /// As [`interpolate_into`](Space::interpolate_into), returning the state.
     #[inline]
     fn interpolate(&self, from: &Self::State, to: &Self::State, t: f64) -> Self::State {

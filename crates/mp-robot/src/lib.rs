@@ -11,7 +11,8 @@
 //! in space and time among bodies on known trajectories. Robots answer the questions of planners:
 //! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
 //! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; a [`RigidBody`] gives
-//! [`ObstacleHints`](mp_cspace::ObstacleHints) too; and of people:
+//! [`ObstacleHints`](mp_cspace::ObstacleHints) and [`ClearanceGradient`](mp_cspace::ClearanceGradient) too; and of
+//! people:
 //! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] or
 //! [`ArmVerifier`] proves finished paths by other means.
 //!
@@ -38,6 +39,7 @@
 mod arm;
 mod bounds;
 mod explain;
+mod gradient;
 mod hints;
 mod moving;
 mod placement;

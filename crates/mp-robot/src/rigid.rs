@@ -278,11 +278,15 @@ impl<P: Placement> RigidBody<P> {
     }
 
     /// Whether a point robot is inside a solid.
-    fn point_inside(&self, pose: &Isometry3<f64>) -> bool {
+    pub(crate) fn point_inside(&self, pose: &Isometry3<f64>) -> bool {
         self.shared.shape.radius == 0.0 && {
             let p = pose.translation.vector.into();
             self.shared.solids().iter().any(|(_, solid)| solid.contains(&p))
         }
+    }
+
+    pub(crate) fn count_clearance(&mut self) {
+        self.counters.clearance_checks += 1;
     }
 
     fn collides(&mut self, pose: &Isometry3<f64>) -> bool {

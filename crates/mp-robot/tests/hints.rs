@@ -1,10 +1,13 @@
-//! Hints lead along what is hit.
+//! Hints lead along what is hit, and gradients away from what is near.
 
 mod common;
 
 use common::{clutter, robot};
 use mp_collide::reference::triangle_distance;
-use mp_cspace::{Metric, ObstacleHints, Rn, Rng, Se2, Se3, Space, Validity, rotation_angle};
+use mp_cspace::testkit::check_clearance_gradient;
+use mp_cspace::{
+    ClearanceGradient, Metric, ObstacleHints, Rn, Rng, Se2, Se3, Space, Validity, rotation_angle,
+};
 use mp_robot::{FreeFlyer, Placement, PlanarFlyer, PointRobot, RigidBody};
 use nalgebra::{Point3, Vector3};
 
@@ -77,4 +80,40 @@ fn positions_and_rotations_are_taken_apart() {
     assert_eq!(point.turned(&p, &q), p);
     assert_eq!(point.carried(&p, &p, &q), p + (q - p));
     assert!(point.along(&p, &q, None, &mut rng).is_some());
+}
+
+/// By central differences, where free; in collision what is told is rough, yet mostly leads out.
+fn gradients<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBody<P>) {
+    check_clearance_gradient(space, &mut body, 1.5, (400, 1e-5, 1e-3), 3);
+    let (mut rng, mut gradient) = (Rng::seed(4), vec![0.0; space.dim()]);
+    let (mut touching, mut out) = (0, 0);
+    for _ in 0..400 {
+        let mut q = space.sample_uniform(&mut rng);
+        touching += u32::from(!body.is_valid(&q));
+        for _ in 0..if body.is_valid(&q) { 0 } else { 60 } {
+            let depth = body.clearance_gradient(&q, f64::INFINITY, &mut gradient);
+            assert!(depth <= 0.0, "{depth}");
+            let square: f64 = gradient.iter().map(|g| g * g).sum();
+            if square == 0.0 {
+                break;
+            }
+            q = space.moved(&q, &gradient, (0.02 - depth).min(0.2) / square).unwrap();
+            if body.is_valid(&q) {
+                out += 1;
+                break;
+            }
+        }
+    }
+    assert!(touching > 5 && out * 10 > touching * 6, "{out} of {touching} found a way out");
+}
+
+#[test]
+fn gradients_lead_away_from_obstacles() {
+    gradients(&Se3::new([-2.0; 3], [2.0; 3]).unwrap(), FreeFlyer::new(&robot(), clutter()).unwrap());
+    gradients(&Se2::new([-2.0; 2], [2.0; 2]).unwrap(), PlanarFlyer::new(&robot(), clutter()).unwrap());
+    gradients(&Rn::<3>::new([-2.0; 3], [2.0; 3]).unwrap(), PointRobot::new(clutter()).unwrap());
+    let mut alone = FreeFlyer::new(&robot(), []).unwrap();
+    let mut gradient = [f64::NAN; 6];
+    let far = alone.clearance_gradient(&nalgebra::Isometry3::identity(), 1.0, &mut gradient);
+    assert_eq!((far, gradient), (f64::INFINITY, [0.0; 6]));
 }

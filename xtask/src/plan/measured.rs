@@ -91,6 +91,9 @@ impl<M: Mover> Space for Measured<M> {
     fn moved(&self, from: &M::State, velocity: &[f64], time: f64) -> Option<M::State> {
         each!(self, space => space.moved(from, velocity, time))
     }
+    fn velocity_into(&self, from: &M::State, to: &M::State, out: &mut [f64]) -> bool {
+        each!(self, space => space.velocity_into(from, to, out))
+    }
     fn interpolate(&self, from: &M::State, to: &M::State, t: f64) -> M::State {
         each!(self, space => space.interpolate(from, to, t))
     }

@@ -220,6 +220,15 @@ impl<Q: Coordinates> Space for Joints<Q> {
         let fits = velocity.len() == n && from.len() == n;
         fits.then(|| self.wrapped(&Q::from_fn(n, |i| from[i] + velocity[i] * time)))
     }
+    #[inline]
+    fn velocity_into(&self, from: &Q, to: &Q, out: &mut [f64]) -> bool {
+        let (n, from, to) = (self.ranges.len(), from.as_slice(), to.as_slice());
+        let fits = [from.len(), to.len(), out.len()] == [n; 3];
+        if fits {
+            (0..n).for_each(|i| out[i] = self.way(i, from[i], to[i]));
+        }
+        fits
+    }
 }
 
 impl<Q: Coordinates> Factored for Joints<Q> {

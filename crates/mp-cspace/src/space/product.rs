@@ -147,6 +147,11 @@ impl<A: Space, B: Space> Space for Product<A, B> {
         let (a, b) = velocity.split_at_checked(self.a.dim())?;
         Some((self.a.moved(&from.0, a, time)?, self.b.moved(&from.1, b, time)?))
     }
+    #[inline]
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        let Some((a, b)) = out.split_at_mut_checked(self.a.dim()) else { return false };
+        self.a.velocity_into(&from.0, &to.0, a) && self.b.velocity_into(&from.1, &to.1, b)
+    }
     fn interpolate(&self, from: &Self::State, to: &Self::State, t: f64) -> Self::State {
         (self.a.interpolate(&from.0, &to.0, t), self.b.interpolate(&from.1, &to.1, t))
     }

@@ -109,6 +109,13 @@ impl<const N: usize> Space for Rn<N> {
     fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
         (velocity.len() == N).then(|| SVector::from_fn(|i, _| from[i] + velocity[i] * time))
     }
+    #[inline]
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        if out.len() == N {
+            (0..N).for_each(|i| out[i] = to[i] - from[i]);
+        }
+        out.len() == N
+    }
 }
 
 impl<const N: usize> Factored for Rn<N> {

@@ -96,6 +96,15 @@ impl Space for RnDyn {
         let fits = velocity.len() == n && from.len() == n;
         fits.then(|| DVector::from_fn(n, |i, _| from[i] + velocity[i] * time))
     }
+    #[inline]
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        let n = self.dim();
+        let fits = [from.len(), to.len(), out.len()] == [n; 3];
+        if fits {
+            (0..n).for_each(|i| out[i] = to[i] - from[i]);
+        }
+        fits
+    }
 }
 
 impl Factored for RnDyn {

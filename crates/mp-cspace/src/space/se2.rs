@@ -1,6 +1,6 @@
 //! SE(2): poses in the plane.
 
-use super::so2::{angle_at, angle_lerp, arc};
+use super::so2::{So2, angle_at, angle_lerp, arc};
 use super::{Factored, Metric, Rn, Space, TrueMetric};
 use crate::{Rng, SpaceError, error::weight};
 use nalgebra::{Isometry2, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
@@ -133,6 +133,12 @@ impl Space for Se2 {
         let &[x, y, turn] = velocity else { return None };
         let to = from.translation + Vector2::new(x, y) * time;
         Some(Se2State::new(to.x, to.y, from.angle + turn * time))
+    }
+    #[inline]
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        let [x, y, turn] = out else { return false };
+        (*x, *y) = (to.translation.x - from.translation.x, to.translation.y - from.translation.y);
+        So2.velocity_into(&from.angle, &to.angle, std::slice::from_mut(turn))
     }
 }
 

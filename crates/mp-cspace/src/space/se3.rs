@@ -1,6 +1,6 @@
 //! SE(3): poses in space.
 
-use super::so3::{is_unit, rotation_angle, rotation_at, slerp, turned};
+use super::so3::{is_unit, rotation_angle, rotation_at, slerp, turn, turned};
 use super::{Factored, Metric, Rn, Space, TrueMetric};
 use crate::{Rng, SpaceError, error::weight};
 use nalgebra::{Isometry3, Vector3};
@@ -106,6 +106,16 @@ impl Space for Se3 {
         let &[x, y, z, a, b, c] = velocity else { return None };
         let to = from.translation.vector + Vector3::new(x, y, z) * time;
         Some(Isometry3::from_parts(to.into(), turned(&from.rotation, Vector3::new(a, b, c) * time)))
+    }
+    #[inline]
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        let fits = out.len() == 6;
+        if fits {
+            let (translation, rotation) = out.split_at_mut(3);
+            translation.copy_from_slice((to.translation.vector - from.translation.vector).as_slice());
+            rotation.copy_from_slice(turn(&from.rotation, &to.rotation).as_slice());
+        }
+        fits
     }
 }
 

@@ -97,6 +97,12 @@ impl Space for So2 {
     fn moved(&self, from: &f64, velocity: &[f64], time: f64) -> Option<f64> {
         (velocity.len() == 1).then(|| wrap_angle(from + velocity[0] * time))
     }
+    #[inline]
+    fn velocity_into(&self, from: &f64, to: &f64, out: &mut [f64]) -> bool {
+        let [out] = out else { return false };
+        *out = arc(*from, *to);
+        true
+    }
 }
 
 impl Factored for So2 {

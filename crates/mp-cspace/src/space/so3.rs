@@ -71,6 +71,19 @@ pub(crate) fn turned(q: &UnitQuaternion<f64>, turn: Vector3<f64>) -> UnitQuatern
     UnitQuaternion::new_unchecked(q * (1.5 - 0.5 * q.norm_squared()))
 }
 
+/// The turn about a world axis that leads from `a` to `b` by the shorter way, as an axis times its angle.
+#[inline]
+pub(crate) fn turn(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> Vector3<f64> {
+    let (va, vb) = (&a.as_ref().coords, &b.as_ref().coords);
+    let axis = (b.into_inner() * a.into_inner().conjugate()).imag();
+    let sine = axis.norm();
+    if sine < 1e-150 {
+        return Vector3::zeros();
+    }
+    let axis = if va.dot(vb) < 0.0 { -axis } else { axis };
+    axis * (rotation_angle(a, b) / sine)
+}
+
 /// Shoemake 1992, *Uniform random rotations* (Graphics Gems III).
 #[inline]
 pub(crate) fn rotation_at(u: [f64; 3]) -> UnitQuaternion<f64> {
@@ -124,6 +137,14 @@ impl Space for So3 {
     fn moved(&self, from: &UnitQuaternion<f64>, velocity: &[f64], time: f64) -> Option<UnitQuaternion<f64>> {
         let &[x, y, z] = velocity else { return None };
         Some(turned(from, Vector3::new(x, y, z) * time))
+    }
+    #[inline]
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        let fits = out.len() == 3;
+        if fits {
+            out.copy_from_slice(turn(from, to).as_slice());
+        }
+        fits
     }
 }
 

@@ -60,6 +60,13 @@ impl<const N: usize> Space for Torus<N> {
         let turned = |i: usize| wrap_angle(from[i] + velocity[i] * time);
         (velocity.len() == N).then(|| SVector::from_fn(|i, _| turned(i)))
     }
+    #[inline]
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        if out.len() == N {
+            (0..N).for_each(|i| out[i] = arc(from[i], to[i]));
+        }
+        out.len() == N
+    }
 }
 
 impl<const N: usize> Factored for Torus<N> {

@@ -164,6 +164,14 @@ impl SpaceKit {
                 "space: a velocity leads along the interpolation, violated by {gap} at {t}\n  from {a:?} at {velocity:?}"
             );
         }
+        let mut back = vec![f64::NAN; velocity.len()];
+        if space.velocity_into(a, &b, &mut back) {
+            let gap = space.moved(a, &back, 1.0).map_or(f64::INFINITY, |q| space.distance(&q, &b));
+            assert!(
+                gap <= slack,
+                "space: the velocity to a state leads there, violated by {gap}\n  from {a:?} to {b:?} at {back:?}"
+            );
+        }
         assert!(
             space.moved(a, &[&velocity[..], &[1.0]].concat(), 1.0).is_none(),
             "space: a velocity has one number per degree of freedom, violated by one of {}",

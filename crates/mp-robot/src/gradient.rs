@@ -1,0 +1,74 @@
+//! Which way the clearance of a rigid body grows, by nearest points.
+
+use crate::{Placement, RigidBody};
+use mp_cspace::ClearanceGradient;
+use nalgebra::{Isometry3, Point3, Vector3};
+
+/// By the nearest points of robot and obstacles.
+///
+/// Free: the exact distance (m), and its derivative. In collision meshes have no depth, so what is told is rough:
+/// of the first pair of triangles found to intersect, how far the robot's reaches through the plane of the
+/// obstacle's, and the way back along the normal of that plane, to the side on which the robot has its middle. A
+/// point inside a solid is led out by the nearest way, which is exact.
+///
+/// One distance query where something is within `reach`, else one bound; in collision one intersection query
+/// besides.
+impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
+    fn clearance_gradient(&mut self, q: &P::State, reach: f64, gradient: &mut [f64]) -> f64 {
+        gradient.fill(0.0);
+        self.count_clearance();
+        let pose = P::pose(q);
+        let shared = std::sync::Arc::clone(&self.shared);
+        let inside = self.point_inside(&pose);
+        // A point deep inside has its surface farther than the reach.
+        let enough = if inside { f64::INFINITY } else { reach };
+        let (clearance, nearest) = shared.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
+        let Some(body) = nearest.and_then(|id| shared.scene.body(id)) else { return clearance };
+        let (value, at, way) = if clearance > 0.0 {
+            let apart = self.query.distance(&shared.robot, &pose, body.mesh(), body.pose());
+            let sign = if inside { -1.0 } else { 1.0 };
+            (sign * clearance, apart.point_a, (apart.point_a - apart.point_b) * sign)
+        } else {
+            match self.way_out(&pose) {
+                Some(found) => found,
+                None => return 0.0,
+            }
+        };
+        if let Some(way) = way.try_normalize(0.0) {
+            write::<P>(&pose, &at, &way, gradient);
+        }
+        value
+    }
+}
+
+impl<P: Placement> RigidBody<P> {
+    /// Minus the depth (m) of the first contact, where, and the way out.
+    fn way_out(&mut self, pose: &Isometry3<f64>) -> Option<(f64, Point3<f64>, Vector3<f64>)> {
+        let shared = &*self.shared;
+        let ([a, b, c], touching) = shared.placed.iter().find_map(|(id, mesh)| {
+            let body = shared.scene.body(*id)?;
+            let (own, other) =
+                self.query.intersecting_triangles(&shared.robot, pose, body.mesh(), body.pose())?;
+            Some((mesh.triangle(other), shared.robot_mesh.triangle(own).map(|p| pose * p)))
+        })?;
+        let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+        let normal = match P::MOVES.contains(&2) {
+            true => normal,
+            false => Vector3::new(normal.x, normal.y, 0.0).try_normalize(1e-9)?,
+        };
+        let corners = &shared.shape.corners;
+        let middle = pose * Point3::from(corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / 8.0);
+        let normal = if (middle - a).dot(&normal) < 0.0 { -normal } else { normal };
+        let height = |p: &Point3<f64>| (p - a).dot(&normal);
+        let deepest = touching.into_iter().min_by(|p, q| height(p).total_cmp(&height(q)))?;
+        Some((height(&deepest).min(0.0), deepest, normal))
+    }
+}
+
+/// The derivative of the distance in the direction `way` (unit, world) of a point `at` (world) of the body.
+fn write<P: Placement>(pose: &Isometry3<f64>, at: &Point3<f64>, way: &Vector3<f64>, gradient: &mut [f64]) {
+    let turning = (at.coords - pose.translation.vector).cross(way);
+    let moves = P::MOVES.iter().map(|&axis| way[axis]);
+    let numbers = moves.chain(P::TURNS.iter().map(|&axis| turning[axis]));
+    gradient.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
+}
