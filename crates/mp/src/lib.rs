@@ -6,6 +6,7 @@
 //! | [`collide`] | exact collision and distance between meshes |
 //! | [`cspace`] | spaces, metrics, samplers, motion checks, neighbours, paths: the traits |
 //! | [`robot`] | what a configuration places where, and when it is free |
+//! | [`snake`] | active contours that bend motions around obstacles |
 //! | [`tree`] | the RRT family |
 //! | [`roadmap`] | the PRM family |
 //! | [`io`] | meshes, scenes, problems and paths in files |
@@ -61,6 +62,7 @@ pub use mp_geom as geom;
 pub use mp_io as io;
 pub use mp_roadmap as roadmap;
 pub use mp_robot as robot;
+pub use mp_snake as snake;
 pub use mp_tree as tree;
 
 /// What most programs need.

@@ -1,0 +1,230 @@
+//! The local planner whose edges bend.
+
+use crate::{Params, Repulsion, Rest, Snake, SnakeError};
+use mp_cspace::{
+    ClearanceGradient, Direction, Extension, KnownFree, LocalPlanner, Motion, MotionCheck, MotionValidity,
+    Path, Reach, Space, Verify,
+};
+use std::sync::Arc;
+
+/// An edge of a [`SnakePlanner`]: the states it passes between its two ends, in forward time; none when it is
+/// straight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve<S>(Option<Arc<[S]>>);
+
+impl<S> Curve<S> {
+    /// The straight edge.
+    #[must_use]
+    pub fn straight() -> Self {
+        Self(None)
+    }
+
+    /// The edge through `states`.
+    #[must_use]
+    pub fn through(states: &[S]) -> Self
+    where
+        S: Clone,
+    {
+        Self((!states.is_empty()).then(|| states.into()))
+    }
+
+    /// The states between the ends.
+    #[must_use]
+    pub fn states(&self) -> &[S] {
+        self.0.as_deref().unwrap_or_default()
+    }
+
+    /// Checks each piece of the edge from `from` to `to`. Fractions are of the number of pieces.
+    pub fn check(&self, from: &S, to: &S, check: &mut impl MotionValidity<S>) -> MotionCheck {
+        self.along(from, to, |a, b| check.check_motion(a, b))
+    }
+
+    fn along(&self, from: &S, to: &S, mut check: impl FnMut(&S, &S) -> MotionCheck) -> MotionCheck {
+        let through = self.states();
+        let pieces = (through.len() + 1) as f64;
+        let (mut here, mut least) = (from, f64::INFINITY);
+        for (i, next) in through.iter().chain([to]).enumerate() {
+            let whole = |at: f64| (i as f64 + at) / pieces;
+            match check(here, next) {
+                MotionCheck::Free { clearance } => least = least.min(clearance),
+                MotionCheck::Collides { at } => return MotionCheck::Collides { at: whole(at) },
+                MotionCheck::Undecided { at } => return MotionCheck::Undecided { at: whole(at) },
+            }
+            here = next;
+        }
+        MotionCheck::Free { clearance: least }
+    }
+}
+
+/// The same path with the states its curves pass, straight between them.
+#[must_use]
+pub fn unbent<S: Clone>(path: &Path<S, Curve<S>>) -> Path<S> {
+    let mut states: Vec<S> = path.states.first().cloned().into_iter().collect();
+    for (edge, next) in path.edges.iter().zip(path.states.iter().skip(1)) {
+        states.extend_from_slice(edge.states());
+        states.push(next.clone());
+    }
+    Path::straight(states)
+}
+
+/// Verifies edges that are [`Curve`]s, piece by piece, with a verifier of straight ones.
+#[derive(Clone, Debug)]
+pub struct Pieces<V>(pub V);
+
+impl<S, V: Verify<S, ()>> Verify<S, Curve<S>> for Pieces<V> {
+    fn verify_state(&mut self, q: &S) -> MotionCheck {
+        self.0.verify_state(q)
+    }
+    fn verify_edge(&mut self, from: &S, edge: &Curve<S>, to: &S) -> MotionCheck {
+        edge.along(from, to, |a, b| self.0.verify_edge(a, &(), b))
+    }
+}
+
+/// What a [`SnakePlanner`] did so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SnakeCounters {
+    /// Motions that were free as they were, straight.
+    pub straight: u64,
+    /// Motions that were bent free.
+    pub bent: u64,
+    /// Motions given up at once: their end is not free.
+    pub hopeless: u64,
+    /// Motions that no snake could save.
+    pub lost: u64,
+    /// Steps of all snakes.
+    pub iterations: u64,
+}
+
+/// Goes straight, and where that is blocked sends a snake around what blocks it.
+///
+/// A motion ends where the straight one would. Each piece of a bent one has been found free by `check`; the field
+/// only guides. Its cost is its length in the metric of the space. Paths are made plain by [`unbent`].
+#[derive(Clone, Debug)]
+pub struct SnakePlanner<'c, C: Space, M, F> {
+    /// The motion check: discrete, certified or a user's own.
+    pub check: M,
+    /// What pushes.
+    pub field: Repulsion<F>,
+    snake: Snake<'c, C>,
+    wanted: f64,
+    counters: SnakeCounters,
+}
+
+/// A snake is checked as soon as all its nodes are this part of the range away from obstacles.
+const WANTED: f64 = 0.5;
+
+impl<'c, C, M, F> SnakePlanner<'c, C, M, F>
+where
+    C: Space,
+    M: MotionValidity<C::State>,
+    F: ClearanceGradient<C::State>,
+{
+    /// Motions in `space` checked by `check`, bent by `field`, of obstacles that repel within `range` (m), with the
+    /// [parameters](Params::for_range) of that range but for fewer iterations, 12.
+    ///
+    /// # Errors
+    /// When the range is not positive and finite, or the space knows no velocities.
+    pub fn new(space: &'c C, check: M, field: F, range: f64) -> Result<Self, SnakeError> {
+        let params = Params { iterations: 12, ..Params::for_range(range)? };
+        Self::with_params(space, check, Repulsion::new(field, range)?, params)
+    }
+
+    /// The same with parameters of your own.
+    ///
+    /// # Errors
+    /// When one is out of range, or the space knows no velocities.
+    pub fn with_params(
+        space: &'c C,
+        check: M,
+        field: Repulsion<F>,
+        params: Params,
+    ) -> Result<Self, SnakeError> {
+        let wanted = WANTED * field.range();
+        let snake = Snake::new(space, params)?;
+        Ok(Self { check, field, snake, wanted, counters: SnakeCounters::default() })
+    }
+
+    /// What was done so far.
+    #[must_use]
+    pub fn counters(&self) -> SnakeCounters {
+        self.counters
+    }
+
+    /// A bent motion in forward time, its ends included, every piece checked; `None` when there is none.
+    fn bend(&mut self, from: &C::State, to: &C::State) -> Option<Vec<C::State>> {
+        let mut curve = self.snake.between(from, to);
+        self.snake.bulge(&mut curve, &mut self.field);
+        let (check, wanted) = (&mut self.check, self.wanted);
+        let (mut passed, mut iterations) = (false, 0);
+        let rest = self.snake.deform(&mut curve, &mut self.field, |moment| {
+            iterations = moment.iteration;
+            passed = moment.clearance >= wanted && all_free(check, moment.curve);
+            passed
+        });
+        self.counters.iterations += u64::from(iterations);
+        if !passed && rest != Rest::Stopped {
+            passed = all_free(check, &curve);
+        }
+        passed.then_some(curve)
+    }
+}
+
+/// Whether every piece is free. The middle is looked at first: there a snake is tightest.
+fn all_free<S>(check: &mut impl MotionValidity<S>, curve: &[S]) -> bool {
+    let middle = curve.len() / 2;
+    let mut free = |i: usize| check.check_motion(&curve[i], &curve[i + 1]).is_free();
+    (middle..curve.len() - 1).all(&mut free) && (0..middle).all(free)
+}
+
+impl<C, M, F> LocalPlanner<C::State> for SnakePlanner<'_, C, M, F>
+where
+    C: Space,
+    M: MotionValidity<C::State>,
+    F: ClearanceGradient<C::State>,
+{
+    type Edge = Curve<C::State>;
+
+    fn extend(
+        &mut self,
+        from: &C::State,
+        toward: &C::State,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<C::State, Curve<C::State>> {
+        let space = self.snake.space();
+        let distance = space.distance(from, toward);
+        let (end, length, reached) = match reach {
+            Reach::Step(step) if step < distance => {
+                (space.interpolate(from, toward, step / distance), step, false)
+            }
+            _ => (toward.clone(), distance, true),
+        };
+        let found = |edge, cost| {
+            let motion = Motion { end: end.clone(), edge, cost };
+            if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) }
+        };
+        let (a, b, known) = match direction {
+            Direction::Forward => (from, &end, KnownFree::From),
+            Direction::Backward => (&end, from, KnownFree::To),
+        };
+        if self.check.check_extension(a, b, known).is_free() {
+            self.counters.straight += 1;
+            return found(Curve::straight(), length);
+        }
+        if !(length > 0.0 && length.is_finite() && self.check.check_motion(&end, &end).is_free()) {
+            self.counters.hopeless += 1;
+            return Extension::Trapped;
+        }
+        let Some(curve) = self.bend(a, b) else {
+            self.counters.lost += 1;
+            return Extension::Trapped;
+        };
+        self.counters.bent += 1;
+        let cost = curve.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
+        found(Curve::through(&curve[1..curve.len() - 1]), cost)
+    }
+
+    fn admits(&mut self, q: &C::State) -> bool {
+        self.check.check_motion(q, q).is_free()
+    }
+}

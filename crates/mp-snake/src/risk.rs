@@ -1,0 +1,195 @@
+//! The risk landscape: where a robot that misses its way may hit an obstacle that is not quite where it seems.
+//!
+//! After Fig. 1 and §3.1 of K. Baizid et al., *RRS: rapidly-exploring random snakes*: a step that turns and goes
+//! straight ends in a banana-shaped cloud, the product of two Gaussians; a range sensor sees obstacles in the wrong
+//! distance; the product of both probabilities is the risk. Models as of S. Thrun, W. Burgard and D. Fox,
+//! *Probabilistic robotics*, 2005.
+
+use crate::error::{not_negative, positive};
+use crate::{Grid, blurred};
+use mp_cspace::{ParameterError, Path, wrap_angle};
+use nalgebra::Vector2;
+use std::f64::consts::TAU;
+
+/// How badly a robot executes a step: turn, then go straight. Deviations grow with what is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotionNoise {
+    /// Deviation of the heading (rad) whatever the turn.
+    pub turn: f64,
+    /// More of it per radian turned.
+    pub turn_per_turn: f64,
+    /// Deviation of the distance (m), however far.
+    pub way: f64,
+    /// More of it per metre gone.
+    pub way_per_way: f64,
+}
+
+impl MotionNoise {
+    /// This noise, if its numbers are possible.
+    ///
+    /// # Errors
+    /// When one is not finite or negative, or one of the two constant deviations is not positive.
+    pub fn checked(self) -> Result<Self, ParameterError> {
+        positive("the deviation of a turn", self.turn)?;
+        positive("the deviation of a way", self.way)?;
+        not_negative("the deviation per radian", self.turn_per_turn)?;
+        not_negative("the deviation per metre", self.way_per_way)?;
+        Ok(self)
+    }
+
+    /// The density (1/m²) at `p` of where the robot is after a step from `from` at `heading` (rad): it turns by `turn`
+    /// (rad), then goes `way` (m). In polar coordinates about `from` both are Gaussian.
+    #[must_use]
+    pub fn density(
+        &self,
+        from: &Vector2<f64>,
+        heading: f64,
+        (turn, way): (f64, f64),
+        p: &Vector2<f64>,
+    ) -> f64 {
+        let offset = p - from;
+        let far = offset.norm();
+        if far <= 0.0 {
+            return 0.0;
+        }
+        let angle = wrap_angle(offset.y.atan2(offset.x) - heading - turn);
+        let turns = self.turn + self.turn_per_turn * turn.abs();
+        let ways = self.way + self.way_per_way * way.abs();
+        // The area of a cell in polar coordinates has a factor `far`.
+        gauss(angle, turns) * gauss(far - way, ways) / far
+    }
+
+    /// The probability of passing within half a cell of each cell's middle in executing a path, step by step, of
+    /// those places where steps end: `1 − Π(1 − pᵢ)`. Long steps should be [resampled](Path::resampled) first. The
+    /// first step needs no turn; each later one starts from where it should.
+    #[must_use]
+    pub fn envelope(&self, path: &Path<Vector2<f64>>, of: &Grid) -> Grid {
+        let (width, _) = of.size();
+        let mut missed = vec![1.0; of.values().len()];
+        let mut heading = None;
+        for w in path.states.windows(2) {
+            let way = w[1] - w[0];
+            if way.norm() == 0.0 {
+                continue;
+            }
+            let angle = way.y.atan2(way.x);
+            let before = heading.replace(angle).unwrap_or(angle);
+            let step = (wrap_angle(angle - before), way.norm());
+            for (n, missed) in missed.iter_mut().enumerate() {
+                let middle = Vector2::new((n % width) as f64 + 0.5, (n / width) as f64 + 0.5) * of.cell();
+                let density = self.density(&w[0], before, step, &(of.origin() + middle));
+                *missed *= 1.0 - (density * of.cell() * of.cell()).min(1.0);
+            }
+        }
+        of.with_values(missed.into_iter().map(|m| 1.0 - m).collect())
+    }
+}
+
+/// How badly a range sensor measures: the deviation of a distance (m), and more of it per metre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RangeNoise {
+    /// However far (m).
+    pub constant: f64,
+    /// More of it per metre.
+    pub per_metre: f64,
+}
+
+impl RangeNoise {
+    /// The probability that each cell is occupied, of a map that is above one half where obstacles were seen from
+    /// `distance` (m) away: the map blurred by the deviation at that distance.
+    ///
+    /// # Errors
+    /// When the deviation is not positive and finite, or too wide for the map.
+    pub fn occupancy(&self, seen: &Grid, distance: f64) -> Result<Grid, ParameterError> {
+        not_negative("the deviation per metre", self.per_metre)?;
+        let sigma = self.constant + self.per_metre * not_negative("a distance", distance)?;
+        blurred(&seen.clone().map(|v| f64::from(u8::from(v > 0.5))), sigma)
+    }
+}
+
+/// The product of two maps of the same cells, such as the probability that the robot passes and that there is
+/// something: the landscape of Fig. 1 d. As a [`Field`](crate::Field) it pushes snakes out of the risk.
+///
+/// # Errors
+/// When the maps differ in place, scale or size.
+pub fn landscape(passing: &Grid, occupied: &Grid) -> Result<Grid, ParameterError> {
+    let same = passing.origin() == occupied.origin() && passing.cell() == occupied.cell();
+    if !same || passing.size() != occupied.size() {
+        let expected = "those of the other: the same place, scale and size";
+        return Err(ParameterError { name: "the cells of a map", expected, value: occupied.cell() });
+    }
+    let product = passing.values().iter().zip(occupied.values()).map(|(a, b)| a * b);
+    Ok(passing.with_values(product.collect()))
+}
+
+/// The cost of a path in a map of risks: `∫ (1 + weight · risk) ds`, so its length where there is no risk. By the
+/// midpoint rule, four times per cell.
+///
+/// # Errors
+/// When the weight is negative or not finite.
+pub fn path_cost(path: &Path<Vector2<f64>>, risk: &Grid, weight: f64) -> Result<f64, ParameterError> {
+    let weight = not_negative("the weight of risk", weight)?;
+    let cost = |w: &[Vector2<f64>]| {
+        let length = (w[1] - w[0]).norm();
+        let parts = (4.0 * length / risk.cell()).ceil().clamp(1.0, 1e7);
+        let middle = |k: f64| w[0] + (w[1] - w[0]) * ((k + 0.5) / parts);
+        let sum: f64 = (0..parts as u32).map(|k| risk.at(&middle(f64::from(k))).0).sum();
+        length * (1.0 + weight * sum / parts)
+    };
+    Ok(path.states.windows(2).map(cost).sum())
+}
+
+fn gauss(x: f64, sigma: f64) -> f64 {
+    (-0.5 * (x / sigma).powi(2)).exp() / (sigma * TAU.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NOISE: MotionNoise = MotionNoise { turn: 0.2, turn_per_turn: 0.1, way: 0.03, way_per_way: 0.05 };
+
+    fn cells(f: impl FnMut(Vector2<f64>) -> f64) -> Grid {
+        Grid::from_fn([-2.0, -2.0], 0.02, (200, 200), f).unwrap()
+    }
+
+    /// All of the probability is somewhere, along an arc about the start: a banana.
+    #[test]
+    fn the_cloud_after_a_step_is_a_banana() {
+        let from = Vector2::new(-0.5, -0.5);
+        let at = |p: Vector2<f64>| NOISE.density(&from, 0.3, (0.5, 1.2), &p);
+        let sum: f64 = cells(at).values().iter().sum::<f64>() * 0.02 * 0.02;
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+        let polar = |angle: f64, far: f64| at(from + Vector2::new(angle.cos(), angle.sin()) * far);
+        let peak = polar(0.8, 1.2);
+        // A deviation to the side on the arc is as likely either way, and likelier than straight across it.
+        assert!((polar(1.05, 1.2) - polar(0.55, 1.2)).abs() < 1e-9 && polar(1.05, 1.2) > 0.5 * peak);
+        let across = from
+            + Vector2::new(0.8_f64.cos(), 0.8_f64.sin()) * 1.2
+            + Vector2::new(-0.8_f64.sin(), 0.8_f64.cos()) * 0.6;
+        assert!(at(across) < polar(0.8 + (0.6_f64 / 1.2).atan(), 1.2));
+    }
+
+    /// The risk is where the way and an obstacle come near, and a path that keeps away costs less.
+    #[test]
+    fn risk_is_between_the_way_and_the_obstacle() {
+        let seen = cells(|p| f64::from(u8::from((p - Vector2::new(0.0, 0.25)).norm() < 0.2)));
+        let occupied = RangeNoise { constant: 0.02, per_metre: 0.03 }.occupancy(&seen, 1.0).unwrap();
+        let through = |y: f64| {
+            Path::straight(vec![Vector2::new(-1.0, 0.0), Vector2::new(0.0, y), Vector2::new(1.0, 0.0)])
+        };
+        let path =
+            through(0.0).resampled(&mp_cspace::Rn::<2>::new([-2.0; 2], [2.0; 2]).unwrap(), 0.3).unwrap();
+        let passing = NOISE.checked().unwrap().envelope(&path, &occupied);
+        let risk = landscape(&passing, &occupied).unwrap();
+        let (worst, _) = risk.values().iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
+        let at = Vector2::new((worst % 200) as f64, (worst / 200) as f64) * 0.02 - Vector2::repeat(1.99);
+        assert!(at.x.abs() < 0.4 && (0.02..0.4).contains(&at.y), "{at}");
+        assert!(risk.values().iter().all(|r| (0.0..=1.0).contains(r)));
+        let cost = |y: f64| path_cost(&through(y), &risk, 1e5).unwrap();
+        assert!(cost(-0.3) < cost(0.0) && cost(-0.3) < cost(0.1));
+        assert!((path_cost(&through(0.0), &risk, 0.0).unwrap() - 2.0).abs() < 1e-12);
+        assert!(landscape(&passing, &seen.map(|_| 0.0)).is_ok() && path_cost(&path, &risk, -1.0).is_err());
+        assert!(MotionNoise { turn: 0.0, ..NOISE }.checked().is_err());
+    }
+}

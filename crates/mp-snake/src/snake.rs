@@ -1,0 +1,373 @@
+//! The snake: a curve that moves until its energy is least.
+
+use crate::params::scale;
+use crate::{Band, Field, Params, SnakeError};
+use mp_cspace::Space;
+
+/// The energy of a curve, by its parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Of the curve itself: `½·∫(α·|v'|² + β·|v''|²) ds`.
+    pub internal: f64,
+    /// Of the field along it: `∫P ds`.
+    pub external: f64,
+    /// `γ` times its length.
+    pub optimal: f64,
+}
+
+impl Energy {
+    /// All of it.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.internal + self.external + self.optimal
+    }
+}
+
+/// Why a snake came to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Rest {
+    /// It hardly moves any more.
+    Converged,
+    /// No step along the forces lowers its energy.
+    Stagnated,
+    /// Its steps are used up.
+    Iterations,
+    /// Whoever watched it said so.
+    Stopped,
+}
+
+/// A moment in the life of a snake.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a, S> {
+    /// Its nodes, both ends included.
+    pub curve: &'a [S],
+    /// The least clearance (m) at a node between the ends, as the field has it; infinite where the field knows
+    /// none.
+    pub clearance: f64,
+    /// Its energy.
+    pub energy: Energy,
+    /// Steps done.
+    pub iteration: u32,
+}
+
+/// An open active contour with fixed ends, in any space that knows velocities.
+///
+/// M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988, as modified by K. Baizid et
+/// al., *RRS: rapidly-exploring random snakes* (eq. 1 to 4). For a curve `v` of nodes `h` apart the energy is
+///
+/// `E = α/2h·Σ|vᵢ₊₁ − vᵢ|² + β/2h³·Σ|vᵢ₋₁ − 2vᵢ + vᵢ₊₁|² + h·ΣP(vᵢ) + γ·Σ|vᵢ₊₁ − vᵢ|`
+///
+/// with differences in the metric of the space: velocities from node to node, each degree of freedom
+/// weighted by the length that it travels. Where the paper differs:
+/// - Eq. 2 prints `|v|²` and `|v'|²`; membrane and plate are `|v'|²` and `|v''|²` as in Kass et al.
+/// - Eq. 4 sums forces `γ·n̄` along the normal. The energy of which this is the direction of descent is the length;
+///   its force is `γ·κ·n̄`, towards the inside of each bend and zero where the curve is straight.
+/// - The field acts across the curve only: along it it would move nodes, not the curve.
+///
+/// One step is semi-implicit: `(I + a·T + b·T²)·δ = −τ/h·∇E`, the stiff part by a [`Band`] that is factorised
+/// once for each number of nodes. The step is halved until the energy does not rise, so it never does. In spaces
+/// with rotations, differences about neighbouring nodes are taken as if in one tangent space.
+///
+/// A step takes O(n·d) operations and one question to the field per node, for n nodes and d degrees of freedom.
+///
+/// ```
+/// use mp_cspace::Rn;
+/// use mp_snake::{Params, Repulsion, Rest, Snake};
+/// use nalgebra::Vector2;
+/// let space = Rn::<2>::new([-2.0; 2], [2.0; 2])?;
+/// // A disc of radius 0.3, a little below the middle of a straight line.
+/// let disc = |q: &Vector2<f64>, _: f64, gradient: &mut [f64]| {
+///     let from = q - Vector2::new(0.0, -0.1);
+///     gradient.copy_from_slice((from / from.norm()).as_slice());
+///     from.norm() - 0.3
+/// };
+/// let mut snake = Snake::new(&space, Params::for_range(0.2)?)?;
+/// let mut curve = snake.between(&Vector2::new(-1.0, 0.0), &Vector2::new(1.0, 0.0));
+/// snake.deform(&mut curve, &mut Repulsion::new(disc, 0.2)?, |_| false);
+/// let clear = |q: &Vector2<f64>| (q - Vector2::new(0.0, -0.1)).norm() > 0.3;
+/// assert!(curve.iter().all(clear));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Snake<'c, C: Space> {
+    space: &'c C,
+    params: Params,
+    scale: Vec<f64>,
+    /// By the number of nodes that move.
+    bands: Vec<Option<Band>>,
+    now: Shape,
+    trial: Shape,
+    /// Where each moving node goes, then what a node is moved by.
+    step: Vec<f64>,
+    velocity: Vec<f64>,
+    next: Vec<C::State>,
+    trace: Vec<Energy>,
+}
+
+/// What is known of a curve. Numbers are scaled: lengths in the metric.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shape {
+    pub(crate) energy: Energy,
+    /// From each node to the next.
+    pub(crate) ways: Vec<f64>,
+    /// Their lengths.
+    lengths: Vec<f64>,
+    /// The gradient of the field at each node between the ends, across the curve.
+    pub(crate) pushes: Vec<f64>,
+    /// The clearance of those nodes.
+    pub(crate) clearances: Vec<f64>,
+}
+
+impl Shape {
+    /// The least clearance of a node between the ends.
+    pub(crate) fn clearance(&self) -> f64 {
+        self.clearances.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// Curves of more nodes are not made.
+const MOST_NODES: usize = 10_000;
+
+/// How often a step is halved before giving up.
+const HALVINGS: u32 = 5;
+
+/// Steps that lower the energy by less than this part of it are of no use.
+const LEAST_GAIN: f64 = 1e-7;
+
+impl<'c, C: Space> Snake<'c, C> {
+    /// Snakes of these parameters in `space`.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or the space knows no velocities.
+    pub fn new(space: &'c C, params: Params) -> Result<Self, SnakeError> {
+        Ok(Self {
+            space,
+            params: params.checked()?,
+            scale: scale(space)?,
+            bands: Vec::new(),
+            now: Shape::default(),
+            trial: Shape::default(),
+            step: Vec::new(),
+            velocity: Vec::new(),
+            next: Vec::new(),
+            trace: Vec::new(),
+        })
+    }
+
+    /// Its parameters.
+    #[must_use]
+    pub fn params(&self) -> &Params {
+        &self.params
+    }
+
+    /// The space it lives in.
+    #[must_use]
+    pub fn space(&self) -> &'c C {
+        self.space
+    }
+
+    /// The energies of the curve deformed last: before the first step and after each.
+    #[must_use]
+    pub fn trace(&self) -> &[Energy] {
+        &self.trace
+    }
+
+    /// The straight curve from one state to another: as many nodes as the spacing asks for, at least five and at
+    /// most ten thousand.
+    pub fn between(&self, from: &C::State, to: &C::State) -> Vec<C::State> {
+        let wanted = (self.space.distance(from, to) / self.params.spacing).ceil();
+        let parts = wanted.clamp(4.0, (MOST_NODES - 1) as f64) as usize;
+        (0..=parts).map(|i| self.space.interpolate(from, to, i as f64 / parts as f64)).collect()
+    }
+
+    /// The energy of a curve.
+    pub fn energy(&mut self, curve: &[C::State], field: &mut impl Field<C::State>) -> Energy {
+        let mut shape = std::mem::take(&mut self.trial);
+        self.measure(curve, field, &mut shape);
+        self.trial = shape;
+        self.trial.energy
+    }
+
+    /// Moves the nodes between the ends until the energy is least, or `watch`, which is shown the curve before the
+    /// first step and after each, says so. A curve of less than three nodes stays as it is, and nodes do not
+    /// leave the bounds of the space.
+    ///
+    /// The energy never rises from one step to the next, but for rounding.
+    pub fn deform(
+        &mut self,
+        curve: &mut [C::State],
+        field: &mut impl Field<C::State>,
+        mut watch: impl FnMut(Moment<'_, C::State>) -> bool,
+    ) -> Rest {
+        self.trace.clear();
+        let mut now = std::mem::take(&mut self.now);
+        self.measure(curve, field, &mut now);
+        self.trace.push(now.energy);
+        let mut iteration = 0;
+        let rest = loop {
+            if watch(Moment { curve, clearance: now.clearance(), energy: now.energy, iteration }) {
+                break Rest::Stopped;
+            }
+            if iteration == self.params.iterations {
+                break Rest::Iterations;
+            }
+            if curve.len() < 3 {
+                break Rest::Converged;
+            }
+            iteration += 1;
+            self.aim(&now);
+            let before = now.energy.total();
+            let Some(part) = self.advance(curve, field, &mut now) else { break Rest::Stagnated };
+            self.trace.push(now.energy);
+            let dim = self.scale.len();
+            let farthest = self.step.chunks_exact(dim).map(norm).fold(0.0, f64::max) * part;
+            if farthest <= self.params.tolerance * self.params.spacing {
+                break Rest::Converged;
+            }
+            if before - now.energy.total() <= LEAST_GAIN * before.abs() {
+                break Rest::Stagnated;
+            }
+        };
+        self.now = now;
+        rest
+    }
+
+    /// Measures a curve: its energy, its ways and the forces on it.
+    pub(crate) fn measure(
+        &mut self,
+        curve: &[C::State],
+        field: &mut impl Field<C::State>,
+        shape: &mut Shape,
+    ) {
+        let (dim, h) = (self.scale.len(), self.params.spacing);
+        let parts = curve.len().saturating_sub(1);
+        shape.ways.resize(parts * dim, 0.0);
+        shape.lengths.clear();
+        for (pair, way) in curve.windows(2).zip(shape.ways.chunks_exact_mut(dim)) {
+            self.space.velocity_into(&pair[0], &pair[1], way);
+            way.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+            shape.lengths.push(norm(way));
+        }
+        let ways = &shape.ways;
+        let bends: f64 =
+            (1..parts).map(|i| (0..dim).map(|k| bend(ways, dim, i, k).powi(2)).sum::<f64>()).sum();
+        let stretched: f64 = ways.iter().map(|x| x * x).sum();
+        let length: f64 = shape.lengths.iter().sum();
+        let Params { membrane, plate, straighten, .. } = self.params;
+        shape.energy.internal = 0.5 * (membrane * stretched / h + plate * bends / (h * h * h));
+        shape.energy.optimal = straighten * length;
+        shape.energy.external = 0.0;
+        let inner = parts.saturating_sub(1);
+        shape.pushes.resize(inner * dim, 0.0);
+        shape.clearances.clear();
+        for (i, q) in curve.iter().enumerate().take(parts).skip(1) {
+            let push = &mut shape.pushes[(i - 1) * dim..i * dim];
+            shape.energy.external += h * field.energy(q, push);
+            shape.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
+            push.iter_mut().zip(&self.scale).for_each(|(x, s)| *x /= s);
+            across(push, &shape.ways[(i - 1) * dim..(i + 1) * dim]);
+        }
+    }
+
+    /// The implicit step of all nodes, from the forces on the curve.
+    fn aim(&mut self, shape: &Shape) {
+        let (dim, parts) = (self.scale.len(), shape.lengths.len());
+        let Params { membrane, plate, straighten, spacing: h, pace, .. } = self.params;
+        let bent = |i: usize, k: usize| {
+            if i == 0 || i >= parts { 0.0 } else { bend(&shape.ways, dim, i, k) }
+        };
+        self.step.clear();
+        for i in 1..parts {
+            let [before, after] = [i - 1, i].map(|j| (j * dim, straighten / shape.lengths[j].max(1e-300)));
+            for k in 0..dim {
+                let (came, goes) = (shape.ways[before.0 + k], shape.ways[after.0 + k]);
+                let stretch = membrane / h * (came - goes);
+                let curl = plate / (h * h * h) * (bent(i - 1, k) - 2.0 * bent(i, k) + bent(i + 1, k));
+                let slack = before.1 * came - after.1 * goes;
+                let push = h * shape.pushes[(i - 1) * dim + k];
+                self.step.push(-pace / h * (stretch + curl + slack + push));
+            }
+        }
+        let rows = parts - 1;
+        if self.bands.len() <= rows {
+            self.bands.resize(rows + 1, None);
+        }
+        let [a, b] = self.params.stiffness();
+        self.bands[rows].get_or_insert_with(|| Band::new(rows, a, b)).solve(&mut self.step, dim);
+    }
+
+    /// Goes as large a part of the step as does not raise the energy: that part, `None` when there is none.
+    fn advance(
+        &mut self,
+        curve: &mut [C::State],
+        field: &mut impl Field<C::State>,
+        now: &mut Shape,
+    ) -> Option<f64> {
+        let most = now.energy.total() * (1.0 + 1e-12) + 1e-300;
+        let mut next = std::mem::take(&mut self.next);
+        let mut trial = std::mem::take(&mut self.trial);
+        let mut part = 1.0;
+        let mut gone = None;
+        for _ in 0..=HALVINGS {
+            self.displaced(curve, part, &mut next);
+            self.measure(&next, field, &mut trial);
+            if trial.energy.total() <= most {
+                curve.clone_from_slice(&next);
+                std::mem::swap(now, &mut trial);
+                gone = Some(part);
+                break;
+            }
+            part *= 0.5;
+        }
+        (self.next, self.trial) = (next, trial);
+        gone
+    }
+
+    /// The curve with each node between the ends moved by a part of the step.
+    pub(crate) fn displaced(&mut self, curve: &[C::State], part: f64, out: &mut Vec<C::State>) {
+        out.clear();
+        out.extend_from_slice(curve);
+        let dim = self.scale.len();
+        for (step, q) in self.step.chunks_exact(dim).zip(&mut out[1..]) {
+            self.velocity.clear();
+            self.velocity.extend(step.iter().zip(&self.scale).map(|(x, s)| x / s));
+            match self.space.moved(q, &self.velocity, part) {
+                Some(moved) if self.space.contains(&moved) => *q = moved,
+                _ => {}
+            }
+        }
+    }
+
+    /// Sets the step of all nodes.
+    pub(crate) fn step_mut(&mut self) -> &mut Vec<f64> {
+        &mut self.step
+    }
+
+    /// The number of degrees of freedom.
+    pub(crate) fn dim(&self) -> usize {
+        self.scale.len()
+    }
+}
+
+/// The second difference of a curve at node `i`.
+#[inline]
+fn bend(ways: &[f64], dim: usize, i: usize, k: usize) -> f64 {
+    ways[i * dim + k] - ways[(i - 1) * dim + k]
+}
+
+#[inline]
+pub(crate) fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Takes from `push` its part along the curve: the two ways that meet at the node.
+#[inline]
+fn across(push: &mut [f64], ways: &[f64]) {
+    let dim = push.len();
+    let along = |k: usize| ways[k] + ways[dim + k];
+    let square: f64 = (0..dim).map(|k| along(k) * along(k)).sum();
+    if square > 0.0 {
+        let part: f64 = (0..dim).map(|k| push[k] * along(k)).sum::<f64>() / square;
+        (0..dim).for_each(|k| push[k] -= part * along(k));
+    }
+}

@@ -1,0 +1,89 @@
+//! Nothing that a snake or a relaxation returns is in collision, by a judge that shares no code with the check.
+
+use crate::worlds::{Judge, Point, World, square};
+use mp_cspace::testkit::check_local_planner;
+use mp_cspace::{Direction, Extension, LocalPlanner, MotionValidity, Path, Reach, Rng, Space};
+use mp_snake::{Params, Repulsion, SnakePlanner, relax, unbent};
+use rand::RngExt;
+
+/// Both ways round, steps and all the way, in ten thousand worlds.
+#[test]
+fn bent_edges_are_free() {
+    let space = square();
+    let (mut bent, mut blocked) = (0, 0);
+    for seed in 0..10_000 {
+        let mut rng = Rng::seed(seed);
+        let world = World::random(&mut rng);
+        let mut local = SnakePlanner::new(&space, world.check(&space), world.field(), 0.1).unwrap();
+        let mut judge = Judge(&world);
+        let from = space.sample_uniform(&mut rng);
+        let toward = space.sample_uniform(&mut rng);
+        if !local.admits(&from) {
+            continue;
+        }
+        let direction = if seed % 2 == 0 { Direction::Forward } else { Direction::Backward };
+        let reach = if seed % 3 == 0 { Reach::Step(0.5) } else { Reach::Full };
+        let extension = local.extend(&from, &toward, direction, reach);
+        let (Extension::Reached(motion) | Extension::Advanced(motion)) = extension else {
+            blocked += u32::from(local.admits(&toward));
+            continue;
+        };
+        let (a, b) =
+            if direction == Direction::Forward { (&from, &motion.end) } else { (&motion.end, &from) };
+        assert!(motion.edge.check(a, b, &mut judge).is_free(), "seed {seed}");
+        let path = unbent(&Path { states: vec![*a, *b], edges: vec![motion.edge.clone()] });
+        assert!(path.clearance(&mut judge).is_some(), "seed {seed}");
+        assert!((path.length(&space) - motion.cost).abs() < 1e-9);
+        bent += u32::from(!motion.edge.states().is_empty());
+    }
+    assert!(bent > 1000 && bent > 2 * blocked, "{bent} bent, {blocked} lost");
+}
+
+/// A path through random free states, relaxed: free, of the same ends, no longer, of less energy or the same path.
+#[test]
+fn relaxed_paths_are_free_and_no_worse() {
+    let space = square();
+    let (mut better, mut tried) = (0, 0);
+    for seed in 0..10_000 {
+        let mut rng = Rng::seed(seed);
+        let world = World::random(&mut rng);
+        let (mut check, mut judge) = (world.check(&space), Judge(&world));
+        let mut states: Vec<Point> = Vec::new();
+        for _ in 0..12 {
+            let q = match states.last() {
+                Some(last) => last + Point::new(rng.random_range(-0.4..0.4), rng.random_range(-0.4..0.4)),
+                None => space.sample_uniform(&mut rng),
+            };
+            let last = states.last().copied().unwrap_or(q);
+            if space.contains(&q) && check.check_motion(&last, &q).is_free() {
+                states.push(q);
+            }
+        }
+        if states.len() < 3 {
+            continue;
+        }
+        tried += 1;
+        let path = Path::straight(states);
+        let stretch = if seed % 2 == 0 { 1.0 } else { 1.2 };
+        let params = Params { iterations: 20, ..Params::for_range(0.1).unwrap() };
+        let mut field = Repulsion::new(world.field(), 0.1).unwrap();
+        let relaxed = relax(&space, &mut check, &mut field, &path, params, stretch).unwrap();
+        assert_eq!(relaxed.path.states.first(), path.states.first());
+        assert_eq!(relaxed.path.states.last(), path.states.last());
+        assert!(relaxed.path.clearance(&mut judge).is_some(), "seed {seed}");
+        assert!(relaxed.path.length(&space) <= stretch * path.length(&space), "seed {seed}");
+        assert!(relaxed.is_better() != (relaxed.path == path), "seed {seed}");
+        better += u32::from(relaxed.is_better());
+    }
+    assert!(tried > 5000 && 2 * better > tried, "{better} of {tried}");
+}
+
+#[test]
+fn the_local_planner_keeps_the_contract() {
+    let space = square();
+    let world = World::random(&mut Rng::seed(5));
+    let mut local = SnakePlanner::new(&space, world.check(&space), world.field(), 0.1).unwrap();
+    check_local_planner(&space, &mut local, 0.6, 1);
+    let done = local.counters();
+    assert!(done.bent > 0 && done.straight > 0 && done.hopeless > 0 && done.iterations > 0, "{done:?}");
+}
