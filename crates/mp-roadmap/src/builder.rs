@@ -17,8 +17,19 @@ pub struct Recipe<G, K, Q> {
     pub connect: K,
     /// How ways are looked for.
     pub query: Q,
+    /// When ways are looked for.
+    pub pace: Pace,
     /// Whether stepping on after a path is found pays: only better ones are returned then.
     pub improves: bool,
+}
+
+/// When a planner looks for a way, once start and goal are in the same component.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pace {
+    /// Not before there are so many nodes; but straight from start to goal at once.
+    pub first: usize,
+    /// Then whenever there are so many more.
+    pub more: usize,
 }
 
 /// Builds a roadmap: attempt after attempt, generate and connect.

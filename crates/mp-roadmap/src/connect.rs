@@ -136,15 +136,26 @@ impl Reachable {
 /// Every candidate becomes a node, and is connected to its nearest neighbours in order of distance.
 #[derive(Clone, Debug)]
 pub struct Nearest {
-    within: Reachable,
+    pub(crate) within: Reachable,
     near: Vec<Hit>,
+    /// Edges are not checked.
+    lazy: bool,
 }
 
 impl Nearest {
     /// # Errors
     /// When there are no neighbours, or the radius is not positive.
     pub fn new(within: Reachable) -> Result<Self, BuildError> {
-        Ok(Self { within: within.check()?, near: Vec::new() })
+        Ok(Self { within: within.check()?, near: Vec::new(), lazy: false })
+    }
+
+    /// The same, but edges are not checked before a way leads along them, and cycles are kept.
+    ///
+    /// # Errors
+    /// When there are no neighbours, or the radius is not positive.
+    pub fn unchecked(within: Reachable) -> Result<Self, BuildError> {
+        let within = Reachable { cycles: true, ..within }.check()?;
+        Ok(Self { within, near: Vec::new(), lazy: true })
     }
 }
 
@@ -170,6 +181,12 @@ where
         growing.near(&candidate.state, neighbours, radius, &mut self.near);
         let id = growing.add(candidate);
         for hit in &self.near {
+            if self.lazy {
+                if !growing.map().has_link(hit.id, id) {
+                    growing.guess(hit.id, id, hit.distance);
+                }
+                continue;
+            }
             if !growing.map().connected(hit.id, id) || (cycles && !growing.map().has_link(hit.id, id)) {
                 growing.try_link(hit.id, id);
             }

@@ -3,6 +3,9 @@
 //! | algorithm | | nodes | edges |
 //! |---|---|---|---|
 //! | [`Prm`] | [`algo::prm`] | uniform, then more where connecting is difficult | to near nodes of other components |
+//! | [`PrmStar`] | [`algo::prm_star`] | uniform | to ever more near nodes; ever better paths |
+//! | [`LazyPrm`] | [`algo::lazy_prm`] | uniform, not checked | to near nodes, checked when a way leads along them |
+//! | [`VisibilityPrm`] | [`algo::visibility_prm`] | guards that see no other guard; connections that see two components | from connections to guards |
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
 //! [`build`] makes planners of the second kind by name.
@@ -35,8 +38,8 @@
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`] |
-//! | what becomes a node, with which edges | [`Connector`] | [`Nearest`] |
+//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`] |
+//! | what becomes a node, with which edges | [`Connector`] | [`Nearest`], [`Star`], [`Visibility`] |
 //! | how a way is looked for | [`Query`] | [`AStar`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
 //!
@@ -61,8 +64,11 @@ mod search;
 mod settings;
 mod steer;
 
+pub use algo::lazy_prm::{LazyPrm, Unchecked};
 pub use algo::prm::{Learn, Learning, Prm};
-pub use builder::{Builder, Recipe};
+pub use algo::prm_star::{PrmStar, Star};
+pub use algo::visibility_prm::{Visibility, VisibilityPrm};
+pub use builder::{Builder, Pace, Recipe};
 pub use connect::{Connector, Growing, Nearest, Reachable};
 pub use generate::{Came, Candidate, Free, NodeGenerator};
 pub use planner::{PATIENCE, RoadmapPlanner};

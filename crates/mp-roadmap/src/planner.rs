@@ -1,6 +1,6 @@
 //! Roadmaps as planners of one path: they grow until start and goal are connected.
 
-use crate::{Builder, Candidate, Connector, Kind, NodeGenerator, Query, Recipe, Roadmap, Steer, Way};
+use crate::{Builder, Candidate, Connector, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap, Steer, Way};
 use mp_cspace::{
     BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
     ProblemParts, Progress, Reversible, Rng, Space,
@@ -20,6 +20,7 @@ const GOAL_EVERY: u64 = 16;
 pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
     builder: Builder<'c, C, L, G, K, N>,
     query: Q,
+    pace: Pace,
     improves: bool,
     start: C::State,
     goals: Goals<'c, C::State>,
@@ -47,6 +48,7 @@ where
         Self {
             builder: Builder::new(steer, recipe.generate, recipe.connect, index),
             query: recipe.query,
+            pace: recipe.pace,
             improves: recipe.improves,
             start,
             goals,
@@ -120,6 +122,7 @@ where
     fn answer(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
         let (start, goals) = self.ends.as_ref()?;
         let (start, goals) = (*start, goals.clone());
+        self.looked = self.builder.map.len();
         loop {
             let Builder { map, steer, .. } = &mut self.builder;
             let near: Vec<_> =
@@ -128,7 +131,6 @@ where
                 return None;
             }
             let way = self.query.search(map, steer, &[(start, 0.0)], &near)?;
-            self.looked = map.len();
             if self.improves && way.length >= self.best * (1.0 - 1e-9) {
                 return None;
             }
@@ -140,10 +142,12 @@ where
         }
     }
 
-    /// Whether it is time to look for a way: once there is a path, only now and then.
+    /// Whether it is time to look for a way. When a better path is wanted, whenever there are a tenth more
+    /// nodes.
     fn due(&self) -> bool {
-        let grown = self.builder.map().len() - self.looked;
-        !self.improves || self.best.is_infinite() || grown * 10 >= self.looked
+        let nodes = self.builder.map.len();
+        let better = if self.best.is_finite() && self.improves { self.looked / 10 } else { 0 };
+        nodes >= self.pace.first && nodes - self.looked >= self.pace.more.max(better)
     }
 }
 

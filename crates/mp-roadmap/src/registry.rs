@@ -1,7 +1,7 @@
 //! Planners by name, for programs that choose at run time.
 
 use crate::RoadmapPlanner;
-use crate::algo::prm;
+use crate::algo::{lazy_prm, prm, prm_star, visibility_prm};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Planner, PlannerInfo, Problem, Reversible,
     Settings, Space, closest,
@@ -13,7 +13,7 @@ pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + Send + 'c>;
 /// All planners of the crate.
 #[must_use]
 pub fn planners() -> &'static [PlannerInfo] {
-    &[prm::INFO]
+    &[prm::INFO, prm_star::INFO, lazy_prm::INFO, visibility_prm::INFO]
 }
 
 /// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
@@ -69,9 +69,11 @@ where
     settings.check(info)?;
     let space = problem.space();
     Ok(match info.name {
-        "prm" => {
-            let recipe = prm::read(space, settings)?;
-            Box::new(RoadmapPlanner::assemble(problem, index, recipe))
+        "prm" => Box::new(RoadmapPlanner::assemble(problem, index, prm::read(space, settings)?)),
+        "prm-star" => Box::new(RoadmapPlanner::assemble(problem, index, prm_star::read(space, settings)?)),
+        "lazy-prm" => Box::new(RoadmapPlanner::assemble(problem, index, lazy_prm::read(space, settings)?)),
+        "visibility-prm" => {
+            Box::new(RoadmapPlanner::assemble(problem, index, visibility_prm::read(space, settings)?))
         }
         _ => return Err(unknown(name)),
     })

@@ -109,13 +109,14 @@ pub struct Roadmap<S, E = ()> {
     graph: UnGraph<Tag, Link<E>>,
     sets: UnionFind<u32>,
     components: usize,
+    blocked: usize,
     stale: bool,
 }
 
 impl<S, E> Default for Roadmap<S, E> {
     fn default() -> Self {
         let (graph, sets) = (UnGraph::default(), UnionFind::new_empty());
-        Self { states: Vec::new(), graph, sets, components: 0, stale: false }
+        Self { states: Vec::new(), graph, sets, components: 0, blocked: 0, stale: false }
     }
 }
 
@@ -168,7 +169,13 @@ impl<S, E> Roadmap<S, E> {
     /// How many edges there are that are not blocked.
     #[must_use]
     pub fn edges(&self) -> usize {
-        self.graph.edge_weights().filter(|link| link.state != LinkState::Blocked).count()
+        self.graph.edge_count() - self.blocked
+    }
+
+    /// How many edges are blocked.
+    #[must_use]
+    pub fn blocked(&self) -> usize {
+        self.blocked
     }
 
     /// The edges of a node that are not blocked, each with its other end.
@@ -201,6 +208,7 @@ impl<S, E> Roadmap<S, E> {
     pub(crate) fn insert(&mut self, from: NodeId, to: NodeId, link: Link<E>) -> EdgeIndex {
         let joins = link.state != LinkState::Blocked;
         let edge = self.graph.add_edge(NodeIndex::from(from), NodeIndex::from(to), link);
+        self.blocked += usize::from(!joins);
         if joins && !self.stale && self.sets.union(from, to) {
             self.components -= 1;
         }
@@ -223,8 +231,11 @@ impl<S, E> Roadmap<S, E> {
     /// Marks an edge as leading nowhere.
     pub fn block(&mut self, edge: EdgeIndex) {
         let link = &mut self.graph[edge];
-        self.stale |= link.state != LinkState::Blocked;
-        link.state = LinkState::Blocked;
+        if link.state != LinkState::Blocked {
+            link.state = LinkState::Blocked;
+            self.stale = true;
+            self.blocked += 1;
+        }
     }
 
     /// Notes the motion of an edge that was only guessed.

@@ -57,7 +57,7 @@ const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, came: N
 /// paths*), with the distance to the ends as estimate. A value of it keeps its memory from search to
 /// search, so that a search costs only what it visits.
 ///
-/// Shortest where edges are no shorter than the distance of their ends, as those of a metric are. Under a
+/// One value goes with one roadmap, as it remembers which of its nodes are free. Ways are shortest where edges are no shorter than the distance of their ends, as those of a metric are. Under a
 /// distance that breaks the triangle inequality nodes are visited again when a shorter way to them shows
 /// up.
 #[derive(Clone, Debug, Default)]
@@ -65,6 +65,8 @@ pub struct AStar {
     marks: Vec<Mark>,
     open: BinaryHeap<Open>,
     search: u32,
+    /// Which nodes with unchecked edges were found free.
+    free: Vec<bool>,
 }
 
 /// More ends than this, and the estimate is not worth its cost.
@@ -164,24 +166,58 @@ where
     ) -> Option<Way> {
         loop {
             let way = self.shortest(map, steer.space(), from, to)?;
-            if check_both_ways(map, steer, &way) {
+            if self.nodes_pass(map, steer, &way) && edges_pass(map, steer, &way) {
                 return Some(way);
             }
         }
     }
 }
 
-/// Checks the unchecked edges of a way from both ends toward its middle, where obstacles are met soonest
-/// (Bohlin and Kavraki 2000). Blocks the first that fails; whether none did.
-fn check_both_ways<C, L>(map: &mut Roadmap<C::State, L::Edge>, steer: &mut Steer<'_, C, L>, way: &Way) -> bool
+/// The numbers below `n` from both ends inward.
+fn inward(n: usize) -> impl Iterator<Item = usize> {
+    (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
+}
+
+impl AStar {
+    /// Checks the nodes at the ends of unchecked edges of a way. Blocks all edges of the first that is not
+    /// admitted; whether there was none.
+    fn nodes_pass<C, L>(
+        &mut self,
+        map: &mut Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        way: &Way,
+    ) -> bool
+    where
+        C: Space,
+        L: LocalPlanner<C::State, Edge: Reversible>,
+    {
+        let unchecked = |edge: &EdgeIndex| map.graph()[*edge].state == LinkState::Unchecked;
+        if !way.edges.iter().any(unchecked) {
+            return true;
+        }
+        self.free.resize(self.free.len().max(map.len()), false);
+        for node in inward(way.nodes.len()).map(|i| way.nodes[i]) {
+            if self.free[node as usize] {
+                continue;
+            }
+            if !steer.admits(map.state(node)) {
+                let edges: Vec<EdgeIndex> = map.links(node).map(|(edge, ..)| edge).collect();
+                edges.into_iter().for_each(|edge| map.block(edge));
+                return false;
+            }
+            self.free[node as usize] = true;
+        }
+        true
+    }
+}
+
+/// Checks the unchecked edges of a way, whose nodes are free. Blocks the first that fails; whether none did.
+fn edges_pass<C, L>(map: &mut Roadmap<C::State, L::Edge>, steer: &mut Steer<'_, C, L>, way: &Way) -> bool
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    let n = way.edges.len();
-    let inward = (0..n).map(|i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 });
-    for i in inward {
-        let edge = way.edges[i];
+    for edge in inward(way.edges.len()).map(|i| way.edges[i]) {
         if map.graph()[edge].state != LinkState::Unchecked {
             continue;
         }

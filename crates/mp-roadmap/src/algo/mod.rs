@@ -1,3 +1,6 @@
 //! The algorithms, one file each.
 
+pub mod lazy_prm;
 pub mod prm;
+pub mod prm_star;
+pub mod visibility_prm;

@@ -63,8 +63,8 @@
 
 use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Came, Candidate, Free, Kind, Nearest, NodeGenerator, Reachable, Recipe, Roadmap, RoadmapPlanner,
-    Steer,
+    AStar, Came, Candidate, Free, Kind, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
+    RoadmapPlanner, Steer,
 };
 use mp_cspace::{
     BuildError, DefaultNn, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo,
@@ -299,6 +299,7 @@ pub fn recipe<C: Space>(
         generate: Learn::new(space, learning)?,
         connect: Nearest::new(reach)?,
         query: AStar::new(),
+        pace: Pace::default(),
         improves: false,
     })
 }

@@ -20,6 +20,15 @@ struct World<'c, C: Space, V> {
     ends: [C::State; 2],
 }
 
+/// What a planner needs for narrow passages.
+fn settings(name: &str) -> Settings {
+    let set: &[&str] = match name {
+        "visibility-prm" => &["failures=20000"],
+        _ => &[],
+    };
+    Settings::parse(set).unwrap()
+}
+
 impl<'c, C, V> World<'c, C, V>
 where
     C: DefaultNn<Nn: Send> + Sync,
@@ -39,7 +48,7 @@ where
         let [start, goal] = self.ends.clone();
         let local = Straight::new(self.space, check);
         let problem = Problem::new(self.space, local, verifier, start, goal).unwrap();
-        build(name, problem, &Settings::default()).unwrap()
+        build(name, problem, &settings(name)).unwrap()
     }
 
     /// Every planner finds a way, whatever the seed, and on some seeds with a discrete check as well.

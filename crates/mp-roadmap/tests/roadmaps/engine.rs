@@ -154,3 +154,58 @@ fn bad_settings_are_refused() {
         assert!(build(info.name, problem(&space, &boxes, ENDS, false), &settings).is_ok(), "{}", info.name);
     }
 }
+
+#[test]
+fn guards_do_not_see_each_other_and_connections_join_components() {
+    let (space, boxes) = (square(), slit(0.1, 0.5, 0.1));
+    for seed in 0..5 {
+        let mut builder =
+            VisibilityPrm::new(problem(&space, &boxes, ENDS, false), 500).unwrap().into_builder();
+        let reason = builder.build(&mut Rng::seed(seed), &mut Iterations(100_000), &mut ());
+        assert_eq!((reason, builder.connector().failures()), (StopReason::Exhausted, 500));
+        let map = builder.map_mut();
+        let (guards, others): (Vec<NodeId>, Vec<NodeId>) =
+            (0..map.len() as NodeId).partition(|&id| map.tag(id).kind == Kind::Guard);
+        assert!(guards.len() >= 2, "both sides of the wall have one");
+        for (i, &a) in guards.iter().enumerate() {
+            assert!(guards[..i].iter().all(|&b| boxes.hit(map.state(a), map.state(b))));
+        }
+        for &id in &others {
+            assert_eq!(map.tag(id).kind, Kind::Connection);
+            let ends: Vec<NodeId> = map.links(id).map(|(_, end, _)| end).collect();
+            assert!(ends.len() >= 2 && ends.iter().all(|end| guards.contains(end)));
+        }
+        // Each connection joined what was apart, so there is no cycle.
+        assert_eq!(map.edges() + map.components(), map.len());
+    }
+}
+
+#[test]
+fn lazily_few_motions_are_checked_and_none_of_the_path_is_unchecked() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let reach = Reachable { neighbours: 10, radius: 0.3, cycles: true };
+    let pace = Pace { first: 200, more: 50 };
+    let mut planner = LazyPrm::new(problem(&space, &boxes, ENDS, false), reach, pace).unwrap();
+    let outcome = planner.solve(&mut Rng::seed(4), &mut Iterations(20_000), &mut ());
+    let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+    assert!(path.states.windows(2).all(|pair| !boxes.hit(&pair[0], &pair[1])));
+    let states = planner.map().graph().edge_weights().map(|link| link.state);
+    let unchecked = states.filter(|state| *state == LinkState::Unchecked).count();
+    assert!(planner.progress().motions < unchecked as u64 / 2, "{:?}", planner.progress());
+    assert_eq!(planner.progress().rejected, 0);
+}
+
+#[test]
+fn more_nodes_make_shorter_paths() {
+    let (space, boxes) = (square(), Boxes(vec![([0.4, -1.0], [0.6, 0.7])]));
+    let mut planner = PrmStar::new(problem(&space, &boxes, ENDS, false), 1.1).unwrap();
+    let mut rng = Rng::seed(1);
+    let mut lengths = Vec::new();
+    while planner.progress().nodes < 3_000 {
+        lengths.extend(planner.step(&mut rng, &mut ()).map(|path| path.length(&space)));
+    }
+    // Over both corners of the block.
+    let least = 2.0 * (0.3_f64.powi(2) + 0.5_f64.powi(2)).sqrt() + 0.2;
+    assert!(lengths.is_sorted_by(|a, b| a > b) && lengths.len() > 3, "{lengths:?}");
+    assert!((least..1.02 * least).contains(lengths.last().unwrap()), "{lengths:?}");
+}
