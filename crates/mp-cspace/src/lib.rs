@@ -9,7 +9,7 @@
 //! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`Bounded`] |
 //! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
 //! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
-//! | where obstacles lead along | [`ObstacleHints`] |
+//! | where obstacles lead along, and what they look like | [`ObstacleHints`], [`ObstacleGeometry`] |
 //! | which way clearance grows | [`ClearanceGradient`] |
 //! | how to move | [`Straight`]; by a set of inputs: [`inputs`] |
 //! | what to reach | [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
@@ -43,7 +43,7 @@ mod validity;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use gradient::ClearanceGradient;
-pub use hints::ObstacleHints;
+pub use hints::{ObstacleGeometry, ObstacleHints, Outline, PointOf};
 pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Reversible, Straight};
 pub use metric::{
     Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, TrueMetricOn,

@@ -4,6 +4,7 @@
 //!   what is wrong with it.
 //! - [`Aabb`], [`Obb`], [`Sphere`]: bounding volumes.
 //! - [`MassProperties`]: volume, centroid, inertia, principal axes.
+//! - [`Features`]: what obstacle-geometry planners know of a body, and [`TriMesh::parts`] of its parts.
 //! - [`primitives`]: closed solids.
 //! - [`pose_from_six`] and its kin: poses to and from numbers.
 //!
@@ -11,6 +12,7 @@
 
 mod aabb;
 mod build;
+mod features;
 mod mass;
 mod mesh;
 mod obb;
@@ -21,6 +23,7 @@ mod topology;
 mod triangulate;
 
 pub use aabb::Aabb;
+pub use features::Features;
 pub use mass::{MassError, MassProperties, PrincipalAxes};
 pub use mesh::{MeshError, TriMesh};
 pub use obb::Obb;

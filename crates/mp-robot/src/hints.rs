@@ -6,15 +6,21 @@ use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 
 impl<P: Placement> RigidBody<P> {
-    /// A triangle (world) of the first obstacle touched at `q`.
-    fn hit_triangle(&mut self, q: &P::State) -> Option<[Point3<f64>; 3]> {
+    /// The first obstacle touched at `q`, and which of its triangles.
+    pub(crate) fn hit(&mut self, q: &P::State) -> Option<(usize, usize)> {
         let (pose, shared) = (P::pose(q), &*self.shared);
-        shared.placed.iter().find_map(|(id, mesh)| {
+        shared.placed.iter().enumerate().find_map(|(obstacle, (id, _))| {
             let body = shared.scene.body(*id)?;
             let (_, triangle) =
                 self.query.intersecting_triangles(&shared.robot, &pose, body.mesh(), body.pose())?;
-            Some(mesh.triangle(triangle))
+            Some((obstacle, triangle))
         })
+    }
+
+    /// A triangle (world) of the first obstacle touched at `q`.
+    fn hit_triangle(&mut self, q: &P::State) -> Option<[Point3<f64>; 3]> {
+        let (obstacle, triangle) = self.hit(q)?;
+        Some(self.shared.placed[obstacle].1.triangle(triangle))
     }
 
     /// Any triangle (world) of any obstacle, each obstacle as likely.

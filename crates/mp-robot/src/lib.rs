@@ -11,8 +11,8 @@
 //! in space and time among bodies on known trajectories. Robots answer the questions of planners:
 //! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
 //! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; a [`RigidBody`] gives
-//! [`ObstacleHints`](mp_cspace::ObstacleHints) and [`ClearanceGradient`](mp_cspace::ClearanceGradient) too; and of
-//! people:
+//! [`ObstacleHints`](mp_cspace::ObstacleHints), [`ObstacleGeometry`](mp_cspace::ObstacleGeometry) and
+//! [`ClearanceGradient`](mp_cspace::ClearanceGradient) too; and of people:
 //! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] or
 //! [`ArmVerifier`] proves finished paths by other means.
 //!
@@ -42,6 +42,7 @@ mod explain;
 mod gradient;
 mod hints;
 mod moving;
+mod outlines;
 mod placement;
 mod rigid;
 mod solid;

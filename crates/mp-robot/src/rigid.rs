@@ -1,5 +1,6 @@
 //! A rigid body among obstacles that stand still.
 
+use crate::outlines::Outlines;
 use crate::solid::Solid;
 use crate::{Placement, Planar, Point, Shape, Spatial};
 use mp_collide::reference::RefMesh;
@@ -73,6 +74,8 @@ pub(crate) struct Shared {
     pub(crate) world_bounds: Aabb,
     /// For verifiers, made when the first one is.
     pub(crate) reference: OnceLock<Reference>,
+    /// Made when first asked for.
+    pub(crate) outlines: OnceLock<Outlines>,
 }
 
 impl Shared {
@@ -205,6 +208,7 @@ impl<P: Placement> RigidBody<P> {
             world_bounds: placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b)),
             placed,
             reference: OnceLock::new(),
+            outlines: OnceLock::new(),
         };
         Ok(Self {
             shared: Arc::new(shared),
@@ -277,12 +281,18 @@ impl<P: Placement> RigidBody<P> {
         if tolerance > 0.0 { tolerance } else { 1e-6 }
     }
 
+    /// The solid that a point robot is inside of.
+    pub(crate) fn solid_around(&self, pose: &Isometry3<f64>) -> Option<BodyId> {
+        if self.shared.shape.radius > 0.0 {
+            return None;
+        }
+        let p = pose.translation.vector.into();
+        self.shared.solids().iter().find(|(_, solid)| solid.contains(&p)).map(|(id, _)| *id)
+    }
+
     /// Whether a point robot is inside a solid.
     pub(crate) fn point_inside(&self, pose: &Isometry3<f64>) -> bool {
-        self.shared.shape.radius == 0.0 && {
-            let p = pose.translation.vector.into();
-            self.shared.solids().iter().any(|(_, solid)| solid.contains(&p))
-        }
+        self.solid_around(pose).is_some()
     }
 
     pub(crate) fn count_clearance(&mut self) {

@@ -6,10 +6,12 @@ use common::{clutter, robot};
 use mp_collide::reference::triangle_distance;
 use mp_cspace::testkit::check_clearance_gradient;
 use mp_cspace::{
-    ClearanceGradient, Metric, ObstacleHints, Rn, Rng, Se2, Se3, Space, Validity, rotation_angle,
+    ClearanceGradient, Metric, ObstacleGeometry, ObstacleHints, PointOf, Rn, Rng, Se2, Se3, Space, Validity,
+    rotation_angle,
 };
+use mp_geom::{TriMesh, primitives::cuboid};
 use mp_robot::{FreeFlyer, Placement, PlanarFlyer, PointRobot, RigidBody};
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
 
 fn world_triangles() -> Vec<[Point3<f64>; 3]> {
     let meshes = clutter().into_iter().map(|(_, mesh, pose)| mesh.transformed(&pose));
@@ -116,4 +118,101 @@ fn gradients_lead_away_from_obstacles() {
     let mut gradient = [f64::NAN; 6];
     let far = alone.clearance_gradient(&nalgebra::Isometry3::identity(), 1.0, &mut gradient);
     assert_eq!((far, gradient), (f64::INFINITY, [0.0; 6]));
+}
+
+/// Each part among which the clutter falls, and another part in one mesh with the last.
+fn parted() -> Vec<common::Obstacle> {
+    let mut all = clutter();
+    let (name, sheet, pose) = all.pop().unwrap();
+    let two = TriMesh::merged([
+        &sheet,
+        &cuboid(0.2, 0.3, 0.9).unwrap().transformed(&Isometry3::translation(0.0, 0.0, 2.0)),
+    ]);
+    all.push((name, two.unwrap(), pose));
+    all
+}
+
+/// What is touched is touched with nothing else around, and nothing is where the robot is free; the far are free, turned
+/// anyhow.
+fn outlines<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBody<P>) {
+    let parts: Vec<TriMesh> =
+        parted().iter().flat_map(|(_, mesh, pose)| mesh.transformed(pose).parts()).collect();
+    assert_eq!(body.obstacles().len(), parts.len());
+    for (seen, part) in body.obstacles().iter().zip(&parts) {
+        assert!(part.vertices().iter().all(|p| (p.coords - seen.center).norm() <= seen.radius + 1e-9));
+    }
+    let alone = |part: &TriMesh| {
+        RigidBody::<P>::among(&robot(), [("it".to_owned(), part.clone(), Isometry3::identity())]).unwrap()
+    };
+    let mut alone: Vec<_> = parts.iter().map(alone).collect();
+    let (mut rng, mut hits, mut far) = (Rng::seed(11), vec![0; parts.len()], 0);
+    for _ in 0..4000 {
+        let (q, other) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
+        let touched = body.touched(&q);
+        assert_eq!(touched.is_some(), !body.is_valid(&q));
+        if let Some(part) = touched {
+            assert!(!alone[part].is_valid(&q));
+            hits[part] += 1;
+        }
+        if body.is_far(&q) {
+            far += 1;
+            let center = body.robot().center;
+            let turned = body.brought(&other, &center, &body.place_of(&q, &center));
+            assert!(body.is_valid(&q) && body.is_valid(&turned));
+        }
+    }
+    assert!(far > 20, "{far}");
+    assert!(hits.iter().filter(|hits| **hits > 5).count() >= 4, "{hits:?}");
+}
+
+#[test]
+fn outlines_tell_what_is_touched_and_what_is_far() {
+    let (low, high) = ([-4.0; 3], [4.0; 3]);
+    outlines(&Se3::new(low, high).unwrap(), FreeFlyer::new(&robot(), parted()).unwrap());
+    outlines(&Se2::new([-4.0; 2], [4.0; 2]).unwrap(), PlanarFlyer::new(&robot(), parted()).unwrap());
+}
+
+#[test]
+fn the_robot_is_put_where_it_is_asked() {
+    let space = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
+    let mut rng = Rng::seed(3);
+    let body = FreeFlyer::new(&robot(), parted()).unwrap();
+    let planar = PlanarFlyer::new(&robot(), parted()).unwrap();
+    let mut sides = [0; 3];
+    for i in 0..200 {
+        let (q, place) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng).translation.vector);
+        let of = [PointOf::Center, PointOf::Vertex, PointOf::Surface][i % 3];
+        let point = body.robot_point(of, &mut rng);
+        let there = body.brought(&q, &point, &place);
+        assert!((body.place_of(&there, &point) - place).norm() < 1e-12 && there.rotation == q.rotation);
+
+        let (robot, direction) = (body.robot(), (q.rotation * Vector3::x()));
+        let [a, b] = [0.0, 0.7].map(|angle| body.aligned(&place, &(direction * 3.0), angle));
+        for q in [&a, &b] {
+            assert!((body.place_of(q, &robot.center) - place).norm() < 1e-12);
+            assert!((q.rotation * robot.axis - direction).norm() < 1e-9);
+        }
+        assert!((rotation_angle(&a.rotation, &b.rotation) - 0.7).abs() < 1e-7);
+
+        let flat = planar.aligned(&place, &direction, 0.0);
+        assert!((planar.place_of(&flat, &robot.center) - place).xy().norm() < 1e-12);
+        let along = (flat.to_isometry3(0.0).rotation * robot.axis).xy().normalize();
+        assert!((along - direction.xy().normalize()).norm() < 1e-6);
+
+        // On the box of the clutter, 1 by 0.5 by 2.
+        let (_, _, pose) = &clutter()[0];
+        let on = body.obstacle_point(0, PointOf::Surface, &mut rng).unwrap();
+        let local = pose.inverse_transform_point(&Point3::from(on)).coords.abs();
+        let part = local.component_div(&Vector3::new(0.5, 0.25, 1.0));
+        assert!((part.max() - 1.0).abs() < 1e-9);
+        sides[part.imax()] += 1;
+        assert!(body.obstacle_point(99, of, &mut rng).is_none());
+    }
+    // By area: 1, 2 and 0.5.
+    assert!(sides[1] > sides[0] && sides[0] > sides[2] && sides[2] > 5, "{sides:?}");
+    let long = body.obstacles()[0].axis;
+    assert!((clutter()[0].2.rotation * Vector3::z()).dot(&long).abs() > 1.0 - 1e-9);
+    let point = PointRobot::new(parted()).unwrap();
+    assert_eq!(point.aligned(&Vector3::new(1.0, 2.0, 3.0), &Vector3::x(), 1.0), Vector3::new(1.0, 2.0, 3.0));
+    assert_eq!(point.robot().radius, 0.0);
 }

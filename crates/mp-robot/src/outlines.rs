@@ -1,0 +1,166 @@
+//! What robot and obstacles look like from afar, and how to place the one about the other.
+
+use crate::rigid::Shared;
+use crate::{Placement, RigidBody};
+use mp_cspace::{ObstacleGeometry, Outline, PointOf, Rng};
+use mp_geom::{Features, NO_COMPONENT, TriMesh};
+use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+use rand::RngExt;
+
+/// The outlines of a robot and of the parts of its obstacles.
+#[derive(Debug)]
+pub(crate) struct Outlines {
+    robot: (Outline, Surface),
+    parts: Vec<Outline>,
+    /// Of each part, in the world.
+    surfaces: Vec<Surface>,
+    /// Of each obstacle: its first part, and the part of each triangle, counted from there.
+    of_triangle: Vec<(usize, Vec<u32>)>,
+}
+
+/// A mesh and the areas of its triangles, summed up.
+#[derive(Debug)]
+struct Surface {
+    mesh: TriMesh,
+    areas: Vec<f64>,
+}
+
+fn outline(features: &Features) -> Outline {
+    Outline {
+        center: features.center.coords,
+        radius: features.radius,
+        axis: features.axis.into_inner(),
+        fullness: features.fullness(),
+    }
+}
+
+impl Surface {
+    fn new(mesh: TriMesh) -> Self {
+        let areas = (0..mesh.triangles().len()).scan(0.0, |sum, i| {
+            *sum += mesh.triangle_area(i);
+            Some(*sum)
+        });
+        Self { areas: areas.collect(), mesh }
+    }
+
+    fn point(&self, center: Vector3<f64>, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
+        match of {
+            PointOf::Center => center,
+            PointOf::Vertex => {
+                let t = self.mesh.triangles()[rng.random_range(0..self.areas.len())];
+                self.mesh.vertices()[t[rng.random_range(0..3_usize)] as usize].coords
+            }
+            PointOf::Surface => {
+                let whole = self.areas.last().copied().unwrap_or(0.0);
+                let at = rng.random::<f64>() * whole;
+                let i = self.areas.partition_point(|&sum| sum <= at).min(self.areas.len() - 1);
+                let [a, b, c] = self.mesh.triangle(i);
+                let (mut u, mut v) = (rng.random::<f64>(), rng.random::<f64>());
+                if u + v > 1.0 {
+                    (u, v) = (1.0 - u, 1.0 - v);
+                }
+                (a + (b - a) * u + (c - a) * v).coords
+            }
+        }
+    }
+}
+
+impl Outlines {
+    fn new(shared: &Shared) -> Self {
+        let robot = &shared.robot_mesh;
+        let mut outlines = Self {
+            robot: (outline(&robot.features()), Surface::new(robot.clone())),
+            parts: Vec::new(),
+            surfaces: Vec::new(),
+            of_triangle: Vec::new(),
+        };
+        for (_, mesh) in &shared.placed {
+            let topology = mesh.topology();
+            let first = outlines.parts.len();
+            outlines.of_triangle.push((first, topology.component));
+            for part in mesh.parts() {
+                outlines.parts.push(outline(&part.features()));
+                outlines.surfaces.push(Surface::new(part));
+            }
+        }
+        outlines
+    }
+}
+
+impl<P: Placement> RigidBody<P> {
+    fn outlines(&self) -> &Outlines {
+        self.shared.outlines.get_or_init(|| Outlines::new(&self.shared))
+    }
+}
+
+/// The rotation that takes the unit vector `from` to the unit vector `to`, by the shorter way.
+fn turn_to(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
+    UnitQuaternion::rotation_between(from, to).unwrap_or_else(|| {
+        // Opposite: about anything across.
+        let across = from.cross(&Vector3::ith(from.iamin(), 1.0));
+        UnitQuaternion::from_axis_angle(&Unit::new_normalize(across), std::f64::consts::PI)
+    })
+}
+
+/// By the meshes: obstacles are what hangs together in them, and points are theirs. The outlines are made when first asked
+/// for, O(n log n) in the triangles, and shared by clones.
+impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
+    fn obstacles(&self) -> &[Outline] {
+        &self.outlines().parts
+    }
+
+    fn robot(&self) -> Outline {
+        self.outlines().robot.0
+    }
+
+    fn touched(&mut self, q: &P::State) -> Option<usize> {
+        if let Some((obstacle, triangle)) = self.hit(q) {
+            let (first, parts) = &self.outlines().of_triangle[obstacle];
+            let part = parts.get(triangle).filter(|part| **part != NO_COMPONENT).copied().unwrap_or(0);
+            return Some(first + part as usize);
+        }
+        let around = self.solid_around(&P::pose(q))?;
+        let obstacle = self.shared.placed.iter().position(|(id, _)| *id == around)?;
+        Some(self.outlines().of_triangle[obstacle].0)
+    }
+
+    fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
+        let outlines = self.outlines();
+        let center = outlines.parts.get(obstacle)?.center;
+        Some(outlines.surfaces[obstacle].point(center, of, rng))
+    }
+
+    fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
+        let (outline, surface) = &self.outlines().robot;
+        surface.point(outline.center, of, rng)
+    }
+
+    fn place_of(&self, q: &P::State, point: &Vector3<f64>) -> Vector3<f64> {
+        (P::pose(q) * Point3::from(*point)).coords
+    }
+
+    fn brought(&self, q: &P::State, point: &Vector3<f64>, place: &Vector3<f64>) -> P::State {
+        let pose = P::pose(q);
+        let translation = Translation3::from(place - pose.rotation * point);
+        P::configuration(&Isometry3::from_parts(translation, pose.rotation))
+    }
+
+    fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> P::State {
+        let robot = self.outlines().robot.0;
+        let unit = |v: Vector3<f64>| Unit::try_new(v, 1e-12);
+        let rotation = match P::TURNS {
+            [_, _, _] => match unit(*direction) {
+                Some(along) => UnitQuaternion::from_axis_angle(&along, angle) * turn_to(&robot.axis, &along),
+                None => UnitQuaternion::identity(),
+            },
+            [2] => {
+                let yaw = |v: &Vector3<f64>| if v.xy().norm() > 1e-12 { v.y.atan2(v.x) } else { 0.0 };
+                let turn = yaw(direction) - yaw(&robot.axis) + angle;
+                UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn)
+            }
+            _ => UnitQuaternion::identity(),
+        };
+        let translation = Translation3::from(place - rotation * robot.center);
+        P::configuration(&Isometry3::from_parts(translation, rotation))
+    }
+}
