@@ -6,12 +6,12 @@
 //! | to say | use |
 //! |---|---|
 //! | what configurations are | [`Rn`], [`RnDyn`], [`So2`], [`So3`], [`Se2`], [`Se3`], [`Torus`], [`Joints`], [`Product`], [`SpaceTime`] |
-//! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`Bounded`] |
-//! | which to try | [`Uniform`], [`Halton`], [`GoalBias`] |
+//! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`SweptVolume`], [`Bounded`] |
+//! | which to try | [`Uniform`], [`Halton`], [`GoalBias`], [`Gaussian`], [`Bridge`] |
 //! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
 //! | where obstacles lead along, and what they look like | [`ObstacleHints`], [`ObstacleGeometry`] |
 //! | which way clearance grows | [`ClearanceGradient`] |
-//! | how to move | [`Straight`]; by a set of inputs: [`inputs`] |
+//! | how to move | [`Straight`], [`RotateAtS`]; by a set of inputs: [`inputs`] |
 //! | what to reach | [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
 //! | what to plan | [`Problem`], with [`Goals`] and a [verifier](Verify); by names: [`PlannerInfo`], [`Settings`] |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
@@ -44,10 +44,10 @@ pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use gradient::ClearanceGradient;
 pub use hints::{ObstacleGeometry, ObstacleHints, Outline, PointOf};
-pub use local::{Direction, Extension, LocalPlanner, Motion, Reach, Reversible, Straight};
+pub use local::{Direction, Extension, LocalPlanner, Motion, Poses, Reach, Reversible, RotateAtS, Straight, Via, turn_at};
 pub use metric::{
-    Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, TrueMetricOn,
-    WithMetric,
+    Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, SweptVolume,
+    TrueMetricOn, WithMetric,
 };
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
 pub use nn::{
@@ -61,7 +61,7 @@ pub use problem::{
     Settings, Step, Verify, Workers, closest,
 };
 pub use rng::Rng;
-pub use sampler::{GoalBias, Halton, Sampler, Uniform};
+pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};
 pub use space::{
     AtAnyTime, Coordinates, Factored, Forward, JointRange, Joints, Metric, Product, Rn, RnDyn, Se2, Se2State,
     Se3, So2, So3, Space, SpaceTime, Torus, TrueMetric, rotation_angle, slerp, wrap_angle,

@@ -1,5 +1,9 @@
 //! Local planners: how one configuration reaches for another.
 
+mod rotate;
+
+pub use rotate::{Poses, RotateAtS, Via, turn_at};
+
 use crate::{KnownFree, MotionValidity, Space};
 use std::fmt::Debug;
 

@@ -1,5 +1,9 @@
 //! Other metrics, and how to put one on a space.
 
+mod swept;
+
+pub use swept::SweptVolume;
+
 use crate::{Factored, Metric, Rng, Se2, Se2State, Se3, Space, SpaceError, TrueMetric, error::weight};
 use nalgebra::{Isometry3, Point2, Point3};
 

@@ -1,5 +1,9 @@
 //! Samplers.
 
+mod obstacles;
+
+pub use obstacles::{Bridge, Gaussian};
+
 use crate::{Exactly, ParameterError, Rng, Space};
 use rand::RngExt;
 

@@ -1,0 +1,267 @@
+//! Rotate-at-s: translation, rotation in place, translation.
+
+use super::{Direction, Extension, LocalPlanner, Motion, Reach};
+use crate::{
+    KnownFree, MotionValidity, ParameterError, Path, Se2, Se2State, Se3, Space, WithMetric, metric::MetricOn,
+};
+use nalgebra::Isometry3;
+
+/// A space whose states are a position and a rotation.
+pub trait Poses: Space {
+    /// The position of the one state with the rotation of the other.
+    ///
+    /// Contract: interpolation between states of the same rotation does not turn, and between states of the same
+    /// position does not move.
+    fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State;
+}
+
+impl Poses for Se3 {
+    fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State {
+        Isometry3::from_parts(position.translation, rotation.rotation)
+    }
+}
+
+impl Poses for Se2 {
+    fn posed(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
+        Se2State { translation: position.translation, angle: rotation.angle }
+    }
+}
+
+impl<C: Poses, M: MetricOn<C>> Poses for WithMetric<C, M> {
+    fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State {
+        self.space().posed(position, rotation)
+    }
+}
+
+/// The states where rotate-at-s turns on its way from `from` to `to`: before and after the turn. `at` in \[0, 1\].
+pub fn turn_at<C: Poses>(space: &C, from: &C::State, to: &C::State, at: f64) -> [C::State; 2] {
+    let middle = space.interpolate(from, to, at);
+    [space.posed(&middle, from), space.posed(&middle, to)]
+}
+
+/// What an edge by way of other states remembers: these states, in forward time. Between one and the next the
+/// space interpolates. None at all is the straight motion.
+///
+/// Every [`MotionValidity`] verifies such edges, motion by motion.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Via<S>(pub Vec<S>);
+
+impl<S: Clone> Path<S, Via<S>> {
+    /// The same path with the states in between as states of its own.
+    #[must_use]
+    pub fn straightened(&self) -> Path<S> {
+        let mut states = Vec::with_capacity(self.states.len());
+        for (i, q) in self.states.iter().enumerate() {
+            states.push(q.clone());
+            states.extend(self.edges.get(i).into_iter().flat_map(|via| via.0.iter().cloned()));
+        }
+        Path::straight(states)
+    }
+}
+
+/// The rotate-at-s local planner (Amato, Bayazit, Dale, Jones and Vallejo 1998, *Choosing good distance metrics
+/// and local planners for probabilistic roadmap methods*): the straight line cut in three. The robot moves the fraction `s`
+/// of the way without turning, turns in place, and moves on.
+///
+/// Where the straight line sweeps much by turning while it moves, this may pass; most used are
+/// `s` of 0, 1/2 and 1. The cost is the length of the three parts, which in a metric that adds up translation and
+/// rotation is that of the straight line. Turned round in time it is rotate-at-(1 - s), so edges of backward trees are
+/// made that way.
+///
+/// ```
+/// use mp_cspace::{Direction, Discrete, Extension, LocalPlanner, Reach, Resolution, RotateAtS, Se2, Se2State};
+/// let space = Se2::new([0.0; 2], [4.0; 2])?;
+/// // Turns only at x = 1.
+/// let free = |q: &Se2State| q.angle == 0.0 || q.angle == 1.5 || (q.translation.x - 1.0).abs() < 1e-9;
+/// let check = Discrete::new(&space, free, Resolution::Length(0.01))?;
+/// let (from, to) = (Se2State::new(0.0, 1.0, 0.0), Se2State::new(4.0, 1.0, 1.5));
+/// let mut local = RotateAtS::new(&space, check, 0.25)?;
+/// let Extension::Reached(motion) = local.extend(&from, &to, Direction::Forward, Reach::Full) else { panic!() };
+/// assert_eq!(motion.edge.0, [Se2State::new(1.0, 1.0, 0.0), Se2State::new(1.0, 1.0, 1.5)]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct RotateAtS<'c, C, M> {
+    /// The space to interpolate in.
+    pub space: &'c C,
+    /// The motion check: discrete, certified or a user's own.
+    pub check: M,
+    at: f64,
+}
+
+impl<'c, C: Poses, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
+    /// Motions in `space` that turn at fraction `at` of the way, checked by `check`.
+    ///
+    /// # Errors
+    /// When `at` is not in \[0, 1\].
+    pub fn new(space: &'c C, check: M, at: f64) -> Result<Self, ParameterError> {
+        if !(0.0..=1.0).contains(&at) {
+            return Err(ParameterError { name: "s, where to rotate", expected: "in [0, 1]", value: at });
+        }
+        Ok(Self { space, check, at })
+    }
+
+    /// The fraction of the way at which it turns.
+    #[must_use]
+    pub fn at(&self) -> f64 {
+        self.at
+    }
+
+    /// The states met on the way, without `from` and up to a length of `most`, that length, and whether the
+    /// target is the last of them.
+    fn walk(&self, from: &C::State, toward: &C::State, at: f64, most: f64) -> (Vec<C::State>, f64, bool) {
+        let [before, after] = turn_at(self.space, from, toward, at);
+        let (mut met, mut gone, mut here) = (Vec::with_capacity(3), 0.0, from);
+        let corners = [before, after, toward.clone()];
+        for (i, corner) in corners.iter().enumerate() {
+            let length = self.space.distance(here, corner);
+            if gone + length > most {
+                if most > gone {
+                    met.push(self.space.interpolate(here, corner, (most - gone) / length));
+                }
+                return (met, most, false);
+            }
+            // Parts of no length are left out, but the target is always met.
+            if length > 0.0 || i == 2 {
+                met.push(corner.clone());
+            }
+            (gone, here) = (gone + length, corner);
+        }
+        (met, gone, true)
+    }
+}
+
+impl<C: Poses, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS<'_, C, M> {
+    type Edge = Via<C::State>;
+    fn extend(
+        &mut self,
+        from: &C::State,
+        toward: &C::State,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<C::State, Self::Edge> {
+        let at = if direction == Direction::Forward { self.at } else { 1.0 - self.at };
+        let most = match reach {
+            Reach::Step(step) => step,
+            Reach::Full => f64::INFINITY,
+        };
+        let (mut via, cost, reached) = self.walk(from, toward, at, most);
+        let mut here = from;
+        for next in &via {
+            let check = match direction {
+                Direction::Forward => self.check.check_extension(here, next, KnownFree::From),
+                Direction::Backward => self.check.check_extension(next, here, KnownFree::To),
+            };
+            if !check.is_free() {
+                return Extension::Trapped;
+            }
+            here = next;
+        }
+        let Some(end) = via.pop() else { return Extension::Trapped };
+        if direction == Direction::Backward {
+            via.reverse();
+        }
+        let motion = Motion { end, edge: Via(via), cost };
+        if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) }
+    }
+    fn admits(&mut self, q: &C::State) -> bool {
+        self.check.check_motion(q, q).is_free()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testkit::check_local_planner;
+    use crate::{Discrete, FineDiscrete, Resolution, Rng, Straight, Verify, rotation_angle};
+    use nalgebra::{Point2, Point3, Vector3};
+
+    /// A rod of length 1.6 in a box with a wall across that leaves a gap of 0.5.
+    fn rod_is_free(q: &Se2State) -> bool {
+        (0..=16).all(|i| {
+            let p = q.transform_point(&Point2::new(f64::from(i) / 10.0 - 0.8, 0.0));
+            (p.x - 2.0).abs() > 0.1 || (p.y - 2.0).abs() < 0.25
+        })
+    }
+
+    /// All that is reached, in either direction, is verified by another check; what the planner says it costs is the
+    /// length by way of the states between.
+    #[test]
+    fn edges_are_verified_in_forward_time() {
+        let space = Se2::new([0.0; 2], [4.0; 2]).unwrap();
+        let mut verifier = FineDiscrete::new(&space, rod_is_free, Resolution::Length(0.004)).unwrap();
+        let mut rng = Rng::seed(9);
+        let (mut reached, mut more) = (0, 0);
+        for i in 0..600 {
+            let at = [0.0, 0.3, 0.5, 1.0][i % 4];
+            let check = || Discrete::new(&space, rod_is_free, Resolution::Length(0.004)).unwrap();
+            let mut local = RotateAtS::new(&space, check(), at).unwrap();
+            let (from, to) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
+            if !(rod_is_free(&from) && rod_is_free(&to)) {
+                continue;
+            }
+            for direction in [Direction::Forward, Direction::Backward] {
+                for reach in [Reach::Full, Reach::Step(0.9)] {
+                    let found = local.extend(&from, &to, direction, reach);
+                    let (Extension::Reached(motion) | Extension::Advanced(motion)) = found else { continue };
+                    let ends = match direction {
+                        Direction::Forward => [from, motion.end],
+                        Direction::Backward => [motion.end, from],
+                    };
+                    assert!(verifier.verify_edge(&ends[0], &motion.edge, &ends[1]).is_free());
+                    let path =
+                        Path { states: ends.to_vec(), edges: vec![motion.edge.clone()] }.straightened();
+                    assert!((path.length(&space) - motion.cost).abs() < 1e-9);
+                    // No part both moves and turns.
+                    for w in path.states.windows(2) {
+                        assert!(
+                            w[0].translation == w[1].translation || w[0].angle == w[1].angle || {
+                                (w[0].angle - w[1].angle).abs() < 1e-12
+                                    || (w[0].translation - w[1].translation).norm() < 1e-12
+                            }
+                        );
+                    }
+                    reached += 1;
+                }
+            }
+            let mut straight = Straight::new(&space, check());
+            let fails = |e: &Extension<_, _>| matches!(e, Extension::Trapped);
+            let forward = local.extend(&from, &to, Direction::Forward, Reach::Full);
+            let by_line = straight.extend(&from, &to, Direction::Forward, Reach::Full);
+            more += usize::from(!matches!(forward, Extension::Trapped) && fails(&by_line));
+        }
+        assert!(reached > 100 && more > 2, "{reached} {more}");
+    }
+
+    #[test]
+    fn keeps_the_axioms() {
+        let space = Se2::new([0.0; 2], [4.0; 2]).unwrap();
+        let check = Discrete::new(&space, rod_is_free, Resolution::Length(0.02)).unwrap();
+        check_local_planner(&space, &mut RotateAtS::new(&space, check, 0.5).unwrap(), 0.7, 1);
+        let space = Se3::new([-1.0; 3], [1.0; 3]).unwrap();
+        let ball = |q: &Isometry3<f64>| (q * Point3::new(0.3, 0.0, 0.0)).coords.norm() > 0.4;
+        let check = Discrete::new(&space, ball, Resolution::Length(0.05)).unwrap();
+        check_local_planner(&space, &mut RotateAtS::new(&space, check, 0.25).unwrap(), 0.7, 2);
+        for at in [-0.1, 1.1, f64::NAN] {
+            let check = Discrete::new(&space, ball, Resolution::Length(0.05)).unwrap();
+            assert!(RotateAtS::new(&space, check, at).is_err());
+        }
+    }
+
+    #[test]
+    fn turns_in_place_at_s() {
+        let space = Se3::new([-9.0; 3], [9.0; 3]).unwrap();
+        let from = Isometry3::identity();
+        let to = Isometry3::new(Vector3::new(4.0, 0.0, 8.0), Vector3::new(0.0, 1.0, 0.0));
+        let [before, after] = turn_at(&space, &from, &to, 0.25);
+        assert_eq!(
+            (before.translation.vector, after.translation),
+            (Vector3::new(1.0, 0.0, 2.0), before.translation)
+        );
+        assert_eq!((before.rotation, after.rotation), (from.rotation, to.rotation));
+        let middle = space.interpolate(&before, &after, 0.5);
+        assert!((rotation_angle(&middle.rotation, &from.rotation) - 0.5).abs() < 1e-12);
+        let no_edge = Path { states: vec![from], edges: Vec::<Via<_>>::new() };
+        assert_eq!(no_edge.straightened().states, [from]);
+    }
+}

@@ -1,0 +1,186 @@
+//! Samplers that look for obstacles: the Gaussian strategy and the bridge test.
+
+use super::Sampler;
+use crate::{ParameterError, Rng, Space, Validity};
+use rand::RngExt;
+use std::f64::consts::TAU;
+
+/// A state at a distance from `q` that is normally distributed about zero with the standard deviation
+/// `sigma`, toward a state drawn uniformly (and no farther than that).
+fn beside<C: Space>(space: &C, q: &C::State, sigma: f64, rng: &mut Rng) -> C::State {
+    let other = space.sample_uniform(rng);
+    let (u, v) = (1.0 - rng.random::<f64>(), rng.random::<f64>());
+    let normal = (-2.0 * u.ln()).sqrt() * (TAU * v).cos();
+    let (far, distance) = (space.distance(q, &other), (sigma * normal).abs());
+    if distance >= far { other } else { space.interpolate(q, &other, distance / far) }
+}
+
+macro_rules! obstacle_sampler {
+    ($name:ident) => {
+        impl<'c, C: Space, V: Validity<C::State>> $name<'c, C, V> {
+            /// Samples of `space` by what `valid` says is free; `sigma` is the standard deviation of the distance, in the
+            /// metric of the space.
+            ///
+            /// # Errors
+            /// When `sigma` is not positive and finite.
+            pub fn new(space: &'c C, valid: V, sigma: f64) -> Result<Self, ParameterError> {
+                let sigma = ParameterError::positive("sigma", sigma)?;
+                Ok(Self { space, valid, sigma, tries: 1000 })
+            }
+
+            /// The same with another limit of tries per sample; 0 counts as 1.
+            #[must_use]
+            pub fn with_tries(self, tries: u32) -> Self {
+                Self { tries: tries.max(1), ..self }
+            }
+
+            /// What says what is free.
+            pub fn valid(&self) -> &V {
+                &self.valid
+            }
+        }
+
+        /// Tries up to the limit; then a state drawn uniformly, which need not be free.
+        impl<C: Space, V: Validity<C::State>> Sampler<C::State> for $name<'_, C, V> {
+            fn sample(&mut self, rng: &mut Rng) -> C::State {
+                let found = (0..self.tries).find_map(|_| self.attempt(rng));
+                found.unwrap_or_else(|| self.space.sample_uniform(rng))
+            }
+        }
+    };
+}
+
+/// The Gaussian sampling strategy (Boor, Overmars and van der Stappen 1999, *The Gaussian sampling strategy for
+/// probabilistic roadmap planners*): free states near obstacles, the density of which is that of the
+/// obstacles blurred by a Gaussian.
+///
+/// Of two states, one uniform and the other at a normally distributed distance from it, the free one is taken if the other
+/// is not free.
+#[derive(Clone, Debug)]
+pub struct Gaussian<'c, C, V> {
+    space: &'c C,
+    valid: V,
+    sigma: f64,
+    tries: u32,
+}
+
+obstacle_sampler!(Gaussian);
+
+impl<C: Space, V: Validity<C::State>> Gaussian<'_, C, V> {
+    /// One try: two tests at most three of four times in vain among few obstacles.
+    pub fn attempt(&mut self, rng: &mut Rng) -> Option<C::State> {
+        let one = self.space.sample_uniform(rng);
+        let two = beside(self.space, &one, self.sigma, rng);
+        match (self.valid.is_valid(&one), self.valid.is_valid(&two)) {
+            (true, false) => Some(one),
+            (false, true) => Some(two),
+            _ => None,
+        }
+    }
+}
+
+/// The bridge test (Hsu, Jiang, Reif and Sun 2003, *The bridge test for sampling narrow passages with probabilistic
+/// roadmap planners*): free states between obstacles, in narrow passages.
+///
+/// Of two states, one uniform and the other at a normally distributed distance from it, the one in their middle is taken
+/// if it is free and both are not. Few samples pass: join it with uniform ones.
+#[derive(Clone, Debug)]
+pub struct Bridge<'c, C, V> {
+    space: &'c C,
+    valid: V,
+    sigma: f64,
+    tries: u32,
+}
+
+obstacle_sampler!(Bridge);
+
+impl<C: Space, V: Validity<C::State>> Bridge<'_, C, V> {
+    /// One try: one test where the first state is free, at most three.
+    pub fn attempt(&mut self, rng: &mut Rng) -> Option<C::State> {
+        let one = self.space.sample_uniform(rng);
+        if self.valid.is_valid(&one) {
+            return None;
+        }
+        let two = beside(self.space, &one, self.sigma, rng);
+        if self.valid.is_valid(&two) {
+            return None;
+        }
+        let middle = self.space.interpolate(&one, &two, 0.5);
+        self.valid.is_valid(&middle).then_some(middle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Rn;
+    use nalgebra::Vector2;
+
+    type Square = Rn<2>;
+
+    /// Two walls with a passage of width 0.04 between, at x = 0.5.
+    fn free(q: &Vector2<f64>) -> bool {
+        (q.x - 0.5).abs() > 0.1 || (q.y - 0.5).abs() < 0.02
+    }
+
+    fn square() -> Square {
+        Rn::new([0.0, 0.0], [1.0, 1.0]).unwrap()
+    }
+
+    fn in_passage(q: &Vector2<f64>) -> bool {
+        (q.x - 0.5).abs() <= 0.1 && free(q)
+    }
+
+    /// How far from what is not free: the walls are all there is.
+    fn to_wall(q: &Vector2<f64>) -> f64 {
+        let x = ((q.x - 0.5).abs() - 0.1).max(0.0);
+        if x > 0.0 { x } else { 0.02 - (q.y - 0.5).abs() }
+    }
+
+    fn share(samples: &[Vector2<f64>]) -> f64 {
+        samples.iter().filter(|q| in_passage(q)).count() as f64 / samples.len() as f64
+    }
+
+    #[test]
+    fn gaussian_samples_are_free_and_near_obstacles() {
+        let space = square();
+        let mut rng = Rng::seed(1);
+        let mut near = Gaussian::new(&space, free, 0.02).unwrap();
+        let samples: Vec<_> = (0..2000).map(|_| near.sample(&mut rng)).collect();
+        assert!(samples.iter().all(|q| free(q) && space.contains(q)));
+        let mut distances: Vec<f64> = samples.iter().map(to_wall).collect();
+        distances.sort_by(f64::total_cmp);
+        // Half a normal distribution of 0.02: nearly all within 3 sigma.
+        assert!(distances[1000] < 0.02 && distances[1980] < 0.06, "{} {}", distances[1000], distances[1980]);
+        // Uniform ones would have 0.008 / 0.808 there.
+        assert!(share(&samples) > 0.03, "{}", share(&samples));
+    }
+
+    #[test]
+    fn bridges_are_in_the_passage() {
+        let space = square();
+        let mut rng = Rng::seed(2);
+        let mut bridge = Bridge::new(&space, free, 0.05).unwrap().with_tries(100_000);
+        let samples: Vec<_> = (0..500).map(|_| bridge.sample(&mut rng)).collect();
+        assert!(samples.iter().all(|q| free(q)));
+        assert!(share(&samples) > 0.95, "{}", share(&samples));
+    }
+
+    #[test]
+    fn without_obstacles_they_are_uniform_after_some_tries() {
+        let space = square();
+        let mut rng = Rng::seed(3);
+        let mut asked = 0;
+        let all = |_: &Vector2<f64>| {
+            asked += 1;
+            true
+        };
+        let mut near = Gaussian::new(&space, all, 0.02).unwrap().with_tries(10);
+        assert!(near.attempt(&mut rng).is_none());
+        assert!(space.contains(&near.sample(&mut rng)));
+        assert_eq!(asked, 22);
+        for sigma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Gaussian::new(&space, free, sigma).is_err() && Bridge::new(&space, free, sigma).is_err());
+        }
+    }
+}
