@@ -82,15 +82,16 @@ impl TriMesh {
         if topology.components < 2 {
             return vec![self.clone()];
         }
-        let mut parts: Vec<(Vec<Point3<f64>>, Vec<[u32; 3]>)> = vec![Default::default(); topology.components];
+        let mut vertices = vec![Vec::new(); topology.components];
+        let mut triangles = vec![Vec::new(); topology.components];
         // The part a vertex was last given to, and its number there: parts may share vertices.
         let mut given = vec![(NO_COMPONENT, 0_u32); self.vertices().len()];
         let mut order: Vec<usize> = (0..self.triangles().len()).collect();
         order.sort_by_key(|&t| topology.component[t]);
         for t in order {
             let component = topology.component[t];
-            let Some((vertices, triangles)) = parts.get_mut(component as usize) else { continue };
-            triangles.push(self.triangles()[t].map(|v| {
+            let Some(vertices) = vertices.get_mut(component as usize) else { continue };
+            triangles[component as usize].push(self.triangles()[t].map(|v| {
                 let slot = &mut given[v as usize];
                 if slot.0 != component {
                     *slot = (component, vertices.len() as u32);
@@ -99,7 +100,7 @@ impl TriMesh {
                 slot.1
             }));
         }
-        parts.into_iter().filter_map(|(vertices, triangles)| TriMesh::new(vertices, triangles).ok()).collect()
+        vertices.into_iter().zip(triangles).filter_map(|(v, t)| TriMesh::new(v, t).ok()).collect()
     }
 
     /// The centre of gravity of the surface; of the corners, where it has no area.
