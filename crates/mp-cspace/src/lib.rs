@@ -44,7 +44,9 @@ pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use gradient::ClearanceGradient;
 pub use hints::{ObstacleGeometry, ObstacleHints, Outline, PointOf};
-pub use local::{Direction, Extension, LocalPlanner, Motion, Poses, Reach, Reversible, RotateAtS, Straight, Via, turn_at};
+pub use local::{
+    Direction, Extension, LocalPlanner, Motion, Poses, Reach, Reversible, RotateAtS, Straight, Via, turn_at,
+};
 pub use metric::{
     Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, SweptVolume,
     TrueMetricOn, WithMetric,

@@ -1,6 +1,6 @@
 //! Rotate-at-s: translation, rotation in place, translation.
 
-use super::{Direction, Extension, LocalPlanner, Motion, Reach};
+use super::{Direction, Extension, LocalPlanner, Motion, Reach, Reversible};
 use crate::{
     KnownFree, MotionValidity, ParameterError, Path, Se2, Se2State, Se3, Space, WithMetric, metric::MetricOn,
 };
@@ -45,6 +45,12 @@ pub fn turn_at<C: Poses>(space: &C, from: &C::State, to: &C::State, at: f64) -> 
 /// Every [`MotionValidity`] verifies such edges, motion by motion.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Via<S>(pub Vec<S>);
+
+impl<S: Clone> Reversible for Via<S> {
+    fn reversed(&self) -> Self {
+        Self(self.0.iter().rev().cloned().collect())
+    }
+}
 
 impl<S: Clone> Path<S, Via<S>> {
     /// The same path with the states in between as states of its own.
@@ -209,6 +215,7 @@ mod tests {
                         Direction::Backward => [motion.end, from],
                     };
                     assert!(verifier.verify_edge(&ends[0], &motion.edge, &ends[1]).is_free());
+                    assert!(verifier.verify_edge(&ends[1], &motion.edge.reversed(), &ends[0]).is_free());
                     let path =
                         Path { states: ends.to_vec(), edges: vec![motion.edge.clone()] }.straightened();
                     assert!((path.length(&space) - motion.cost).abs() < 1e-9);

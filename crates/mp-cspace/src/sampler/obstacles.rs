@@ -162,7 +162,7 @@ mod tests {
         let mut rng = Rng::seed(2);
         let mut bridge = Bridge::new(&space, free, 0.05).unwrap().with_tries(100_000);
         let samples: Vec<_> = (0..500).map(|_| bridge.sample(&mut rng)).collect();
-        assert!(samples.iter().all(|q| free(q)));
+        assert!(samples.iter().all(free));
         assert!(share(&samples) > 0.95, "{}", share(&samples));
     }
 
