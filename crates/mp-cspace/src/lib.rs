@@ -27,6 +27,7 @@ mod local;
 mod metric;
 mod motion;
 pub mod nn;
+mod numbers;
 mod observer;
 mod path;
 mod planner;
@@ -55,6 +56,7 @@ pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
 pub use nn::{
     DefaultNn, Embed, EmbedFactors, Hit, KdTree, Layout, Linear, MetricTree, NearestNeighbors, NnOn, NodeId,
 };
+pub use numbers::Numbers;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};

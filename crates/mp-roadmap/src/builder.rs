@@ -67,17 +67,44 @@ where
     /// # Errors
     /// When a state of it is outside the space.
     pub fn resume(mut self, map: Roadmap<C::State, L::Edge>) -> Result<Self, BuildError> {
-        let space = self.steer.space();
-        if let Some(state) = map.states().iter().find(|q| !space.contains(q)) {
-            let reason = format!("a node of the roadmap is outside the space: {state:?}");
-            return Err(BuildError::Unmade { reason });
-        }
-        self.index.clear();
-        for id in 0..map.len() as NodeId {
-            self.index.inserted(space, map.states(), id);
-        }
+        map.fill(self.steer.space(), &mut self.index)?;
         self.map = map;
         Ok(self)
+    }
+
+    /// Takes in another roadmap of the same space and scene: its nodes and edges as they are, and then an
+    /// edge from each of its nodes to the nearest of the `neighbours` nearest that is in another component
+    /// and can be connected. What was verified of it is verified again when it is used.
+    ///
+    /// # Errors
+    /// When a state of it is outside the space.
+    pub fn merge(
+        &mut self,
+        other: &Roadmap<C::State, L::Edge>,
+        neighbours: usize,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Result<(), BuildError> {
+        other.check_within(self.steer.space())?;
+        let before = self.map.len() as NodeId;
+        self.map.append(other);
+        for id in before..self.map.len() as NodeId {
+            self.index.inserted(self.steer.space(), self.map.states(), id);
+            observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
+        }
+        let mut near = Vec::new();
+        let mut growing =
+            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer };
+        for id in before..growing.map.len() as NodeId {
+            let q = growing.map.state(id).clone();
+            growing.near(&q, neighbours.saturating_add(1), f64::INFINITY, &mut near);
+            // At most one edge for each: enough to join all components that can be.
+            for hit in near.iter().filter(|hit| hit.id != id) {
+                if !growing.map.connected(hit.id, id) && growing.try_link(hit.id, id) {
+                    break;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// The roadmap.

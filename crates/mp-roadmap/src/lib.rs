@@ -54,8 +54,11 @@
 //!   and going on changes nothing.
 
 pub mod algo;
+mod answers;
 mod builder;
 mod connect;
+mod export;
+mod file;
 mod generate;
 mod planner;
 mod registry;
@@ -68,8 +71,10 @@ pub use algo::lazy_prm::{LazyPrm, Unchecked};
 pub use algo::prm::{Learn, Learning, Prm};
 pub use algo::prm_star::{PrmStar, Star};
 pub use algo::visibility_prm::{Visibility, VisibilityPrm};
+pub use answers::{Answers, Listed, Unanswered};
 pub use builder::{Builder, Pace, Recipe};
 pub use connect::{Connector, Growing, Nearest, Reachable};
+pub use file::{RoadmapError, RoadmapFileError};
 pub use generate::{Came, Candidate, Free, NodeGenerator};
 pub use planner::{PATIENCE, RoadmapPlanner};
 pub use registry::{AnyPlanner, build, build_with, planner, planners};

@@ -1,6 +1,6 @@
 //! The graph: configurations, and the motions between them.
 
-use mp_cspace::{Motion, NodeId, Path, Reversible};
+use mp_cspace::{BuildError, Motion, NearestNeighbors, NodeId, Path, Reversible, Space};
 use petgraph::graph::{EdgeIndex, NodeIndex, UnGraph};
 use petgraph::unionfind::UnionFind;
 use petgraph::visit::EdgeRef;
@@ -300,6 +300,57 @@ impl<S, E> Roadmap<S, E> {
         count.retain(|&size| size > 0);
         count.sort_unstable_by(|a, b| b.cmp(a));
         count
+    }
+}
+
+impl<S, E> Roadmap<S, E> {
+    /// # Errors
+    /// When a node is outside the space.
+    pub(crate) fn check_within<C: Space<State = S>>(&self, space: &C) -> Result<(), BuildError>
+    where
+        S: std::fmt::Debug,
+    {
+        match self.states.iter().find(|q| !space.contains(q)) {
+            None => Ok(()),
+            Some(q) => {
+                let reason = format!("a node of the roadmap is outside the space: {q:?}");
+                Err(BuildError::Unmade { reason })
+            }
+        }
+    }
+
+    /// Tells an index of all nodes, and nothing else.
+    ///
+    /// # Errors
+    /// When a node is outside the space.
+    pub(crate) fn fill<C: Space<State = S>>(
+        &self,
+        space: &C,
+        index: &mut impl NearestNeighbors<C>,
+    ) -> Result<(), BuildError>
+    where
+        S: std::fmt::Debug,
+    {
+        self.check_within(space)?;
+        index.clear();
+        (0..self.states.len() as NodeId).for_each(|id| index.inserted(space, &self.states, id));
+        Ok(())
+    }
+
+    /// Adds all nodes and edges of another roadmap; nothing of it counts as verified.
+    pub(crate) fn append(&mut self, other: &Self)
+    where
+        S: Clone,
+        E: Clone,
+    {
+        let before = self.states.len() as NodeId;
+        for (state, tag) in other.states.iter().zip(other.graph.node_weights()) {
+            self.add(state.clone(), *tag);
+        }
+        for edge in other.graph.edge_references() {
+            let [a, b] = [edge.source(), edge.target()].map(|end| end.index() as NodeId + before);
+            self.insert(a, b, Link { verified: [false; 2], ..edge.weight().clone() });
+        }
     }
 }
 

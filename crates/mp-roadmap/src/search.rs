@@ -166,7 +166,7 @@ where
     ) -> Option<Way> {
         loop {
             let way = self.shortest(map, steer.space(), from, to)?;
-            if self.nodes_pass(map, steer, &way) && edges_pass(map, steer, &way) {
+            if self.check(map, steer, &way) {
                 return Some(way);
             }
         }
@@ -179,6 +179,20 @@ fn inward(n: usize) -> impl Iterator<Item = usize> {
 }
 
 impl AStar {
+    /// Checks what is unchecked of a way. Blocks what fails first; whether nothing did.
+    pub(crate) fn check<C, L>(
+        &mut self,
+        map: &mut Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        way: &Way,
+    ) -> bool
+    where
+        C: Space,
+        L: LocalPlanner<C::State, Edge: Reversible>,
+    {
+        self.nodes_pass(map, steer, way) && edges_pass(map, steer, way)
+    }
+
     /// Checks the nodes at the ends of unchecked edges of a way. Blocks all edges of the first that is not
     /// admitted; whether there was none.
     fn nodes_pass<C, L>(

@@ -23,9 +23,13 @@ pub(crate) fn problem<'c>(
     Problem::new(space, Straight::new(space, check), Exact(boxes.clone()), start, goal).unwrap()
 }
 
-const ENDS: [[f64; 2]; 2] = [[0.1, 0.2], [0.9, 0.2]];
+pub(crate) const ENDS: [[f64; 2]; 2] = [[0.1, 0.2], [0.9, 0.2]];
 
-fn prm<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, gullible: bool) -> Prm<'c, Rn<2>, Local<'c>, KdTree<2>> {
+pub(crate) fn prm<'c>(
+    space: &'c Rn<2>,
+    boxes: &Boxes<2>,
+    gullible: bool,
+) -> Prm<'c, Rn<2>, Local<'c>, KdTree<2>> {
     let reach = Reachable { neighbours: 8, radius: 0.4, cycles: false };
     let learning = Learning { learn: 60, ..Learning::default() };
     Prm::new(problem(space, boxes, ENDS, gullible), reach, learning).unwrap()

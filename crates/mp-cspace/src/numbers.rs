@@ -1,0 +1,114 @@
+//! States as lists of numbers, for files.
+
+use crate::Se2State;
+use nalgebra::{DVector, Isometry3, Quaternion, SVector, Translation3, UnitQuaternion};
+
+/// A value that is written as a list of numbers, and read back the same to the bit.
+pub trait Numbers: Sized {
+    /// Appends its numbers.
+    fn write(&self, out: &mut Vec<f64>);
+    /// The value of these numbers; `None` when there are too many or too few, or they are of none.
+    fn read(numbers: &[f64]) -> Option<Self>;
+}
+
+impl Numbers for () {
+    fn write(&self, _: &mut Vec<f64>) {}
+    fn read(numbers: &[f64]) -> Option<Self> {
+        numbers.is_empty().then_some(())
+    }
+}
+
+impl Numbers for f64 {
+    fn write(&self, out: &mut Vec<f64>) {
+        out.push(*self);
+    }
+    fn read(numbers: &[f64]) -> Option<Self> {
+        let [x] = numbers else { return None };
+        Some(*x)
+    }
+}
+
+impl<const N: usize> Numbers for SVector<f64, N> {
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend(self.iter());
+    }
+    fn read(numbers: &[f64]) -> Option<Self> {
+        (numbers.len() == N).then(|| Self::from_column_slice(numbers))
+    }
+}
+
+impl Numbers for DVector<f64> {
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend(self.iter());
+    }
+    fn read(numbers: &[f64]) -> Option<Self> {
+        Some(Self::from_column_slice(numbers))
+    }
+}
+
+/// x, y, z and w.
+impl Numbers for UnitQuaternion<f64> {
+    fn write(&self, out: &mut Vec<f64>) {
+        out.extend(self.coords.iter());
+    }
+    fn read(numbers: &[f64]) -> Option<Self> {
+        let [x, y, z, w] = *numbers else { return None };
+        let q = Quaternion::new(w, x, y, z);
+        ((q.norm() - 1.0).abs() < 1e-9).then(|| Self::new_unchecked(q))
+    }
+}
+
+/// Position, then rotation as a quaternion.
+impl Numbers for Isometry3<f64> {
+    fn write(&self, out: &mut Vec<f64>) {
+        self.translation.vector.write(out);
+        self.rotation.write(out);
+    }
+    fn read(numbers: &[f64]) -> Option<Self> {
+        let (position, rotation) = numbers.split_at_checked(3)?;
+        let position = Translation3 { vector: Numbers::read(position)? };
+        Some(Self::from_parts(position, Numbers::read(rotation)?))
+    }
+}
+
+/// Position, then angle.
+impl Numbers for Se2State {
+    fn write(&self, out: &mut Vec<f64>) {
+        self.translation.write(out);
+        out.push(self.angle);
+    }
+    fn read(numbers: &[f64]) -> Option<Self> {
+        let [x, y, angle] = *numbers else { return None };
+        Some(Self { translation: [x, y].into(), angle })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Rn, Rng, Se2, Se3, So3, Space};
+
+    fn same<S: Numbers + PartialEq + std::fmt::Debug>(state: S) {
+        let mut numbers = Vec::new();
+        state.write(&mut numbers);
+        assert_eq!(S::read(&numbers).as_ref(), Some(&state));
+        numbers.push(0.5);
+        assert_ne!(S::read(&numbers), Some(state));
+    }
+
+    #[test]
+    fn states_read_back() {
+        let mut rng = Rng::seed(1);
+        for _ in 0..20 {
+            same(Rn::<3>::new([0.0; 3], [1.0; 3]).unwrap().sample_uniform(&mut rng));
+            same(Se2::new([0.0; 2], [1.0; 2]).unwrap().sample_uniform(&mut rng));
+            same(Se3::new([0.0; 3], [1.0; 3]).unwrap().sample_uniform(&mut rng));
+            same(So3.sample_uniform(&mut rng));
+        }
+        same(DVector::from_vec(vec![1.0, -0.0, f64::MIN_POSITIVE]));
+        same(0.1 + 0.2);
+        same(());
+        assert_eq!(Isometry3::read(&[0.0; 7]), None, "no rotation");
+        assert_eq!(Isometry3::read(&[0.0]), None);
+    }
+}
