@@ -6,6 +6,8 @@
 //! | [`PlanarFlyer`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a mesh, in the plane z = 0, turning about Z |
 //! | [`PointRobot`] | `Vector3<f64>`, in R³ | a point |
 //! | [`Arm`] | `SVector<f64, N>` or `DVector<f64>`, in [`Joints`](mp_cspace::Joints) | a tree of links |
+//! | [`DiscRobot`] | `Vector2<f64>`, in R² | a disc among polygons |
+//! | [`PolygonRobot`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a polygon among polygons |
 //!
 //! The first three are a [`RigidBody`]. Obstacles stand still, but for those of [`AmongMoving`], a rigid body
 //! in space and time among bodies on known trajectories. Robots answer the questions of planners:
@@ -39,6 +41,7 @@
 mod arm;
 mod bounds;
 mod explain;
+mod flat;
 mod gradient;
 mod hints;
 mod moving;
@@ -52,6 +55,7 @@ pub use arm::{
     Arm, ArmContact, ArmError, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Kinematics, Link, Mimic,
     UrdfError,
 };
+pub use flat::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
 pub use placement::{Placement, Planar, Point, Shape, Spatial};
 pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};

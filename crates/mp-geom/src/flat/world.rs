@@ -1,0 +1,361 @@
+//! Obstacles in the plane.
+
+use super::cells::{Cells, Kind};
+use super::edge::Edge;
+use super::tree::EdgeTree;
+use super::{Polygon, PolygonError};
+use nalgebra::Point2;
+use thiserror::Error;
+
+/// Why a world could not be made.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FlatWorldError {
+    /// Bounds that hold nothing.
+    #[error("the bounds from ({}, {}) to ({}, {}) must be finite, the first corner below the second", .low[0], .low[1], .high[0], .high[1])]
+    Bounds {
+        /// The lower corner.
+        low: [f64; 2],
+        /// The upper corner.
+        high: [f64; 2],
+    },
+    /// More than fit in memory.
+    #[error("{edges} edges are too many: at most {max} can be handled")]
+    TooManyEdges {
+        /// How many there are.
+        edges: usize,
+        /// How many there may be.
+        max: usize,
+    },
+    /// A polygon that is none.
+    #[error(transparent)]
+    Polygon(#[from] PolygonError),
+}
+
+/// Most edges: memory, not principle.
+const MAX_EDGES: usize = 20_000_000;
+
+/// The name edges of the walls have for a polygon: after all others.
+const WALLS: u32 = u32::MAX - 1;
+
+/// The point of an obstacle's boundary that is nearest to something.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// Where it is.
+    pub point: Point2<f64>,
+    /// How far, metres.
+    pub distance: f64,
+    /// The index of the polygon; `None` for the walls.
+    pub obstacle: Option<usize>,
+}
+
+/// Where a segment and the boundary of an obstacle are nearest to each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestToSegment {
+    /// Where on the segment.
+    pub on_segment: Point2<f64>,
+    /// Where on the boundary.
+    pub point: Point2<f64>,
+    /// How far from each other, metres; zero when they cross or touch.
+    pub distance: f64,
+    /// The index of the polygon; `None` for the walls.
+    pub obstacle: Option<usize>,
+}
+
+/// Polygons, which may overlap, and perhaps walls: outside of them everything is obstacle.
+///
+/// Distances are to boundaries, exact up to rounding. What is nearest is looked up in a grid whose cells hold all
+/// edges that can be nearest to one of their points, made once in O((n + cells) log n): some tens of
+/// nanoseconds for a point, and for a segment about as many times that as there are cells near obstacles on
+/// its way.
+#[derive(Clone, Debug)]
+pub struct FlatWorld {
+    polygons: Vec<Polygon>,
+    walls: Option<[Point2<f64>; 2]>,
+    edges: Vec<Edge>,
+    tree: EdgeTree,
+    cells: Option<Cells>,
+    /// The first corner of each ring, by x.
+    corners: Vec<Point2<f64>>,
+    low: Point2<f64>,
+    high: Point2<f64>,
+}
+
+impl FlatWorld {
+    /// `polygons`, and `walls` from a lower to an upper corner around what is free.
+    ///
+    /// # Errors
+    /// When the walls are not finite or hold nothing, or there are more than 2·10⁷ edges.
+    pub fn new(polygons: Vec<Polygon>, walls: Option<[[f64; 2]; 2]>) -> Result<Self, FlatWorldError> {
+        let mut edges = Vec::new();
+        for (i, polygon) in polygons.iter().enumerate() {
+            edges.extend(polygon.edges().map(|e| Edge::new(e, i as u32)));
+            if edges.len() > MAX_EDGES {
+                return Err(FlatWorldError::TooManyEdges { edges: edges.len(), max: MAX_EDGES });
+            }
+        }
+        let solid = edges.len();
+        if let Some([low, high]) = walls {
+            let room = Polygon::rectangle(low, high).map_err(|_| FlatWorldError::Bounds { low, high })?;
+            edges.extend(room.edges().map(|e| Edge::new(e, WALLS)));
+        }
+        let (mut low, mut high) = (Point2::from([f64::INFINITY; 2]), Point2::from([f64::NEG_INFINITY; 2]));
+        for edge in &edges {
+            let [l, h] = edge.bounds();
+            (low, high) = (low.inf(&l), high.sup(&h));
+        }
+        let tree = EdgeTree::new(&edges);
+        let flat = |v: f64| v > 0.0 && v.is_finite();
+        let has_area = flat(high.x - low.x) && flat(high.y - low.y);
+        let cells = has_area.then(|| Cells::new([low, high], &edges, solid, &tree));
+        let mut corners: Vec<Point2<f64>> = polygons.iter().flat_map(Polygon::rings).map(|r| r[0]).collect();
+        corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+        let walls = walls.map(|w| w.map(Point2::from));
+        Ok(Self { polygons, walls, edges, tree, cells, corners, low, high })
+    }
+
+    /// The polygons.
+    #[must_use]
+    pub fn polygons(&self) -> &[Polygon] {
+        &self.polygons
+    }
+
+    /// Lower and upper corner of the walls.
+    #[must_use]
+    pub fn walls(&self) -> Option<[Point2<f64>; 2]> {
+        self.walls
+    }
+
+    /// The box around walls and polygons; `None` of nothing.
+    #[must_use]
+    pub fn bounds(&self) -> Option<[Point2<f64>; 2]> {
+        (!self.edges.is_empty()).then_some([self.low, self.high])
+    }
+
+    /// How many edges there are, those of the walls included.
+    #[must_use]
+    pub fn edges(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// Whether `p` is in an obstacle, by exact predicates; on a boundary either may be answered, and the distance
+    /// is zero.
+    #[must_use]
+    pub fn contains(&self, p: &Point2<f64>) -> bool {
+        if self.walls.is_some_and(|[l, h]| p.x <= l.x || p.y <= l.y || p.x >= h.x || p.y >= h.y) {
+            return true;
+        }
+        let Some(cells) = &self.cells else { return self.polygons.iter().any(|polygon| polygon.contains(p)) };
+        match cells.locate(p).map(|at| cells.cell(at).0.kind) {
+            None | Some(Kind::Open) => false,
+            Some(Kind::Solid) => true,
+            Some(Kind::Mixed) => cells.row_contains(p, &self.edges),
+        }
+    }
+
+    /// The point of the boundary of an obstacle that is nearest to `p`; `None` where there is nothing.
+    #[must_use]
+    pub fn nearest(&self, p: &Point2<f64>) -> Option<Nearest> {
+        let mut best = (f64::INFINITY, u32::MAX);
+        match self.cells.as_ref().and_then(|cells| Some(cells.cell(cells.locate(p)?).1)) {
+            Some(candidates) => {
+                for &i in candidates {
+                    let squared = self.edges[i as usize].squared(p);
+                    if squared < best.0 {
+                        best = (squared, i);
+                    }
+                }
+            }
+            None => self.tree.near(p, f64::INFINITY, |i, _| {
+                let squared = self.edges[i as usize].squared(p);
+                if (squared, i) < best {
+                    best = (squared, i);
+                }
+                best.0
+            }),
+        }
+        let edge = self.edges.get(best.1 as usize)?;
+        Some(Nearest { point: edge.nearest(p), distance: best.0.sqrt(), obstacle: self.obstacle(edge) })
+    }
+
+    /// The distance from `p` to the nearest obstacle; in an obstacle, minus that to the nearest boundary, which where
+    /// obstacles overlap is less than the depth. Infinite where there is nothing.
+    #[must_use]
+    pub fn signed_distance(&self, p: &Point2<f64>) -> f64 {
+        let distance = self.nearest(p).map_or(f64::INFINITY, |n| n.distance);
+        if self.contains(p) { -distance } else { distance }
+    }
+
+    /// Where the segment from `a` to `b` and the boundary of an obstacle are nearest to each other, if that is less
+    /// than `below` metres. Says nothing about which side of the boundary the segment is on.
+    #[must_use]
+    pub fn nearest_to_segment(
+        &self,
+        a: &Point2<f64>,
+        b: &Point2<f64>,
+        below: f64,
+    ) -> Option<NearestToSegment> {
+        let segment = Edge::new([*a, *b], 0);
+        let mut best = (below, None);
+        let mut look = |i: u32, below: f64| -> f64 {
+            match self.edges[i as usize].nearest_to(&segment, below) {
+                Some((points, distance)) => {
+                    best = (distance, Some((points, i)));
+                    distance
+                }
+                None => below,
+            }
+        };
+        self.along(a, b, below, &mut look);
+        let ([on_segment, point], i) = best.1?;
+        let obstacle = self.obstacle(&self.edges[i as usize]);
+        Some(NearestToSegment { on_segment, point, distance: best.0, obstacle })
+    }
+
+    /// Calls `look` with edges of which one is nearest to the segment, if it is less than `below` from it; it
+    /// returns the new `below`.
+    fn along(&self, a: &Point2<f64>, b: &Point2<f64>, below: f64, look: &mut impl FnMut(u32, f64) -> f64) {
+        let (u, mut below) = (b - a, below);
+        let length = u.norm();
+        let inside =
+            self.cells.as_ref().filter(|cells| cells.locate(a).is_some() && cells.locate(b).is_some());
+        let Some(cells) = inside else {
+            // All that can be near is within a ball around the segment.
+            let (middle, half) = (a + u * 0.5, 0.5 * length);
+            let within = |below: f64| (half + below).powi(2) * (1.0 + 1e-12);
+            self.tree.near(&middle, within(below), |i, _| {
+                below = look(i, below);
+                within(below)
+            });
+            return;
+        };
+        let mut t = 0.0;
+        loop {
+            let p = a + u * t;
+            let Some(at) = cells.locate(&p) else { return };
+            let (cell, candidates) = cells.cell(at);
+            // No edge is nearer to the centre than the nearest, so none is near about it.
+            let from_center = (p - cells.center(at.0, at.1)).norm();
+            let clear = cell.from_center - below - from_center - cells.slack;
+            if clear <= 0.0 {
+                for &i in candidates {
+                    below = look(i, below);
+                    if below <= 0.0 {
+                        return;
+                    }
+                }
+            }
+            let nudge = 0.5 * cells.slack / length;
+            let next = (cells.leaves(a, &u, at) + nudge).max(t + nudge).max(t + clear / length);
+            // A segment of no length leaves nowhere, or never.
+            if next.is_nan() || next >= 1.0 {
+                return;
+            }
+            t = next;
+        }
+    }
+
+    /// A corner of an obstacle for which `inside` is true, among those between `low` and `high`: one corner of each
+    /// ring is asked about, so a ring that lies wholly in something is found.
+    #[must_use]
+    pub fn ring_in(
+        &self,
+        [low, high]: [Point2<f64>; 2],
+        inside: impl Fn(&Point2<f64>) -> bool,
+    ) -> Option<Point2<f64>> {
+        let from = self.corners.partition_point(|p| p.x < low.x);
+        let near = self.corners[from..].iter().take_while(|p| p.x <= high.x);
+        near.filter(|p| p.y >= low.y && p.y <= high.y).find(|p| inside(p)).copied()
+    }
+
+    fn obstacle(&self, edge: &Edge) -> Option<usize> {
+        (edge.polygon != WALLS).then_some(edge.polygon as usize)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn polygon() -> impl Strategy<Value = Polygon> {
+        let ring = prop::collection::vec((0.0..10.0_f64, 0.0..6.0_f64), 3..9);
+        // Round numbers make edges in line with each other and with the grid.
+        (ring, any::<bool>()).prop_map(|(ring, round)| {
+            let round = |v: f64| if round { v.round() } else { v };
+            Polygon::outlined(ring.into_iter().map(|(x, y)| [round(x), round(y)])).unwrap()
+        })
+    }
+
+    fn brute(edges: &[Edge], a: Point2<f64>, b: Point2<f64>) -> f64 {
+        let segment = Edge::new([a, b], 0);
+        let each = edges.iter().filter_map(|e| Some(e.nearest_to(&segment, f64::INFINITY)?.1));
+        each.fold(f64::INFINITY, f64::min)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(300))]
+        #[test]
+        fn agrees_with_looking_at_every_edge(
+            polygons in prop::collection::vec(polygon(), 0..12),
+            walled in any::<bool>(),
+            points in prop::collection::vec((-1.0..11.0_f64, -1.0..7.0_f64), 2..30),
+            below in 0.01..3.0_f64,
+        ) {
+            let walls = walled.then_some([[0.0, 0.0], [10.0, 6.0]]);
+            let world = FlatWorld::new(polygons, walls).unwrap();
+            let points: Vec<_> = points.iter().map(|p| Point2::new(p.0, p.1)).collect();
+            for p in &points {
+                let outside = walled && !(p.x > 0.0 && p.x < 10.0 && p.y > 0.0 && p.y < 6.0);
+                let inside = outside || world.polygons().iter().any(|polygon| polygon.contains(p));
+                prop_assert_eq!(world.contains(p), inside);
+                let expected = brute(&world.edges, *p, *p);
+                let near = world.nearest(p);
+                prop_assert_eq!(near.is_none(), world.edges() == 0);
+                if let Some(near) = near {
+                    prop_assert!((near.distance - expected).abs() < 1e-12);
+                    prop_assert!(((near.point - p).norm() - near.distance).abs() < 1e-12);
+                    let signed = if inside { -near.distance } else { near.distance };
+                    prop_assert_eq!(world.signed_distance(p), signed);
+                }
+            }
+            for w in points.windows(2) {
+                let expected = brute(&world.edges, w[0], w[1]);
+                let all = world.nearest_to_segment(&w[0], &w[1], f64::INFINITY);
+                prop_assert!((all.map_or(f64::INFINITY, |n| n.distance) - expected).abs() < 1e-12 || world.edges() == 0);
+                let near = world.nearest_to_segment(&w[0], &w[1], below);
+                match near {
+                    Some(near) => prop_assert!((near.distance - expected).abs() < 1e-12),
+                    None => prop_assert!(expected >= below - 1e-12),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rings_wholly_inside_are_found() {
+        let small = Polygon::rectangle([1.0, 1.0], [1.1, 1.1]).unwrap();
+        let world = FlatWorld::new(vec![small], None).unwrap();
+        let big = Polygon::rectangle([0.0, 0.0], [2.0, 2.0]).unwrap();
+        assert_eq!(world.ring_in(big.bounds(), |p| big.contains(p)), Some(Point2::new(1.0, 1.0)));
+        let beside = Polygon::rectangle([0.0, 1.05], [2.0, 2.0]).unwrap();
+        assert_eq!(world.ring_in(beside.bounds(), |p| beside.contains(p)), None);
+    }
+
+    #[test]
+    fn worlds_of_nothing_and_of_lines() {
+        let empty = FlatWorld::new(vec![], None).unwrap();
+        let p = Point2::new(1.0, 2.0);
+        assert!(
+            !empty.contains(&p) && empty.signed_distance(&p) == f64::INFINITY && empty.bounds().is_none()
+        );
+        let line = Polygon::outlined([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).unwrap();
+        let world = FlatWorld::new(vec![line], None).unwrap();
+        assert_eq!((world.signed_distance(&p), world.contains(&Point2::new(1.0, 0.0))), (2.0, false));
+        let far = Point2::new(1.0, -1e9);
+        assert_eq!(world.nearest_to_segment(&p, &far, 5.0).unwrap().distance, 0.0);
+        for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
+            assert!(FlatWorld::new(vec![], Some([[0.0, 0.0], [1.0, bad]])).is_err());
+        }
+    }
+}

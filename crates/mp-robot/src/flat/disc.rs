@@ -1,0 +1,190 @@
+//! A disc among polygons.
+
+use crate::CheckCounters;
+use mp_cspace::{
+    Clearance, ClearanceGradient, KnownFree, MotionBound, MotionCheck, MotionValidity, ParameterError, Room, Stretch, Validity,
+};
+use mp_geom::flat::FlatWorld;
+use nalgebra::{Point2, Vector2};
+use std::sync::Arc;
+
+/// A disc that moves in the plane. A configuration is its centre, in `Rn<2>`; a radius of zero makes it a point.
+///
+/// Touching is collision, and so is a disc within an obstacle. It is its own motion check, exact and fast: a straight
+/// motion is free when the segment of the centre keeps the radius and the [tolerance](DiscRobot::tolerance) away
+/// from every boundary, which one query of the world tells. The world is shared between clones; counters
+/// are each clone's own.
+///
+/// ```
+/// use mp_cspace::{MotionValidity, Validity};
+/// use mp_geom::flat::{FlatWorld, Polygon};
+/// use mp_robot::{DiscRobot, DiscVerifier};
+/// use nalgebra::Vector2;
+///
+/// let wall = Polygon::rectangle([1.0, 0.0], [1.1, 2.0])?;
+/// let world = FlatWorld::new(vec![wall], Some([[0.0, 0.0], [3.0, 3.0]]))?;
+/// let mut robot = DiscRobot::new(world, 0.07)?;
+/// let (left, right) = (Vector2::new(0.5, 1.0), Vector2::new(1.5, 1.0));
+/// assert!(robot.is_valid(&left) && robot.is_valid(&right));
+/// assert!(!robot.check_motion(&left, &right).is_free());
+/// let mut verifier = DiscVerifier::new(&robot);
+/// assert!(!verifier.check_motion(&left, &right).is_free());
+/// let above = Vector2::new(1.0, 2.5);
+/// assert!(robot.check_motion(&left, &above).is_free() && verifier.check_motion(&left, &above).is_free());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct DiscRobot {
+    world: Arc<FlatWorld>,
+    radius: f64,
+    tolerance: f64,
+    counters: CheckCounters,
+}
+
+impl DiscRobot {
+    /// A disc of `radius` metres in `world`.
+    ///
+    /// # Errors
+    /// When the radius is negative or not finite.
+    pub fn new(world: impl Into<Arc<FlatWorld>>, radius: f64) -> Result<Self, ParameterError> {
+        if !(radius >= 0.0 && radius < 1e60) {
+            let (name, expected) = ("the radius", "zero or more and finite");
+            return Err(ParameterError { name, expected, value: radius });
+        }
+        let world = world.into();
+        let tolerance = super::tolerance(&world, radius);
+        Ok(Self { world, radius, tolerance, counters: CheckCounters::default() })
+    }
+
+    /// What it moves in.
+    #[must_use]
+    pub fn world(&self) -> &Arc<FlatWorld> {
+        &self.world
+    }
+
+    /// Its radius, metres.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Motions found free keep this far from every obstacle (m). The verifier asks for a tenth of it.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// What was done so far by this clone.
+    #[must_use]
+    pub fn counters(&self) -> CheckCounters {
+        self.counters
+    }
+
+    /// The distance (m) between the disc and the nearest obstacle; when its centre is in one, minus the radius
+    /// and what the centre is from the boundary; infinite where there is nothing.
+    #[must_use]
+    pub fn signed_clearance(&self, q: &Vector2<f64>) -> f64 {
+        self.world.signed_distance(&Point2::from(*q)) - self.radius
+    }
+
+    /// As [`signed_clearance`](DiscRobot::signed_clearance), and the direction in which it grows fastest: a unit
+    /// vector, or zero on a boundary and where there is nothing.
+    #[must_use]
+    pub fn clearance_and_gradient(&self, q: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        let p = Point2::from(*q);
+        let Some(near) = self.world.nearest(&p) else { return (f64::INFINITY, Vector2::zeros()) };
+        let away = (p - near.point).try_normalize(0.0).unwrap_or_default();
+        match self.world.contains(&p) {
+            true => (-near.distance - self.radius, -away),
+            false => (near.distance - self.radius, away),
+        }
+    }
+
+    /// The obstacle that the disc at `q` touches: its index, or `None` within for the walls.
+    #[must_use]
+    pub fn touching(&self, q: &Vector2<f64>) -> Option<Option<usize>> {
+        let p = Point2::from(*q);
+        let around = self.world.polygons().iter().position(|polygon| polygon.contains(&p));
+        let near = self.world.nearest(&p)?;
+        match around {
+            Some(obstacle) => Some(Some(obstacle)),
+            None => (near.distance <= self.radius || self.world.contains(&p)).then_some(near.obstacle),
+        }
+    }
+}
+
+fn finite(q: &Vector2<f64>) -> bool {
+    q.x.is_finite() && q.y.is_finite()
+}
+
+impl Validity<Vector2<f64>> for DiscRobot {
+    fn is_valid(&mut self, q: &Vector2<f64>) -> bool {
+        self.counters.collision_checks += 1;
+        finite(q) && self.signed_clearance(q) > 0.0
+    }
+}
+
+impl Clearance<Vector2<f64>> for DiscRobot {
+    fn clearance(&mut self, q: &Vector2<f64>, _enough: f64) -> f64 {
+        self.counters.clearance_checks += 1;
+        if finite(q) { self.signed_clearance(q).max(0.0) } else { 0.0 }
+    }
+
+    /// By the whole stretch at once.
+    fn room(&mut self, stretch: &Stretch<'_, Vector2<f64>>) -> Room {
+        let half = (stretch.to - stretch.from) * stretch.half;
+        let [a, b] = [stretch.middle - half, stretch.middle + half].map(Point2::from);
+        let margin = stretch.margin;
+        let clearance = self.clearance(stretch.middle, f64::INFINITY);
+        if clearance >= 2.0 * margin && self.world.nearest_to_segment(&a, &b, self.radius + margin).is_none()
+        {
+            let travel = (stretch.to - stretch.from).norm();
+            return Room::Over { part: stretch.half.max((clearance - margin) / travel) };
+        }
+        Room::of(clearance, margin)
+    }
+}
+
+impl ClearanceGradient<Vector2<f64>> for DiscRobot {
+    fn clearance_gradient(&mut self, q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]) -> f64 {
+        self.counters.clearance_checks += 1;
+        let (clearance, away) = if finite(q) { self.clearance_and_gradient(q) } else { Default::default() };
+        gradient.copy_from_slice(away.as_slice());
+        clearance
+    }
+}
+
+impl MotionBound<Vector2<f64>> for DiscRobot {
+    fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+        (to - from).norm()
+    }
+}
+
+impl MotionValidity<Vector2<f64>> for DiscRobot {
+    fn check_motion(&mut self, from: &Vector2<f64>, to: &Vector2<f64>) -> MotionCheck {
+        self.check_extension(from, to, KnownFree::Neither)
+    }
+
+    fn check_extension(&mut self, from: &Vector2<f64>, to: &Vector2<f64>, known: KnownFree) -> MotionCheck {
+        self.counters.collision_checks += 1;
+        if !(finite(from) && finite(to)) {
+            return MotionCheck::Undecided { at: 0.0 };
+        }
+        let [a, b] = [from, to].map(|q| Point2::from(*q));
+        // A segment that crosses no boundary is where one of its ends is.
+        if known == KnownFree::Neither && self.world.contains(&a) {
+            return MotionCheck::Collides { at: 0.0 };
+        }
+        match self.world.nearest_to_segment(&a, &b, self.radius + self.tolerance) {
+            None => MotionCheck::Free { clearance: self.tolerance },
+            Some(near) => {
+                let length = (b - a).norm();
+                let at = if length > 0.0 { ((near.on_segment - a).norm() / length).min(1.0) } else { 0.0 };
+                match near.distance <= self.radius {
+                    true => MotionCheck::Collides { at },
+                    false => MotionCheck::Undecided { at },
+                }
+            }
+        }
+    }
+}

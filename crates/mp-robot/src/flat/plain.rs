@@ -1,0 +1,93 @@
+//! Geometry for verifiers: plain loops over all edges, sharing no code with the world's queries.
+
+use mp_geom::flat::{FlatWorld, Polygon};
+use nalgebra::{Point2, Vector2};
+
+type Segment = [Point2<f64>; 2];
+
+/// Obstacles as lists of points.
+#[derive(Clone, Debug)]
+pub(super) struct Plain {
+    /// The rings of each polygon.
+    polygons: Vec<Vec<Vec<Point2<f64>>>>,
+    walls: Option<[Point2<f64>; 2]>,
+    pub(super) edges: Vec<Segment>,
+}
+
+impl Plain {
+    pub(super) fn new(world: &FlatWorld) -> Self {
+        let polygons: Vec<Vec<Vec<Point2<f64>>>> =
+            world.polygons().iter().map(|p| p.rings().to_vec()).collect();
+        let mut edges: Vec<Segment> = polygons.iter().flatten().flat_map(|ring| sides(ring)).collect();
+        let walls = world.walls();
+        if let Some([low, high]) = walls {
+            let ring = [low, Point2::new(low.x, high.y), high, Point2::new(high.x, low.y)];
+            edges.extend(sides(&ring));
+        }
+        Self { polygons, walls, edges }
+    }
+
+    /// Whether a point is in an obstacle; right for points not within rounding of a boundary.
+    pub(super) fn inside(&self, p: &Point2<f64>) -> bool {
+        let beyond =
+            |[low, high]: [Point2<f64>; 2]| !(low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y);
+        self.walls.is_some_and(beyond) || self.polygons.iter().any(|rings| within(rings, p))
+    }
+
+    /// The first points of all rings.
+    pub(super) fn firsts(&self) -> impl Iterator<Item = &Point2<f64>> {
+        self.polygons.iter().flatten().filter_map(|ring| ring.first())
+    }
+}
+
+/// The sides of a ring.
+pub(super) fn sides(ring: &[Point2<f64>]) -> Vec<Segment> {
+    (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]).collect()
+}
+
+/// Whether `p` is within `rings`, by upward rays.
+pub(super) fn within(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool {
+    let mut crossings = 0_usize;
+    for ring in rings {
+        for [a, b] in sides(ring) {
+            let spans = (a.x <= p.x && p.x < b.x) || (b.x <= p.x && p.x < a.x);
+            if spans && a.y + (b.y - a.y) * ((p.x - a.x) / (b.x - a.x)) > p.y {
+                crossings += 1;
+            }
+        }
+    }
+    crossings % 2 == 1
+}
+
+/// The rings of a polygon.
+pub(super) fn rings(polygon: &Polygon) -> Vec<Vec<Point2<f64>>> {
+    polygon.rings().to_vec()
+}
+
+/// The distance between two segments: that of the origin from the parallelogram of their differences.
+pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
+    let corners: [Vector2<f64>; 4] = [t[0] - s[0], t[1] - s[0], t[1] - s[1], t[0] - s[1]];
+    let (mut left, mut right, mut least) = (0, 0, f64::INFINITY);
+    for i in 0..4 {
+        let (a, b) = (corners[i], corners[(i + 1) % 4]);
+        let side = b - a;
+        let turn = side.x * -a.y - side.y * -a.x;
+        left += usize::from(turn > 0.0);
+        right += usize::from(turn < 0.0);
+        // The point of the side nearest to the origin.
+        let square = side.dot(&side);
+        let along = if square > 0.0 { (-a.dot(&side) / square).max(0.0).min(1.0) } else { 0.0 };
+        least = least.min((a + along * side).norm()).min(b.norm());
+    }
+    if left == 4 || right == 4 { 0.0 } else { least }
+}
+
+/// A lower bound on the distance of two segments: that of the boxes around them, in the greater axis.
+pub(super) fn boxes_apart(s: &Segment, t: &Segment) -> f64 {
+    let gap = |axis: usize| {
+        let of = |s: &Segment| (s[0][axis].min(s[1][axis]), s[0][axis].max(s[1][axis]));
+        let ((a, b), (c, d)) = (of(s), of(t));
+        (c - b).max(a - d)
+    };
+    gap(0).max(gap(1))
+}

@@ -1,0 +1,217 @@
+//! A polygon among polygons.
+
+use crate::CheckCounters;
+use mp_cspace::{Clearance, ClearanceGradient, Metric, MotionBound, Se2State, So2, Validity};
+use mp_geom::flat::{FlatWorld, Polygon};
+use nalgebra::{Point2, Vector2};
+use std::sync::Arc;
+
+/// A polygon that moves and turns in the plane. A configuration is the pose of its frame, in
+/// [`Se2`](mp_cspace::Se2).
+///
+/// Touching is collision, and so is a robot in an obstacle, or around one. Motions are certified by conservative
+/// advancement: [`Certified`](mp_cspace::Certified) at its [tolerance](PolygonRobot::tolerance). The world is shared
+/// between clones; counters are each clone's own.
+///
+/// ```
+/// use mp_cspace::{Certified, MotionValidity, Se2, Se2State};
+/// use mp_geom::flat::{FlatWorld, Polygon};
+/// use mp_robot::{PolygonRobot, PolygonVerifier};
+///
+/// let gate = [[1.0, 0.0], [1.0, 1.3]].map(|[x, y]| Polygon::rectangle([x, y], [x + 0.1, y + 0.7]));
+/// let world = FlatWorld::new(gate.into_iter().collect::<Result<_, _>>()?, Some([[0.0, 0.0], [3.0, 2.0]]))?;
+/// let rod = Polygon::rectangle([-0.4, -0.05], [0.4, 0.05])?;
+/// let robot = PolygonRobot::new(world, rod);
+/// let space = Se2::new([0.0, 0.0], [3.0, 2.0])?;
+/// let mut verifier = PolygonVerifier::new(&space, &robot);
+/// let tolerance = robot.tolerance();
+/// let mut check = Certified::new(&space, robot, tolerance)?;
+/// let ends = |angle| [0.5, 2.0].map(|x| Se2State::new(x, 1.0, angle));
+/// let ([a, b], [c, d]) = (ends(0.0), ends(1.5));
+/// assert!(check.check_motion(&a, &b).is_free() && verifier.check_motion(&a, &b).is_free());
+/// assert!(!check.check_motion(&c, &d).is_free() && !verifier.check_motion(&c, &d).is_free());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PolygonRobot {
+    world: Arc<FlatWorld>,
+    body: Arc<Polygon>,
+    radius: f64,
+    counters: CheckCounters,
+}
+
+/// Where the body is placed.
+#[derive(Clone, Copy)]
+struct Place {
+    sin: f64,
+    cos: f64,
+    at: Vector2<f64>,
+}
+
+impl Place {
+    fn of(q: &Se2State) -> Self {
+        let (sin, cos) = q.angle.sin_cos();
+        Self { sin, cos, at: q.translation }
+    }
+    #[inline]
+    fn put(&self, p: &Point2<f64>) -> Point2<f64> {
+        Point2::new(self.cos * p.x - self.sin * p.y + self.at.x, self.sin * p.x + self.cos * p.y + self.at.y)
+    }
+    fn back(&self, p: &Point2<f64>) -> Point2<f64> {
+        let v = p.coords - self.at;
+        Point2::new(self.cos * v.x + self.sin * v.y, self.cos * v.y - self.sin * v.x)
+    }
+}
+
+impl PolygonRobot {
+    /// `body`, in its own frame, in `world`. It turns about the origin of its frame.
+    #[must_use]
+    pub fn new(world: impl Into<Arc<FlatWorld>>, body: Polygon) -> Self {
+        let radius = body.radius_about(&Point2::origin());
+        Self { world: world.into(), body: body.into(), radius, counters: CheckCounters::default() }
+    }
+
+    /// What it moves in.
+    #[must_use]
+    pub fn world(&self) -> &Arc<FlatWorld> {
+        &self.world
+    }
+
+    /// The body, in its own frame.
+    #[must_use]
+    pub fn body(&self) -> &Polygon {
+        &self.body
+    }
+
+    /// The largest distance of a point of the body from the origin of its frame, metres.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The default tolerance (m) of certified motion checks: 1e-4 of the radius, and never so small that coordinates
+    /// could not resolve it. The verifier asks for a tenth of it.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        (1e-4 * self.radius).max(super::tolerance(&self.world, self.radius))
+    }
+
+    /// What was done so far by this clone.
+    #[must_use]
+    pub fn counters(&self) -> CheckCounters {
+        self.counters
+    }
+
+    /// The points of body and obstacles that are nearest to each other, and their distance, if that is below
+    /// `enough`; nothing about which is inside of which.
+    fn nearest(&self, place: &Place, enough: f64) -> Option<(Point2<f64>, Point2<f64>, f64)> {
+        let mut best = None;
+        let mut below = enough;
+        for [a, b] in self.body.edges() {
+            if let Some(near) = self.world.nearest_to_segment(&place.put(&a), &place.put(&b), below) {
+                below = near.distance;
+                best = Some((near.on_segment, near.point, near.distance));
+                if below <= 0.0 {
+                    break;
+                }
+            }
+        }
+        best
+    }
+
+    /// Whether robot or obstacle is within the other, where their boundaries do not meet.
+    fn nested(&self, place: &Place) -> bool {
+        let reach = Vector2::repeat(self.radius);
+        let around = [place.at - reach, place.at + reach].map(Point2::from);
+        self.body.rings().iter().any(|ring| self.world.contains(&place.put(&ring[0])))
+            || self.world.ring_in(around, |p| self.body.contains(&place.back(p))).is_some()
+    }
+
+    /// Whether the robot at `q` is at least `reach` from everything, as far as the circle around it tells.
+    fn far(&self, q: &Se2State, reach: f64) -> Option<f64> {
+        let around = self.world.signed_distance(&Point2::from(q.translation)) - self.radius;
+        (around >= reach).then_some(around)
+    }
+
+    fn clearance_at(&self, q: &Se2State, enough: f64) -> f64 {
+        if !finite(q) {
+            return 0.0;
+        }
+        if let Some(around) = self.far(q, enough) {
+            return around;
+        }
+        let place = Place::of(q);
+        let near = self.nearest(&place, enough);
+        if near.is_some_and(|n| n.2 <= 0.0) || self.nested(&place) {
+            return 0.0;
+        }
+        near.map_or(enough, |n| n.2)
+    }
+
+    /// The distance (m) between robot and obstacles, and how it changes with x, y and angle (m/m, m/m, m/rad).
+    ///
+    /// In collision minus the depth of the deepest corner of one in the other, where there is such a corner, and
+    /// the way out of it; else zeros. Infinite and zeros where there is nothing.
+    #[must_use]
+    pub fn clearance_and_gradient(&self, q: &Se2State) -> (f64, [f64; 3]) {
+        let place = Place::of(q);
+        let toward = |on_body: Point2<f64>, away: Vector2<f64>| {
+            let arm = on_body.coords - q.translation;
+            [away.x, away.y, arm.x * away.y - arm.y * away.x]
+        };
+        let Some((on_body, on_obstacle, distance)) = self.nearest(&place, f64::INFINITY) else {
+            return (f64::INFINITY, [0.0; 3]);
+        };
+        if distance > 0.0 && !self.nested(&place) {
+            return (distance, toward(on_body, (on_body - on_obstacle) / distance));
+        }
+        let mut deepest = (0.0, [0.0; 3]);
+        for corner in self.body.rings().iter().flatten() {
+            let p = place.put(corner);
+            if let Some(near) = self.world.nearest(&p).filter(|_| self.world.contains(&p))
+                && -near.distance < deepest.0
+            {
+                deepest = (-near.distance, toward(p, (near.point - p) / near.distance));
+            }
+        }
+        deepest
+    }
+}
+
+fn finite(q: &Se2State) -> bool {
+    q.translation.x.is_finite() && q.translation.y.is_finite() && q.angle.is_finite()
+}
+
+impl Validity<Se2State> for PolygonRobot {
+    fn is_valid(&mut self, q: &Se2State) -> bool {
+        self.counters.collision_checks += 1;
+        self.clearance_at(q, f64::MIN_POSITIVE) > 0.0
+    }
+}
+
+impl Clearance<Se2State> for PolygonRobot {
+    fn clearance(&mut self, q: &Se2State, enough: f64) -> f64 {
+        self.counters.clearance_checks += 1;
+        self.clearance_at(q, enough)
+    }
+}
+
+impl ClearanceGradient<Se2State> for PolygonRobot {
+    fn clearance_gradient(&mut self, q: &Se2State, reach: f64, gradient: &mut [f64]) -> f64 {
+        self.counters.clearance_checks += 1;
+        let (clearance, along) = match (finite(q), self.far(q, reach)) {
+            (false, _) => (0.0, [0.0; 3]),
+            (true, Some(far)) => (far, [0.0; 3]),
+            (true, None) => self.clearance_and_gradient(q),
+        };
+        gradient.copy_from_slice(&along);
+        clearance
+    }
+}
+
+impl MotionBound<Se2State> for PolygonRobot {
+    fn motion_bound(&self, from: &Se2State, to: &Se2State) -> f64 {
+        let turn = So2.distance(&from.angle, &to.angle);
+        ((to.translation - from.translation).norm() + self.radius * turn) * (1.0 + 1e-12)
+    }
+}

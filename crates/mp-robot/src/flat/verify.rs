@@ -1,0 +1,168 @@
+//! The independent checks of motions in the plane.
+
+use super::plain::{Plain, apart, boxes_apart, rings, sides, within};
+use crate::{DiscRobot, PolygonRobot};
+use mp_cspace::{MotionCheck, MotionValidity, Se2State, Space};
+use nalgebra::{Point2, Vector2};
+use std::sync::Arc;
+
+/// Proves straight motions of a disc, by looking at every edge: no grid, other formulas than the robot's.
+///
+/// Free means: clearance of at least the tolerance all along, a tenth of the robot's, so that it proves whatever
+/// [`DiscRobot`] accepts. O(edges) for each motion.
+#[derive(Clone, Debug)]
+pub struct DiscVerifier {
+    plain: Arc<Plain>,
+    radius: f64,
+    tolerance: f64,
+}
+
+impl DiscVerifier {
+    /// A verifier for `robot`.
+    #[must_use]
+    pub fn new(robot: &DiscRobot) -> Self {
+        let plain = Arc::new(Plain::new(robot.world()));
+        Self { plain, radius: robot.radius(), tolerance: 0.1 * robot.tolerance() }
+    }
+
+    /// Motions found free keep this far from every obstacle (m).
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+}
+
+impl MotionValidity<Vector2<f64>> for DiscVerifier {
+    fn check_motion(&mut self, from: &Vector2<f64>, to: &Vector2<f64>) -> MotionCheck {
+        let way = [from, to].map(|q| Point2::from(*q));
+        // Written so that NaN is refused.
+        let finite = way.iter().all(|p| p.x.abs() + p.y.abs() < 1e60);
+        if !finite {
+            return MotionCheck::Undecided { at: 0.0 };
+        }
+        if self.plain.inside(&way[0]) {
+            return MotionCheck::Collides { at: 0.0 };
+        }
+        let mut least = f64::INFINITY;
+        for edge in &self.plain.edges {
+            if boxes_apart(edge, &way) < least {
+                least = least.min(apart(edge, &way));
+            }
+        }
+        let clearance = least - self.radius;
+        if clearance >= self.tolerance {
+            return MotionCheck::Free { clearance };
+        }
+        let at = self.nearest_fraction(&way);
+        if clearance <= 0.0 { MotionCheck::Collides { at } } else { MotionCheck::Undecided { at } }
+    }
+}
+
+impl DiscVerifier {
+    /// About where on its way the disc is nearest to an obstacle: by trying places.
+    fn nearest_fraction(&self, way: &[Point2<f64>; 2]) -> f64 {
+        let clearance = |t: f64| {
+            let p = way[0] + (way[1] - way[0]) * t;
+            self.plain.edges.iter().map(|e| apart(e, &[p, p])).fold(f64::INFINITY, f64::min)
+        };
+        let tried = (0..=64).map(|i| f64::from(i) / 64.0).map(|t| (t, clearance(t)));
+        tried.fold((0.0, f64::INFINITY), |best, now| if now.1 < best.1 { now } else { best }).0
+    }
+}
+
+/// How deep a motion is halved.
+const MAX_DEPTH: u32 = 40;
+
+/// Proves motions of a polygon, by looking at every edge near the way: no grid, other formulas and another bound
+/// on motion than planners use. Only the space is shared: its interpolation is what a motion *is*.
+///
+/// Free means: clearance of at least the tolerance all along, a tenth of the robot's. The space must move the
+/// origin on a straight line and turn by at most half a turn, both at constant speed, as [`Se2`](mp_cspace::Se2) does.
+#[derive(Clone, Debug)]
+pub struct PolygonVerifier<'c, C> {
+    space: &'c C,
+    plain: Arc<Plain>,
+    body: Arc<Vec<Vec<Point2<f64>>>>,
+    radius: f64,
+    tolerance: f64,
+}
+
+impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
+    /// A verifier for `robot` in `space`.
+    #[must_use]
+    pub fn new(space: &'c C, robot: &PolygonRobot) -> Self {
+        let plain = Arc::new(Plain::new(robot.world()));
+        let body = rings(robot.body());
+        let radius = body.iter().flatten().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        Self { space, plain, body: Arc::new(body), radius, tolerance: 0.1 * robot.tolerance() }
+    }
+
+    /// Motions found free keep this far from every obstacle (m).
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    fn placed(&self, q: &Se2State) -> Vec<Vec<Point2<f64>>> {
+        self.body.iter().map(|ring| ring.iter().map(|p| q.transform_point(p)).collect()).collect()
+    }
+
+    /// The distance at `q` from `edges`.
+    fn distance(&self, q: &Se2State, edges: &[[Point2<f64>; 2]]) -> f64 {
+        let mut least = f64::INFINITY;
+        for side in self.placed(q).iter().flat_map(|ring| sides(ring)) {
+            for edge in edges {
+                if boxes_apart(&side, edge) < least {
+                    least = least.min(apart(&side, edge));
+                }
+            }
+        }
+        least
+    }
+
+    /// Whether one is in the other, their boundaries being apart.
+    fn nested(&self, q: &Se2State) -> bool {
+        let placed = self.placed(q);
+        placed.iter().any(|ring| self.plain.inside(&ring[0]))
+            || self.plain.firsts().any(|p| within(&placed, p))
+    }
+}
+
+impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_, C> {
+    fn check_motion(&mut self, from: &Se2State, to: &Se2State) -> MotionCheck {
+        let way = [from, to].map(|q| Point2::from(q.translation));
+        let length = (way[1] - way[0]).norm();
+        let finite = way.iter().all(|p| p.x.abs() + p.y.abs() < 1e60) && (from.angle + to.angle).is_finite();
+        if !finite {
+            return MotionCheck::Undecided { at: 0.0 };
+        }
+        if self.nested(from) {
+            return MotionCheck::Collides { at: 0.0 };
+        }
+        // Edges that the robot can come near to.
+        let reach = self.radius + self.tolerance;
+        let edges = self.plain.edges.iter().filter(|e| boxes_apart(e, &way) <= 2.0 * reach);
+        let near: Vec<[Point2<f64>; 2]> = edges.copied().collect();
+        let turn = (to.angle - from.angle).rem_euclid(std::f64::consts::TAU);
+        let turn = turn.min(std::f64::consts::TAU - turn);
+        let mut open = vec![(0.0, 1.0, 0)];
+        // All edges left out are at least this far.
+        let mut least = reach;
+        while let Some((a, b, depth)) = open.pop() {
+            let at = 0.5 * (a + b);
+            let travel = 0.5 * (b - a) * (length + self.radius * turn);
+            let distance = self.distance(&self.space.interpolate(from, to, at), &near);
+            if distance <= 0.0 {
+                return MotionCheck::Collides { at };
+            }
+            if distance - travel >= self.tolerance {
+                least = least.min(distance - travel);
+            } else if distance < self.tolerance || depth == MAX_DEPTH {
+                return MotionCheck::Undecided { at };
+            } else {
+                open.extend([(at, b, depth + 1), (a, at, depth + 1)]);
+            }
+        }
+        MotionCheck::Free { clearance: least }
+    }
+}
