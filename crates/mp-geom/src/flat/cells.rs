@@ -45,6 +45,8 @@ pub(super) struct Cells {
     row_starts: Vec<u32>,
     /// Cells are right for points as far outside of them as this.
     pub(super) slack: f64,
+    /// No point of a cell is farther from its centre.
+    pub(super) half_diagonal: f64,
 }
 
 impl Cells {
@@ -68,6 +70,7 @@ impl Cells {
             rows: Vec::new(),
             row_starts: Vec::new(),
             slack,
+            half_diagonal: 0.5 * size.norm() * (1.0 + 1e-9) + slack,
         };
         cells.fill_rows(&edges[..solid]);
         for row in 0..counts[1] {
@@ -98,7 +101,7 @@ impl Cells {
 
     fn fill(&mut self, column: usize, row: usize, edges: &[Edge], tree: &EdgeTree) {
         let center = self.center(column, row);
-        let reach = 0.5 * self.size.norm() * (1.0 + 1e-9) + self.slack;
+        let reach = self.half_diagonal;
         let mut nearest = f64::INFINITY;
         tree.near(&center, nearest, |i, within| {
             nearest = within.min(edges[i as usize].squared(&center));

@@ -46,7 +46,9 @@ impl Edge {
     pub(super) fn nearest_to(&self, other: &Edge, below: f64) -> Option<([Point2<f64>; 2], f64)> {
         let ([low, high], [from, to]) = (self.bounds(), other.bounds());
         let gap = (low - to).sup(&(from - high)).sup(&Vector2::zeros());
-        if gap.norm_squared() >= below * below {
+        let gap = gap.norm_squared();
+        // The square of a tiny `below` is zero.
+        if below <= 0.0 || gap > 0.0 && gap >= below * below {
             return None;
         }
         if let Some(p) = self.crossing(other) {
@@ -68,7 +70,7 @@ impl Edge {
     /// Where the two cross, if each has its ends on different sides of the other.
     fn crossing(&self, other: &Edge) -> Option<Point2<f64>> {
         let (c, d) = (side(&self.a, &self.b, &other.a), side(&self.a, &self.b, &other.b));
-        if c * d >= 0.0 && (c > 0.0) == (d > 0.0) || c == 0.0 || d == 0.0 {
+        if c == 0.0 || d == 0.0 || (c > 0.0) == (d > 0.0) {
             return None;
         }
         let (a, b) = (side(&other.a, &other.b, &self.a), side(&other.a, &other.b, &self.b));
@@ -105,6 +107,7 @@ mod tests {
                 assert!((d - expected).abs() < 1e-15 && (distance(&p, &q) - d).abs() < 1e-15);
                 assert!(one.squared(&q) < 1e-30 && two.squared(&p) < 1e-30, "{a:?} {b:?}");
                 assert!(one.nearest_to(&two, expected).is_none());
+                assert_eq!(one.nearest_to(&two, f64::MIN_POSITIVE).is_some(), expected == 0.0);
             }
         }
     }

@@ -234,10 +234,10 @@ impl FlatWorld {
             let p = a + u * t;
             let Some(at) = cells.locate(&p) else { return };
             let (cell, candidates) = cells.cell(at);
-            // No edge is nearer to the centre than the nearest, so none is near about it.
-            let from_center = (p - cells.center(at.0, at.1)).norm();
-            let clear = cell.from_center - below - from_center - cells.slack;
-            if clear <= 0.0 {
+            // No edge is nearer to the centre than the nearest, so none is near about it: anywhere in the cell, or
+            // at least about `p`.
+            let clear = cell.from_center - below - cells.slack;
+            if clear <= cells.half_diagonal {
                 for &i in candidates {
                     below = look(i, below);
                     if below <= 0.0 {
@@ -245,6 +245,7 @@ impl FlatWorld {
                     }
                 }
             }
+            let clear = clear - (p - cells.center(at.0, at.1)).norm();
             let nudge = 0.5 * cells.slack / length;
             let next = (cells.leaves(a, &u, at) + nudge).max(t + nudge).max(t + clear / length);
             // A segment of no length leaves nowhere, or never.
@@ -300,7 +301,7 @@ mod tests {
             polygons in prop::collection::vec(polygon(), 0..12),
             walled in any::<bool>(),
             points in prop::collection::vec((-1.0..11.0_f64, -1.0..7.0_f64), 2..30),
-            below in 0.01..3.0_f64,
+            below in (-12.0..0.5_f64).prop_map(|e| 10.0_f64.powf(e)),
         ) {
             let walls = walled.then_some([[0.0, 0.0], [10.0, 6.0]]);
             let world = FlatWorld::new(polygons, walls).unwrap();

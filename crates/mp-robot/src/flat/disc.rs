@@ -2,7 +2,8 @@
 
 use crate::CheckCounters;
 use mp_cspace::{
-    Clearance, ClearanceGradient, KnownFree, MotionBound, MotionCheck, MotionValidity, ParameterError, Room, Stretch, Validity,
+    Clearance, ClearanceGradient, KnownFree, MotionBound, MotionCheck, MotionValidity, ParameterError, Room,
+    Stretch, Validity,
 };
 use mp_geom::flat::FlatWorld;
 use nalgebra::{Point2, Vector2};
