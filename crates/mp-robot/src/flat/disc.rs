@@ -48,7 +48,7 @@ impl DiscRobot {
     /// # Errors
     /// When the radius is negative or not finite.
     pub fn new(world: impl Into<Arc<FlatWorld>>, radius: f64) -> Result<Self, ParameterError> {
-        if !(radius >= 0.0 && radius < 1e60) {
+        if !(0.0..1e60).contains(&radius) {
             let (name, expected) = ("the radius", "zero or more and finite");
             return Err(ParameterError { name, expected, value: radius });
         }

@@ -76,7 +76,7 @@ pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
         right += usize::from(turn < 0.0);
         // The point of the side nearest to the origin.
         let square = side.dot(&side);
-        let along = if square > 0.0 { (-a.dot(&side) / square).max(0.0).min(1.0) } else { 0.0 };
+        let along = if square > 0.0 { (-a.dot(&side) / square).clamp(0.0, 1.0) } else { 0.0 };
         least = least.min((a + along * side).norm()).min(b.norm());
     }
     if left == 4 || right == 4 { 0.0 } else { least }
