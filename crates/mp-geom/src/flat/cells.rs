@@ -157,9 +157,11 @@ impl Cells {
     #[inline]
     pub(super) fn leaves(&self, a: &Point2<f64>, u: &Vector2<f64>, (column, row): (usize, usize)) -> f64 {
         let at = |i: usize, axis: usize| {
+            if u[axis] == 0.0 {
+                return f64::INFINITY;
+            }
             let line = i + usize::from(u[axis] > 0.0);
-            let t = (self.low[axis] + line as f64 * self.size[axis] - a[axis]) / u[axis];
-            if t.is_nan() { f64::INFINITY } else { t }
+            (self.low[axis] + line as f64 * self.size[axis] - a[axis]) / u[axis]
         };
         at(column, 0).min(at(row, 1))
     }

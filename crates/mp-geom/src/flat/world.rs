@@ -320,7 +320,10 @@ mod tests {
                     prop_assert_eq!(world.signed_distance(p), signed);
                 }
             }
-            for w in points.windows(2) {
+            // Upright and level ones too.
+            let level = points.windows(2).map(|w| [w[0], Point2::new(w[0].x, w[1].y)]);
+            let level = level.chain(points.windows(2).map(|w| [w[0], Point2::new(w[1].x, w[0].y)]));
+            for w in points.windows(2).map(|w| [w[0], w[1]]).chain(level) {
                 let expected = brute(&world.edges, w[0], w[1]);
                 let all = world.nearest_to_segment(&w[0], &w[1], f64::INFINITY);
                 prop_assert!((all.map_or(f64::INFINITY, |n| n.distance) - expected).abs() < 1e-12 || world.edges() == 0);
