@@ -134,3 +134,18 @@ impl<S, H: ObstacleGeometry<S> + ?Sized> ObstacleGeometry<S> for &mut H {
         (**self).is_far(q)
     }
 }
+
+impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for Box<H> {
+    fn touches(&mut self, q: &S) -> bool {
+        (**self).touches(q)
+    }
+    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        (**self).along(from, toward, hit, rng)
+    }
+    fn turned(&self, position: &S, rotation: &S) -> S {
+        (**self).turned(position, rotation)
+    }
+    fn carried(&self, q: &S, from: &S, to: &S) -> S {
+        (**self).carried(q, from, to)
+    }
+}

@@ -21,10 +21,14 @@ pub fn planners() -> &'static [PlannerInfo] {
         aorrtc::INFO,
         rrt_inputs::INFO,
         rsrt::INFO,
+        cvp_rrt::INFO,
+        rc_rrt::INFO,
         dd_rrt::INFO,
         add_rrt::INFO,
         mvb_rrt::INFO,
         utility_rrt::INFO,
+        obrrt::INFO,
+        cyclic_rrt::INFO,
     ]
 }
 
@@ -97,6 +101,24 @@ where
         "rsrt" => {
             let problem = uniform::moved_by_inputs(problem, &tuning, settings)?;
             Box::new(Rsrt::with_index(problem, index, tuning)?)
+        }
+        "cvp-rrt" => {
+            let problem = uniform::moved_by_inputs(problem, &tuning, settings)?;
+            Box::new(CvpRrt::with_index(problem, index, tuning)?)
+        }
+        "rc-rrt" => {
+            let apart = rc_rrt::apart(problem.space(), &tuning, settings)?;
+            let problem = uniform::moved_by_inputs(problem, &tuning, settings)?;
+            Box::new(RcRrt::with_index(problem, index, apart, tuning)?)
+        }
+        "obrrt" => {
+            let (problem, hints) = problem.take_hints();
+            let hints = hints.ok_or(BuildError::NoHints { planner: obrrt::INFO.name })?;
+            Box::new(Obrrt::with_index(problem, index, hints, tuning, GrowthWeights::default())?)
+        }
+        "cyclic-rrt" => {
+            let tolerance = cyclic_rrt::tolerance(settings)?;
+            Box::new(CyclicRrt::with_index(problem, index, tuning, tolerance)?)
         }
         "dd-rrt" => Box::new(DdRrt::with_index(problem, index, tuning, Domain::fixed().read(settings)?)?),
         "add-rrt" => Box::new(DdRrt::with_index(problem, index, tuning, Domain::adaptive().read(settings)?)?),

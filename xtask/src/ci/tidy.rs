@@ -165,7 +165,7 @@ fn algorithm(sources: &[(PathBuf, String)], path: &Path) -> Option<&'static str>
     }
     let tests = |(s, text): &(PathBuf, String)| {
         (s == path && text.contains("#[cfg(test)]"))
-            || (within(s, "tests")
+            || (s.ancestors().any(|folder| folder.ends_with("tests"))
                 && (s.file_name() == Some(name)
                     || text.contains(&word)
                     || text.contains(&kind)
@@ -203,7 +203,7 @@ mod tests {
         assert_eq!(algorithm(&sources, &file), Some("example of its name"));
         sources.push(("crates/mp/examples/fast.rs".into(), String::new()));
         assert_eq!(algorithm(&sources, &file), Some("test"));
-        sources.push(("crates/mp-x/tests/all.rs".into(), "run(\"fast\")".into()));
+        sources.push(("crates/mp-x/tests/family/all.rs".into(), "run(\"fast\")".into()));
         assert_eq!(algorithm(&sources, &file), None);
         assert_eq!(algorithm(&sources, Path::new("crates/mp-x/src/other.rs")), None);
         sources[2].1 = "for info in planners() {}".into();

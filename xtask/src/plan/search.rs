@@ -10,7 +10,7 @@ use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
     Cancel, Certified, Clearance, Deadline, DefaultNn, Discrete, Iterations, MetricOn, MotionBound,
-    MotionValidity, NearestNeighbors, Outcome, ParameterError, Path, Progress, Resolution, Rng, Room, Space,
+    MotionValidity, NearestNeighbors, ObstacleHints, Outcome, ParameterError, Path, Progress, Resolution, Rng, Room, Space,
     Stop, StopReason, Straight, Stretch, Validity, WithMetric,
 };
 use mp::robot::{Arm, RigidBody};
@@ -122,6 +122,21 @@ impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
     }
 }
 
+impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
+    fn touches(&mut self, q: &S) -> bool {
+        self.robot.touches(q)
+    }
+    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        self.robot.along(from, toward, hit, rng)
+    }
+    fn turned(&self, position: &S, rotation: &S) -> S {
+        self.robot.turned(position, rotation)
+    }
+    fn carried(&self, q: &S, from: &S, to: &S) -> S {
+        self.robot.carried(q, from, to)
+    }
+}
+
 /// One run: the same for robots of all kinds.
 pub(crate) struct Run<'a, B: Space, R, V> {
     /// The space with its own metric.
@@ -140,7 +155,8 @@ pub(crate) struct Run<'a, B: Space, R, V> {
 impl<'a, B, R, V> Run<'a, B, R, V>
 where
     B: Space,
-    R: Validity<B::State> + Clearance<B::State> + MotionBound<B::State> + Queries + Clone + Send + Sync,
+    R: Validity<B::State> + Clearance<B::State> + MotionBound<B::State> + ObstacleHints<B::State>,
+    R: Queries + Clone + Send + Sync,
     V: MotionValidity<B::State> + Clone + Send + Sync,
 {
     /// The motion check that the options ask for.
@@ -180,13 +196,9 @@ where
                 let unmade = |e: ParameterError| BuildError::Unmade { reason: e.to_string() };
                 let check = self.check(space, &queries).map_err(unmade)?;
                 let goal = Goals::states(self.goals.iter().cloned());
-                Problem::new(
-                    space,
-                    Straight::new(space, check),
-                    self.verifier.clone(),
-                    self.start.clone(),
-                    goal,
-                )
+                let (local, verifier) = (Straight::new(space, check), self.verifier.clone());
+                let problem = Problem::new(space, local, verifier, self.start.clone(), goal)?;
+                Ok(problem.with_hints(Counted { robot: self.robot.clone(), queries: &queries }))
             };
             let name = options.planner.to_string();
             let mut planner =

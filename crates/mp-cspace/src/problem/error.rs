@@ -68,6 +68,12 @@ pub enum BuildError {
         /// Which planner.
         planner: &'static str,
     },
+    /// The planner grows along obstacles and is told nothing of them.
+    #[error("{planner} follows obstacles: give the problem hints of them; robots that have none need another planner")]
+    NoHints {
+        /// Which planner.
+        planner: &'static str,
+    },
     /// A parameter is out of its range.
     #[error("parameter {name} is {value}, but must be {range}")]
     OutOfRange {

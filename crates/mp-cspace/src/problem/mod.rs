@@ -14,7 +14,7 @@ pub use step::Step;
 pub use verify::Verify;
 pub use workers::Workers;
 
-use crate::{LocalPlanner, Space};
+use crate::{LocalPlanner, ObstacleHints, Space};
 use std::fmt;
 
 /// A space, the local planner that moves in it, the verifier of finished paths, a start and
@@ -25,7 +25,11 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
     verify: BoxedVerify<'c, C, L>,
     start: C::State,
     goals: Goals<'c, C::State>,
+    hints: Option<BoxedHints<'c, C::State>>,
 }
+
+/// What obstacles suggest.
+pub type BoxedHints<'c, S> = Box<dyn ObstacleHints<S> + Send + 'c>;
 
 /// The verifier of the paths of a local planner.
 pub type BoxedVerify<'c, C, L> =
@@ -96,7 +100,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         });
         match bad {
             Some(error) if goals.is_empty() => Err(error),
-            _ => Ok(Self { space, local, verify: Box::new(verifier), start, goals }),
+            _ => Ok(Self { space, local, verify: Box::new(verifier), start, goals, hints: None }),
         }
     }
 }
@@ -134,8 +138,21 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     /// All there is, to plan with.
     #[must_use]
     pub fn into_parts(self) -> ProblemParts<'c, C, L> {
-        let Self { space, local, verify, start, goals } = self;
+        let Self { space, local, verify, start, goals, .. } = self;
         ProblemParts { space, local, verify, start, goals }
+    }
+
+    /// The same problem with what its obstacles suggest, for planners by name that grow along them.
+    #[must_use]
+    pub fn with_hints(self, hints: impl ObstacleHints<C::State> + Send + 'c) -> Self {
+        Self { hints: Some(Box::new(hints)), ..self }
+    }
+
+    /// The problem and what its obstacles suggest, if that was given.
+    #[must_use]
+    pub fn take_hints(mut self) -> (Self, Option<BoxedHints<'c, C::State>>) {
+        let hints = self.hints.take();
+        (self, hints)
     }
 
     /// The same problem with a local planner made from the one there, for instance around it. Start
@@ -147,8 +164,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         self,
         make: impl FnOnce(L) -> Result<M, E>,
     ) -> Result<Problem<'c, C, M>, E> {
-        let Self { space, local, verify, start, goals } = self;
-        Ok(Problem { space, local: make(local)?, verify, start, goals })
+        let Self { space, local, verify, start, goals, hints } = self;
+        Ok(Problem { space, local: make(local)?, verify, start, goals, hints })
     }
 }
 

@@ -134,6 +134,19 @@ impl Settings {
         Ok(self.count(parameter.name)?.unwrap_or_else(default))
     }
 
+    /// The number set for `parameter`, or its default, which is in \[0, 1\].
+    ///
+    /// # Errors
+    /// When it is not a number, or not in \[0, 1\].
+    pub fn part_of(&self, parameter: &Parameter) -> Result<f64, BuildError> {
+        let default = || parameter.default.parse().unwrap_or_default();
+        let value = self.number(parameter.name)?.unwrap_or_else(default);
+        if (0.0..=1.0).contains(&value) {
+            return Ok(value);
+        }
+        Err(BuildError::OutOfRange { name: parameter.name, value, range: parameter.range.to_owned() })
+    }
+
     /// What is set for `key`, if any, being one of the words that `parse` knows.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use super::Arm;
 use super::travel::axes_into;
-use mp_cspace::{Clearance, Coordinates, MotionBound, Room, Stretch, Validity};
+use mp_cspace::{Clearance, Coordinates, MotionBound, ObstacleHints, Rng, Room, Stretch, Validity};
 
 impl Arm {
     /// Whether `q`, a configuration, is in collision.
@@ -177,5 +177,29 @@ impl<Q: Coordinates> MotionBound<Q> for Arm {
             a.part(pair.steps[0], ways) + b.part(pair.steps[1], ways)
         });
         pairs.fold(links, f64::max)
+    }
+}
+
+/// An arm has no position that stays while it turns, so it follows no obstacle; its hints carry configurations
+/// only, along what is hit in the space of joints.
+impl<Q: Coordinates> ObstacleHints<Q> for Arm {
+    fn touches(&mut self, q: &Q) -> bool {
+        self.collides(q.as_slice())
+    }
+
+    /// None.
+    fn along(&mut self, _: &Q, _: &Q, _: Option<&Q>, _: &mut Rng) -> Option<Q> {
+        None
+    }
+
+    /// The configuration itself.
+    fn turned(&self, position: &Q, _: &Q) -> Q {
+        position.clone()
+    }
+
+    /// Each joint moved by as much as from `from` to `to`, the shorter way where it turns without end.
+    fn carried(&self, q: &Q, from: &Q, to: &Q) -> Q {
+        let (q, from, to) = (q.as_slice(), from.as_slice(), to.as_slice());
+        Q::from_fn(q.len(), |i| q[i] + self.robot.kinematics.step(i, from, to))
     }
 }

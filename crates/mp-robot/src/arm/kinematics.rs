@@ -135,12 +135,18 @@ impl Kinematics {
     /// How far the coordinate `i` goes from `from` to `to` in the [space](Self::space) of the arm.
     #[inline]
     pub(crate) fn way(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
+        self.step(i, from, to).abs()
+    }
+
+    /// The same with its sign.
+    #[inline]
+    pub(crate) fn step(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
         let d = to[i] - from[i];
         match self.coordinates[i].range {
             JointRange::Circle if !(-std::f64::consts::PI..=std::f64::consts::PI).contains(&d) => {
-                wrap_angle(d).abs()
+                wrap_angle(d)
             }
-            _ => d.abs(),
+            _ => d,
         }
     }
 }

@@ -48,13 +48,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::settings::{GOAL_BIAS, INPUTS, LEVELS, PATIENCE, STEP};
 use crate::{
-    AppendApart, BuildError, Nearest, Problem, Purpose, Recipe, Samples, Selector, SingleTree, Tuning,
-    Untried,
+    AppendApart, BuildError, Nearest, PlannerInfo, Problem, Purpose, Recipe, Samples, Selector, SingleTree,
+    Tuning, Untried,
 };
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space, Uniform};
 use rand::RngExt;
+
+/// For people.
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "cvp-rrt",
+    summary: "one tree moved by a set of inputs, which avoids nodes where they have failed; for misleading metrics",
+    citation: "Cheng and LaValle 2001",
+    parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
+    aliases: &[],
+    cannot: &[],
+};
 
 /// CVP-RRT: see the [module](self).
 pub type CvpRrt<'c, C, L, N> =

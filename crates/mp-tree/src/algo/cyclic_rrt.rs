@@ -26,12 +26,12 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `tolerance`: how far apart similar states are, in steps | \[0, 1\] | none; 0.5 does |
+//! | `tolerance`: how far apart similar states are, in steps | \[0, 1\] | none; by name 0.5 |
 //!
 //! and those of [RRT](super::rrt). A small tolerance makes few cycles; a large one makes many, and many
 //! paths that differ little. A passage may need nodes closer together than the tolerance: they are
-//! added as soon as those similar to them are joined. It has no name in
-//! [`planners`](crate::planners): through those it would be but a slower RRT.
+//! added as soon as those similar to them are joined. Made [by name](crate::build) it finds a path as
+//! RRT does, a little slower, and the alternatives cannot be asked for.
 //!
 //! Two ways round a block:
 //! ```
@@ -56,9 +56,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Problem, Recipe, Samples, Selector,
-    SingleTree, Steer, Tree, Tuning,
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo, Problem, Recipe,
+    Samples, Selector, Settings, SingleTree, Steer, Tree, Tuning,
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
@@ -66,6 +67,29 @@ use mp_cspace::{
     Progress, Reach, Rng, Space, Uniform,
 };
 use std::collections::BTreeMap;
+
+/// How far apart similar states are.
+const TOLERANCE: Parameter = Parameter {
+    name: "tolerance",
+    range: "in [0, 1], in steps",
+    default: "0.5",
+    doc: "states no farther apart are similar, and joined by an edge instead of added",
+};
+
+/// For people.
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "cyclic-rrt",
+    summary: "rrt that keeps cycles; for lists of alternative paths from code, for one path rrt is better",
+    citation: "Jouandeau, Touati and Ali Cherif 2008; LaValle 1998",
+    parameters: &[STEP, TOLERANCE, GOAL_BIAS, PATIENCE],
+    aliases: &[],
+    cannot: &[],
+};
+
+/// What is set for `tolerance`.
+pub(crate) fn tolerance(settings: &Settings) -> Result<f64, BuildError> {
+    settings.part_of(&TOLERANCE)
+}
 
 /// Paths and their costs.
 pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;

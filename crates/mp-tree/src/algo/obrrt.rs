@@ -37,7 +37,8 @@
 //! and a robot that turns as it goes gets stuck. Where there are goal states and motions can be reversed,
 //! try [RRT-Connect](super::rrt_connect) first; its loop takes these growth methods too:
 //! [`ObstacleGuided`] as the first of its two growths in a [`Recipe`] for
-//! [`TwoTrees`](crate::TwoTrees). As it needs hints it cannot be made by name.
+//! [`TwoTrees`](crate::TwoTrees). Made [by name](crate::build) it takes the hints
+//! [of the problem](Problem::with_hints).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -95,12 +96,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Problem, Recipe, Samples, Selector,
-    SingleTree, Tuning,
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, PlannerInfo, Problem, Recipe, Samples,
+    Selector, SingleTree, Tuning,
 };
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Rng, Space, Uniform};
 use rand::RngExt;
+
+/// For people.
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "obrrt",
+    summary: "one tree that also grows along obstacles; for goal regions and one-way motions through narrow passages",
+    citation: "Rodriguez, Tang, Lien and Amato 2006",
+    parameters: &[STEP, GOAL_BIAS, PATIENCE],
+    aliases: &["ob-rrt"],
+    cannot: &[],
+};
 
 /// States looked at on a way that failed, for where it collides.
 const LOOKS: u32 = 10;

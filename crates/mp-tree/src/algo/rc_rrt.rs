@@ -48,12 +48,36 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+use crate::settings::{GOAL_BIAS, INPUTS, LEVELS, PATIENCE, STEP};
 use crate::{
-    AppendApart, BuildError, Nearest, Problem, Purpose, Recipe, Samples, Selector, SingleTree, Tuning,
-    Untried,
+    AppendApart, BuildError, Nearest, Parameter, PlannerInfo, Problem, Purpose, Recipe, Samples, Selector,
+    Settings, SingleTree, Tuning, Untried,
 };
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space, Uniform};
+
+/// How far apart states are that count as one.
+const APART: Parameter = Parameter {
+    name: "apart",
+    range: "in [0, 1], in steps",
+    default: "0.01",
+    doc: "states no farther apart count as one",
+};
+
+/// For people.
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "rc-rrt",
+    summary: "one tree moved by a set of inputs, each tried once at a node; stops when there is no path by them",
+    citation: "Cheng and LaValle 2002",
+    parameters: &[STEP, INPUTS, LEVELS, APART, GOAL_BIAS, PATIENCE],
+    aliases: &[],
+    cannot: &[],
+};
+
+/// What is set for `apart`, as a distance.
+pub(crate) fn apart<C: Space>(space: &C, tuning: &Tuning, settings: &Settings) -> Result<f64, BuildError> {
+    Ok(settings.part_of(&APART)? * tuning.step.length_in(space)?)
+}
 
 /// RC-RRT: see the [module](self).
 pub type RcRrt<'c, C, L, N> =

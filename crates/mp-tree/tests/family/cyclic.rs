@@ -1,7 +1,6 @@
 //! RRT with cycles, and the alternatives it lists.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

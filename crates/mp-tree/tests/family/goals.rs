@@ -1,7 +1,6 @@
 //! Goals that are sets: some components fixed and others free, and regions alone.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 

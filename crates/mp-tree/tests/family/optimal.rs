@@ -1,7 +1,6 @@
 //! Planners that improve: paths get ever cheaper, trees stay what their events say.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

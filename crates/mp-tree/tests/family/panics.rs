@@ -1,7 +1,6 @@
 //! A panic in the user's code does not lose the tree: planning goes on with it.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

@@ -1,7 +1,6 @@
 //! Planners that run planners: several at once, and one after the other.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

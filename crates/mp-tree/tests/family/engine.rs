@@ -1,7 +1,6 @@
 //! What the engine promises: stops, resumption, reproduction, events, goals, no duplicates.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

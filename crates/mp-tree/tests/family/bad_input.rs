@@ -1,7 +1,6 @@
 //! Bad input is a typed error before planning begins.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

@@ -1,7 +1,6 @@
 //! Planners that move by a set of inputs.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::inputs::*;
 use mp_cspace::*;
 use mp_tree::*;

@@ -1,72 +1,10 @@
 //! Obstacle-based RRT: with hints it solves what can be solved, and nothing else.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::{SVector, Vector2};
-use rand::RngExt;
 use std::f64::consts::FRAC_PI_2;
-
-/// Hints of boxes: along an axis, on the side of the box that was passed.
-#[derive(Clone, Debug)]
-struct Sides<const N: usize>(Boxes<N>);
-
-impl<const N: usize> ObstacleHints<SVector<f64, N>> for Sides<N> {
-    fn touches(&mut self, q: &SVector<f64, N>) -> bool {
-        !self.0.is_valid(q)
-    }
-    fn along(
-        &mut self,
-        from: &SVector<f64, N>,
-        toward: &SVector<f64, N>,
-        hit: Option<&SVector<f64, N>>,
-        rng: &mut Rng,
-    ) -> Option<SVector<f64, N>> {
-        let boxes = &self.0.0;
-        if boxes.is_empty() || hit.is_some_and(|q| self.0.distance(q) > 0.0) {
-            return None;
-        }
-        let far = (toward - from).norm() * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
-        let mut to = *from;
-        to[rng.random_range(0..N)] += far;
-        Some(to)
-    }
-    fn turned(&self, position: &SVector<f64, N>, _: &SVector<f64, N>) -> SVector<f64, N> {
-        *position
-    }
-    fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
-        q + (to - from)
-    }
-}
-
-/// The same for a rod, which has a rotation.
-impl ObstacleHints<Se2State> for Rod {
-    fn touches(&mut self, q: &Se2State) -> bool {
-        !self.is_valid(q)
-    }
-    fn along(
-        &mut self,
-        from: &Se2State,
-        toward: &Se2State,
-        hit: Option<&Se2State>,
-        rng: &mut Rng,
-    ) -> Option<Se2State> {
-        if hit.is_some_and(|q| self.is_valid(q)) {
-            return None;
-        }
-        let mut sides = Sides(self.boxes.clone());
-        let to = sides.along(&from.translation, &toward.translation, None, rng)?;
-        Some(Se2State::new(to.x, to.y, from.angle))
-    }
-    fn turned(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
-        Se2State::new(position.translation.x, position.translation.y, rotation.angle)
-    }
-    fn carried(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
-        let at = q.translation + (to.translation - from.translation);
-        Se2State::new(at.x, at.y, q.angle + wrap_angle(to.angle - from.angle))
-    }
-}
 
 /// G0 and one other method, half and half.
 fn with(method: usize) -> GrowthWeights {
@@ -110,7 +48,7 @@ where
     let free = |q: &SVector<f64, N>| boxes.distance(q) > 0.0;
     solves(space, ends.map(SVector::from), free, |weights, rng| {
         let problem = point_problem(space, boxes, ends);
-        let mut planner = Obrrt::new(problem, Sides(boxes.clone()), step(length), weights).unwrap();
+        let mut planner = Obrrt::new(problem, boxes.clone(), step(length), weights).unwrap();
         let outcome = planner.solve(rng, &mut Iterations(40_000), &mut ());
         let mut distinct: Vec<_> = planner.tree().states().iter().map(|q| format!("{q:?}")).collect();
         distinct.sort();
@@ -165,7 +103,7 @@ fn two_trees_grow_along_obstacles() {
             propose: Samples(Uniform(&space)),
             select: Nearest(Linear::new()),
             grow: (
-                ObstacleGuided::new(Sides(boxes.clone()), GrowthWeights::default()).unwrap(),
+                ObstacleGuided::new(boxes.clone(), GrowthWeights::default()).unwrap(),
                 Connect::default(),
             ),
             attach: AppendDistinct::default(),
@@ -184,7 +122,7 @@ fn a_closed_box_is_never_entered() {
     let (space, boxes) = (square(), hollow([0.7, 0.5], 0.1, 1e-3, 0.0));
     for method in 0..8 {
         let problem = point_problem(&space, &boxes, [[0.1, 0.5], [0.7, 0.5]]);
-        let mut planner = Obrrt::new(problem, Sides(boxes.clone()), step(0.2), with(method)).unwrap();
+        let mut planner = Obrrt::new(problem, boxes.clone(), step(0.2), with(method)).unwrap();
         let outcome = planner.solve(&mut Rng::seed(3), &mut Iterations(4_000), &mut ());
         assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations), "G{method}");
     }
@@ -215,7 +153,7 @@ fn methods_do_as_they_say() {
         let recipe = Recipe {
             propose: Always([0.9, 0.5].into()),
             select: Nearest(Linear::new()),
-            grow: ObstacleGuided::new(Sides(wall.clone()), only).unwrap(),
+            grow: ObstacleGuided::new(wall.clone(), only).unwrap(),
             attach: AppendDistinct::default(),
             tuning: Tuning { goal_bias: 0.0, ..step(0.1) },
         };
@@ -245,7 +183,7 @@ fn bad_weights_are_refused() {
             weights = [value; 8];
         }
         let problem = point_problem(&space, &boxes, [[0.1, 0.5], [0.9, 0.5]]);
-        let error = Obrrt::new(problem, Sides(boxes.clone()), step(0.2), GrowthWeights(weights)).unwrap_err();
+        let error = Obrrt::new(problem, boxes.clone(), step(0.2), GrowthWeights(weights)).unwrap_err();
         assert!(matches!(error, BuildError::OutOfRange { name: "weights", .. }), "{error}");
     }
 }

@@ -1,7 +1,6 @@
 //! One tree grown by several threads.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

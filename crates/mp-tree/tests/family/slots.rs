@@ -1,7 +1,6 @@
 //! Variants made from outside the crate, one per slot: what the engine must leave room for.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

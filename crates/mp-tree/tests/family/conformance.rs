@@ -1,9 +1,8 @@
 //! Every planner on problems whose answer is known.
 
-mod common;
-use common::*;
+use crate::common::*;
 use mp_cspace::*;
-use mp_tree::{AnyPlanner, Problem, Settings, Step, Tuning, build, planners};
+use mp_tree::{AnyPlanner, Problem, Settings, Step, Tuning, Workers, build, build_from, planners};
 use nalgebra::{SVector, Vector2};
 use std::f64::consts::FRAC_PI_2;
 
@@ -23,6 +22,24 @@ fn local<'c, C: Space>(
     Straight::new(space, Box::new(check))
 }
 
+/// Planners that run others, and what they are told beside the step.
+const WRAPPED: [(&str, &str); 5] = [
+    ("or-rrt-connect", "runs=2"),
+    ("or-rrt", "runs=2"),
+    ("shared-rrt", "batch=4"),
+    ("restart-rrt-connect", "unit=500"),
+    ("or-restart-bi-rrt", "runs=2"),
+];
+
+/// Every planner made by name, wrapped or not, and what it is told beside the step.
+fn all() -> Vec<(&'static str, &'static str)> {
+    let mut all = WRAPPED.to_vec();
+    for info in planners() {
+        all.push((info.name, "patience=10"));
+    }
+    all
+}
+
 fn settings(step: f64) -> Settings {
     Settings::parse([format!("step={step}")]).unwrap()
 }
@@ -37,53 +54,60 @@ struct World<'c, C: Space, V> {
 
 impl<'c, C, V> World<'c, C, V>
 where
-    C: DefaultNn<Nn: Send> + Sync,
-    C::State: Send,
-    V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + Clone + Send + 'c,
+    C: DefaultNn<Nn: Send + Sync> + Sync,
+    C::State: Send + Sync,
+    V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + ObstacleHints<C::State>,
+    V: Clone + Send + Sync + 'c,
 {
-    fn planner(&self, name: &str, certified: bool) -> AnyPlanner<'c, C::State, ()> {
-        let proof = |tolerance| Certified::new(self.space, self.robot.clone(), tolerance).unwrap();
-        // What is found by samples is verified by proof, so that no corner is cut.
-        let (check, verifier): (Check<'c, C::State>, Check<'c, C::State>) = if certified {
-            let fine = FineDiscrete::new(self.space, self.robot.clone(), Resolution::Fraction(5e-4)).unwrap();
-            (Box::new(proof(1e-3)), Box::new(fine))
-        } else {
-            let resolution = Resolution::Fraction(2e-3);
-            let sampled = Discrete::new(self.space, self.robot.clone(), resolution).unwrap();
-            (Box::new(sampled), Box::new(proof(1e-5)))
+    fn planner(&self, (name, set): (&str, &str), certified: bool) -> AnyPlanner<'c, C::State, ()> {
+        let (space, robot, [start, goal]) = (self.space, self.robot.clone(), self.ends.clone());
+        let problem = move || {
+            let proof = |tolerance| Certified::new(space, robot.clone(), tolerance).unwrap();
+            // What is found by samples is verified by proof, so that no corner is cut.
+            let (check, verifier): (Check<'c, C::State>, Check<'c, C::State>) = if certified {
+                let fine = FineDiscrete::new(space, robot.clone(), Resolution::Fraction(5e-4)).unwrap();
+                (Box::new(proof(1e-3)), Box::new(fine))
+            } else {
+                let sampled = Discrete::new(space, robot.clone(), Resolution::Fraction(2e-3)).unwrap();
+                (Box::new(sampled), Box::new(proof(1e-5)))
+            };
+            let problem = Problem::new(space, local(space, check), verifier, start.clone(), goal.clone())?;
+            Ok(problem.with_hints(robot.clone()))
         };
-        let [start, goal] = self.ends.clone();
-        let problem = Problem::new(self.space, local(self.space, check), verifier, start, goal).unwrap();
-        build(name, problem, &settings(self.step)).unwrap()
+        let settings = Settings::parse([&format!("step={}", self.step), set]).unwrap();
+        build_from(name, problem, C::Nn::default(), &settings, &Workers::new(2).unwrap()).unwrap()
     }
 
     /// Every planner finds a way, whatever the seed, and on the first `discrete` seeds with a discrete check
-    /// as well. `free` knows better than the verifier, where
-    /// anything does.
+    /// as well. `free` knows better than the verifier, where anything does.
     fn is_solved(&self, iterations: u64, discrete: u64, free: impl Fn(&C::State, &C::State) -> bool) {
-        for info in planners() {
+        for named in all() {
             for (seed, certified) in
                 (0..SEEDS).map(|seed| (seed, true)).chain((0..discrete).map(|seed| (seed, false)))
             {
-                let mut planner = self.planner(info.name, certified);
+                let mut planner = self.planner(named, certified);
                 let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(iterations), &mut ());
                 let Outcome::Solved(path) = outcome else {
-                    panic!("{} seed {seed}: {:?}", info.name, planner.progress())
+                    panic!("{} seed {seed}: {:?}", named.0, planner.progress())
                 };
                 let ([start, goal], mut robot) = (&self.ends, self.robot.clone());
                 assert_path(self.space, &path, start, |q| q == goal, |q| robot.is_valid(q));
-                assert!(path.states.windows(2).all(|pair| free(&pair[0], &pair[1])), "{}", info.name);
+                assert!(path.states.windows(2).all(|pair| free(&pair[0], &pair[1])), "{}", named.0);
             }
         }
     }
 
-    /// No planner finds a way, as there is none.
+    /// No planner finds a way, as there is none. One that can tell may say so.
     fn is_never_solved(&self) {
-        for info in planners() {
-            let mut planner = self.planner(info.name, true);
+        for named in all() {
+            let mut planner = self.planner(named, true);
             let outcome = planner.solve(&mut Rng::seed(3), &mut Iterations(HOPELESS), &mut ());
-            assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations), "{}", info.name);
-            assert_eq!(planner.progress().iterations, HOPELESS);
+            match outcome {
+                Outcome::Stopped(StopReason::Iterations) => assert!(planner.progress().iterations >= HOPELESS),
+                outcome => {
+                    assert_eq!((outcome, named.0), (Outcome::Stopped(StopReason::Exhausted), "rc-rrt"));
+                }
+            }
         }
     }
 }
@@ -103,7 +127,7 @@ fn empty_space_takes_one_motion() {
     let (start, goal) = ([0.1; 3].into(), [0.9; 3].into());
     let world = World { space: &space, robot: Boxes::default(), ends: [start, goal], step: 0.3 };
     for info in planners() {
-        let mut planner = world.planner(info.name, true);
+        let mut planner = world.planner((info.name, "patience=10"), true);
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
         assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] }, "{}", info.name);
         assert_eq!(planner.progress().motions, 1);
@@ -207,6 +231,7 @@ fn thin_walls_are_never_crossed() {
             let check = Certified::new(&space, boxes.clone(), 1e-4).unwrap();
             let verifier = Exact(boxes.clone());
             let problem = Problem::new(&space, local(&space, check), verifier, start, goal).unwrap();
+            let problem = problem.with_hints(boxes.clone());
             let mut planner = build(info.name, problem, &settings(0.2)).unwrap();
             let mut counts = EventCounts::default();
             let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut counts);
@@ -224,7 +249,7 @@ fn coarse<'c>(
 ) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Check<'c, Vector2<f64>>>> {
     let check = Discrete::new(space, boxes.clone(), Resolution::Length(0.05)).unwrap();
     let ends = [[0.1, 0.1].into(), [0.9, 0.1].into()];
-    Problem::new(space, local(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap()
+    Problem::new(space, local(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap().with_hints(boxes.clone())
 }
 
 #[test]

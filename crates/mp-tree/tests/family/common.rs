@@ -1,16 +1,16 @@
 //! Worlds of boxes with exact answers, for the tests of this crate.
-#![allow(dead_code, unreachable_pub)] // each test file is a crate and uses its part
 
 use mp_cspace::*;
 use nalgebra::{SVector, Vector2};
+use rand::RngExt;
 
 /// Closed boxes in R^n, and points among them.
 #[derive(Clone, Debug, Default)]
-pub struct Boxes<const N: usize>(pub Vec<([f64; N], [f64; N])>);
+pub(crate) struct Boxes<const N: usize>(pub(crate) Vec<([f64; N], [f64; N])>);
 
 impl<const N: usize> Boxes<N> {
     /// Distance from a point to the nearest box.
-    pub fn distance(&self, q: &SVector<f64, N>) -> f64 {
+    pub(crate) fn distance(&self, q: &SVector<f64, N>) -> f64 {
         let to_box = |(low, high): &([f64; N], [f64; N])| {
             (0..N).map(|i| (low[i] - q[i]).max(q[i] - high[i]).max(0.0).powi(2)).sum::<f64>().sqrt()
         };
@@ -18,7 +18,7 @@ impl<const N: usize> Boxes<N> {
     }
 
     /// Whether a segment touches a box: exact, by clipping it against the slabs.
-    pub fn hit(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> bool {
+    pub(crate) fn hit(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> bool {
         self.0.iter().any(|(low, high)| {
             let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
             for i in 0..N {
@@ -56,7 +56,7 @@ impl<const N: usize> MotionBound<SVector<f64, N>> for Boxes<N> {
 
 /// The exact verifier of straight motions among boxes.
 #[derive(Clone, Debug)]
-pub struct Exact<const N: usize>(pub Boxes<N>);
+pub(crate) struct Exact<const N: usize>(pub(crate) Boxes<N>);
 
 impl<const N: usize> MotionValidity<SVector<f64, N>> for Exact<N> {
     fn check_motion(&mut self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> MotionCheck {
@@ -68,18 +68,18 @@ impl<const N: usize> MotionValidity<SVector<f64, N>> for Exact<N> {
 }
 
 /// The unit square.
-pub fn square() -> Rn<2> {
+pub(crate) fn square() -> Rn<2> {
     Rn::new([0.0; 2], [1.0; 2]).unwrap()
 }
 
 /// The unit cube.
-pub fn cube() -> Rn<3> {
+pub(crate) fn cube() -> Rn<3> {
     Rn::new([0.0; 3], [1.0; 3]).unwrap()
 }
 
 /// A wall of `thickness` across the first axis, with a passage of `width` around `at` on the
 /// others.
-pub fn slit<const N: usize>(thickness: f64, at: f64, width: f64) -> Boxes<N> {
+pub(crate) fn slit<const N: usize>(thickness: f64, at: f64, width: f64) -> Boxes<N> {
     let (mut low, mut high) = ([-1.0; N], [2.0; N]);
     (low[0], high[0]) = (0.5 - thickness / 2.0, 0.5 + thickness / 2.0);
     let mut boxes = Vec::new();
@@ -96,7 +96,7 @@ pub fn slit<const N: usize>(thickness: f64, at: f64, width: f64) -> Boxes<N> {
 
 /// A hollow box of half size `inner` around `center`, walls `thickness` thick, with a hole of
 /// half size `hole` in the wall toward larger x (zero: closed).
-pub fn hollow<const N: usize>(center: [f64; N], inner: f64, thickness: f64, hole: f64) -> Boxes<N> {
+pub(crate) fn hollow<const N: usize>(center: [f64; N], inner: f64, thickness: f64, hole: f64) -> Boxes<N> {
     let outer = inner + thickness;
     let around = |r: f64| (center.map(|c| c - r), center.map(|c| c + r));
     let mut boxes = Vec::new();
@@ -124,10 +124,10 @@ pub fn hollow<const N: usize>(center: [f64; N], inner: f64, thickness: f64, hole
 
 /// A rod of five discs moving in the plane among boxes.
 #[derive(Clone, Debug)]
-pub struct Rod {
-    pub boxes: Boxes<2>,
-    pub half_length: f64,
-    pub radius: f64,
+pub(crate) struct Rod {
+    pub(crate) boxes: Boxes<2>,
+    pub(crate) half_length: f64,
+    pub(crate) radius: f64,
 }
 
 impl Rod {
@@ -157,16 +157,16 @@ impl MotionBound<Se2State> for Rod {
 /// A planar chain of links turned by its joints about the origin, each link a capsule, among discs.
 /// Links do not see each other: they are at different heights.
 #[derive(Clone, Debug)]
-pub struct Arm<const N: usize> {
-    pub link: f64,
-    pub radius: f64,
+pub(crate) struct Arm<const N: usize> {
+    pub(crate) link: f64,
+    pub(crate) radius: f64,
     /// Centres and radii.
-    pub discs: Vec<(Vector2<f64>, f64)>,
+    pub(crate) discs: Vec<(Vector2<f64>, f64)>,
 }
 
 impl<const N: usize> Arm<N> {
     /// The joints and the tip.
-    pub fn joints(&self, q: &SVector<f64, N>) -> Vec<Vector2<f64>> {
+    pub(crate) fn joints(&self, q: &SVector<f64, N>) -> Vec<Vector2<f64>> {
         let (mut at, mut angle) = (Vector2::zeros(), 0.0);
         let mut joints = vec![at];
         for turn in q.iter() {
@@ -203,13 +203,90 @@ impl<const N: usize> MotionBound<SVector<f64, N>> for Arm<N> {
     }
 }
 
+/// Along an axis, whichever box is touched.
+impl<const N: usize> ObstacleHints<SVector<f64, N>> for Boxes<N> {
+    fn touches(&mut self, q: &SVector<f64, N>) -> bool {
+        !self.is_valid(q)
+    }
+    fn along(
+        &mut self,
+        from: &SVector<f64, N>,
+        toward: &SVector<f64, N>,
+        hit: Option<&SVector<f64, N>>,
+        rng: &mut Rng,
+    ) -> Option<SVector<f64, N>> {
+        if self.0.is_empty() || hit.is_some_and(|q| self.distance(q) > 0.0) {
+            return None;
+        }
+        let far = (toward - from).norm() * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+        let mut to = *from;
+        to[rng.random_range(0..N)] += far;
+        Some(to)
+    }
+    fn turned(&self, position: &SVector<f64, N>, _: &SVector<f64, N>) -> SVector<f64, N> {
+        *position
+    }
+    fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
+        q + (to - from)
+    }
+}
+
+/// The same for a rod, which has a rotation.
+impl ObstacleHints<Se2State> for Rod {
+    fn touches(&mut self, q: &Se2State) -> bool {
+        !self.is_valid(q)
+    }
+    fn along(
+        &mut self,
+        from: &Se2State,
+        toward: &Se2State,
+        hit: Option<&Se2State>,
+        rng: &mut Rng,
+    ) -> Option<Se2State> {
+        if hit.is_some_and(|q| self.is_valid(q)) {
+            return None;
+        }
+        let to = self.boxes.along(&from.translation, &toward.translation, None, rng)?;
+        Some(Se2State::new(to.x, to.y, from.angle))
+    }
+    fn turned(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
+        Se2State::new(position.translation.x, position.translation.y, rotation.angle)
+    }
+    fn carried(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
+        let at = q.translation + (to.translation - from.translation);
+        Se2State::new(at.x, at.y, q.angle + wrap_angle(to.angle - from.angle))
+    }
+}
+
+/// An arm follows nothing: it has no position to keep while it turns.
+impl<const N: usize> ObstacleHints<SVector<f64, N>> for Arm<N> {
+    fn touches(&mut self, q: &SVector<f64, N>) -> bool {
+        !self.is_valid(q)
+    }
+    fn along(
+        &mut self,
+        _: &SVector<f64, N>,
+        _: &SVector<f64, N>,
+        _: Option<&SVector<f64, N>>,
+        _: &mut Rng,
+    ) -> Option<SVector<f64, N>> {
+        None
+    }
+    fn turned(&self, position: &SVector<f64, N>, _: &SVector<f64, N>) -> SVector<f64, N> {
+        *position
+    }
+    fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
+        q + (to - from)
+    }
+}
+
 /// Joint angles of an arm, within ±π.
-pub fn joints<const N: usize>() -> Rn<N> {
+pub(crate) fn joints<const N: usize>() -> Rn<N> {
     Rn::new([-std::f64::consts::PI; N], [std::f64::consts::PI; N]).unwrap()
 }
 
 /// Checks a path from `start` to `goal`, densely along each edge.
-pub fn assert_path<C: Space>(
+pub(crate) fn assert_path<C: Space>(
     space: &C,
     path: &Path<C::State>,
     start: &C::State,

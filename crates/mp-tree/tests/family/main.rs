@@ -1,0 +1,15 @@
+//! Tests of the whole family. One program, so that what they share is compiled once.
+
+mod bad_input;
+mod common;
+mod conformance;
+mod cyclic;
+mod engine;
+mod goals;
+mod inputs;
+mod obrrt;
+mod optimal;
+mod panics;
+mod repeated;
+mod shared_tree;
+mod slots;
