@@ -61,8 +61,8 @@ pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
-    BoxedHints, BoxedVerify, BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, ProblemParts,
-    Settings, Step, Verify, Workers, closest,
+    BoxedHints, BoxedVerify, BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem,
+    ProblemParts, Settings, Step, Verify, Workers, closest,
 };
 pub use rng::Rng;
 pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};

@@ -10,8 +10,8 @@ use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
     Cancel, Certified, Clearance, Deadline, DefaultNn, Discrete, Iterations, MetricOn, MotionBound,
-    MotionValidity, NearestNeighbors, ObstacleHints, Outcome, ParameterError, Path, Progress, Resolution, Rng, Room, Space,
-    Stop, StopReason, Straight, Stretch, Validity, WithMetric,
+    MotionValidity, NearestNeighbors, ObstacleHints, Outcome, ParameterError, Path, Progress, Resolution,
+    Rng, Room, Space, Stop, StopReason, Straight, Stretch, Validity, WithMetric,
 };
 use mp::robot::{Arm, RigidBody};
 use mp::tree::{BuildError, Goals, Problem, build_from, improve};

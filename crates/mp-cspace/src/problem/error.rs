@@ -69,7 +69,9 @@ pub enum BuildError {
         planner: &'static str,
     },
     /// The planner grows along obstacles and is told nothing of them.
-    #[error("{planner} follows obstacles: give the problem hints of them; robots that have none need another planner")]
+    #[error(
+        "{planner} follows obstacles: give the problem hints of them; robots that have none need another planner"
+    )]
     NoHints {
         /// Which planner.
         planner: &'static str,

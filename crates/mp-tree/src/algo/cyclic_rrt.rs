@@ -58,8 +58,8 @@
 
 use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo, Problem, Recipe,
-    Samples, Selector, Settings, SingleTree, Steer, Tree, Tuning,
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo, Problem,
+    Recipe, Samples, Selector, Settings, SingleTree, Steer, Tree, Tuning,
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{

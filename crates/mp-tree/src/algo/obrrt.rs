@@ -98,8 +98,8 @@
 
 use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, PlannerInfo, Problem, Recipe, Samples,
-    Selector, SingleTree, Tuning,
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, PlannerInfo, Problem, Recipe,
+    Samples, Selector, SingleTree, Tuning,
 };
 use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Rng, Space, Uniform};
 use rand::RngExt;

@@ -18,7 +18,7 @@ fn problem<'c>(
     goal: impl Into<Goals<'c, Point>>,
 ) -> Result<Problem<'c, Rn<2>, Local<'c>>, BuildError> {
     let local = Straight::new(space, Certified::new(space, wall(), 1e-3).unwrap());
-    Problem::new(space, local, Exact(wall()), start.into(), goal)
+    Ok(Problem::new(space, local, Exact(wall()), start.into(), goal)?.with_hints(wall()))
 }
 
 fn point(x: f64, y: f64) -> Point {
@@ -139,4 +139,14 @@ fn names_must_be_known() {
             assert!(build(info.name, &format!("{}={}", parameter.name, parameter.default)).is_ok());
         }
     }
+}
+
+/// A planner that follows obstacles must be told of them.
+#[test]
+fn obstacles_must_be_known_to_be_followed() {
+    let (space, boxes) = (square(), wall());
+    let local = Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
+    let problem = Problem::new(&space, local, Exact(boxes), point(0.1, 0.1), point(0.9, 0.1)).unwrap();
+    let error = build("obrrt", problem, &Settings::default()).err().unwrap();
+    assert_eq!(error, BuildError::NoHints { planner: "obrrt" });
 }

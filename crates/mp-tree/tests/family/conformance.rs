@@ -103,7 +103,9 @@ where
             let mut planner = self.planner(named, true);
             let outcome = planner.solve(&mut Rng::seed(3), &mut Iterations(HOPELESS), &mut ());
             match outcome {
-                Outcome::Stopped(StopReason::Iterations) => assert!(planner.progress().iterations >= HOPELESS),
+                Outcome::Stopped(StopReason::Iterations) => {
+                    assert!(planner.progress().iterations >= HOPELESS)
+                }
                 outcome => {
                     assert_eq!((outcome, named.0), (Outcome::Stopped(StopReason::Exhausted), "rc-rrt"));
                 }
@@ -249,7 +251,9 @@ fn coarse<'c>(
 ) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Check<'c, Vector2<f64>>>> {
     let check = Discrete::new(space, boxes.clone(), Resolution::Length(0.05)).unwrap();
     let ends = [[0.1, 0.1].into(), [0.9, 0.1].into()];
-    Problem::new(space, local(space, check), Exact(boxes.clone()), ends[0], ends[1]).unwrap().with_hints(boxes.clone())
+    Problem::new(space, local(space, check), Exact(boxes.clone()), ends[0], ends[1])
+        .unwrap()
+        .with_hints(boxes.clone())
 }
 
 #[test]

@@ -17,7 +17,8 @@ fn problem<'c>(
     boxes: &Boxes<2>,
     goal: impl Into<Goals<'c, Point>>,
 ) -> Problem<'c, Rn<2>, Local<'c>> {
-    Problem::new(space, local(space, boxes), Exact(boxes.clone()), Point::new(0.1, 0.2), goal).unwrap()
+    let (local, verifier) = (local(space, boxes), Exact(boxes.clone()));
+    Problem::new(space, local, verifier, Point::new(0.1, 0.2), goal).unwrap().with_hints(boxes.clone())
 }
 
 fn short() -> Tuning {
@@ -279,6 +280,7 @@ fn edges_are_in_forward_time() {
             let local = Remembers(local(&space, &boxes));
             let start = Point::new(0.1, 0.2);
             let problem = Problem::new(&space, local, Replays(boxes.clone()), start, goal()).unwrap();
+            let problem = problem.with_hints(boxes.clone());
             let settings = Settings::parse(["step=0.05".to_owned(), format!("patience={patience}")]).unwrap();
             let mut planner = build_with(info.name, problem, Linear::new(), &settings).unwrap();
             let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(50_000), &mut ());

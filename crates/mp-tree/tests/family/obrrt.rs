@@ -102,10 +102,7 @@ fn two_trees_grow_along_obstacles() {
         let recipe = Recipe {
             propose: Samples(Uniform(&space)),
             select: Nearest(Linear::new()),
-            grow: (
-                ObstacleGuided::new(boxes.clone(), GrowthWeights::default()).unwrap(),
-                Connect::default(),
-            ),
+            grow: (ObstacleGuided::new(boxes.clone(), GrowthWeights::default()).unwrap(), Connect::default()),
             attach: AppendDistinct::default(),
             tuning: step(0.1),
         };

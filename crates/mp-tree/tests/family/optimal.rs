@@ -19,7 +19,8 @@ fn wall() -> (Boxes<2>, f64) {
 
 fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Problem<'c, Rn<2>, Local<'c>> {
     let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-4).unwrap());
-    Problem::new(space, local, Exact(boxes.clone()), START.into(), Point::from(GOAL)).unwrap()
+    let problem = Problem::new(space, local, Exact(boxes.clone()), START.into(), Point::from(GOAL)).unwrap();
+    problem.with_hints(boxes.clone())
 }
 
 fn improving() -> impl Iterator<Item = &'static PlannerInfo> {
@@ -222,6 +223,7 @@ fn goals_of_every_kind_improve() {
         ];
         for goals in kinds {
             let problem = Problem::new(&space, local(), Exact(boxes.clone()), START.into(), goals).unwrap();
+            let problem = problem.with_hints(boxes.clone());
             let mut planner = build(info.name, problem, &Settings::parse(["step=0.1"]).unwrap()).unwrap();
             let mut lengths = Vec::new();
             improve(&mut *planner, &mut Rng::seed(1), &mut Iterations(3_000), &mut (), |path, _| {

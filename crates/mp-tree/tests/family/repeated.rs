@@ -14,7 +14,8 @@ type Made<'c> = Result<Problem<'c, Rn<2>, Local<'c>>, BuildError>;
 
 fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Made<'c> {
     let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
-    Problem::new(space, local, Exact(boxes.clone()), Point::new(0.1, 0.2), Point::new(0.9, 0.2))
+    let ends = [Point::new(0.1, 0.2), Point::new(0.9, 0.2)];
+    Ok(Problem::new(space, local, Exact(boxes.clone()), ends[0], ends[1])?.with_hints(boxes.clone()))
 }
 
 fn tuning() -> Tuning {
