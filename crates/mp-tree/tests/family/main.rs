@@ -1,6 +1,7 @@
 //! Tests of the whole family. One program, so that what they share is compiled once.
 
 mod bad_input;
+#[path = "../common/mod.rs"]
 mod common;
 mod conformance;
 mod cyclic;

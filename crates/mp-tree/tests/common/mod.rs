@@ -1,4 +1,5 @@
 //! Worlds of boxes with exact answers, for the tests of this crate.
+#![allow(dead_code, reason = "crates whose tests share this use their part of it")]
 
 use mp_cspace::*;
 use nalgebra::{SVector, Vector2};
