@@ -87,7 +87,7 @@ pub struct SnakeCounters {
     pub straight: u64,
     /// Motions that were bent free.
     pub bent: u64,
-    /// Motions given up at once: their end is not free.
+    /// Motions given up at once: their end is not free, or they are too long.
     pub hopeless: u64,
     /// Motions that no snake could save.
     pub lost: u64,
@@ -98,7 +98,8 @@ pub struct SnakeCounters {
 /// Goes straight, and where that is blocked sends a snake around what blocks it.
 ///
 /// A motion ends where the straight one would. Each piece of a bent one has been found free by `check`; the field
-/// only guides. Its cost is its length in the metric of the space. Paths are made plain by [`unbent`].
+/// only guides. Its cost is its length in the metric of the space. Motions of more than 48 nodes are not bent. Paths are
+/// made plain by [`unbent`].
 #[derive(Clone, Debug)]
 pub struct SnakePlanner<'c, C: Space, M, F> {
     /// The motion check: discrete, certified or a user's own.
@@ -111,7 +112,14 @@ pub struct SnakePlanner<'c, C: Space, M, F> {
 }
 
 /// A snake is checked as soon as all its nodes are this part of the range away from obstacles.
-const WANTED: f64 = 0.5;
+const WANTED: f64 = 0.3;
+
+/// A snake in collision that for this many steps does not get less deep, by this part of the range, is given up.
+const PATIENCE: u32 = 3;
+const GAIN: f64 = 0.05;
+
+/// Motions that take more nodes are not bent.
+const LONGEST: f64 = 48.0;
 
 impl<'c, C, M, F> SnakePlanner<'c, C, M, F>
 where
@@ -120,13 +128,12 @@ where
     F: ClearanceGradient<C::State>,
 {
     /// Motions in `space` checked by `check`, bent by `field`, of obstacles that repel within `range` (m), with the
-    /// [parameters](Params::for_range) of that range but for fewer iterations, 12.
+    /// [parameters](Params::for_edges) for edges of that range.
     ///
     /// # Errors
     /// When the range is not positive and finite, or the space knows no velocities.
     pub fn new(space: &'c C, check: M, field: F, range: f64) -> Result<Self, SnakeError> {
-        let params = Params { iterations: 12, ..Params::for_range(range)? };
-        Self::with_params(space, check, Repulsion::new(field, range)?, params)
+        Self::with_params(space, check, Repulsion::new(field, range)?, Params::for_edges(range)?)
     }
 
     /// The same with parameters of your own.
@@ -154,12 +161,15 @@ where
     fn bend(&mut self, from: &C::State, to: &C::State) -> Option<Vec<C::State>> {
         let mut curve = self.snake.between(from, to);
         self.snake.bulge(&mut curve, &mut self.field);
-        let (check, wanted) = (&mut self.check, self.wanted);
-        let (mut passed, mut iterations) = (false, 0);
+        let (check, wanted, gain) = (&mut self.check, self.wanted, GAIN * self.field.range());
+        let (mut passed, mut iterations, mut best) = (false, 0, (0, f64::NEG_INFINITY));
         let rest = self.snake.deform(&mut curve, &mut self.field, |moment| {
             iterations = moment.iteration;
+            if moment.clearance > best.1 + gain {
+                best = (iterations, moment.clearance);
+            }
             passed = moment.clearance >= wanted && all_free(check, moment.curve);
-            passed
+            passed || (moment.clearance <= 0.0 && iterations >= best.0 + PATIENCE)
         });
         self.counters.iterations += u64::from(iterations);
         if !passed && rest != Rest::Stopped {
@@ -207,11 +217,14 @@ where
             Direction::Forward => (from, &end, KnownFree::From),
             Direction::Backward => (&end, from, KnownFree::To),
         };
-        if self.check.check_extension(a, b, known).is_free() {
+        let failed_at = self.check.check_extension(a, b, known).failed_at();
+        let Some(failed_at) = failed_at else {
             self.counters.straight += 1;
             return found(Curve::straight(), length);
-        }
-        if !(length > 0.0 && length.is_finite() && self.check.check_motion(&end, &end).is_free()) {
+        };
+        let end_at = if direction == Direction::Forward { 1.0 } else { 0.0 };
+        let bendable = length > 0.0 && length <= LONGEST * self.snake.params().spacing;
+        if !bendable || failed_at == end_at || !self.check.check_motion(&end, &end).is_free() {
             self.counters.hopeless += 1;
             return Extension::Trapped;
         }

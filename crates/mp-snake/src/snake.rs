@@ -129,7 +129,7 @@ impl Shape {
 const MOST_NODES: usize = 10_000;
 
 /// How often a step is halved before giving up.
-const HALVINGS: u32 = 5;
+const HALVINGS: u32 = 3;
 
 /// Steps that lower the energy by less than this part of it are of no use.
 const LEAST_GAIN: f64 = 1e-7;
@@ -336,6 +336,11 @@ impl<'c, C: Space> Snake<'c, C> {
                 _ => {}
             }
         }
+    }
+
+    /// What [`energy`](Self::energy) found last.
+    pub(crate) fn measured(&self) -> &Shape {
+        &self.trial
     }
 
     /// Sets the step of all nodes.

@@ -20,6 +20,8 @@
 //! | [`MvbRrt`] | [`algo::mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
 //! | [`UtilityRrt`] | [`algo::utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
 //! | [`Obrrt`] | [`algo::obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
+//! | [`Rrs`] | [`algo::rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
+//! | [`RrsConnect`] | [`algo::rrs_connect`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
 //!
 //! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
 //! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
@@ -87,6 +89,7 @@ mod rewire;
 mod select;
 mod settings;
 mod single;
+mod snakes;
 mod tree;
 mod two;
 mod uniform;
@@ -106,6 +109,8 @@ pub use algo::obrrt::{GrowthWeights, Obrrt, ObstacleGuided};
 pub use algo::or_parallel::OrParallel;
 pub use algo::rc_rrt::{RcRrt, Unexhausted};
 pub use algo::restarts::{Lengths, Restarts, Schedule};
+pub use algo::rrs::Rrs;
+pub use algo::rrs_connect::RrsConnect;
 pub use algo::rrt::Rrt;
 pub use algo::rrt_connect::RrtConnect;
 pub use algo::rrt_inputs::RrtInputs;
@@ -129,6 +134,7 @@ pub use rewire::{Near, Rewire};
 pub use select::{Nearest, Purpose, Selector};
 pub use settings::{GOAL_BIAS, INPUTS, LEVELS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 pub use single::SingleTree;
+pub use snakes::{build_snake, snake_planners};
 pub use tree::Tree;
 pub use two::TwoTrees;
 pub use untried::Untried;

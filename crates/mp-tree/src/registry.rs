@@ -32,16 +32,17 @@ pub fn planners() -> &'static [PlannerInfo] {
     ]
 }
 
-/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
+/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases); those whose edges bend
+/// ([`snake_planners`]) among them.
 ///
 /// # Errors
 /// When there is none, with the names there are.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
+    planners().iter().chain(snake_planners()).find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
 }
 
 fn unknown(name: &str) -> BuildError {
-    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
+    let known: Vec<_> = planners().iter().chain(snake_planners()).map(|info| info.name).collect();
     let aliases = planners().iter().flat_map(|info| info.aliases).copied();
     let suggestion = closest(name, known.iter().copied().chain(aliases));
     BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
@@ -130,7 +131,10 @@ where
             let candidates = settings.count("candidates")?.unwrap_or(4);
             Box::new(UtilityRrt::with_index(problem, index, tuning, candidates)?)
         }
-        _ => return Err(unknown(name)),
+        _ => {
+            let reason = format!("{name} bends its edges by a clearance gradient, so `build_snake` makes it");
+            return Err(BuildError::Unmade { reason });
+        }
     })
 }
 

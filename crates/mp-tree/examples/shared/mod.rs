@@ -5,6 +5,7 @@ use mp_cspace::inputs::{Along, DoubleIntegrator, InputPlanner, InputSet, Leg, On
 use mp_cspace::{
     Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Product, Resolution, Rn, Rng, Straight,
 };
+use mp_snake::{Pieces, SnakePlanner};
 use mp_tree::{Goals, Problem, Step, Tuning};
 use nalgebra::Vector2;
 
@@ -29,6 +30,23 @@ pub fn bug_trap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Local<'_>>> {
     let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?;
     let (start, goal) = (Point::new(0.5, 0.5), Point::new(0.05, 0.5));
     Ok(Problem::new(space, Straight::new(space, check), verifier, start, goal)?)
+}
+
+type Field = fn(&Point, f64, &mut [f64]) -> f64;
+type Bending<'c> = SnakePlanner<'c, Rn<2>, Discrete<'c, Rn<2>, fn(&Point) -> bool>, Field>;
+
+/// The same with edges that bend: out of the ring of walls by the nearer side, its opening left out.
+pub fn bending_trap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Bending<'_>>> {
+    let field: Field = |q, _, gradient| {
+        let from = q - Point::new(0.5, 0.5);
+        let out = if from.norm() < 0.25 { -from } else { from };
+        gradient.copy_from_slice(out.try_normalize(0.0).unwrap_or(Point::x()).as_slice());
+        (from.norm() - 0.25).abs() - 0.05
+    };
+    let check = Discrete::new(space, free as fn(&Point) -> bool, Resolution::Fraction(0.005))?;
+    let verifier = Pieces(FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?);
+    let (start, goal) = (Point::new(0.5, 0.5), Point::new(0.05, 0.5));
+    Ok(Problem::new(space, SnakePlanner::new(space, check, field, 0.05)?, verifier, start, goal)?)
 }
 
 /// A step that fits the trap.

@@ -14,6 +14,8 @@ pub mod obrrt;
 pub mod or_parallel;
 pub mod rc_rrt;
 pub mod restarts;
+pub mod rrs;
+pub mod rrs_connect;
 pub mod rrt;
 pub mod rrt_connect;
 pub mod rrt_inputs;

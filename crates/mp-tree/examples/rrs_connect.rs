@@ -1,0 +1,13 @@
+//! RrsConnect: a point leaves a bug trap in the plane by edges that bend.
+//!
+//! `cargo run -p mp-tree --example rrs_connect [SEED]`
+
+mod shared;
+
+use mp_tree::RrsConnect;
+
+fn main() -> shared::Result {
+    let space = shared::square()?;
+    let problem = shared::bending_trap(&space)?;
+    shared::run(RrsConnect::new(problem, shared::tuning())?)
+}

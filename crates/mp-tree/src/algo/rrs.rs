@@ -1,0 +1,97 @@
+//! RRS, the rapidly-exploring random snakes: an RRT whose blocked edges are bent free.
+//!
+//! K. Baizid, R. Chellali, R. Luza, B. Vitezslav and F. Arrichiello, *RRS: rapidly-exploring random snakes, a new
+//! method for mobile robot path planning*, §3.3, steps 1 to 8. Snakes: M. Kass, A. Witkin and D. Terzopoulos, *Snakes:
+//! active contour models*, IJCV 1, 1988.
+//!
+//! 1. Begin with the start.
+//! 2. Up to the number of samples allowed:
+//! 3. draw a sample, uniform in the space, or with a small probability a goal state;
+//! 4. find the node nearest to it;
+//! 5. go from that node toward the sample, one step at most: where the straight curve is free, add its end and the
+//!    curve;
+//! 6. where it is not, send a [snake](mp_snake::Snake) from node to end around what blocks it;
+//! 7. where every piece of the snake is free, add its end and the snake: the sample is rescued;
+//! 8. return the tree; here, the path as soon as a node is in the goal and the path is verified piece by piece.
+//!
+//! So it is [RRT](super::rrt) with the local planner [`SnakePlanner`], and an end that is in collision itself is not
+//! rescued. What differs from the paper: before a snake relaxes it is laid to the side to which the obstacle pushes it
+//! as a whole ([`Snake::bulge`](mp_snake::Snake::bulge)); it stops as soon as it is free with some clearance; and the
+//! energies are those of [`Snake`](mp_snake::Snake), with its remarks on the formulas.
+//!
+//! **When to use it.** Where the clearance and its gradient are cheap to ask (in the plane, by a distance map, a
+//! tenth of a microsecond) and obstacles are many and small: then much longer steps can be taken, and far fewer
+//! iterations are needed. It does not help through long walls: there is nothing to bend around within a step.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
+//! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
+//! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
+//! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 12 |
+//!
+//! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). [`build_snake`] makes
+//! it by name.
+//!
+//! A point goes around a disc in the unit square, in one bend:
+//! ```
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng};
+//! use mp_snake::{Pieces, SnakePlanner, unbent};
+//! use mp_tree::{Problem, Rrs, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! let from_disc = |q: &Vector2<f64>| q - Vector2::new(0.5, 0.48);
+//! let free = move |q: &Vector2<f64>| from_disc(q).norm() > 0.2;
+//! let field = move |q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]| {
+//!     gradient.copy_from_slice(from_disc(q).normalize().as_slice());
+//!     from_disc(q).norm() - 0.2
+//! };
+//! let check = Discrete::new(&space, free, Resolution::Fraction(0.01))?;
+//! let local = SnakePlanner::new(&space, check, field, 0.1)?;
+//! let verifier = Pieces(FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?);
+//! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//!
+//! let mut planner = Rrs::new(Problem::new(&space, local, verifier, start, goal)?, Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(1), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.edges.len(), planner.tree().len()), (1, 2));
+//! assert!(unbent(&path).states.iter().all(free));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`build_snake`]: crate::build_snake
+
+use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::{Parameter, PlannerInfo, Rrt};
+use mp_snake::SnakePlanner;
+
+/// How far obstacles push snakes.
+pub const RANGE: Parameter = Parameter {
+    name: "range",
+    range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
+    default: "3%",
+    doc: "how far obstacles repel snakes; nodes are half as far apart",
+};
+
+/// Most steps of a snake.
+pub const SNAKE_STEPS: Parameter = Parameter {
+    name: "snake-steps",
+    range: "a whole number, 1 to 1000000",
+    default: "12",
+    doc: "most steps of a snake that bends one edge",
+};
+
+/// The entry of [`snake_planners`](crate::snake_planners).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "rrs",
+    summary: "RRT whose blocked edges are bent around obstacles by snakes; for many small obstacles",
+    citation: "Baizid et al. 2014; Kass, Witkin and Terzopoulos 1988",
+    parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, SNAKE_STEPS],
+    aliases: &[],
+    cannot: &[],
+};
+
+/// RRS: see the [module](self). Made by [`Rrt::new`] of a problem with a [`SnakePlanner`].
+pub type Rrs<'c, C, M, F, N> = Rrt<'c, C, SnakePlanner<'c, C, M, F>, N>;

@@ -1,0 +1,218 @@
+//! Trees whose edges bend, by name, of a point and of a rod: what they find is free, and what cannot be found is not.
+
+mod common;
+use common::*;
+use mp_cspace::*;
+use mp_snake::*;
+use mp_tree::*;
+use nalgebra::{SVector, Vector2};
+
+type Point = Vector2<f64>;
+
+/// The signed distance to boxes, and its gradient.
+fn field(boxes: &Boxes<2>) -> impl FnMut(&Point, f64, &mut [f64]) -> f64 + Clone + use<> {
+    let boxes = boxes.clone();
+    move |q, _, gradient| {
+        let to_box = |(low, high): &([f64; 2], [f64; 2])| {
+            let beyond = Point::from_fn(|i, _| (low[i] - q[i]).max(q[i] - high[i]));
+            let sign = Point::from_fn(|i, _| if 2.0 * q[i] < low[i] + high[i] { -1.0 } else { 1.0 });
+            let outside = beyond.map(|x| x.max(0.0));
+            let deepest = if beyond.x > beyond.y { Point::x() } else { Point::y() };
+            match outside.norm() {
+                0.0 => (beyond.max(), deepest.component_mul(&sign)),
+                far => (far, (outside / far).component_mul(&sign)),
+            }
+        };
+        let nearest = boxes.0.iter().map(to_box).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (distance, slope) = nearest.unwrap_or((f64::INFINITY, Point::zeros()));
+        gradient.copy_from_slice(slope.as_slice());
+        distance
+    }
+}
+
+/// The clearance of a rod, and its gradient by central differences.
+fn rod_field(rod: &Rod, space: &Se2) -> impl FnMut(&Se2State, f64, &mut [f64]) -> f64 + use<> {
+    let (rod, space) = (rod.clone(), space.clone());
+    move |q, _, gradient| {
+        let clearance = |q: &Se2State| rod.clone().clearance(q, f64::INFINITY);
+        for (k, slope) in gradient.iter_mut().enumerate() {
+            let mut velocity = [0.0; 3];
+            velocity[k] = 1.0;
+            let [before, after] =
+                [-1e-5, 1e-5].map(|t| space.moved(q, &velocity, t).map_or(0.0, |q| clearance(&q)));
+            *slope = (after - before) / 2e-5;
+        }
+        clearance(q)
+    }
+}
+
+/// A grid of small boxes, every second row shifted.
+fn orchard() -> Boxes<2> {
+    let place = |i: usize, j: usize| [0.1 + 0.16 * i as f64 + 0.08 * (j % 2) as f64, 0.14 + 0.12 * j as f64];
+    let around = |[x, y]: [f64; 2]| ([x - 0.03, y - 0.025], [x + 0.03, y + 0.025]);
+    Boxes((0..5).flat_map(|i| (0..7).map(move |j| around(place(i, j)))).collect())
+}
+
+fn problem<'c>(
+    space: &'c Rn<2>,
+    boxes: &Boxes<2>,
+    ends: [[f64; 2]; 2],
+) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>> {
+    let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
+    Problem::new(space, local, Exact(boxes.clone()), ends[0].into(), SVector::from(ends[1])).unwrap()
+}
+
+fn solve(
+    name: &str,
+    boxes: &Boxes<2>,
+    ends: [[f64; 2]; 2],
+    settings: &[&str],
+    seed: u64,
+    limit: u64,
+) -> (Option<Path<Point>>, u64) {
+    let space = square();
+    let settings = Settings::parse(settings).unwrap();
+    let problem = problem(&space, boxes, ends);
+    let mut planner = match snake_planners().iter().any(|info| info.is_called(name)) {
+        true => build_snake(name, problem, field(boxes), <KdTree>::default(), &settings).unwrap(),
+        false => build(name, problem, &settings).unwrap(),
+    };
+    let path = match planner.solve(&mut Rng::seed(seed), &mut Iterations(limit), &mut ()) {
+        Outcome::Solved(path) => Some(path),
+        Outcome::Stopped(_) => None,
+    };
+    (path, planner.progress().iterations)
+}
+
+const ENDS: [[f64; 2]; 2] = [[0.03, 0.05], [0.97, 0.95]];
+
+#[test]
+fn passages_are_passed_and_paths_are_free() {
+    let space = square();
+    let trap = hollow([0.5, 0.5], 0.2, 0.05, 0.03);
+    let worlds = [
+        (slit(0.1, 0.8, 0.06), [[0.1, 0.2], [0.9, 0.2]]),
+        (trap, [[0.5, 0.5], [0.05, 0.5]]),
+        (orchard(), ENDS),
+    ];
+    for info in snake_planners() {
+        for (boxes, ends) in &worlds {
+            for seed in 0..10 {
+                let (path, _) = solve(info.name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
+                let path = path.unwrap_or_else(|| panic!("{} seed {seed}", info.name));
+                assert_path(
+                    &space,
+                    &path,
+                    &ends[0].into(),
+                    |q| *q == Point::from(ends[1]),
+                    |q| boxes.distance(q) > 0.0,
+                );
+                assert!(
+                    !path.states.windows(2).any(|w| boxes.hit(&w[0], &w[1])),
+                    "{} seed {seed}",
+                    info.name
+                );
+                let again = solve(info.name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
+                assert_eq!(again.0, Some(path), "the same seed gives the same path");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_closed_stays_closed() {
+    let closed = hollow([0.5, 0.5], 0.2, 0.02, 0.0);
+    for info in snake_planners() {
+        for seed in 0..3 {
+            let (path, _) = solve(info.name, &closed, [[0.5, 0.5], [0.05, 0.5]], &["range=0.1"], seed, 1500);
+            assert_eq!(path, None, "{} seed {seed}", info.name);
+        }
+    }
+}
+
+/// Among small obstacles, with steps longer than the gaps, bends save most of the iterations.
+#[test]
+fn rescued_samples_save_iterations() {
+    for (plain, bending, most) in [("rrt", "rrs", 0.5), ("rrt-connect", "rrs-connect", 0.7)] {
+        let total = |name: &str, settings: &[&str]| {
+            (0..20).map(|seed| solve(name, &orchard(), ENDS, settings, seed, 40_000).1).sum::<u64>() as f64
+        };
+        let (plain, bent) = (total(plain, &["step=0.4"]), total(bending, &["step=0.4", "range=0.03"]));
+        assert!(bent < most * plain, "{bending}: {bent} iterations instead of {plain}");
+    }
+}
+
+/// Edges of the tree are curves, verified piece by piece; a verifier that finds one of the pieces in collision
+/// rejects the path.
+#[test]
+fn edges_of_the_tree_are_curves() {
+    let (space, boxes) = (square(), orchard());
+    let check = Certified::new(&space, boxes.clone(), 1e-3).unwrap();
+    let local = SnakePlanner::new(&space, check, field(&boxes), 0.03).unwrap();
+    let [start, goal] = ENDS.map(Point::from);
+    let problem = Problem::new(&space, local, Pieces(Exact(boxes.clone())), start, goal).unwrap();
+    let tuning = Tuning { step: Step::Length(0.4), ..Tuning::default() };
+    let mut planner = Rrs::with_index(problem, <KdTree>::default(), tuning).unwrap();
+    let Outcome::Solved(path) = planner.solve(&mut Rng::seed(4), &mut Iterations(10_000), &mut ()) else {
+        panic!("not solved")
+    };
+    assert!(path.edges.iter().any(|edge| !edge.states().is_empty()));
+    let plain = unbent(&path);
+    assert!(!plain.states.windows(2).any(|w| boxes.hit(&w[0], &w[1])));
+    assert_eq!(
+        plain.states.len(),
+        path.states.len() + path.edges.iter().map(|e| e.states().len()).sum::<usize>()
+    );
+
+    // A world with one more obstacle, of which the local planner knows nothing, on a bend.
+    let bend = path.edges.iter().find_map(|edge| edge.states().get(1)).unwrap();
+    let mut wider = boxes.clone();
+    wider.0.push((bend.map(|x| x - 1e-3).into(), bend.map(|x| x + 1e-3).into()));
+    let i = path.edges.iter().position(|edge| edge.states().contains(bend)).unwrap();
+    let verdict = Pieces(Exact(wider)).verify_edge(&path.states[i], &path.edges[i], &path.states[i + 1]);
+    assert!(matches!(verdict, MotionCheck::Collides { at } if (0.0..=1.0).contains(&at)), "{verdict:?}");
+}
+
+#[test]
+fn a_rod_bends_and_turns() {
+    let space = Se2::new([0.0; 2], [1.0; 2]).unwrap();
+    let rod = Rod { boxes: orchard(), half_length: 0.03, radius: 0.005 };
+    let (start, goal) = (Se2State::new(0.05, 0.05, 0.0), Se2State::new(0.95, 0.95, 1.0));
+    let settings = Settings::parse(["step=0.5", "range=0.02"]).unwrap();
+    for (name, seed) in [("rrs", 1), ("rrs-connect", 2)] {
+        let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
+        let verifier = FineDiscrete::new(&space, rod.clone(), Resolution::Length(1e-4)).unwrap();
+        let problem = Problem::new(&space, local, verifier, start, goal).unwrap();
+        let field = rod_field(&rod, &space);
+        let mut planner = build_snake(name, problem, field, <KdTree>::default(), &settings).unwrap();
+        let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut ());
+        let Outcome::Solved(path) = outcome else { panic!("{name}: {outcome:?}") };
+        assert_path(&space, &path, &start, |q| *q == goal, |q| rod.clone().is_valid(q));
+    }
+}
+
+#[test]
+fn bad_settings_are_refused() {
+    let (space, boxes) = (square(), orchard());
+    let refused = |name: &str, text: &str| {
+        let settings = Settings::parse([text]).unwrap();
+        let problem = problem(&space, &boxes, ENDS);
+        build_snake(name, problem, field(&boxes), <KdTree>::default(), &settings)
+            .map(drop)
+            .unwrap_err()
+            .to_string()
+    };
+    for (text, word) in [
+        ("range=0", "range"),
+        ("range=150%", "range"),
+        ("snake-steps=0", "iterations"),
+        ("rnage=1", "did you mean `range`"),
+    ] {
+        let message = refused("rrs", text);
+        assert!(message.contains(word), "{text}: {message}");
+    }
+    assert!(refused("rrt", "step=0.1").contains("rrs"));
+    let error = build("rrs", problem(&space, &boxes, ENDS), &Settings::default()).map(drop).unwrap_err();
+    assert!(error.to_string().contains("build_snake"), "{error}");
+    assert!(planner("rss").unwrap_err().to_string().contains("`rrs`"));
+}
