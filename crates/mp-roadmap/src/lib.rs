@@ -6,9 +6,14 @@
 //! | [`PrmStar`] | [`algo::prm_star`] | uniform | to ever more near nodes; ever better paths |
 //! | [`LazyPrm`] | [`algo::lazy_prm`] | uniform, not checked | to near nodes, checked when a way leads along them |
 //! | [`VisibilityPrm`] | [`algo::visibility_prm`] | guards that see no other guard; connections that see two components | from connections to guards |
+//! | [`GaussianPrm`] | [`algo::gaussian_prm`] | near obstacles | as PRM |
+//! | [`BridgePrm`] | [`algo::bridge_prm`] | between obstacles, and uniform | as PRM |
+//! | [`Obprm`] | [`algo::obprm`] | on and near the surfaces of obstacles | as PRM, or to near nodes of each obstacle; then by turns in place |
+//! | [`ObstacleGeometryPrm`] | [`algo::obstacle_geometry_prm`] | far from obstacles, by spheres; near them, by their direction and volume | as PRM; then by turns in place far from obstacles |
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
-//! [`build`] makes planners of the second kind by name.
+//! [`build`] makes planners of the second kind by name; [`build_among`] those too that must know what obstacles look
+//! like ([`ObstacleGeometry`](mp_cspace::ObstacleGeometry)): the last two.
 //!
 //! ```
 //! use mp_cspace::{
@@ -38,8 +43,8 @@
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`] |
-//! | what becomes a node, with which edges | [`Connector`] | [`Nearest`], [`Star`], [`Visibility`] |
+//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`NearObstacles`], [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
+//! | what becomes a node, with which edges | [`Connector`] | [`Nearest`], [`Star`], [`Visibility`], [`Stages`] |
 //! | how a way is looked for | [`Query`] | [`AStar`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
 //!
@@ -60,14 +65,20 @@ mod connect;
 mod export;
 mod file;
 mod generate;
+mod mixed;
 mod planner;
 mod registry;
 mod roadmap;
 mod search;
 mod settings;
+mod stages;
 mod steer;
 
+pub use algo::bridge_prm::{BetweenObstacles, BridgePrm};
+pub use algo::gaussian_prm::{GaussianPrm, NearObstacles};
 pub use algo::lazy_prm::{LazyPrm, Unchecked};
+pub use algo::obprm::{Obprm, OnObstacles, OnSurfaces, Strategy};
+pub use algo::obstacle_geometry_prm::{AroundObstacles, ByGeometry, ObstacleGeometryPrm};
 pub use algo::prm::{Learn, Learning, Prm};
 pub use algo::prm_star::{PrmStar, Star};
 pub use algo::visibility_prm::{Visibility, VisibilityPrm};
@@ -76,9 +87,11 @@ pub use builder::{Builder, Pace, Recipe};
 pub use connect::{Connector, Growing, Nearest, Reachable};
 pub use file::{RoadmapError, RoadmapFileError};
 pub use generate::{Came, Candidate, Free, NodeGenerator};
+pub use mixed::Mixing;
 pub use planner::{PATIENCE, RoadmapPlanner};
-pub use registry::{AnyPlanner, build, build_with, planner, planners};
+pub use registry::{AnyPlanner, build, build_among, build_with, planner, planners, planners_among};
 pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};
 pub use search::{AStar, Entry, Query};
 pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
+pub use stages::{Among, Stages, Turns};
 pub use steer::Steer;

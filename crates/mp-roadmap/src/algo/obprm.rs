@@ -1,0 +1,427 @@
+//! OBPRM: nodes on and near the surfaces of obstacles.
+//!
+//! N. M. Amato and Y. Wu, *A randomized roadmap method for path and manipulation planning*, ICRA 1996; N. M. Amato,
+//! O. B. Bayazit, L. K. Dale, C. Jones and D. Vallejo, *OBPRM: an obstacle-based PRM for 3D workspaces*, WAFR 1998. As in §3.2 of
+//! A. Benitez et al., *Key elements for motion planning algorithms*, 2010.
+//!
+//! For one obstacle after the other, by `nodes`:
+//!
+//! `prototype` (PROTOTYPE NODE GENERATION)
+//! 1. C_in: the robot with its centre in that of the obstacle, turned at random until it collides;
+//! 2. D: `directions` random directions from there: toward uniform samples;
+//! 3. for each, look for a free C_out, in equal steps as far as the surrounding spheres of robot and obstacle overlap;
+//! 4. find where contact ends between C_in and C_out by binary search: a *contact* configuration.
+//!
+//! `contact` (GENERATE CONTACT CONFIGURATION)
+//! 1. p_rob, a point of the robot, and p_obs, a point of the obstacle, both by `points`;
+//! 2. C_in: the robot with the one in the other, turned at random until it collides;
+//! 3. d: one random direction; C_out and contact as above.
+//!
+//! `free`: from a contact configuration as in `contact`, on in the same direction for a random length of at most `gap`.
+//!
+//! `shells`: a contact configuration, and `shells` more behind it, `gap` apart.
+//!
+//! A part `uniform` of the attempts are uniform samples; the papers have none, and would leave scenes without obstacles
+//! without nodes. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the `per-obstacle` nearest of
+//! each obstacle (`obstacles`); in stages: first by the local planner, then, to what is still apart, by
+//! rotate-at-s at `turns` fractions of the way: 1/2, 0 and 1, in this order (see [`Stages`]).
+//!
+//! The path found is verified; an edge that fails is blocked. Obstacles here are what hangs together
+//! ([`ObstacleGeometry`]); where the centre of one is outside of the space, or does not collide, points of surfaces stand in.
+//!
+//! **When to use it.** Narrow passages that obstacles of moderate size leave between them. It needs
+//! [`ObstacleGeometry`], which rigid bodies among meshes have.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `nodes`: how they are made | prototype, contact, free, shells | shells |
+//! | `points`: of robot and obstacle | centers, vertices, surface | surface |
+//! | `directions`: of `prototype`, m | 1, 2, … 1000 | 10 |
+//! | `gap`: of `free` and `shells`, in the metric of the space or with % of its extent | positive | 1% |
+//! | `shells`: how many | 1, 2, … 100 | 3 |
+//! | `uniform`: part of the attempts that are uniform samples | \[0, 1\] | 0.1 |
+//! | `connect`: to which nodes | nearest, obstacles | nearest |
+//! | `per-obstacle`: most of each obstacle, k | 1, 2, … 10⁶ | 3 |
+//! | `turns`: fractions tried in the second stage | 0, 1, 2, 3 | 1 |
+//! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
+//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//!
+//! A disc goes between two boxes:
+//! ```
+//! use mp_cspace::{Certified, Iterations, Outcome, Planner, Problem, Rng, Se2, Se2State, Straight};
+//! use mp_geom::primitives::{cuboid, cylinder};
+//! use mp_roadmap::{Obprm, Reachable, algo::obprm::OnSurfaces};
+//! use mp_robot::{PlanarFlyer, Verifier};
+//! use nalgebra::Isometry3;
+//!
+//! let wall = |name: &str, y| Ok::<_, Box<dyn std::error::Error>>((name.to_owned(), cuboid(0.5, 2.0, 1.0)?, Isometry3::translation(0.0, y, 0.0)));
+//! let robot = PlanarFlyer::new(&cylinder(0.1, 0.2, 12)?, [wall("low", -1.15)?, wall("high", 1.15)?])?;
+//! let space = Se2::new([-2.0, -1.0], [2.0, 1.0])?;
+//! let local = Straight::new(&space, Certified::new(&space, robot.clone(), robot.tolerance())?);
+//! let (start, goal) = (Se2State::new(-1.5, 0.8, 0.0), Se2State::new(1.5, -0.8, 0.0));
+//!
+//! let problem = Problem::new(&space, local, Verifier::new(&space, &robot)?, start, goal)?;
+//! let reach = Reachable { neighbours: 10, radius: 2.0, cycles: false };
+//! let mut planner = Obprm::new(problem, robot, reach, OnSurfaces::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::mixed::{drew_uniform, part, uniform};
+use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
+use crate::{
+    AStar, Among, Candidate, Kind, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Stages,
+    Steer, Turns,
+};
+use mp_cspace::{
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter, PlannerInfo, PointOf,
+    Problem, Reversible, Rng, Settings, Space, Step,
+};
+use rand::RngExt;
+
+/// States looked at for one that is free.
+const LOOKS: u32 = 16;
+/// Halvings of the binary search.
+const HALVINGS: u32 = 12;
+/// Turns tried for one that collides.
+const TRIES: usize = 10;
+
+/// How nodes are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Strategy {
+    /// Contact configurations in many directions from the centre of the obstacle.
+    Prototype,
+    /// Contact configurations from a point of the robot in a point of the obstacle.
+    Contact,
+    /// Free configurations behind contact.
+    Free,
+    /// Contact configurations with more behind them.
+    Shells,
+}
+
+/// The parameters of OBPRM.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnSurfaces {
+    /// How nodes are made.
+    pub strategy: Strategy,
+    /// Which points of robot and obstacle are put into each other.
+    pub points: PointOf,
+    /// Directions of [`Strategy::Prototype`]; 1 or more.
+    pub directions: usize,
+    /// How far behind contact free nodes are at most, and shells from each other.
+    pub gap: Step,
+    /// Shells behind contact; 1 or more.
+    pub shells: usize,
+    /// Part of the attempts that are uniform samples.
+    pub uniform: f64,
+    /// To which nodes a new one is connected.
+    pub among: Among,
+    /// How many fractions of the way are tried for a turn in place: at most 3.
+    pub turns: usize,
+}
+
+impl Default for OnSurfaces {
+    fn default() -> Self {
+        Self {
+            strategy: Strategy::Shells,
+            points: PointOf::Surface,
+            directions: 10,
+            gap: Step::Fraction(0.01),
+            shells: 3,
+            uniform: 0.1,
+            among: Among::Nearest,
+            turns: 1,
+        }
+    }
+}
+
+/// Where the second stage turns.
+const AT: [f64; 3] = [0.5, 0.0, 1.0];
+
+const fn parameter(
+    name: &'static str,
+    range: &'static str,
+    default: &'static str,
+    doc: &'static str,
+) -> Parameter {
+    Parameter { name, range, default, doc }
+}
+const NODES: Parameter =
+    parameter("nodes", "prototype, contact, free or shells", "shells", "how nodes are made");
+const POINTS: Parameter =
+    parameter("points", "centers, vertices or surface", "surface", "which points are put into each other");
+const DIRECTIONS: Parameter =
+    parameter("directions", "a whole number, 1 to 1000", "10", "directions of `prototype` (m)");
+const GAP: Parameter = parameter(
+    "gap",
+    "in (0, extent of the space], or with % in (0%, 100%] of the extent",
+    "1%",
+    "how far behind contact `free` nodes are at most, and `shells` from each other",
+);
+const SHELLS: Parameter = parameter("shells", "a whole number, 1 to 100", "3", "shells behind contact");
+const CONNECT: Parameter = parameter(
+    "connect",
+    "nearest or obstacles",
+    "nearest",
+    "to the nearest nodes, or those of each obstacle",
+);
+const PER_OBSTACLE: Parameter =
+    parameter("per-obstacle", "a whole number, 1 to 10⁶", "3", "most nodes of each obstacle (k)");
+const TURNS: Parameter = parameter(
+    "turns",
+    "a whole number, 0 to 3",
+    "1",
+    "fractions of the way (1/2, 0, 1) at which rotate-at-s is tried where the straight line fails",
+);
+
+impl OnSurfaces {
+    /// The values that are set, the others by default.
+    ///
+    /// # Errors
+    /// When a value cannot be read.
+    pub fn read(settings: &Settings) -> Result<Self, BuildError> {
+        let default = Self::default();
+        let strategy = |word: &str| match word {
+            "prototype" => Some(Strategy::Prototype),
+            "contact" => Some(Strategy::Contact),
+            "free" => Some(Strategy::Free),
+            "shells" => Some(Strategy::Shells),
+            _ => None,
+        };
+        let points = |word: &str| match word {
+            "centers" => Some(PointOf::Center),
+            "vertices" => Some(PointOf::Vertex),
+            "surface" => Some(PointOf::Surface),
+            _ => None,
+        };
+        let each = Among::EachObstacle(settings.count_of(&PER_OBSTACLE)? as usize);
+        let among = |word: &str| match word {
+            "nearest" => Some(Among::Nearest),
+            "obstacles" => Some(each),
+            _ => None,
+        };
+        Ok(Self {
+            strategy: settings.choice(NODES.name, NODES.range, strategy)?.unwrap_or(default.strategy),
+            points: settings.choice(POINTS.name, POINTS.range, points)?.unwrap_or(default.points),
+            directions: settings.count_of(&DIRECTIONS)? as usize,
+            gap: settings.step(GAP.name)?.unwrap_or(default.gap),
+            shells: settings.count_of(&SHELLS)? as usize,
+            uniform: settings.number("uniform")?.unwrap_or(default.uniform),
+            among: settings.choice(CONNECT.name, CONNECT.range, among)?.unwrap_or(default.among),
+            turns: settings.count_of(&TURNS)? as usize,
+        })
+    }
+}
+
+/// The entry of [`planners_among`](crate::planners_among).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "obprm",
+    summary: "a roadmap of samples on and near the surfaces of obstacles",
+    citation: "Amato and Wu 1996; Amato, Bayazit, Dale, Jones and Vallejo 1998",
+    parameters: &[
+        NODES,
+        POINTS,
+        DIRECTIONS,
+        GAP,
+        SHELLS,
+        uniform("0.1"),
+        CONNECT,
+        PER_OBSTACLE,
+        TURNS,
+        NEIGHBOURS,
+        RADIUS,
+        CYCLES,
+    ],
+    aliases: &["ob-prm"],
+    cannot: crate::settings::UNDIRECTED,
+};
+
+/// Configurations on and near the surfaces of obstacles: the generator of OBPRM.
+#[derive(Clone, Debug)]
+pub struct OnObstacles<H> {
+    hints: H,
+    with: OnSurfaces,
+    gap: f64,
+}
+
+impl<H> OnObstacles<H> {
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new<C: Space>(space: &C, hints: H, with: OnSurfaces) -> Result<Self, BuildError> {
+        BuildError::count_within(DIRECTIONS.name, with.directions as u64, 1, 1000)?;
+        BuildError::count_within(SHELLS.name, with.shells as u64, 1, 100)?;
+        part("uniform", with.uniform)?;
+        Ok(Self { hints, gap: length(&GAP, with.gap, space)?, with })
+    }
+
+    /// C_in: a configuration within the space that collides with the obstacle, or with others near it.
+    fn inside<C, L>(&self, obstacle: usize, steer: &mut Steer<'_, C, L>, rng: &mut Rng) -> Option<C::State>
+    where
+        C: Space,
+        L: LocalPlanner<C::State, Edge: Reversible>,
+        H: ObstacleGeometry<C::State>,
+    {
+        let space = steer.space();
+        let asked =
+            if self.with.strategy == Strategy::Prototype { PointOf::Center } else { self.with.points };
+        (0..TRIES).find_map(|i| {
+            // Where what is asked for does not do, as with the centre of a ring, the surface does.
+            let of = if i < TRIES / 2 { asked } else { PointOf::Surface };
+            let turned = space.sample_uniform(rng);
+            let point = self.hints.robot_point(of, rng);
+            let place = self.hints.obstacle_point(obstacle, of, rng)?;
+            let q = self.hints.brought(&turned, &point, &place);
+            (space.contains(&q) && !steer.admits(&q)).then_some(q)
+        })
+    }
+
+    /// The fraction of the way from `inside` to `toward` at which contact ends, if it does before the robot is
+    /// clear of the obstacle.
+    fn contact<C, L>(
+        &self,
+        obstacle: usize,
+        [inside, toward]: [&C::State; 2],
+        steer: &mut Steer<'_, C, L>,
+    ) -> Option<f64>
+    where
+        C: Space,
+        L: LocalPlanner<C::State, Edge: Reversible>,
+        H: ObstacleGeometry<C::State>,
+    {
+        let (space, robot) = (steer.space(), self.hints.robot());
+        let places = [inside, toward].map(|q| self.hints.place_of(q, &robot.center));
+        let reach = 2.0 * (self.hints.obstacles().get(obstacle)?.radius + robot.radius);
+        let most = (reach / (places[1] - places[0]).norm()).min(1.0);
+        let mut admits = |at: f64| steer.admits(&space.interpolate(inside, toward, at));
+        let step = most / f64::from(LOOKS);
+        let (mut free, mut low) = (0.0, 0.0);
+        for i in 1..=LOOKS {
+            let at = step * f64::from(i);
+            if admits(at) {
+                free = at;
+                break;
+            }
+            low = at;
+        }
+        if free == 0.0 {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + free);
+            *(if admits(middle) { &mut free } else { &mut low }) = middle;
+        }
+        Some(free)
+    }
+}
+
+impl<C, L, H> NodeGenerator<C, L> for OnObstacles<H>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    H: ObstacleGeometry<C::State>,
+{
+    fn generate(
+        &mut self,
+        attempt: u64,
+        _: &Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        rng: &mut Rng,
+        out: &mut Vec<Candidate<C::State, L::Edge>>,
+    ) {
+        let obstacles = self.hints.obstacles().len() as u64;
+        let OnSurfaces { strategy, directions, shells, uniform, .. } = self.with;
+        if drew_uniform(if obstacles == 0 { 1.0 } else { uniform }, steer, rng, out) {
+            return;
+        }
+        let obstacle = (attempt % obstacles) as usize;
+        let Some(inside) = self.inside(obstacle, steer, rng) else { return };
+        let space = steer.space();
+        for _ in 0..if strategy == Strategy::Prototype { directions } else { 1 } {
+            let toward = space.sample_uniform(rng);
+            let Some(contact) = self.contact(obstacle, [&inside, &toward], steer) else { continue };
+            let gap = self.gap / space.distance(&inside, &toward);
+            let mut take = |at: f64, kind: Kind, steer: &mut Steer<'_, C, L>| {
+                let q = space.interpolate(&inside, &toward, at);
+                // In contact it was found free already.
+                if at <= 1.0 && (kind == Kind::Contact || steer.admits(&q)) {
+                    out.push(Candidate::new(q, kind).of(obstacle as u32));
+                }
+            };
+            match strategy {
+                Strategy::Prototype | Strategy::Contact => take(contact, Kind::Contact, steer),
+                Strategy::Free => take(contact + gap * rng.random::<f64>(), Kind::Near, steer),
+                Strategy::Shells => {
+                    take(contact, Kind::Contact, steer);
+                    for shell in 1..=shells {
+                        take(contact + gap * shell as f64, Kind::Near, steer);
+                    }
+                }
+            }
+        }
+    }
+
+    fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
+        u64::MAX
+    }
+}
+
+/// OBPRM: see the [module](self).
+pub type Obprm<'c, C, L, N, H> = RoadmapPlanner<'c, C, L, OnObstacles<H>, Stages<H>, AStar, N>;
+
+impl<'c, C, L, N, H> Obprm<'c, C, L, N, H>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+    H: ObstacleGeometry<C::State> + Clone,
+{
+    /// OBPRM with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(
+        problem: Problem<'c, C, L>,
+        hints: H,
+        reach: Reachable,
+        with: OnSurfaces,
+    ) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        let recipe = recipe(problem.space(), hints, reach, with)?;
+        Ok(Self::assemble(problem, N::default(), recipe))
+    }
+}
+
+/// The recipe of OBPRM.
+///
+/// # Errors
+/// When a parameter is out of range.
+pub fn recipe<C: Space, H: Clone>(
+    space: &C,
+    hints: H,
+    reach: Reachable,
+    with: OnSurfaces,
+) -> Result<Recipe<OnObstacles<H>, Stages<H>, AStar>, BuildError> {
+    BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
+    let turns = Turns::At(AT[..with.turns].to_vec());
+    Ok(Recipe {
+        generate: OnObstacles::new(space, hints.clone(), with)?,
+        connect: Stages::new(hints, reach, with.among, turns)?,
+        query: AStar::new(),
+        pace: Pace::default(),
+        improves: false,
+    })
+}
+
+pub(crate) fn read<C: Space, H: Clone>(
+    space: &C,
+    hints: H,
+    settings: &Settings,
+) -> Result<Recipe<OnObstacles<H>, Stages<H>, AStar>, BuildError> {
+    recipe(space, hints, reachable(space, settings)?, OnSurfaces::read(settings)?)
+}

@@ -1,0 +1,281 @@
+//! PRM by the geometry of obstacles: *far* configurations by spheres alone, *near* ones by an elastic band.
+//!
+//! A. Benitez and D. Vallejo, *New technique to improve probabilistic roadmap methods*, IBERAMIA 2004; A. Benitez, D. Vallejo and
+//! M. A. Medina, *PRMs based on obstacle's geometry*, IAS-8, 2004. As in §3.5 of A. Benitez et al., *Key elements for motion
+//! planning algorithms*, 2010.
+//!
+//! First approximation, for `far` attempts:
+//! 1. draw a sample, uniform in the space;
+//! 2. where the surrounding sphere of the robot touches that of no obstacle, take it as a *far* configuration. Nothing else is
+//!    tested: the robot is free there, however it is turned.
+//!
+//! Expansion, attempts in turn:
+//! - around one obstacle B after the other, from a uniform sample q: an elastic band, for *near* configurations;
+//! - a uniform sample: taken where it is free; *salvaged* where it is not, by an elastic band around the obstacle B it touches.
+//!
+//! Elastic band around B, once for each of two kinds of configuration, from q:
+//! 1. d: the direction from the centre of B to that of the robot at q;
+//! 2. MIN and MAX, from the *volume*: what the radii of robot and obstacle add up to, of balls of the same volume as they,
+//!    and of their surrounding spheres;
+//! 3. a *parallel* configuration has the *straightness* of the robot along that of B, a *perpendicular* one across it
+//!    (any way across);
+//! 4. for k = 0, …, `bands` (CTE): put the robot at the distance MIN + (MAX − MIN)·k / `bands` from B along d, turned about its own
+//!    straightness by one golden angle more each time; take the first configuration that is free.
+//!
+//! Each node is connected to its nearest nodes by the local planner; where that fails and one of the two is far, by turning
+//! in place there (see [`Stages`]).
+//!
+//! The paper is followed where it speaks. Left open there, and decided here: how MIN and MAX depend on the
+//! volume, in which steps the vector is scaled (the listing sets `scalar` to MIN and never changes it), and how far the robot is
+//! rotated at a time. The path found is verified; an edge that fails is blocked.
+//!
+//! **When to use it.** Scenes of separate, compact obstacles, with long robots. Where one obstacle encloses the scene, as
+//! the walls of a room in one piece do, no configuration is far, and what is left is mostly plain PRM. It needs
+//! [`ObstacleGeometry`], which rigid bodies among meshes have.
+//!
+//! | parameter | range | default |
+//! |---|---|---|
+//! | `far`: attempts of the first approximation | 0, 1, … 10⁹ | 100 |
+//! | `bands`: steps of the elastic band, CTE | 1, 2, … 10⁶ | 20 |
+//! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
+//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//!
+//! A rod goes around a block:
+//! ```
+//! use mp_cspace::{Certified, Iterations, Outcome, Planner, Problem, Rng, Se2, Se2State, Straight};
+//! use mp_geom::primitives::cuboid;
+//! use mp_roadmap::{ObstacleGeometryPrm, Reachable, algo::obstacle_geometry_prm::ByGeometry};
+//! use mp_robot::{PlanarFlyer, Verifier};
+//! use nalgebra::Isometry3;
+//!
+//! let block = ("block".to_owned(), cuboid(0.5, 1.5, 1.0)?, Isometry3::identity());
+//! let robot = PlanarFlyer::new(&cuboid(0.6, 0.1, 0.2)?, [block])?;
+//! let space = Se2::new([-2.0, -1.5], [2.0, 1.5])?;
+//! let local = Straight::new(&space, Certified::new(&space, robot.clone(), robot.tolerance())?);
+//! let (start, goal) = (Se2State::new(-1.5, 0.0, 0.0), Se2State::new(1.5, 0.0, 1.0));
+//!
+//! let problem = Problem::new(&space, local, Verifier::new(&space, &robot)?, start, goal)?;
+//! let reach = Reachable { neighbours: 10, radius: 2.0, cycles: false };
+//! let mut planner = ObstacleGeometryPrm::new(problem, robot, reach, ByGeometry::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
+//! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
+use crate::{
+    AStar, Among, Candidate, Kind, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Stages,
+    Steer, Turns,
+};
+use mp_cspace::{
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Outline, Parameter, PlannerInfo,
+    Problem, Reversible, Rng, Settings, Space,
+};
+use nalgebra::Vector3;
+use rand::RngExt;
+use std::f64::consts::TAU;
+
+/// The golden angle (rad): multiples of it are spread evenly, however many.
+const GOLDEN: f64 = 2.399_963_229_728_653;
+
+/// The parameters of obstacle-geometry PRM.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ByGeometry {
+    /// Attempts of the first approximation.
+    pub far: u64,
+    /// Steps of the elastic band; 1 or more.
+    pub bands: u64,
+}
+
+impl Default for ByGeometry {
+    fn default() -> Self {
+        Self { far: 100, bands: 20 }
+    }
+}
+
+const FAR: Parameter = Parameter {
+    name: "far",
+    range: "a whole number, 0 to 10⁹",
+    default: "100",
+    doc: "attempts of the first approximation",
+};
+const BANDS: Parameter = Parameter {
+    name: "bands",
+    range: "a whole number, 1 to 10⁶",
+    default: "20",
+    doc: "steps of the elastic band (CTE)",
+};
+
+/// The entry of [`planners_among`](crate::planners_among).
+pub const INFO: PlannerInfo = PlannerInfo {
+    name: "obstacle-geometry-prm",
+    summary: "a roadmap of samples far from obstacles, by spheres, and near them, by their direction and volume",
+    citation: "Benitez and Vallejo 2004",
+    parameters: &[FAR, BANDS, NEIGHBOURS, RADIUS, CYCLES],
+    aliases: &["geometry-prm"],
+    cannot: crate::settings::UNDIRECTED,
+};
+
+/// Far and near configurations: the generator of obstacle-geometry PRM.
+#[derive(Clone, Debug)]
+pub struct AroundObstacles<H> {
+    hints: H,
+    with: ByGeometry,
+}
+
+/// MIN and MAX of the elastic band between robot and obstacle, metres.
+fn limits(robot: &Outline, obstacle: &Outline) -> [f64; 2] {
+    let equal = |body: &Outline| body.radius * body.fullness.cbrt();
+    [equal(robot) + equal(obstacle), robot.radius + obstacle.radius]
+}
+
+/// A unit vector in a random direction; across `axis`, if there is one.
+fn random_unit(axis: Option<&Vector3<f64>>, rng: &mut Rng) -> Vector3<f64> {
+    let (z, angle) = (2.0 * rng.random::<f64>() - 1.0, TAU * rng.random::<f64>());
+    let round = (1.0 - z * z).sqrt();
+    let v = Vector3::new(round * angle.cos(), round * angle.sin(), z);
+    match axis {
+        None => v,
+        Some(axis) => {
+            let other = Vector3::ith(axis.iamin(), 1.0);
+            let across = axis.cross(&other).try_normalize(0.0).unwrap_or(other);
+            across * angle.cos() + axis.cross(&across) * angle.sin()
+        }
+    }
+}
+
+impl<H> AroundObstacles<H> {
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(hints: H, with: ByGeometry) -> Result<Self, BuildError> {
+        BuildError::count_within(FAR.name, with.far, 0, 1_000_000_000)?;
+        BuildError::count_within(BANDS.name, with.bands, 1, 1_000_000)?;
+        Ok(Self { hints, with })
+    }
+
+    /// The elastic band around an obstacle from `q`: parallel and perpendicular configurations that are free.
+    fn band<C, L>(
+        &self,
+        obstacle: usize,
+        (q, kind): (&C::State, Kind),
+        steer: &mut Steer<'_, C, L>,
+        rng: &mut Rng,
+        out: &mut Vec<Candidate<C::State, L::Edge>>,
+    ) where
+        C: Space,
+        L: LocalPlanner<C::State, Edge: Reversible>,
+        H: ObstacleGeometry<C::State>,
+    {
+        let robot = self.hints.robot();
+        let Some(body) = self.hints.obstacles().get(obstacle).copied() else { return };
+        let away = (self.hints.place_of(q, &robot.center) - body.center).try_normalize(0.0);
+        let away = away.unwrap_or_else(|| random_unit(None, rng));
+        let [min, max] = limits(&robot, &body);
+        let along = [body.axis, random_unit(Some(&body.axis), rng)];
+        for direction in along {
+            let first = TAU * rng.random::<f64>();
+            let found = (0..=self.with.bands).find_map(|k| {
+                let scalar = min + (max - min) * (k as f64 / self.with.bands as f64);
+                let place = body.center + away * scalar;
+                let q = self.hints.aligned(&place, &direction, first + GOLDEN * k as f64);
+                steer.admits(&q).then_some(q)
+            });
+            out.extend(found.map(|q| Candidate::new(q, kind).of(obstacle as u32)));
+        }
+    }
+}
+
+impl<C, L, H> NodeGenerator<C, L> for AroundObstacles<H>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    H: ObstacleGeometry<C::State>,
+{
+    fn generate(
+        &mut self,
+        attempt: u64,
+        _: &Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        rng: &mut Rng,
+        out: &mut Vec<Candidate<C::State, L::Edge>>,
+    ) {
+        let q = steer.space().sample_uniform(rng);
+        let obstacles = self.hints.obstacles().len() as u64;
+        if attempt < self.with.far {
+            if self.hints.is_far(&q) {
+                out.push(Candidate::new(q, Kind::Far));
+            }
+        } else if obstacles > 0 && attempt % 2 == 0 {
+            let obstacle = (attempt / 2 % obstacles) as usize;
+            self.band(obstacle, (&q, Kind::Near), steer, rng, out);
+        } else if steer.admits(&q) {
+            let kind = if self.hints.is_far(&q) { Kind::Far } else { Kind::Plain };
+            out.push(Candidate::new(q, kind));
+        } else if let Some(obstacle) = self.hints.touched(&q) {
+            self.band(obstacle, (&q, Kind::Salvaged), steer, rng, out);
+        }
+    }
+
+    fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
+        u64::MAX
+    }
+}
+
+/// Obstacle-geometry PRM: see the [module](self).
+pub type ObstacleGeometryPrm<'c, C, L, N, H> =
+    RoadmapPlanner<'c, C, L, AroundObstacles<H>, Stages<H>, AStar, N>;
+
+impl<'c, C, L, N, H> ObstacleGeometryPrm<'c, C, L, N, H>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+    H: ObstacleGeometry<C::State> + Clone,
+{
+    /// Obstacle-geometry PRM with the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(
+        problem: Problem<'c, C, L>,
+        hints: H,
+        reach: Reachable,
+        with: ByGeometry,
+    ) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        let recipe = recipe(hints, reach, with)?;
+        Ok(Self::assemble(problem, N::default(), recipe))
+    }
+}
+
+/// The recipe of obstacle-geometry PRM.
+///
+/// # Errors
+/// When a parameter is out of range.
+pub fn recipe<H: Clone>(
+    hints: H,
+    reach: Reachable,
+    with: ByGeometry,
+) -> Result<Recipe<AroundObstacles<H>, Stages<H>, AStar>, BuildError> {
+    Ok(Recipe {
+        generate: AroundObstacles::new(hints.clone(), with)?,
+        connect: Stages::new(hints, reach, Among::Nearest, Turns::WhereFar)?,
+        query: AStar::new(),
+        pace: Pace::default(),
+        improves: false,
+    })
+}
+
+pub(crate) fn read<C: Space, H: Clone>(
+    space: &C,
+    hints: H,
+    settings: &Settings,
+) -> Result<Recipe<AroundObstacles<H>, Stages<H>, AStar>, BuildError> {
+    let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
+    recipe(hints, reachable(space, settings)?, with)
+}

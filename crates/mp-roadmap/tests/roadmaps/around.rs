@@ -1,0 +1,276 @@
+//! Planners that know what obstacles look like, and what they are made of.
+
+use mp_cspace::*;
+use mp_geom::primitives::cuboid;
+use mp_geom::{TriMesh, pose_from_six};
+use mp_roadmap::algo::{obprm, obstacle_geometry_prm};
+use mp_roadmap::*;
+use mp_robot::{FreeFlyer, PlanarFlyer, Verifier};
+use nalgebra::{Isometry3, Vector3};
+use std::cell::Cell;
+
+type Obstacle = (String, TriMesh, Isometry3<f64>);
+
+fn block(name: &str, [x, y, z]: [f64; 3], at: [f64; 3]) -> Obstacle {
+    (name.to_owned(), cuboid(x, y, z).unwrap(), pose_from_six([at[0], at[1], at[2], 0.0, 0.0, 0.0]))
+}
+
+/// A rod in the plane before a wall with a gap narrower than it is long.
+fn corridor(gap: f64) -> PlanarFlyer {
+    let size = [0.8, 2.0, 1.0];
+    let y = 1.0 + 0.5 * gap;
+    let walls = [block("low", size, [0.0, -y, 0.0]), block("high", size, [0.0, y, 0.0])];
+    PlanarFlyer::new(&cuboid(0.8, 0.1, 0.2).unwrap(), walls).unwrap()
+}
+
+fn plane() -> Se2 {
+    Se2::new([-2.0, -1.5], [2.0, 1.5]).unwrap()
+}
+
+/// Of motions: coarse, as tests are to be quick.
+const TOLERANCE: f64 = 0.01;
+
+type Local<'c> = Straight<'c, Se2, Certified<'c, Se2, PlanarFlyer>>;
+
+fn problem<'c>(space: &'c Se2, robot: &PlanarFlyer) -> Problem<'c, Se2, Local<'c>> {
+    let ends = [Se2State::new(-1.4, 0.3, 1.5), Se2State::new(1.4, -0.3, -1.0)];
+    let check = Certified::new(space, robot.clone(), TOLERANCE).unwrap();
+    let verifier = Verifier::with_tolerance(space, robot, 0.2 * TOLERANCE).unwrap();
+    let [start, goal] = ends;
+    Problem::new(space, Straight::new(space, check), verifier, start, goal).unwrap()
+}
+
+fn made<'c>(name: &str, settings: &str, space: &'c Se2, robot: &PlanarFlyer) -> AnyPlanner<'c, Se2State, ()> {
+    let settings = Settings::parse(settings.split_whitespace()).unwrap();
+    let index = <Se2 as DefaultNn>::Nn::default();
+    build_among(name, problem(space, robot), index, robot.clone(), &settings).unwrap()
+}
+
+/// Every strategy, and planners that need no geometry as well.
+const ALL: [(&str, &str); 11] = [
+    ("obprm", "nodes=prototype"),
+    ("obprm", "nodes=contact points=centers"),
+    ("obprm", "nodes=contact points=vertices turns=0"),
+    ("obprm", "nodes=free"),
+    ("obprm", "nodes=shells"),
+    ("obprm", "connect=obstacles turns=3 uniform=0"),
+    ("ob-prm", "connect=obstacles per-obstacle=5 cycles=yes"),
+    ("obstacle-geometry-prm", ""),
+    ("geometry-prm", "far=0 bands=40"),
+    ("gaussian-prm", ""),
+    ("bridge-prm", "uniform=0.8"),
+];
+
+#[test]
+fn a_rod_goes_through_a_corridor() {
+    let (space, robot) = (plane(), corridor(0.3));
+    let mut verifier = Verifier::new(&space, &robot).unwrap();
+    for (name, settings) in ALL {
+        for seed in 0..2 {
+            let mut planner = made(name, settings, &space, &robot);
+            let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut ());
+            let Outcome::Solved(path) = outcome else {
+                panic!("{name} {settings} seed {seed}: {:?}", planner.progress())
+            };
+            assert!(verify_path(&space, &path, &mut verifier).is_free(), "{name} {settings}");
+            let again = made(name, settings, &space, &robot).solve(
+                &mut Rng::seed(seed),
+                &mut Iterations(20_000),
+                &mut (),
+            );
+            assert!(seed > 0 || again == Outcome::Solved(path), "the same seed, the same path");
+        }
+    }
+}
+
+#[test]
+fn a_closed_corridor_is_never_solved() {
+    let (space, robot) = (plane(), corridor(0.05));
+    for (name, settings) in [ALL[0], ALL[5], ALL[7], ALL[9]] {
+        let mut planner = made(name, settings, &space, &robot);
+        let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40), &mut ());
+        assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations), "{name} {settings}");
+    }
+}
+
+/// A bar must be turned to pass a window in a wall of four beams.
+#[test]
+fn a_bar_goes_through_a_window() {
+    let frame = [
+        block("left", [0.2, 1.0, 3.0], [0.0, -1.0, 0.0]),
+        block("right", [0.2, 1.0, 3.0], [0.0, 1.0, 0.0]),
+        block("low", [0.2, 1.0, 1.2], [0.0, 0.0, -0.9]),
+        block("high", [0.2, 1.0, 1.2], [0.0, 0.0, 0.9]),
+    ];
+    let robot = FreeFlyer::new(&cuboid(1.2, 0.15, 0.15).unwrap(), frame).unwrap();
+    let space = Se3::new([-1.5; 3], [1.5; 3]).unwrap();
+    let (start, goal) =
+        (pose_from_six([-1.0, 0.0, 0.0, 1.5, 0.0, 0.0]), pose_from_six([1.0, 0.2, 0.3, 1.0, 0.4, 0.0]));
+    for name in ["obprm", "obstacle-geometry-prm"] {
+        let check = Certified::new(&space, robot.clone(), robot.tolerance()).unwrap();
+        let verifier = Verifier::new(&space, &robot).unwrap();
+        let problem = Problem::new(&space, Straight::new(&space, check), verifier, start, goal).unwrap();
+        let index = <Se3 as DefaultNn>::Nn::default();
+        let mut planner = build_among(name, problem, index, robot.clone(), &Settings::default()).unwrap();
+        let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40_000), &mut ());
+        let Outcome::Solved(path) = outcome else { panic!("{name}: {:?}", planner.progress()) };
+        assert!(verify_path(&space, &path, &mut Verifier::new(&space, &robot).unwrap()).is_free());
+    }
+}
+
+fn candidates<'c, G: NodeGenerator<Se2, Local<'c>>>(
+    space: &'c Se2,
+    robot: &PlanarFlyer,
+    mut generate: G,
+    attempts: std::ops::Range<u64>,
+) -> Vec<Candidate<Se2State, ()>> {
+    let check = Certified::new(space, robot.clone(), TOLERANCE).unwrap();
+    let verifier = Verifier::new(space, robot).unwrap();
+    let mut steer = Steer::new(space, Straight::new(space, check), verifier, 10);
+    let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
+    for attempt in attempts {
+        let mut rng = Rng::stream(7, attempt);
+        generate.generate(attempt, &map, &mut steer, &mut rng, &mut out);
+        all.append(&mut out);
+    }
+    assert!(all.iter().all(|c| steer.admits(&c.state)), "all that is proposed is free");
+    all
+}
+
+#[test]
+fn nodes_of_obprm_are_on_surfaces() {
+    let (space, mut robot) = (plane(), corridor(0.25));
+    let gap = 0.01 * space.extent();
+    for strategy in [Strategy::Prototype, Strategy::Contact, Strategy::Free, Strategy::Shells] {
+        let with = OnSurfaces { strategy, uniform: 0.0, ..OnSurfaces::default() };
+        let generate = OnObstacles::new(&space, robot.clone(), with).unwrap();
+        let all = candidates(&space, &robot, generate, 0..200);
+        let of = |kind| all.iter().filter(move |c| c.kind == kind);
+        let contacts = matches!(strategy, Strategy::Prototype | Strategy::Contact | Strategy::Shells);
+        assert_eq!(of(Kind::Contact).count() > 100, contacts, "{strategy:?}");
+        let near = matches!(strategy, Strategy::Free | Strategy::Shells);
+        assert_eq!(of(Kind::Near).count() > 100, near, "{strategy:?}");
+        for c in of(Kind::Contact) {
+            assert!(robot.clearance(&c.state, 1.0) < 0.5 * TOLERANCE + 2e-3, "{strategy:?} {c:?}");
+        }
+        // Half an extent turns by no more than its share, so this bounds how far the robot moved.
+        for c in of(Kind::Near) {
+            assert!(robot.clearance(&c.state, 1.0) < TOLERANCE + 4.0 * gap, "{strategy:?} {c:?}");
+        }
+        assert!(all.iter().any(|c| c.obstacle == Some(0)) && all.iter().any(|c| c.obstacle == Some(1)));
+    }
+}
+
+#[test]
+fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
+    let (space, robot) = (plane(), corridor(0.25));
+    let generate = || AroundObstacles::new(robot.clone(), ByGeometry { far: 400, bands: 20 }).unwrap();
+
+    // No state is tested in the first approximation.
+    let tests = Cell::new(0);
+    let counts = |_: &Se2State| {
+        tests.set(tests.get() + 1);
+        true
+    };
+    let check = || Discrete::new(&space, counts, Resolution::Fraction(0.1)).unwrap();
+    let mut steer =
+        Steer::new(&space, Straight::new(&space, check()), Verifier::new(&space, &robot).unwrap(), 10);
+    let (map, mut out, mut first) = (Roadmap::new(), Vec::new(), generate());
+    for attempt in 0..400 {
+        first.generate(attempt, &map, &mut steer, &mut Rng::stream(7, attempt), &mut out);
+    }
+    drop(steer);
+    assert_eq!(tests.get(), 0);
+    assert!(out.len() > 10 && out.iter().all(|c| c.kind == Kind::Far && robot.is_far(&c.state)));
+
+    let all = candidates(&space, &robot, generate(), 400..800);
+    let mut count = [0; 4];
+    for c in &all {
+        match c.kind {
+            Kind::Far => assert!(robot.is_far(&c.state)),
+            Kind::Near => count[0] += 1,
+            Kind::Salvaged => count[1] += 1,
+            Kind::Plain => count[2] += 1,
+            _ => count[3] += 1,
+        }
+    }
+    assert!(count[0] > 50 && count[1] > 10 && count[2] > 10 && count[3] == 0, "{count:?}");
+    // In space the band's first kind has the axes of robot and obstacle parallel, its second across.
+    let pillar = block("pillar", [0.4, 0.3, 2.0], [0.0; 3]);
+    let rod = FreeFlyer::new(&cuboid(0.8, 0.1, 0.1).unwrap(), [pillar]).unwrap();
+    let space = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
+    let check = Certified::new(&space, rod.clone(), rod.tolerance()).unwrap();
+    let mut steer =
+        Steer::new(&space, Straight::new(&space, check), Verifier::new(&space, &rod).unwrap(), 10);
+    let mut generate = AroundObstacles::new(rod.clone(), ByGeometry { far: 0, bands: 20 }).unwrap();
+    let (map, mut pairs) = (Roadmap::new(), 0);
+    for attempt in (0..200).step_by(2) {
+        out_of(&mut generate, attempt, &map, &mut steer, &mut pairs);
+    }
+    assert!(pairs > 80, "{pairs}");
+}
+
+type Rod<'c> = Straight<'c, Se3, Certified<'c, Se3, FreeFlyer>>;
+
+fn out_of(
+    generate: &mut AroundObstacles<FreeFlyer>,
+    attempt: u64,
+    map: &Roadmap<Isometry3<f64>>,
+    steer: &mut Steer<'_, Se3, Rod<'_>>,
+    pairs: &mut u32,
+) {
+    let mut out = Vec::new();
+    generate.generate(attempt, map, steer, &mut Rng::stream(3, attempt), &mut out);
+    let axes: Vec<Vector3<f64>> = out.iter().map(|c| c.state.rotation * Vector3::x()).collect();
+    if let [parallel, across] = axes[..] {
+        assert!(parallel.z.abs() > 1.0 - 1e-9 && across.z.abs() < 1e-9);
+        *pairs += 1;
+    }
+}
+
+#[test]
+fn what_cannot_be_made_says_why() {
+    let (space, robot) = (plane(), corridor(0.25));
+    for name in ["obprm", "geometry-prm"] {
+        let error = build(name, problem(&space, &robot), &Settings::default()).err().unwrap();
+        assert!(error.to_string().contains("what obstacles look like"), "{error}");
+    }
+    let refused = |name: &str, setting: &str| {
+        let settings = Settings::parse([setting]).unwrap();
+        let index = <Se2 as DefaultNn>::Nn::default();
+        build_among(name, problem(&space, &robot), index, robot.clone(), &settings).err()
+    };
+    for setting in [
+        "nodes=many",
+        "points=2",
+        "directions=0",
+        "gap=0",
+        "shells=0",
+        "uniform=1.5",
+        "connect=all",
+        "per-obstacle=x",
+        "turns=4",
+        "neighbours=0",
+        "bands=3",
+    ] {
+        assert!(refused("obprm", setting).is_some(), "{setting}");
+    }
+    for setting in ["bands=0", "far=-1", "far=9999999999", "sigma=1"] {
+        assert!(refused("obstacle-geometry-prm", setting).is_some(), "{setting}");
+    }
+    for (name, setting) in
+        [("gaussian-prm", "sigma=0"), ("bridge-prm", "uniform=-1"), ("gaussian-prm", "sigma=900")]
+    {
+        assert!(refused(name, setting).is_some(), "{name} {setting}");
+    }
+    let each = Among::EachObstacle(0);
+    let within = Reachable { neighbours: 5, radius: 1.0, cycles: false };
+    assert!(Stages::new(robot.clone(), within, each, Turns::WhereFar).is_err());
+    assert!(Stages::new(robot, within, Among::Nearest, Turns::At(vec![0.5, 1.5])).is_err());
+    // Tables and defaults agree.
+    for (info, read) in [(obprm::INFO, true), (obstacle_geometry_prm::INFO, false)] {
+        let all = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));
+        let settings = Settings::parse(all).unwrap();
+        assert!(!read || OnSurfaces::read(&settings).unwrap() == OnSurfaces::default());
+    }
+}
