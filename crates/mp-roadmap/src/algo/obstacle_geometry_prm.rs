@@ -207,7 +207,7 @@ where
             if self.hints.is_far(&q) {
                 out.push(Candidate::new(q, Kind::Far));
             }
-        } else if obstacles > 0 && attempt % 2 == 0 {
+        } else if obstacles > 0 && attempt.is_multiple_of(2) {
             let obstacle = (attempt / 2 % obstacles) as usize;
             self.band(obstacle, (&q, Kind::Near), steer, rng, out);
         } else if steer.admits(&q) {

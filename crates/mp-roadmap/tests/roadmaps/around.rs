@@ -28,7 +28,7 @@ fn plane() -> Se2 {
 }
 
 /// Of motions: coarse, as tests are to be quick.
-const TOLERANCE: f64 = 0.01;
+const TOLERANCE: f64 = 0.004;
 
 type Local<'c> = Straight<'c, Se2, Certified<'c, Se2, PlanarFlyer>>;
 
@@ -50,10 +50,10 @@ fn made<'c>(name: &str, settings: &str, space: &'c Se2, robot: &PlanarFlyer) -> 
 const ALL: [(&str, &str); 11] = [
     ("obprm", "nodes=prototype"),
     ("obprm", "nodes=contact points=centers"),
-    ("obprm", "nodes=contact points=vertices turns=0"),
+    ("obprm", "nodes=free points=vertices turns=0 gap=5%"),
     ("obprm", "nodes=free"),
     ("obprm", "nodes=shells"),
-    ("obprm", "connect=obstacles turns=3 uniform=0"),
+    ("obprm", "connect=obstacles turns=3"),
     ("ob-prm", "connect=obstacles per-obstacle=5 cycles=yes"),
     ("obstacle-geometry-prm", ""),
     ("geometry-prm", "far=0 bands=40"),
@@ -63,7 +63,7 @@ const ALL: [(&str, &str); 11] = [
 
 #[test]
 fn a_rod_goes_through_a_corridor() {
-    let (space, robot) = (plane(), corridor(0.3));
+    let (space, robot) = (plane(), corridor(0.4));
     let mut verifier = Verifier::new(&space, &robot).unwrap();
     for (name, settings) in ALL {
         for seed in 0..2 {
@@ -73,12 +73,15 @@ fn a_rod_goes_through_a_corridor() {
                 panic!("{name} {settings} seed {seed}: {:?}", planner.progress())
             };
             assert!(verify_path(&space, &path, &mut verifier).is_free(), "{name} {settings}");
+            if seed > 0 {
+                continue;
+            }
             let again = made(name, settings, &space, &robot).solve(
                 &mut Rng::seed(seed),
                 &mut Iterations(20_000),
                 &mut (),
             );
-            assert!(seed > 0 || again == Outcome::Solved(path), "the same seed, the same path");
+            assert!(again == Outcome::Solved(path), "the same seed, the same path");
         }
     }
 }
@@ -142,7 +145,7 @@ fn nodes_of_obprm_are_on_surfaces() {
     let (space, mut robot) = (plane(), corridor(0.25));
     let gap = 0.01 * space.extent();
     for strategy in [Strategy::Prototype, Strategy::Contact, Strategy::Free, Strategy::Shells] {
-        let with = OnSurfaces { strategy, uniform: 0.0, ..OnSurfaces::default() };
+        let with = OnSurfaces { strategy, gap: Step::Fraction(0.01), uniform: 0.0, ..OnSurfaces::default() };
         let generate = OnObstacles::new(&space, robot.clone(), with).unwrap();
         let all = candidates(&space, &robot, generate, 0..200);
         let of = |kind| all.iter().filter(move |c| c.kind == kind);
