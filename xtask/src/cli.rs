@@ -90,6 +90,9 @@ pub(crate) struct Plan {
     /// Leave the path as the planner found it.
     #[arg(long)]
     pub(crate) no_shorten: bool,
+    /// Instead of shortening the path, leave out what it does not need and let a snake relax it away from obstacles.
+    #[arg(long)]
+    pub(crate) relax: bool,
     /// Also write each scene to this folder as one JSON and two OFF files, for other planners.
     #[arg(long, value_name = "DIR")]
     pub(crate) export: Option<PathBuf>,
@@ -306,7 +309,7 @@ fn planners() -> Vec<PossibleValue> {
         };
         PossibleValue::new(p.name).aliases(p.aliases).help(format!("{}{also}", p.summary))
     };
-    mp::tree::planners().iter().map(value).collect()
+    mp::tree::planners().iter().chain(mp::tree::snake_planners()).map(value).collect()
 }
 
 /// A finite number above zero.

@@ -1,7 +1,7 @@
-//! Which way the clearance of a rigid body grows, by nearest points.
+//! Which way the clearance of a robot grows: of a rigid body by nearest points, of an arm by differences.
 
-use crate::{Placement, RigidBody};
-use mp_cspace::ClearanceGradient;
+use crate::{Arm, Placement, RigidBody};
+use mp_cspace::{Clearance, ClearanceGradient, Coordinates};
 use nalgebra::{Isometry3, Point3, Vector3};
 
 /// By the nearest points of robot and obstacles.
@@ -71,4 +71,30 @@ fn write<P: Placement>(pose: &Isometry3<f64>, at: &Point3<f64>, way: &Vector3<f6
     let moves = P::MOVES.iter().map(|&axis| way[axis]);
     let numbers = moves.chain(P::TURNS.iter().map(|&axis| turning[axis]));
     gradient.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
+}
+
+/// By differences: clearance queries at `q` and beside it, one more than there are joints. In collision zeros: an
+/// arm knows no depth.
+impl<Q: Coordinates> ClearanceGradient<Q> for Arm {
+    fn clearance_gradient(&mut self, q: &Q, reach: f64, gradient: &mut [f64]) -> f64 {
+        gradient.fill(0.0);
+        let here = self.clearance(q, reach);
+        if here <= 0.0 || here >= reach {
+            return here;
+        }
+        let mut beside = q.clone();
+        for (k, slope) in gradient.iter_mut().enumerate().take(q.as_slice().len()) {
+            // Toward the inside where a joint is at its limit.
+            for step in [1e-5, -1e-5] {
+                beside.as_mut_slice()[k] = q.as_slice()[k] + step;
+                let there = self.clearance(&beside, 2.0 * here + 1.0);
+                if there > 0.0 {
+                    *slope = (there - here) / step;
+                    break;
+                }
+            }
+            beside.as_mut_slice()[k] = q.as_slice()[k];
+        }
+        here
+    }
 }

@@ -1,6 +1,6 @@
 //! Whole paths relaxed.
 
-use crate::{Energy, Params, Repulsion, Rest, Snake, SnakeError};
+use crate::{Params, Repulsion, Snake, SnakeError};
 use mp_cspace::{ClearanceGradient, MotionValidity, Path, Space};
 
 /// A path that was relaxed.
@@ -32,9 +32,10 @@ impl<S> Relaxed<S> {
 /// - it has less energy than the path, which says that it is safer, smoother or shorter, and
 /// - it is no longer than the path times `stretch` (at least 1): at 1 safety is only taken where it costs no length.
 ///
-/// The snake is looked at after 1, 2, 4, … steps and at the end; the last curve that meets all this is taken, and at
-/// the first in collision the snake is stopped. A path that takes more than ten thousand nodes stays as it is. Give a
-/// `check` you trust: nothing else is asked.
+/// After each step of the snake, nodes beside a piece that is not free go back to where they were, so that the curve is
+/// free all the time and only what is tight stays behind. It ends when a step gains nothing. A path that takes more
+/// than ten thousand nodes stays as it is. Give a `check` you trust: nothing else is asked. Per step one check for
+/// each piece that moved, and three questions to the field per node.
 ///
 /// # Errors
 /// When a parameter is out of range, or the space knows no velocities.
@@ -47,33 +48,60 @@ pub fn relax<C: Space>(
     stretch: f64,
 ) -> Result<Relaxed<C::State>, SnakeError> {
     crate::error::within("the stretch", stretch, 1.0, f64::MAX, "at least 1 and finite")?;
-    let mut snake = Snake::new(space, params)?;
+    let mut snake = Snake::new(space, Params { iterations: 1, ..params })?;
+    params.checked()?;
     let before = path.length(space);
-    let as_it_was = Relaxed { path: path.clone(), length: [before; 2], energy: [0.0; 2], iterations: 0 };
+    let mut best = Relaxed { path: path.clone(), length: [before; 2], energy: [0.0; 2], iterations: 0 };
     if before > 1e4 * params.spacing {
-        return Ok(as_it_was);
+        return Ok(best);
     }
     let mut curve = path.resampled(space, params.spacing)?.states;
     let first = snake.energy(&curve, field).total();
-    let mut best = Relaxed { energy: [first; 2], ..as_it_was };
-    // Whether the curve is free; the better of it and the best.
-    let mut look = |states: &[C::State], energy: f64, iterations: u32| {
-        let free = states.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free());
-        let length: f64 = states.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
-        if free && energy < best.energy[0] && length <= stretch * before {
-            let path = Path::straight(states.to_vec());
+    best.energy = [first; 2];
+    if !curve.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free()) {
+        return Ok(best);
+    }
+    let mut energy = first;
+    let mut next = curve.clone();
+    for iterations in 1..=params.iterations {
+        next.clone_from(&curve);
+        snake.deform(&mut next, field, |_| false);
+        go_back_where_blocked(check, &curve, &mut next);
+        let gained = energy - snake.energy(&next, field).total();
+        // Written so that NaN ends it.
+        if !(gained > LEAST_GAIN * energy) {
+            break;
+        }
+        energy -= gained;
+        std::mem::swap(&mut curve, &mut next);
+        let length: f64 = curve.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
+        if energy < best.energy[0] && length <= stretch * before {
+            let path = Path::straight(curve.clone());
             best = Relaxed { path, length: [length, before], energy: [energy, first], iterations };
         }
-        free
-    };
-    let mut done = 0;
-    let rest = snake.deform(&mut curve, field, |moment| {
-        done = moment.iteration;
-        done.is_power_of_two() && !look(moment.curve, moment.energy.total(), done)
-    });
-    if rest != Rest::Stopped {
-        let last = snake.trace().last().map_or(first, Energy::total);
-        look(&curve, last, done);
     }
     Ok(best)
+}
+
+/// Steps that lower the energy by less than this part of it end the relaxation.
+const LEAST_GAIN: f64 = 1e-6;
+
+/// Puts the ends of each piece of `next` that is not free where they were in `curve`, until all are free, as those of
+/// `curve` are.
+fn go_back_where_blocked<S: Clone + PartialEq>(
+    check: &mut impl MotionValidity<S>,
+    curve: &[S],
+    next: &mut [S],
+) {
+    let mut i = 0;
+    while i + 1 < next.len() {
+        let as_before = (i..=i + 1).all(|k| next[k] == curve[k]);
+        if as_before || check.check_motion(&next[i], &next[i + 1]).is_free() {
+            i += 1;
+            continue;
+        }
+        next[i..=i + 1].clone_from_slice(&curve[i..=i + 1]);
+        // The piece before has another end now.
+        i = i.saturating_sub(1);
+    }
 }

@@ -19,6 +19,8 @@ pub(crate) struct Options {
     pub(crate) time: Duration,
     pub(crate) iterations: Option<u64>,
     pub(crate) shorten: bool,
+    /// Relax the path instead.
+    pub(crate) relax: bool,
 }
 
 impl Options {
@@ -49,7 +51,8 @@ impl Options {
             motion: args.motion,
             time,
             iterations: args.iterations,
-            shorten: !args.no_shorten,
+            shorten: !args.no_shorten && !args.relax,
+            relax: args.relax,
         })
     }
 
@@ -65,6 +68,7 @@ impl Options {
             time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
             iterations: None,
             shorten: false,
+            relax: false,
         })
     }
 }

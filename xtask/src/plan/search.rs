@@ -13,10 +13,17 @@ use mp::cspace::{
     MotionValidity, NearestNeighbors, ObstacleHints, Outcome, ParameterError, Path, Progress, Resolution,
     Rng, Room, Space, Stop, StopReason, Straight, Stretch, Validity, WithMetric,
 };
+use mp::cspace::{ClearanceGradient, shorten::reduce, verify_path};
 use mp::robot::{Arm, RigidBody};
-use mp::tree::{BuildError, Goals, Problem, build_from, improve};
+use mp::snake::{Params, Repulsion, relax};
+use mp::tree::{BuildError, Goals, Problem, build_from, build_snake, improve, snake_planners};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
+
+/// From how far obstacles push a path that is relaxed, as a part of the extent.
+const RELAX_RANGE: f64 = 0.03;
+/// How much longer relaxing may make what is left after needless states.
+const MOST_STRETCH: f64 = 1.15;
 
 /// What a planner came back with.
 #[derive(Clone, Debug)]
@@ -137,6 +144,12 @@ impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
     }
 }
 
+impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, R> {
+    fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
+        self.robot.clearance_gradient(q, reach, gradient)
+    }
+}
+
 /// One run: the same for robots of all kinds.
 pub(crate) struct Run<'a, B: Space, R, V> {
     /// The space with its own metric.
@@ -156,7 +169,7 @@ impl<'a, B, R, V> Run<'a, B, R, V>
 where
     B: Space,
     R: Validity<B::State> + Clearance<B::State> + MotionBound<B::State> + ObstacleHints<B::State>,
-    R: Queries + Clone + Send + Sync,
+    R: ClearanceGradient<B::State> + Queries + Clone + Send + Sync,
     V: MotionValidity<B::State> + Clone + Send + Sync,
 {
     /// The motion check that the options ask for.
@@ -182,6 +195,29 @@ where
         })
     }
 
+    /// The path without the states it does not need, relaxed by a snake: where that is not free by the verifier, the
+    /// path itself. In the own metric of the space it is no longer than the path.
+    fn relaxed(&self, path: Path<B::State>) -> Result<Path<B::State>> {
+        let range = RELAX_RANGE * self.space.extent();
+        let mut check = Certified::new(self.space, self.robot.clone(), self.tolerance).into_diagnostic()?;
+        let mut field = Repulsion::new(self.robot.clone(), range).into_diagnostic()?;
+        let short = reduce(self.space, &mut check, &path);
+        let [found, least] = [&path, &short].map(|path| path.length(self.space));
+        let params =
+            Params { straighten: 0.5, iterations: 200, ..Params::for_range(range).into_diagnostic()? };
+        // Safety may cost some length, of what was saved.
+        let stretch = if least > 0.0 { (found / least).clamp(1.0, MOST_STRETCH) } else { 1.0 };
+        let relaxed =
+            relax(self.space, &mut check, &mut field, &short, params, stretch).into_diagnostic()?.path;
+        let verified = verify_path(self.space, &relaxed, &mut self.verifier.clone());
+        if let Some(fault) = verified.fault {
+            tracing::info!("the relaxed path does not pass the verifier: {fault}");
+            return Ok(path);
+        }
+        tracing::info!("relaxed: length {found} to {}", relaxed.length(self.space));
+        Ok(relaxed)
+    }
+
     /// Plans in `space`, which differs from that of the run in its metric only.
     pub(crate) fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<B::State>>
     where
@@ -201,8 +237,14 @@ where
                 Ok(problem.with_hints(Counted { robot: self.robot.clone(), queries: &queries }))
             };
             let name = options.planner.to_string();
-            let mut planner =
-                build_from(&name, problem, index, &options.settings, &options.workers).into_diagnostic()?;
+            let bends = snake_planners().iter().any(|info| info.name == name);
+            let mut planner = if bends {
+                let field = Counted { robot: self.robot.clone(), queries: &queries };
+                problem().and_then(|problem| build_snake(&name, problem, field, index, &options.settings))
+            } else {
+                build_from(&name, problem, index, &options.settings, &options.workers)
+            }
+            .into_diagnostic()?;
             let mut stop = self
                 .cancel
                 .clone()
@@ -216,6 +258,7 @@ where
                     first = first.or_else(|| improves.then(|| (began.elapsed(), path.length(space))));
                 });
             let outcome = match (best, reason) {
+                (Some(path), _) if options.relax => Outcome::Solved(self.relaxed(path)?),
                 (Some(path), _) => Outcome::Solved(path),
                 (None, reason) => Outcome::Stopped(reason.unwrap_or(StopReason::Cancelled)),
             };

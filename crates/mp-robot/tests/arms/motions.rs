@@ -296,3 +296,9 @@ fn static_and_dynamic_configurations_agree() {
         assert_eq!(a_check.check_motion(&a, &b), b_check.check_motion(&c, &d));
     }
 }
+
+#[test]
+fn gradients_are_derivatives_of_the_clearance() {
+    let (mut arm, space) = arm();
+    mp_cspace::testkit::check_clearance_gradient(&space, &mut arm, 0.5, (200, 1e-5, 1e-3), 2);
+}
