@@ -68,8 +68,7 @@ pub fn relax<C: Space>(
         snake.deform(&mut next, field, |_| false);
         go_back_where_blocked(check, &curve, &mut next);
         let gained = energy - snake.energy(&next, field).total();
-        // Written so that NaN ends it.
-        if !(gained > LEAST_GAIN * energy) {
+        if gained.is_nan() || gained <= LEAST_GAIN * energy {
             break;
         }
         energy -= gained;
