@@ -31,14 +31,15 @@
 //!
 //! **When to use it.** Narrow passages that obstacles of moderate size leave between them. It needs
 //! [`ObstacleGeometry`], which rigid bodies among meshes have. With certified motions take `free`: nodes in contact have next to no
-//! clearance, so motions between them cost much to check, and mostly fail.
+//! clearance, so motions between them cost much to check, and mostly fail. A rod of 0.8 m by 0.1 m before a corridor 0.175 m wide, 20 seeds
+//! of 100,000 collision queries, certified: `free` 20 solved, `shells` 3, `contact` and `prototype` none, PRM 14; 0.1375 m wide: `free` 10, PRM 1.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `nodes`: how they are made | prototype, contact, free, shells | free |
 //! | `points`: of robot and obstacle | centers, vertices, surface | surface |
 //! | `directions`: of `prototype`, m | 1, 2, … 1000 | 10 |
-//! | `gap`: of `free` and `shells`, in the metric of the space or with % of its extent | positive | 5% |
+//! | `gap`: of `free` and `shells`, in the metric of the space or with % of its extent | positive | 1% |
 //! | `shells`: how many | 1, 2, … 100 | 3 |
 //! | `uniform`: part of the attempts that are uniform samples | \[0, 1\] | 0.1 |
 //! | `connect`: to which nodes | nearest, obstacles | nearest |
@@ -130,7 +131,7 @@ impl Default for OnSurfaces {
             strategy: Strategy::Free,
             points: PointOf::Surface,
             directions: 10,
-            gap: Step::Fraction(0.05),
+            gap: Step::Fraction(0.01),
             shells: 3,
             uniform: 0.1,
             among: Among::Nearest,
@@ -159,7 +160,7 @@ const DIRECTIONS: Parameter =
 const GAP: Parameter = parameter(
     "gap",
     "in (0, extent of the space], or with % in (0%, 100%] of the extent",
-    "5%",
+    "1%",
     "how far behind contact `free` nodes are at most, and `shells` from each other",
 );
 const SHELLS: Parameter = parameter("shells", "a whole number, 1 to 100", "3", "shells behind contact");

@@ -31,7 +31,8 @@
 //!
 //! **When to use it.** Scenes of separate, compact obstacles, with long robots. Where one obstacle encloses the scene, as
 //! the walls of a room in one piece do, no configuration is far, and what is left is mostly plain PRM. It needs
-//! [`ObstacleGeometry`], which rigid bodies among meshes have.
+//! [`ObstacleGeometry`], which rigid bodies among meshes have. In the corridors told of at [OBPRM](super::obprm) it solved 20 and 9 of 20; in
+//! one 0.25 m wide it took 3,000 collision queries, where PRM took 12,000 to 19,000 (medians).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
