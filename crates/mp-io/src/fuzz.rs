@@ -5,7 +5,9 @@
 //! `MP_FUZZ_ITERATIONS` says; `docs/fuzzing.md` tells how to call them from a coverage-guided fuzzer.
 
 use crate::collada::Scene;
-use crate::{Environment, Error, JointPath, OffDocument, OmplProblem, PathFile, RobotFile};
+use crate::{
+    Environment, Error, FlatFile, GridMap, JointPath, OffDocument, OmplProblem, PathFile, RobotFile, RosMap,
+};
 use crate::{gempa_mesh_text, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
 
@@ -13,7 +15,7 @@ use mp_geom::TriMesh;
 pub type Target = fn(&[u8]) -> bool;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 12] = [
+pub const TARGETS: [(&str, Target); 15] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -26,6 +28,9 @@ pub const TARGETS: [(&str, Target); 12] = [
     ("robot-problem", robot_problem),
     ("joint-path", joint_path),
     ("json-joint-path", json_joint_path),
+    ("flat-world", flat_world),
+    ("ros-map", ros_map),
+    ("map-image", map_image),
 ];
 
 /// OFF documents.
@@ -105,6 +110,22 @@ pub fn json_joint_path(bytes: &[u8]) -> bool {
     let Some(path) = good(JointPath::parse_json("f.json", bytes)) else { return false };
     assert_eq!(good(JointPath::parse_json("f.json", path.to_json().as_bytes())), Some(path));
     true
+}
+
+/// Worlds in the plane.
+pub fn flat_world(bytes: &[u8]) -> bool {
+    good(FlatFile::parse("f.toml", bytes)).is_some()
+}
+
+/// Maps of ROS.
+pub fn ros_map(bytes: &[u8]) -> bool {
+    good(RosMap::parse("f.yaml", bytes)).is_some()
+}
+
+/// Images, and what is dark in them.
+pub fn map_image(bytes: &[u8]) -> bool {
+    let Some(grid) = good(GridMap::parse("f.png", bytes)) else { return false };
+    grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0).is_ok()
 }
 
 /// What was read. An error must be fit to be shown: one line, a place inside the file, a remedy.

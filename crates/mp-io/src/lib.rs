@@ -2,6 +2,7 @@
 //!
 //! - [`Problem::load`] reads a problem and its meshes, whatever the format.
 //! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
+//! - [`FlatProblem::load`] reads a world in the plane.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
 //! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: mesh formats.
@@ -13,6 +14,7 @@
 
 mod collada;
 mod error;
+mod flat;
 pub mod fuzz;
 mod gempa;
 mod json;
@@ -25,10 +27,12 @@ mod problem;
 mod robot;
 mod source;
 mod stl;
+mod tables;
 mod text;
 
 pub use collada::parse_collada;
 pub use error::{Error, ErrorKind};
+pub use flat::{FlatBody, FlatFile, FlatMap, FlatObstacle, FlatPart, FlatProblem, GridMap, RosMap};
 pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
 pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh};
 pub use obj::parse_obj;

@@ -5,9 +5,10 @@ mod path;
 
 pub use path::JointPath;
 
-use crate::error::{Error, ErrorKind};
-use crate::problem::{MAX_COORDINATE, PlacedBody};
+use crate::error::Error;
+use crate::problem::PlacedBody;
 use crate::source::decode;
+use crate::tables::Source;
 use mp_geom::pose_from_six;
 use nalgebra::Isometry3;
 use serde::Deserialize;
@@ -134,45 +135,6 @@ struct ObstacleTable {
     pose: Option<Spanned<[f64; 6]>>,
 }
 
-/// A text and the name that errors give it.
-struct Source<'a> {
-    file: &'a str,
-    text: &'a str,
-}
-
-impl Source<'_> {
-    fn error(&self, span: &Range<usize>, message: impl Into<String>) -> Error {
-        let length = span.end.saturating_sub(span.start).max(1);
-        Error::at(ErrorKind::Content, self.file, self.text, span.start, length, message.into()).help(GUIDE)
-    }
-
-    /// Finite and not absurdly large.
-    fn check(&self, what: &str, values: &[f64], span: &Range<usize>) -> Result<(), Error> {
-        match values.iter().find(|v| v.is_nan() || v.abs() > MAX_COORDINATE) {
-            None => Ok(()),
-            Some(v) => Err(self
-                .error(span, format!("{what} has {v}"))
-                .expected(format!("finite numbers below {MAX_COORDINATE:e}, in metres and radians"))),
-        }
-    }
-
-    fn positive(&self, what: &str, values: &[f64], span: &Range<usize>) -> Result<(), Error> {
-        self.check(what, values, span)?;
-        match values.iter().find(|v| **v <= 0.0) {
-            None => Ok(()),
-            Some(v) => {
-                Err(self.error(span, format!("{what} is {v}")).expected("lengths above zero, in metres"))
-            }
-        }
-    }
-
-    fn six(&self, what: &str, six: Option<Spanned<[f64; 6]>>) -> Result<[f64; 6], Error> {
-        let Some(six) = six else { return Ok([0.0; 6]) };
-        self.check(what, six.get_ref(), &six.span())?;
-        Ok(six.into_inner())
-    }
-}
-
 impl RobotFile {
     /// Reads `bytes`, the content of a robot problem that errors call `file`. No other file is read.
     ///
@@ -180,15 +142,8 @@ impl RobotFile {
     /// [`Error`] when it is not a robot problem, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let read: File = toml::from_str(text).map_err(|e| {
-            let span = e.span().unwrap_or(0..0);
-            // One line, whatever the parser says.
-            let message = e.message().split_whitespace().collect::<Vec<_>>().join(" ");
-            let message = crate::text::clipped_to(&message, 300);
-            let length = span.end.saturating_sub(span.start).max(1);
-            Error::at(ErrorKind::Format, file, text, span.start, length, message).help(GUIDE)
-        })?;
-        let source = Source { file, text };
+        let source = Source { file, text, guide: GUIDE };
+        let read: File = source.read()?;
         let File { robot, motion, obstacle } = read;
         let mut places = Places { urdf: robot.urdf.span(), start: motion.start.span(), ..Places::default() };
         places.srdf = robot.srdf.as_ref().map_or(0..0, Spanned::span);
@@ -252,7 +207,7 @@ impl RobotFile {
             RobotPart::Goal(i) => self.places.goals.get(i).unwrap_or(&self.places.start),
             RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),
         };
-        Source { file: &self.file, text: &self.text }.error(span, message).help(help)
+        Source { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
     }
 }
 

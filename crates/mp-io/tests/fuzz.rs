@@ -55,6 +55,17 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             "motion = { start = [0], goals = [[1], [2]] }\nrobot = { urdf = \"a\" }\n[[obstacle]]\ncylinder = [0.1, 1]\n\
              [[obstacle]]\nmesh = \"w.off\"\n",
         ],
+        "flat-world" => &[
+            "[world]\nwalls = [[0, 0], [4, 3]]\n[robot]\ndisc = 0.07\n[motion]\nstart = [1, 1]\ngoal = [2, 2]\n[[obstacle]]\n\
+             rectangle = [[1, 1], [2, 1.5]]\n[[obstacle]]\npolygon = [[2, 2], [3, 2], [3, 2.5]]\nholes = [[[2.8, 2.1], [2.9, 2.1], [2.9, 2]]]\n",
+            "world = { image = \"a.png\", scale = 0.01, origin = [0, 1], threshold = 0.4 }\nrobot = { polygon = [[0, 0], [1, 0], [0, 1]] }\n\
+             motion = { start = [0, 0, 1], goals = [[1, 1, 0]] }\n[[obstacle]]\ncircle = [1, 1, 0.5]\n",
+        ],
+        "ros-map" => &[
+            "image: a.pgm\nresolution: 0.05\norigin: [-1, 2.5, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
+            "# a\nimage: 'b c.png'\nresolution: 1e-2\norigin:\n- 0\n- -1\n- 0.5\nmode: trinary\n",
+        ],
+        "map-image" => &["P2\n3 2\n255\n0 255 128\n255 0 0\n", "P1 4 2\n0 1 0 1\n1 1 0 0\n"],
         "joint-path" => &["3 2\n0 0\n0.5 -1e-3\n1 1\n", "1 7\n0 0 0 0 0 0 3.25\n"],
         "json-joint-path" => {
             &["{\"solved\": true, \"path\": [[0, 0, 0],\n[1.5, -2e-3, 3]], \"name\": \"\\u00e9\"}"]

@@ -1,0 +1,390 @@
+//! Worlds in the plane: polygons, images and maps, a robot, a start and goals, in TOML.
+
+mod load;
+mod map;
+#[cfg(test)]
+mod tests;
+
+pub use map::{GridMap, RosMap};
+
+use crate::error::Error;
+use crate::source::decode;
+use crate::tables::Source;
+use mp_geom::flat::Polygon;
+use nalgebra::Point2;
+use serde::Deserialize;
+use std::ops::Range;
+use toml::Spanned;
+
+/// The page that describes the format.
+const GUIDE: &str = "the format is described in docs/formats/flat-world.md";
+
+/// Corners of a polygon around a circle.
+const CORNERS: usize = 32;
+
+/// A robot in the plane, in its own frame, metres.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FlatBody {
+    /// A disc of this radius, which does not turn.
+    Disc(f64),
+    /// A polygon, which turns about the origin.
+    Polygon(Polygon),
+}
+
+/// An obstacle of a [`FlatFile`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatObstacle {
+    /// What messages call it.
+    pub name: String,
+    /// Its shape in the world, metres.
+    pub polygon: Polygon,
+}
+
+/// The image of a world, as the file says it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FlatMap {
+    /// An image with its scale.
+    Image {
+        /// The name of the file.
+        file: String,
+        /// Metres per pixel.
+        scale: f64,
+        /// The lower left corner, metres.
+        origin: [f64; 2],
+        /// What is darker, of 0 (black) to 1 (white), is obstacle.
+        threshold: f64,
+    },
+    /// The name of a map as ROS's map_server has them.
+    Ros(String),
+}
+
+/// What a file of a world in the plane says, other files not yet read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatFile {
+    /// Lower and upper corner of walls around everything.
+    pub walls: Option<[[f64; 2]; 2]>,
+    /// Lower and upper corner of where the origin of the robot may be.
+    pub bounds: Option<[[f64; 2]; 2]>,
+    /// An image whose dark pixels are obstacles.
+    pub map: Option<FlatMap>,
+    /// Whether what a ROS map does not know is free.
+    pub unknown_is_free: bool,
+    /// The polygons.
+    pub obstacles: Vec<FlatObstacle>,
+    /// The robot.
+    pub robot: FlatBody,
+    /// The start: x and y, and for a polygon the angle (rad).
+    pub start: Vec<f64>,
+    /// The goals, at least one.
+    pub goals: Vec<Vec<f64>>,
+    places: Places,
+    text: String,
+    file: String,
+}
+
+/// Where things are in the text.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Places {
+    world: Range<usize>,
+    map: Range<usize>,
+    start: Range<usize>,
+    goals: Vec<Range<usize>>,
+}
+
+/// A part of a [`FlatFile`] that an error can point at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FlatPart {
+    /// The table `world`.
+    World,
+    /// The name of the image or map.
+    Map,
+    /// The start.
+    Start,
+    /// The goal of this index.
+    Goal(usize),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    world: Spanned<WorldTable>,
+    robot: Spanned<RobotTable>,
+    motion: MotionTable,
+    #[serde(default)]
+    obstacle: Vec<Spanned<ObstacleTable>>,
+}
+
+type Corners = Spanned<[[f64; 2]; 2]>;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct WorldTable {
+    walls: Option<Corners>,
+    bounds: Option<Corners>,
+    image: Option<Spanned<String>>,
+    scale: Option<Spanned<f64>>,
+    origin: Option<Spanned<[f64; 2]>>,
+    threshold: Option<Spanned<f64>>,
+    map: Option<Spanned<String>>,
+    unknown: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RobotTable {
+    disc: Option<Spanned<f64>>,
+    polygon: Option<Spanned<Vec<[f64; 2]>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MotionTable {
+    start: Spanned<Vec<f64>>,
+    goal: Option<Spanned<Vec<f64>>>,
+    goals: Option<Spanned<Vec<Spanned<Vec<f64>>>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ObstacleTable {
+    name: Option<String>,
+    polygon: Option<Spanned<Vec<[f64; 2]>>>,
+    #[serde(default)]
+    holes: Vec<Spanned<Vec<[f64; 2]>>>,
+    rectangle: Option<Corners>,
+    circle: Option<Spanned<[f64; 3]>>,
+}
+
+impl FlatFile {
+    /// Reads `bytes`, the content of a world in the plane that errors call `file`. No other file is read.
+    ///
+    /// # Errors
+    /// [`Error`] when it is none, with the line and column.
+    pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
+        let text = decode(file, bytes)?;
+        let source = Source { file, text, guide: GUIDE };
+        let File { world, robot, motion, obstacle } = source.read()?;
+        let mut places = Places { world: world.span(), start: motion.start.span(), ..Places::default() };
+        let world = world.into_inner();
+        let walls = corners(&source, "the walls", world.walls.as_ref())?;
+        let bounds = corners(&source, "the bounds", world.bounds.as_ref())?;
+        let unknown_is_free = match world.unknown.as_ref().map(|u| u.get_ref().as_str()) {
+            None | Some("obstacle") => false,
+            Some("free") => true,
+            Some(_) => {
+                let span = world.unknown.as_ref().map_or(0..0, Spanned::span);
+                let message = "what is unknown is neither obstacle nor free";
+                return Err(source.error(&span, message).expected("`unknown = \"obstacle\"` or `\"free\"`"));
+            }
+        };
+        places.map = world.image.as_ref().or(world.map.as_ref()).map_or(0..0, Spanned::span);
+        let map = map_of(&source, world, &places)?;
+        let body = body(&source, robot)?;
+        let numbers = if matches!(body, FlatBody::Disc(_)) { 2 } else { 3 };
+        let state = |what: &str, q: &Spanned<Vec<f64>>| {
+            source.check(what, q.get_ref(), &q.span())?;
+            if q.get_ref().len() == numbers {
+                return Ok(());
+            }
+            let message = format!("{what} has {} numbers", q.get_ref().len());
+            let expected = if numbers == 2 { "x and y: a disc does not turn" } else { "x, y and the angle" };
+            Err(source.error(&q.span(), message).expected(expected))
+        };
+        state("the start", &motion.start)?;
+        let goals = match (motion.goal, motion.goals) {
+            (Some(goal), None) => vec![goal],
+            (None, Some(goals)) if !goals.get_ref().is_empty() => goals.into_inner(),
+            (None, Some(goals)) => {
+                return Err(source.error(&goals.span(), "there are no goals").expected("at least one"));
+            }
+            (Some(_), Some(goals)) => {
+                let message = "there is a goal and a list of goals";
+                return Err(source.error(&goals.span(), message).expected("`goal` or `goals`, not both"));
+            }
+            (None, None) => {
+                let message = "the motion has no goal";
+                return Err(source.error(&places.start, message).expected("`goal = [...]` beside `start`"));
+            }
+        };
+        for goal in &goals {
+            state("the goal", goal)?;
+            places.goals.push(goal.span());
+        }
+        let obstacles = obstacle.into_iter().enumerate().map(|(i, o)| entry(&source, i, o));
+        Ok(Self {
+            walls,
+            bounds,
+            map,
+            unknown_is_free,
+            obstacles: obstacles.collect::<Result<_, _>>()?,
+            robot: body,
+            start: motion.start.into_inner(),
+            goals: goals.into_iter().map(Spanned::into_inner).collect(),
+            places,
+            text: text.to_owned(),
+            file: file.to_owned(),
+        })
+    }
+
+    /// An error about a part of the file, for faults that show only when the world is made.
+    #[must_use]
+    pub fn fault(&self, part: FlatPart, message: &str, help: &str) -> Error {
+        let span = match part {
+            FlatPart::World => &self.places.world,
+            FlatPart::Map => &self.places.map,
+            FlatPart::Start => &self.places.start,
+            FlatPart::Goal(i) => self.places.goals.get(i).unwrap_or(&self.places.start),
+        };
+        Source { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
+    }
+}
+
+fn corners(source: &Source<'_>, what: &str, given: Option<&Corners>) -> Result<Option<[[f64; 2]; 2]>, Error> {
+    let Some(given) = given else { return Ok(None) };
+    let ([low, high], span) = (*given.get_ref(), given.span());
+    source.check(what, &[low, high].concat(), &span)?;
+    if low[0] < high[0] && low[1] < high[1] {
+        return Ok(Some([low, high]));
+    }
+    let message = format!("{what} from ({}, {}) to ({}, {}) hold nothing", low[0], low[1], high[0], high[1]);
+    Err(source.error(&span, message).expected("the lower left corner, then the upper right"))
+}
+
+/// The image or map, and that nothing is said of another kind.
+fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Option<FlatMap>, Error> {
+    let of_image = [
+        ("scale", world.scale.as_ref().map(Spanned::span)),
+        ("origin", world.origin.as_ref().map(Spanned::span)),
+        ("threshold", world.threshold.as_ref().map(Spanned::span)),
+    ];
+    let stray = of_image.iter().find_map(|(name, span)| Some((name, span.clone()?)));
+    match (world.image, world.map, stray) {
+        (Some(_), Some(map), _) => {
+            let message = "there is an image and a map";
+            Err(source.error(&map.span(), message).expected("`image` or `map`, not both"))
+        }
+        (None, _, Some((name, span))) => {
+            let message = format!("`{name}` is of an image, and there is none");
+            Err(source.error(&span, message).expected("`image = \"FILE\"` beside it"))
+        }
+        (None, map, None) => Ok(map.map(|name| FlatMap::Ros(name.into_inner()))),
+        (Some(image), None, _) => {
+            let Some(scale) = world.scale else {
+                let message = "the image has no scale";
+                return Err(source.error(&places.map, message).expected("`scale = METRES_PER_PIXEL`"));
+            };
+            source.positive("the scale", &[*scale.get_ref()], &scale.span())?;
+            let origin = match world.origin {
+                Some(origin) => {
+                    source.check("the origin", origin.get_ref(), &origin.span())?;
+                    origin.into_inner()
+                }
+                None => [0.0; 2],
+            };
+            let threshold = match world.threshold {
+                Some(t) if (0.0..=1.0).contains(t.get_ref()) => t.into_inner(),
+                Some(t) => {
+                    let message = format!("the threshold is {}", t.get_ref());
+                    return Err(source
+                        .error(&t.span(), message)
+                        .expected("a number from 0 (black) to 1 (white)"));
+                }
+                None => 0.5,
+            };
+            Ok(Some(FlatMap::Image {
+                file: image.into_inner(),
+                scale: scale.into_inner(),
+                origin,
+                threshold,
+            }))
+        }
+    }
+}
+
+fn body(source: &Source<'_>, robot: Spanned<RobotTable>) -> Result<FlatBody, Error> {
+    let span = robot.span();
+    match robot.into_inner() {
+        RobotTable { disc: Some(radius), polygon: None } => {
+            source.positive("the radius", &[*radius.get_ref()], &radius.span())?;
+            Ok(FlatBody::Disc(radius.into_inner()))
+        }
+        RobotTable { disc: None, polygon: Some(ring) } => {
+            Ok(FlatBody::Polygon(polygon(source, "the robot", vec![ring])?))
+        }
+        _ => {
+            let message = "the robot is not one of a disc and a polygon";
+            Err(source.error(&span, message).expected("`disc = RADIUS` or `polygon = [[x, y], ...]`"))
+        }
+    }
+}
+
+fn polygon(source: &Source<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) -> Result<Polygon, Error> {
+    let mut points = Vec::new();
+    let mut whole = 0..0;
+    for (i, ring) in rings.into_iter().enumerate() {
+        let span = ring.span();
+        source.check(what, &ring.get_ref().concat(), &span)?;
+        if ring.get_ref().len() < 3 {
+            let message = format!("{what} has a ring of {} points", ring.get_ref().len());
+            return Err(source.error(&span, message).expected("at least three points"));
+        }
+        if i == 0 {
+            whole = span;
+        }
+        points.push(ring.into_inner().into_iter().map(Point2::from).collect());
+    }
+    Polygon::new(points).map_err(|e| source.error(&whole, format!("{what}: {e}")).expected("a polygon"))
+}
+
+fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<FlatObstacle, Error> {
+    let span = table.span();
+    let table = table.into_inner();
+    let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
+    let shown = crate::text::clipped(&name).to_string();
+    let made = |span: &Range<usize>, made: Result<Polygon, mp_geom::flat::PolygonError>| {
+        made.map_err(|e| source.error(span, format!("{shown}: {e}")).expected("sizes above zero, in metres"))
+    };
+    let polygon = match (table.polygon, table.rectangle, table.circle) {
+        (Some(outline), None, None) => {
+            let rings = [outline].into_iter().chain(table.holes).collect();
+            return Ok(FlatObstacle { polygon: polygon(source, &shown, rings)?, name });
+        }
+        (None, Some(rectangle), None) => {
+            let span = rectangle.span();
+            match corners(source, "the rectangle", Some(&rectangle))? {
+                Some([low, high]) => made(&span, Polygon::rectangle(low, high))?,
+                None => return Err(source.error(&span, format!("{shown} has no corners"))),
+            }
+        }
+        (None, None, Some(circle)) => {
+            let [x, y, radius] = *circle.get_ref();
+            source.check("the circle", &[x, y, radius], &circle.span())?;
+            made(&circle.span(), Polygon::around_circle([x, y], radius, CORNERS))?
+        }
+        _ => {
+            let message = format!("{shown} has not one shape");
+            return Err(source.error(&span, message).expected("one of `polygon`, `rectangle`, `circle`"));
+        }
+    };
+    match table.holes.first() {
+        None => Ok(FlatObstacle { name, polygon }),
+        Some(hole) => {
+            let message = format!("{shown} has holes, but is no polygon");
+            Err(source.error(&hole.span(), message).expected("`holes` beside `polygon` only"))
+        }
+    }
+}
+
+/// A world in the plane, all files read.
+#[derive(Clone, Debug)]
+pub struct FlatProblem {
+    /// The name of the file, without extension.
+    pub name: String,
+    /// What the file says.
+    pub file: FlatFile,
+    /// The obstacles: those of the file, then that of the image or map.
+    pub obstacles: Vec<FlatObstacle>,
+    /// Lower and upper corner of where the origin of the robot may be: as the file says, else within the walls,
+    /// else on the image.
+    pub bounds: [[f64; 2]; 2],
+}

@@ -1,0 +1,106 @@
+//! Worlds in the plane and the files they name.
+
+use super::{FlatFile, FlatMap, FlatObstacle, FlatPart, FlatProblem, GridMap, RosMap};
+use crate::error::Error;
+use crate::problem::MAX_COORDINATE;
+use crate::source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, read_file};
+use mp_geom::flat::Polygon;
+use nalgebra::Isometry2;
+use std::path::Path;
+
+impl FlatProblem {
+    /// Whether a file is a world in the plane: its name ends in `.toml`, and it has a table `world`.
+    #[must_use]
+    pub fn is_one(path: &Path) -> bool {
+        let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+        let begins = |line: &str| {
+            let line = line.trim_start();
+            line.starts_with("[world]")
+                || line.strip_prefix("world").is_some_and(|l| l.trim_start().starts_with(['=', '.']))
+        };
+        named
+            && read_file(path, MAX_TEXT_BYTES)
+                .is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(begins))
+    }
+
+    /// Reads a world in the plane, its image or map. File names are relative to the file that has them.
+    ///
+    /// # Errors
+    /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref();
+        let file = FlatFile::parse(&path.display().to_string(), &read_file(path, MAX_TEXT_BYTES)?)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut obstacles = file.obstacles.clone();
+        let mut extent = None;
+        if let Some(map) = &file.map {
+            let (polygon, corners) = read_map(map, file.unknown_is_free, folder).map_err(|e| match e {
+                Fault::File(e) => {
+                    let help = e.remedy().unwrap_or("check the name of the file").to_owned();
+                    file.fault(FlatPart::Map, &format!("this file is not usable: {e}"), &help)
+                        .with_kind(e.kind())
+                }
+                Fault::Size(message) => {
+                    file.fault(FlatPart::Map, &message, "coordinates are metres: check the scale")
+                }
+            })?;
+            extent = Some(corners);
+            obstacles.extend(polygon.map(|polygon| FlatObstacle { name: "the map".into(), polygon }));
+        }
+        let Some(bounds) = file.bounds.or(file.walls).or(extent) else {
+            let message = "the world has no bounds";
+            return Err(file.fault(FlatPart::World, message, "say `walls = [[x, y], [x, y]]`, or `bounds`"));
+        };
+        let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        Ok(Self { name, file, obstacles, bounds })
+    }
+}
+
+/// What can be wrong with a map.
+enum Fault {
+    File(Error),
+    Size(String),
+}
+
+impl From<Error> for Fault {
+    fn from(e: Error) -> Self {
+        Self::File(e)
+    }
+}
+
+/// The polygon of a map, and the box around it.
+fn read_map(
+    map: &FlatMap,
+    unknown_is_free: bool,
+    folder: &Path,
+) -> Result<(Option<Polygon>, [[f64; 2]; 2]), Fault> {
+    let grid =
+        |place: &Path| GridMap::parse(&place.display().to_string(), &read_file(place, MAX_MESH_BYTES)?);
+    let (grid, scale, origin, polygon) = match map {
+        FlatMap::Image { file, scale, origin: [x, y], threshold } => {
+            let grid = grid(&folder.join(file))?;
+            let dark = |brightness: f32| f64::from(brightness) < 255.0 * threshold;
+            let polygon = grid.outline(*scale, [*x, *y], dark);
+            (grid, *scale, [*x, *y, 0.0], polygon)
+        }
+        FlatMap::Ros(name) => {
+            let place = folder.join(name);
+            let map = RosMap::parse(&place.display().to_string(), &read_file(&place, MAX_TEXT_BYTES)?)?;
+            let image = place.parent().unwrap_or(Path::new("")).join(&map.image);
+            let grid = grid(&image)?;
+            let polygon = map.outline(&grid, unknown_is_free);
+            (grid, map.resolution, map.origin, polygon)
+        }
+    };
+    let [width, height] = grid.size.map(|n| n as f64 * scale);
+    let frame = Polygon::rectangle([0.0, 0.0], [width, height]);
+    let [x, y, yaw] = origin;
+    let [low, high] = frame
+        .map_err(|e| Fault::Size(e.to_string()))?
+        .transformed(&Isometry2::new([x, y].into(), yaw))
+        .bounds();
+    if low.coords.amax().max(high.coords.amax()) > MAX_COORDINATE {
+        return Err(Fault::Size(format!("the map reaches beyond {MAX_COORDINATE:e} m")));
+    }
+    Ok((polygon.map_err(|e| Fault::Size(e.to_string()))?, [low.into(), high.into()]))
+}

@@ -1,0 +1,124 @@
+use super::*;
+use crate::FlatProblem;
+
+const GOOD: &str = "[world]\nwalls = [[0, 0], [4, 3]]\n\n[robot]\ndisc = 0.07\n\n[motion]\nstart = [0.3, 0.3]\n\
+                    goal = [3.5, 2.5]\n\n[[obstacle]]\nname = \"box\"\nrectangle = [[1, 1], [2, 1.5]]\n\n\
+                    [[obstacle]]\npolygon = [[2, 2], [3, 2], [3, 2.5]]\nholes = [[[2.8, 2.1], [2.9, 2.1], [2.9, 2.2]]]\n\n\
+                    [[obstacle]]\ncircle = [3, 1, 0.25]\n";
+
+fn folder(problem: &str) -> (tempfile::TempDir, std::path::PathBuf) {
+    let dir = tempfile::tempdir().unwrap();
+    // Two rows of three pixels: the upper left and the lower right are black, one is grey.
+    std::fs::write(dir.path().join("map.pgm"), b"P5 3 2 255\n\x00\xff\xff\xff\x90\x00").unwrap();
+    let yaml = "image: map.pgm\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\
+                free_thresh: 0.196\n";
+    std::fs::write(dir.path().join("map.yaml"), yaml).unwrap();
+    let path = dir.path().join("room.toml");
+    std::fs::write(&path, problem).unwrap();
+    (dir, path)
+}
+
+#[test]
+fn a_world_of_polygons() {
+    let (_dir, path) = folder(GOOD);
+    assert!(FlatProblem::is_one(&path));
+    let problem = FlatProblem::load(&path).unwrap();
+    assert_eq!((problem.name.as_str(), &problem.file.robot), ("room", &FlatBody::Disc(0.07)));
+    assert_eq!(problem.bounds, [[0.0, 0.0], [4.0, 3.0]]);
+    let names: Vec<_> = problem.obstacles.iter().map(|o| o.name.as_str()).collect();
+    assert_eq!(names, ["box", "obstacle 2", "obstacle 3"]);
+    let areas: Vec<f64> = problem.obstacles.iter().map(|o| o.polygon.area()).collect();
+    assert!((areas[0] - 0.5).abs() < 1e-12 && (areas[1] - 0.245).abs() < 1e-12);
+    // Around the circle.
+    assert!(areas[2] > 0.19635 && areas[2] < 0.2);
+    let fault = problem.file.fault(FlatPart::Goal(0), "no", "move it");
+    assert_eq!((fault.line(), fault.column(), fault.remedy()), (Some(9), Some(8), Some("move it")));
+    let polygon = GOOD.replace("disc = 0.07", "polygon = [[0, 0], [1, 0], [0, 1]]");
+    let turned = polygon.replace("[0.3, 0.3]", "[0.3, 0.3, 0]").replace("[3.5, 2.5]", "[3.5, 2.5, 1.5]");
+    let file = FlatFile::parse("f", turned.as_bytes()).unwrap();
+    assert!(matches!(file.robot, FlatBody::Polygon(_)) && file.goals == [[3.5, 2.5, 1.5]]);
+}
+
+#[test]
+fn worlds_of_pixels() {
+    let at = |p: &Polygon, x: f64, y: f64| p.contains(&Point2::new(x, y));
+    for (world, unknown) in [
+        ("image = \"map.pgm\"\nscale = 0.5\norigin = [-1, 2]", false),
+        ("image = \"map.pgm\"\nscale = 0.5\norigin = [-1, 2]\nthreshold = 0.6", true),
+        ("map = \"map.yaml\"", true),
+        ("map = \"map.yaml\"\nunknown = \"free\"", false),
+    ] {
+        let (_dir, path) = folder(&GOOD.replace("walls = [[0, 0], [4, 3]]", world));
+        let problem = FlatProblem::load(&path).unwrap();
+        assert_eq!(problem.bounds, [[-1.0, 2.0], [0.5, 3.0]]);
+        let map = &problem.obstacles[3].polygon;
+        assert!(at(map, -0.75, 2.75) && at(map, 0.25, 2.25), "{world}");
+        assert!(!at(map, -0.75, 2.25) && !at(map, -0.25, 2.75));
+        assert_eq!(at(map, -0.25, 2.25), unknown, "{world}");
+    }
+}
+
+#[test]
+fn faults_have_their_place() {
+    let image = GOOD.replace("walls = [[0, 0], [4, 3]]", "image = \"map.pgm\"\nscale = 0.5");
+    let mut wrong = Vec::new();
+    for (good, from, to, line, words) in [
+        (GOOD, "walls = [[0, 0], [4, 3]]", "", 1, "no bounds"),
+        (GOOD, "[[0, 0], [4, 3]]", "[[0, 0], [4, 0]]", 2, "the walls"),
+        (GOOD, "walls", "wall", 2, "wall"),
+        (GOOD, "walls = [", "scale = 1\nwalls = [", 2, "`scale` is of an image"),
+        (GOOD, "disc = 0.07", "", 4, "disc and a polygon"),
+        (GOOD, "disc = 0.07", "disc = 0", 5, "the radius is 0"),
+        (GOOD, "disc = 0.07", "polygon = [[0, 0], [1, 1]]", 5, "2 points"),
+        (GOOD, "[0.3, 0.3]", "[0.3, 0.3, 0]", 8, "the start has 3"),
+        (GOOD, "[0.3, 0.3]", "[0.3, nan]", 8, "the start has NaN"),
+        (GOOD, "goal = [3.5, 2.5]", "", 8, "no goal"),
+        (GOOD, "[3.5, 2.5]", "[3.5]", 9, "the goal has 1"),
+        (GOOD, "[2, 1.5]", "[1, 1.5]", 13, "the rectangle"),
+        (GOOD, "rectangle = [[1, 1], [2, 1.5]]", "", 11, "not one shape"),
+        (GOOD, "0.25]", "-0.25]", 20, "radius"),
+        (GOOD, "circle = ", "holes = [[[0, 0], [1, 0], [0, 1]]]\ncircle = ", 20, "holes"),
+        (GOOD, ", [3, 2.5]]", "]", 16, "2 points"),
+        (&image, "scale = 0.5", "", 2, "no scale"),
+        (&image, "scale = 0.5", "scale = -1", 3, "the scale is -1"),
+        (&image, "scale = 0.5", "scale = 0.5\nthreshold = 2", 4, "the threshold is 2"),
+        (&image, "scale = 0.5", "scale = 0.5\nmap = \"map.yaml\"", 4, "an image and a map"),
+        (&image, "scale = 0.5", "scale = 9e8", 2, "beyond"),
+        (&image, "map.pgm", "nap.pgm", 2, "no such file"),
+        (&image, "map.pgm", "map.yaml", 2, "no image"),
+        (GOOD, "walls = ", "unknown = \"no\"\nwalls = ", 2, "neither"),
+    ] {
+        assert!(good.contains(from), "{from}");
+        let (_dir, path) = folder(&good.replacen(from, to, 1));
+        let error = FlatProblem::load(&path).unwrap_err();
+        let shown = error.to_string();
+        let placed = error.line() == Some(line) && shown.contains(words);
+        if !placed || error.remedy().is_none() || shown.contains('\n') {
+            wrong.push(format!("{to}: {shown}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn maps_of_ros() {
+    let text = "# a map\nimage: \"a b.png\"  # here\nresolution: 0.05\norigin:\n  - -1.5\n  - 2\n- 0.1\nnegate: 1\nmode: trinary\nx: y\n";
+    let map = RosMap::parse("m.yaml", text.as_bytes()).unwrap();
+    assert_eq!((map.image.as_str(), map.origin, map.negate), ("a b.png", [-1.5, 2.0, 0.1], true));
+    for (from, to, line, words) in [
+        ("resolution: 0.05", "", 10, "no `resolution`"),
+        ("0.05", "-1", 3, "resolution is -1"),
+        ("0.05", "five", 3, "not metres"),
+        ("- 0.1", "", 4, "2 numbers"),
+        ("negate: 1", "negate: 2", 8, "neither"),
+        ("trinary", "scale", 9, "mode"),
+        ("x: y", "x", 10, "no key"),
+        ("x: y", "occupied_thresh: 1.5", 10, "not a probability"),
+        ("x: y", "free_thresh: 0.9", 1, "above"),
+        ("image: \"a b.png\"", "", 10, "no `image`"),
+    ] {
+        let error = RosMap::parse("m.yaml", text.replacen(from, to, 1).as_bytes()).unwrap_err();
+        assert!(error.to_string().contains(words) && error.remedy().is_some(), "{error}");
+        assert!(error.line().is_some_and(|l| l.abs_diff(line) <= 1), "{error}");
+    }
+}
