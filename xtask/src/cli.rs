@@ -60,7 +60,7 @@ pub(crate) struct Plan {
     /// Stop after this many iterations.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) iterations: Option<u64>,
-    /// Longest edge of a tree: a distance of the metric, or a percentage of the extent of the space
+    /// Longest edge of a tree, not of a roadmap: a distance of the metric, or a percentage of the extent of the space
     /// [default: 20%].
     #[arg(long, value_name = "ε")]
     pub(crate) step: Option<Length>,
@@ -77,6 +77,10 @@ pub(crate) struct Plan {
     /// Set a parameter of the planner.
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
+    /// The file of a roadmap: goes on with it when it is there, and keeps what there is in the end. For the same
+    /// scene, robot and metric, and planners that build roadmaps.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) roadmap: Option<PathBuf>,
     /// Where the path goes: a GEMPA configuration file, or JSON if it ends in `.json`. `{scene}` and
     /// `{seed}` stand for their names.
     #[arg(long, value_name = "FILE")]
@@ -161,11 +165,12 @@ pub(crate) struct Bench {
     pub(crate) rsrt: BenchRsrt,
 }
 
-/// What only the suite `rsrt` has.
+/// What only the suites `rsrt` and `roadmaps` have.
 #[derive(Clone, Debug, Default, Args)]
-#[command(next_help_heading = "Of the suite `rsrt`")]
+#[command(next_help_heading = "Of the suites `rsrt` and `roadmaps`")]
 pub(crate) struct BenchRsrt {
-    /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6; 0.25 with --quick].
+    /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6, of `roadmaps`
+    /// 2; 0.25 with --quick].
     #[arg(long, value_name = "S", value_parser = positive)]
     pub(crate) cap: Option<f64>,
     /// How many runs at once [default: one for each core]; what is found does not depend on it.
@@ -214,6 +219,8 @@ pub(crate) enum Suite {
     Collide,
     /// Experiments of Jouandeau et al. 2008: natural expansion; RSRT and RRT in growing clutter.
     Rsrt,
+    /// Roadmaps: corridors that shrink by halves, shipped scenes, many queries, growth.
+    Roadmaps,
     /// Growth of an RRT where nothing is in the way, against its size.
     Scaling,
 }
@@ -291,7 +298,9 @@ impl TypedValueParser for PlannerName {
         value: &OsStr,
     ) -> Result<String, clap::Error> {
         match value.to_str() {
-            Some(name) if mp::tree::Named::new(name).is_ok() => Ok(name.to_owned()),
+            Some(name) if mp::tree::Named::new(name).is_ok() || mp::roadmap::planner(name).is_ok() => {
+                Ok(name.to_owned())
+            }
             _ => PossibleValuesParser::new(planners()).parse_ref(command, arg, value),
         }
     }
@@ -309,7 +318,13 @@ fn planners() -> Vec<PossibleValue> {
         };
         PossibleValue::new(p.name).aliases(p.aliases).help(format!("{}{also}", p.summary))
     };
-    mp::tree::planners().iter().chain(mp::tree::snake_planners()).map(value).collect()
+    mp::tree::planners()
+        .iter()
+        .chain(mp::tree::snake_planners())
+        .chain(mp::roadmap::planners())
+        .chain(mp::roadmap::planners_among())
+        .map(value)
+        .collect()
 }
 
 /// A finite number above zero.

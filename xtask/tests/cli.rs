@@ -6,7 +6,7 @@ use common::{Dir, xtask};
 use serde_json::Value;
 
 /// Every field of the JSON of one run, and whether it may be null.
-const FIELDS: [(&str, bool); 26] = [
+const FIELDS: [(&str, bool); 28] = [
     ("scene", false),
     ("scene_file", false),
     ("space", false),
@@ -19,6 +19,8 @@ const FIELDS: [(&str, bool); 26] = [
     ("seed", false),
     ("iterations", false),
     ("nodes", false),
+    ("edges", true),
+    ("components", true),
     ("motion_checks", false),
     ("collision_checks", false),
     ("rejected", false),
@@ -65,6 +67,38 @@ fn plan_solves_verifies_and_writes() {
 
     let check = xtask(&dir, &["check", "window.env", "a/p.txt", "--json"]);
     assert_eq!((check.code, &check.json()["free"]), (0, &true.into()), "{check:?}");
+}
+
+#[test]
+fn a_roadmap_is_kept_and_gone_on_with() {
+    let dir = Dir::new();
+    let plan = |scene: &str, planner: &str, more: &[&str]| {
+        let args = ["plan", scene, "--planner", planner, "--roadmap", "kept.roadmap", "--json"];
+        xtask(&dir, &[&args[..], more].concat())
+    };
+    let first = plan("plane.env", "prm", &[]);
+    assert_eq!(first.code, 0, "{first:?}");
+    assert_fields(&first.json(), true);
+    assert!(first.json()["edges"].as_u64() >= Some(1), "{first:?}");
+    // Start and goal are connected already.
+    let second = plan("plane.env", "prm", &["--iterations", "1"]);
+    assert_eq!(second.code, 0, "{second:?}");
+    assert!(second.json()["nodes"].as_u64() >= first.json()["nodes"].as_u64());
+
+    for (scene, more, words) in [
+        ("window.env", &[][..], "another scene or robot"),
+        ("plane.env", &["--metric", "manhattan"][..], "another scene or robot"),
+    ] {
+        let other = plan(scene, "prm", more);
+        assert_eq!(other.code, 2, "{other:?}");
+        assert!(other.stderr.contains(words), "{other:?}");
+    }
+    let tree = plan("plane.env", "rrt-connect", &[]);
+    assert!(tree.code == 2 && tree.stderr.contains("has no roadmap"), "{tree:?}");
+    let bytes = dir.bytes("kept.roadmap");
+    dir.write("kept.roadmap", &bytes[..bytes.len() / 2]);
+    let cut = plan("plane.env", "prm", &[]);
+    assert!(cut.code == 2 && cut.stderr.contains("cut off"), "{cut:?}");
 }
 
 #[test]

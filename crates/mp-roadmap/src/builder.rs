@@ -1,5 +1,6 @@
 //! The one loop that builds roadmaps.
 
+use crate::ahead::{Ahead, Answers, Look};
 use crate::{Candidate, Connector, Growing, NodeGenerator, Roadmap, Steer};
 use mp_cspace::{
     BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
@@ -46,6 +47,7 @@ pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     seed: Option<u64>,
     attempts: u64,
     candidates: Vec<Candidate<C::State, L::Edge>>,
+    pub(crate) ahead: Ahead<'c, C, L, G, K, N>,
 }
 
 impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
@@ -59,7 +61,17 @@ where
     /// With no nodes yet; `index` is empty.
     pub fn new(steer: Steer<'c, C, L>, generate: G, connect: K, index: N) -> Self {
         let map = Roadmap::new();
-        Self { steer, map, index, generate, connect, seed: None, attempts: 0, candidates: Vec::new() }
+        Self {
+            steer,
+            map,
+            index,
+            generate,
+            connect,
+            seed: None,
+            attempts: 0,
+            candidates: Vec::new(),
+            ahead: Ahead::default(),
+        }
     }
 
     /// Goes on with a roadmap there is already, instead of none.
@@ -67,9 +79,16 @@ where
     /// # Errors
     /// When a state of it is outside the space.
     pub fn resume(mut self, map: Roadmap<C::State, L::Edge>) -> Result<Self, BuildError> {
+        self.replace(map)?;
+        Ok(self)
+    }
+
+    pub(crate) fn replace(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
         map.fill(self.steer.space(), &mut self.index)?;
         self.map = map;
-        Ok(self)
+        self.connect.resumed(&self.map);
+        self.ahead.ready.clear();
+        Ok(())
     }
 
     /// Takes in another roadmap of the same space and scene: its nodes and edges as they are, and then an
@@ -92,8 +111,13 @@ where
             observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
         }
         let mut near = Vec::new();
-        let mut growing =
-            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer };
+        let mut growing = Growing {
+            map: &mut self.map,
+            index: &mut self.index,
+            steer: &mut self.steer,
+            observer,
+            answers: Vec::new(),
+        };
         for id in before..growing.map.len() as NodeId {
             let q = growing.map.state(id).clone();
             growing.near(&q, neighbours.saturating_add(1), f64::INFINITY, &mut near);
@@ -104,6 +128,7 @@ where
                 }
             }
         }
+        self.connect.resumed(&self.map);
         Ok(())
     }
 
@@ -134,6 +159,16 @@ where
     pub fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Range<NodeId> {
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         let before = self.map.len() as NodeId;
+        self.look_ahead(seed);
+        if let Some(foreseen) = self.ahead.ready.pop_front() {
+            self.attempts += 1;
+            let mut last = None;
+            for (candidate, answers) in foreseen {
+                observer.on(Event::Sampled(&candidate.state));
+                last = self.take(candidate, answers, last, observer);
+            }
+            return before..self.map.len() as NodeId;
+        }
         let mut candidates = std::mem::take(&mut self.candidates);
         let mut stream = Rng::stream(seed, self.attempts);
         self.generate.generate(self.attempts, &self.map, &mut self.steer, &mut stream, &mut candidates);
@@ -141,16 +176,31 @@ where
         let mut last = None;
         for candidate in candidates.drain(..) {
             observer.on(Event::Sampled(&candidate.state));
-            last = self.take(candidate, last, observer);
+            last = self.take(candidate, Vec::new(), last, observer);
         }
         self.candidates = candidates;
         before..self.map.len() as NodeId
     }
 
-    /// Connects a candidate.
+    /// Has the threads make the next attempts, where there are any and none is left from before.
+    fn look_ahead(&mut self, seed: u64) {
+        let Some(work) = &mut self.ahead.work else { return };
+        let most = self.generate.independent(&self.map).min(self.ahead.most);
+        if !self.ahead.ready.is_empty() || most < 2 {
+            return;
+        }
+        self.map.refresh();
+        let attempts = self.attempts..self.attempts + most;
+        let (map, index) = (&self.map, &self.index);
+        let look = Look { map, index, generate: &self.generate, connect: &self.connect, seed, attempts };
+        self.ahead.ready = work(look).into();
+    }
+
+    /// Connects a candidate, of which the local planner has answered some questions already.
     fn take(
         &mut self,
         mut candidate: Candidate<C::State, L::Edge>,
+        answers: Answers<C::State, L::Edge>,
         last: Option<NodeId>,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<NodeId> {
@@ -158,7 +208,7 @@ where
             came.from = Some(came.from.or(last)?);
         }
         let mut growing =
-            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer };
+            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer, answers };
         self.connect.connect(candidate, &mut growing)
     }
 
@@ -168,8 +218,13 @@ where
         candidate: Candidate<C::State, L::Edge>,
         observer: &mut dyn Observer<C::State>,
     ) -> NodeId {
-        let mut growing =
-            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer };
+        let mut growing = Growing {
+            map: &mut self.map,
+            index: &mut self.index,
+            steer: &mut self.steer,
+            observer,
+            answers: Vec::new(),
+        };
         self.connect.adopt(candidate, &mut growing)
     }
 

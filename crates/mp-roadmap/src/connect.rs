@@ -1,5 +1,6 @@
 //! How candidates become nodes, and which edges they get.
 
+use crate::ahead::{Answers, Foreseeing};
 use crate::{Came, Candidate, Roadmap, Steer, Tag};
 use mp_cspace::{
     BuildError, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible, Space,
@@ -12,6 +13,8 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     pub(crate) index: &'a mut N,
     pub(crate) steer: &'a mut Steer<'c, C, L>,
     pub(crate) observer: &'a mut dyn Observer<C::State>,
+    /// Motions to the candidate that were asked for ahead.
+    pub(crate) answers: Answers<C::State, L::Edge>,
 }
 
 impl<'c, C, L, N> Growing<'_, 'c, C, L, N>
@@ -45,9 +48,20 @@ where
 
     /// The motion from a node to `q`, if the local planner has one. Counts as an attempt of the node.
     pub fn reach(&mut self, from: NodeId, q: &C::State) -> Option<Motion<C::State, L::Edge>> {
-        let motion = self.steer.reach(self.map.state(from), q);
+        let motion = self.ask(from, q);
         self.map.tried(from, motion.is_none());
         motion
+    }
+
+    /// What the local planner says of the motion from a node to the candidate, now or ahead.
+    fn ask(&mut self, from: NodeId, q: &C::State) -> Option<Motion<C::State, L::Edge>> {
+        match self.answers.iter_mut().find(|(node, _)| *node == from) {
+            Some((_, answer)) => {
+                let motion = answer.take();
+                self.steer.answered(self.map.state(from), motion, q)
+            }
+            None => self.steer.reach(self.map.state(from), q),
+        }
     }
 
     /// Adds a candidate as a node, with no edge but the one it was [come to](Candidate::came) by.
@@ -76,7 +90,8 @@ where
 
     /// Tries to connect a node to another: counts as an attempt of both. Whether there is an edge now.
     pub fn try_link(&mut self, from: NodeId, to: NodeId) -> bool {
-        let motion = self.steer.reach(self.map.state(from), self.map.state(to));
+        let q = self.map.state(to).clone();
+        let motion = self.ask(from, &q);
         let failed = motion.is_none();
         self.map.tried(from, failed);
         self.map.tried(to, failed);
@@ -102,6 +117,13 @@ pub trait Connector<C: Space, L: LocalPlanner<C::State>> {
         candidate: Candidate<C::State, L::Edge>,
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId;
+
+    /// Asks for the motions that connecting a candidate will probably ask for. What it does not ask for
+    /// ahead is asked for later; so nothing depends on it but the time.
+    fn foresee<N: NearestNeighbors<C>>(&self, _ahead: &mut Foreseeing<'_, '_, C, L, N>) {}
+
+    /// Goes on with a roadmap that it did not connect, or not all of it.
+    fn resumed(&mut self, _map: &Roadmap<C::State, L::Edge>) {}
 
     /// Whether nothing more is to be gained.
     fn exhausted(&self) -> bool {
@@ -170,6 +192,19 @@ where
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> Option<NodeId> {
         Some(self.adopt(candidate, growing))
+    }
+
+    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Foreseeing<'_, '_, C, L, N>) {
+        if self.lazy {
+            return;
+        }
+        let mut joined = Vec::new();
+        for hit in ahead.near(self.within.neighbours, self.within.radius) {
+            let part = ahead.component(hit.id);
+            if (self.within.cycles || !joined.contains(&part)) && ahead.reach(hit.id) {
+                joined.push(part);
+            }
+        }
     }
 
     fn adopt<N: NearestNeighbors<C>>(

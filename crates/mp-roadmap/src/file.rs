@@ -5,13 +5,21 @@ use mp_cspace::{NodeId, Numbers};
 use petgraph::visit::EdgeRef;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use xxhash_rust::xxh3::xxh3_64;
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 const MAGIC: [u8; 8] = *b"\x89MPR\r\n\x1a\n";
 const VERSION: u32 = 1;
 /// Where there is no obstacle, or no motion.
 const NONE: u32 = u32::MAX;
 const CHECKSUM: usize = 8;
+
+/// A hash of all numbers that a scene and a robot consist of, the same on any machine: XXH3-64 of them as
+/// little-endian doubles. Meant to notice that something has changed, not to resist forgery.
+pub fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
+    let mut hash = Xxh3::new();
+    numbers.into_iter().for_each(|x| hash.update(&x.to_le_bytes()));
+    hash.digest()
+}
 
 /// Why bytes are no roadmap, or not the one wanted.
 #[derive(Debug, thiserror::Error)]

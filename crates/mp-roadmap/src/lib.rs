@@ -54,10 +54,12 @@
 //! # What is promised
 //! - A path is returned only after the verifier has passed each of its edges, in the direction in which it
 //!   is run. An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
+//! - On several threads ([`Builder::on`]) the roadmap is the same to the bit as on one.
 //! - Bad input is a [`BuildError`](mp_cspace::BuildError) before planning begins.
 //! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
 //!   and going on changes nothing.
 
+mod ahead;
 pub mod algo;
 mod answers;
 mod builder;
@@ -74,6 +76,7 @@ mod settings;
 mod stages;
 mod steer;
 
+pub use ahead::Foreseeing;
 pub use algo::bridge_prm::{BetweenObstacles, BridgePrm};
 pub use algo::gaussian_prm::{GaussianPrm, NearObstacles};
 pub use algo::lazy_prm::{LazyPrm, Unchecked};
@@ -85,10 +88,10 @@ pub use algo::visibility_prm::{Visibility, VisibilityPrm};
 pub use answers::{Answers, Listed, Unanswered};
 pub use builder::{Builder, Pace, Recipe};
 pub use connect::{Connector, Growing, Nearest, Reachable};
-pub use file::{RoadmapError, RoadmapFileError};
+pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Came, Candidate, Free, NodeGenerator};
 pub use mixed::Mixing;
-pub use planner::{PATIENCE, RoadmapPlanner};
+pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
 pub use registry::{AnyPlanner, build, build_among, build_with, planner, planners, planners_among};
 pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};
 pub use search::{AStar, Entry, Query};

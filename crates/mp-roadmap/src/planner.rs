@@ -59,14 +59,6 @@ where
         }
     }
 
-    /// Goes on with a roadmap there is already.
-    ///
-    /// # Errors
-    /// When a state of it is outside the space.
-    pub fn resume(self, map: Roadmap<C::State, L::Edge>) -> Result<Self, BuildError> {
-        Ok(Self { builder: self.builder.resume(map)?, ..self })
-    }
-
     /// The roadmap; before the first step without start and goal.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
@@ -178,6 +170,44 @@ where
         map.passed(edge, backward);
     }
     true
+}
+
+/// A planner whose roadmap can be looked at, kept, and gone on with.
+pub trait HasRoadmap<S, E>: Planner<S, Edge = E>
+where
+    E: Clone,
+{
+    /// The roadmap; before the first step without start and goal.
+    fn map(&self) -> &Roadmap<S, E>;
+    /// The roadmap, to ask for its components.
+    fn map_mut(&mut self) -> &mut Roadmap<S, E>;
+    /// Goes on with a roadmap there is already, made by a planner of the same kind, instead of its own. Before
+    /// the first step.
+    ///
+    /// # Errors
+    /// When a state of it is outside the space.
+    fn resume(&mut self, map: Roadmap<S, E>) -> Result<(), BuildError>;
+}
+
+impl<C, L, G, K, Q, N> HasRoadmap<C::State, L::Edge> for RoadmapPlanner<'_, C, L, G, K, Q, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    G: NodeGenerator<C, L>,
+    K: Connector<C, L>,
+    Q: Query<C, L>,
+    N: NearestNeighbors<C>,
+{
+    fn map(&self) -> &Roadmap<C::State, L::Edge> {
+        self.builder.map()
+    }
+    fn map_mut(&mut self) -> &mut Roadmap<C::State, L::Edge> {
+        self.builder.map_mut()
+    }
+    fn resume(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
+        (self.ends, self.looked) = (None, 0);
+        self.builder.replace(map)
+    }
 }
 
 impl<C, L, G, K, Q, N> Planner<C::State> for RoadmapPlanner<'_, C, L, G, K, Q, N>

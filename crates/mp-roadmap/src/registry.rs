@@ -1,16 +1,16 @@
 //! Planners by name, for programs that choose at run time.
 
-use crate::RoadmapPlanner;
 use crate::algo::{
     bridge_prm, gaussian_prm, lazy_prm, obprm, obstacle_geometry_prm, prm, prm_star, visibility_prm,
 };
+use crate::{HasRoadmap, RoadmapPlanner};
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Planner, PlannerInfo, Problem,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, PlannerInfo, Problem,
     Reversible, Settings, Space, closest,
 };
 
 /// A planner chosen at run time.
-pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + Send + 'c>;
+pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;
 
 /// All planners of the crate that [`build`] makes.
 #[must_use]

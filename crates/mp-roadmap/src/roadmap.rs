@@ -258,7 +258,7 @@ impl<S, E> Roadmap<S, E> {
     }
 
     /// Works the components out anew, when an edge was blocked.
-    fn refresh(&mut self) {
+    pub(crate) fn refresh(&mut self) {
         if !self.stale {
             return;
         }
@@ -277,6 +277,11 @@ impl<S, E> Roadmap<S, E> {
     pub fn component(&mut self, id: NodeId) -> NodeId {
         self.refresh();
         self.sets.find_mut(id)
+    }
+
+    /// The same of a roadmap that is [refreshed](Self::refresh).
+    pub(crate) fn component_now(&self, id: NodeId) -> NodeId {
+        self.sets.find(id)
     }
 
     /// Whether two nodes are in the same component.

@@ -75,6 +75,17 @@ impl<'c, C: Space, L: LocalPlanner<C::State, Edge: Reversible>> Steer<'c, C, L> 
         (!self.distrusts() || self.passes(from, &motion.edge, to)).then_some(motion)
     }
 
+    /// What [`reach`](Self::reach) returns when the local planner's answer is `motion`; counts as asked.
+    pub(crate) fn answered(
+        &mut self,
+        from: &C::State,
+        motion: Option<Motion<C::State, L::Edge>>,
+        to: &C::State,
+    ) -> Option<Motion<C::State, L::Edge>> {
+        self.motions += 1;
+        motion.filter(|motion| !self.distrusts() || self.passes(from, &motion.edge, to))
+    }
+
     /// Whether so many paths were rejected that each new motion is verified.
     #[must_use]
     pub fn distrusts(&self) -> bool {

@@ -10,4 +10,4 @@ pub(crate) use check::check;
 pub(crate) use info::Facts;
 pub(crate) use picture::{draw_task, subject};
 pub(crate) use plan::{finish, search};
-pub(crate) use task::Task;
+pub(crate) use task::{State, Task};

@@ -20,12 +20,16 @@ pub(crate) fn search(
     line: &mut Line,
 ) -> Result<Search<State>> {
     let space = &task.space;
+    if options.roadmap.is_some() {
+        return Err(miette!(help = "leave --roadmap out", "roadmaps are kept of rigid bodies only"));
+    }
     let run = Run {
         space,
         robot: &task.arm,
         verifier: task.verifier()?,
         start: &task.start,
         goals: task.goals.clone(),
+        fingerprint: None,
         tolerance: task.tolerance,
         options,
         seed,

@@ -3,12 +3,15 @@
 mod chart;
 mod collide;
 mod growth;
+mod log;
 mod planners;
 mod rigid;
+mod roadmaps;
 mod rsrt;
 mod scaling;
+mod stats;
 
-pub(crate) use collide::PAIRS;
+pub(crate) use collide::{PAIRS, Processor, nanoseconds};
 
 use crate::cli;
 use crate::output::{note, print, write};
@@ -21,6 +24,7 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         cli::Suite::Planners => planners::run(args),
         cli::Suite::Rigid => rigid::run(args),
         cli::Suite::Rsrt => rsrt::run(args),
+        cli::Suite::Roadmaps => roadmaps::run(args),
         cli::Suite::Scaling => growth::run(args),
     }
 }

@@ -1,5 +1,7 @@
 //! `plan`.
 
+mod chosen;
+mod counted;
 mod files;
 pub(crate) mod finish;
 pub(crate) mod interrupt;
@@ -17,4 +19,5 @@ pub(crate) mod tuples;
 
 pub(crate) use options::Options;
 pub(crate) use run::{planned, run};
+pub(crate) use search::Map;
 pub(crate) use setting::Ready;

@@ -2,7 +2,7 @@
 
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
-    DefaultNn, Embed, EmbedFactors, MaxDisplacement, ScaledEuclidean, Se2, Se3, Space, TrueMetricOn,
+    DefaultNn, Embed, EmbedFactors, MaxDisplacement, Numbers, ScaledEuclidean, Se2, Se3, Space, TrueMetricOn,
 };
 use mp::geom::{Aabb, TriMesh};
 use mp::robot::{Placement, Planar, Spatial};
@@ -10,7 +10,7 @@ use nalgebra::{Point2, Point3};
 use std::fmt::Debug;
 
 /// A kind of rigid body.
-pub(crate) trait Mover: Placement<State: PartialEq + Send + Sync> {
+pub(crate) trait Mover: Placement<State: PartialEq + Send + Sync + Numbers> {
     type Space: Embed
         + EmbedFactors
         + DefaultNn<Nn: 'static>

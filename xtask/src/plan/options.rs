@@ -1,15 +1,17 @@
 //! What the command line asks for, checked.
 
+use super::chosen::Chosen;
 use super::metrics;
 use crate::cli::{self, Motion};
 use miette::{IntoDiagnostic, Result, miette};
-use mp::tree::{Named, Settings, Workers};
+use mp::cspace::{Settings, Workers};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// How to plan.
 #[derive(Clone, Debug)]
 pub(crate) struct Options {
-    pub(crate) planner: Named,
+    pub(crate) planner: Chosen,
     /// Threads that a planner may use.
     pub(crate) workers: Workers,
     pub(crate) settings: Settings,
@@ -17,15 +19,19 @@ pub(crate) struct Options {
     pub(crate) metric_name: String,
     pub(crate) motion: Motion,
     pub(crate) time: Duration,
+    /// Seconds of processor time, beside.
+    pub(crate) processor: Option<f64>,
     pub(crate) iterations: Option<u64>,
     pub(crate) shorten: bool,
     /// Relax the path instead.
     pub(crate) relax: bool,
+    /// The file of the roadmap to go on with.
+    pub(crate) roadmap: Option<PathBuf>,
 }
 
 impl Options {
     pub(crate) fn new(args: &cli::Plan) -> Result<Self> {
-        let planner = Named::new(&args.planner).into_diagnostic()?;
+        let planner = Chosen::new(&args.planner)?;
         let single = args.scenes.len() <= 1 && args.runs == 1;
         let threads = if single { usize::from(args.threads) } else { 1 };
         let mut settings = Settings::default();
@@ -38,7 +44,19 @@ impl Options {
                 _ => return Err(miette!(help = "write KEY=VALUE", "cannot read the setting `{text}`")),
             }
         }
-        planner.check(&settings).into_diagnostic()?;
+        planner.check(&settings)?;
+        if args.roadmap.is_some() {
+            if !single {
+                return Err(miette!(
+                    help = "name one scene, without --runs",
+                    "--roadmap goes with a single run"
+                ));
+            }
+            if !matches!(planner, Chosen::Roadmap(_)) {
+                let help = "take a planner that builds a roadmap, such as --planner prm";
+                return Err(miette!(help = help, "{planner} has no roadmap to keep"));
+            }
+        }
         let metric =
             metrics::named(&args.metric).ok_or_else(|| miette!("there is no metric `{}`", args.metric))?;
         let time = Duration::try_from_secs_f64(args.time).unwrap_or(Duration::MAX);
@@ -50,25 +68,29 @@ impl Options {
             metric_name: args.metric.clone(),
             motion: args.motion,
             time,
+            processor: None,
             iterations: args.iterations,
             shorten: !args.no_shorten && !args.relax,
             relax: args.relax,
+            roadmap: args.roadmap.clone(),
         })
     }
 
     /// A planner with its defaults, to be measured beside others.
     pub(crate) fn comparable(planner: &str, motion: Motion, seconds: f64) -> Result<Self> {
         Ok(Self {
-            planner: Named::new(planner).into_diagnostic()?,
+            planner: Chosen::new(planner)?,
             workers: Workers::alone(),
             settings: Settings::default(),
             metric: metrics::Kind::Default,
             metric_name: metrics::DEFAULT.to_owned(),
             motion,
             time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
+            processor: None,
             iterations: None,
             shorten: false,
             relax: false,
+            roadmap: None,
         })
     }
 }

@@ -20,6 +20,9 @@ pub(crate) struct Report {
     pub(crate) seed: u64,
     pub(crate) iterations: u64,
     pub(crate) nodes: usize,
+    /// Of a roadmap.
+    pub(crate) edges: Option<usize>,
+    pub(crate) components: Option<usize>,
     pub(crate) motion_checks: u64,
     pub(crate) collision_checks: u64,
     /// Candidate paths that the verifier did not pass.
@@ -83,6 +86,10 @@ impl Report {
         let mut row = |name: &str, text: String| lines.push(format!("  {name:<11}{text}"));
         row("iterations", grouped(self.iterations));
         row("nodes", grouped(self.nodes as u64));
+        if let (Some(edges), Some(components)) = (self.edges, self.components) {
+            let parts = if components == 1 { "component" } else { "components" };
+            row("roadmap", format!("{} edges, {components} {parts}", grouped(edges as u64)));
+        }
         row(
             "checks",
             format!(
@@ -261,6 +268,8 @@ mod tests {
             seed,
             iterations: 1234,
             nodes: 98765,
+            edges: None,
+            components: None,
             motion_checks: 5000,
             collision_checks: 1_000_000,
             rejected: 0,

@@ -75,6 +75,12 @@ pub(crate) struct Planned {
     pub(crate) seconds: f64,
     pub(crate) queries: u64,
     pub(crate) iterations: u64,
+    pub(crate) nodes: usize,
+    /// Seconds of processor time.
+    pub(crate) processor: f64,
+    pub(crate) motions: u64,
+    /// Of a roadmap.
+    pub(crate) map: Option<search::Map>,
 }
 
 /// Plans, and neither shortens nor writes.
@@ -87,6 +93,10 @@ pub(crate) fn planned(ready: &Ready, options: &Options, seed: u64) -> Result<Pla
             seconds: search.first.map_or(search.time, |(first, _)| first).as_secs_f64(),
             queries: search.queries,
             iterations: search.progress.iterations,
+            nodes: search.progress.nodes,
+            processor: search.processor,
+            motions: search.progress.motions,
+            map: search.map,
         })
     }
     match ready {
@@ -221,6 +231,8 @@ fn begun<S>(
         seed,
         iterations: search.progress.iterations,
         nodes: search.progress.nodes,
+        edges: search.map.map(|map| map.edges),
+        components: search.map.map(|map| map.components),
         motion_checks: search.progress.motions,
         collision_checks: search.queries,
         rejected: search.progress.rejected,

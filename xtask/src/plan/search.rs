@@ -1,23 +1,26 @@
 //! One run of a planner.
 
+use super::chosen::Chosen;
+use super::counted::{AnyRoadmap, Counted, Queries, Roadmaps};
 use super::measured::Measured;
 use super::metrics;
 use super::mover::Mover;
 use super::options::Options;
 use super::progress::Line;
 use super::setting::Setting;
+use crate::bench::{Processor, nanoseconds};
 use crate::cli::{Length, Motion};
-use miette::{IntoDiagnostic, Result};
+use miette::{IntoDiagnostic, Result, miette};
 use mp::cspace::{
     Cancel, Certified, Clearance, Deadline, DefaultNn, Discrete, Iterations, MetricOn, MotionBound,
-    MotionValidity, NearestNeighbors, ObstacleHints, Outcome, ParameterError, Path, Progress, Resolution,
-    Rng, Room, Space, Stop, StopReason, Straight, Stretch, Validity, WithMetric,
+    MotionValidity, NearestNeighbors, Numbers, ObstacleHints, Outcome, ParameterError, Path, Planner,
+    Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Validity, WithMetric,
 };
 use mp::cspace::{ClearanceGradient, shorten::reduce, verify_path};
-use mp::robot::{Arm, RigidBody};
+use mp::roadmap::{HasRoadmap, Roadmap};
 use mp::snake::{Params, Repulsion, relax};
-use mp::tree::{BuildError, Goals, Problem, build_from, build_snake, improve, snake_planners};
-use std::sync::atomic::{AtomicU64, Ordering};
+use mp::tree::{AnyPlanner, BuildError, Goals, Problem, build_from, build_snake, improve, snake_planners};
+use std::sync::atomic::AtomicU64;
 use std::time::{Duration, Instant};
 
 /// From how far obstacles push a path that is relaxed, as a part of the extent.
@@ -33,8 +36,19 @@ pub(crate) struct Search<S> {
     /// Collision queries asked.
     pub(crate) queries: u64,
     pub(crate) time: Duration,
+    /// Seconds of processor time.
+    pub(crate) processor: f64,
     /// When the first path was found and how long it was in the metric, of a planner that goes on for better ones.
     pub(crate) first: Option<(Duration, f64)>,
+    /// Of a planner that builds a roadmap.
+    pub(crate) map: Option<Map>,
+}
+
+/// What there is in a roadmap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Map {
+    pub(crate) edges: usize,
+    pub(crate) components: usize,
 }
 
 /// Plans from start to goal of `setting` with `seed`.
@@ -52,6 +66,7 @@ pub(crate) fn search<M: Mover>(
         verifier: setting.verifier()?,
         start: &setting.start,
         goals: vec![setting.goal.clone()],
+        fingerprint: options.roadmap.as_ref().map(|_| setting.fingerprint(&options.metric_name)),
         tolerance: setting.tolerance,
         options,
         seed,
@@ -70,83 +85,18 @@ pub(crate) fn with<C: Space + Clone, D: MetricOn<C>>(space: &C, metric: D) -> Wi
     WithMetric::new(space.clone(), metric)
 }
 
-/// What counts collision queries.
-pub(crate) trait Queries {
-    /// How many were asked so far.
-    fn queries(&self) -> u64;
+/// A planner made by name.
+enum Grower<'p, S> {
+    Tree(AnyPlanner<'p, S, ()>),
+    Roadmap(AnyRoadmap<'p, S>),
 }
 
-impl<M: Mover> Queries for RigidBody<M> {
-    fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
-    }
-}
-
-impl Queries for Arm {
-    fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
-    }
-}
-
-/// A robot whose counters go into a common sum when it is dropped.
-struct Counted<'a, R: Queries> {
-    robot: R,
-    queries: &'a AtomicU64,
-}
-
-impl<R: Queries> Drop for Counted<'_, R> {
-    fn drop(&mut self) {
-        self.queries.fetch_add(self.robot.queries(), Ordering::Relaxed);
-    }
-}
-impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
-    fn is_valid(&mut self, q: &S) -> bool {
-        self.robot.is_valid(q)
-    }
-    fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
-        self.robot.first_invalid(states)
-    }
-    fn batch_size(&self) -> usize {
-        self.robot.batch_size()
-    }
-}
-impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
-    fn clearance(&mut self, q: &S, enough: f64) -> f64 {
-        self.robot.clearance(q, enough)
-    }
-    fn in_contact(&mut self, q: &S) -> bool {
-        self.robot.in_contact(q)
-    }
-    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
-        self.robot.room(stretch)
-    }
-}
-impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
-    fn motion_bound(&self, from: &S, to: &S) -> f64 {
-        self.robot.motion_bound(from, to)
-    }
-}
-
-impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
-    fn touches(&mut self, q: &S) -> bool {
-        self.robot.touches(q)
-    }
-    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        self.robot.along(from, toward, hit, rng)
-    }
-    fn turned(&self, position: &S, rotation: &S) -> S {
-        self.robot.turned(position, rotation)
-    }
-    fn carried(&self, q: &S, from: &S, to: &S) -> S {
-        self.robot.carried(q, from, to)
-    }
-}
-
-impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, R> {
-    fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
-        self.robot.clearance_gradient(q, reach, gradient)
+impl<'p, S> Grower<'p, S> {
+    fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
+        match self {
+            Self::Tree(planner) => &mut **planner,
+            Self::Roadmap(planner) => &mut **planner,
+        }
     }
 }
 
@@ -158,6 +108,8 @@ pub(crate) struct Run<'a, B: Space, R, V> {
     pub(crate) verifier: V,
     pub(crate) start: &'a B::State,
     pub(crate) goals: Vec<B::State>,
+    /// Of scene, robot and metric, where a roadmap is kept.
+    pub(crate) fingerprint: Option<u64>,
     /// Of certified motions, metres.
     pub(crate) tolerance: f64,
     pub(crate) options: &'a Options,
@@ -167,9 +119,9 @@ pub(crate) struct Run<'a, B: Space, R, V> {
 
 impl<'a, B, R, V> Run<'a, B, R, V>
 where
-    B: Space,
+    B: Space<State: Numbers>,
     R: Validity<B::State> + Clearance<B::State> + MotionBound<B::State> + ObstacleHints<B::State>,
-    R: ClearanceGradient<B::State> + Queries + Clone + Send + Sync,
+    R: ClearanceGradient<B::State> + Queries + Roadmaps<B::State> + Clone + Send + Sync,
     V: MotionValidity<B::State> + Clone + Send + Sync,
 {
     /// The motion check that the options ask for.
@@ -182,7 +134,7 @@ where
         'a: 'c,
         R: 'c,
     {
-        let robot = Counted { robot: self.robot.clone(), queries };
+        let robot = Counted::new(self.robot.clone(), queries);
         Ok(match self.options.motion {
             Motion::Certified => Box::new(Certified::new(self.space, robot, self.tolerance)?),
             Motion::Discrete(length) => {
@@ -218,6 +170,26 @@ where
         Ok(relaxed)
     }
 
+    /// A planner that goes on with the roadmap that is kept, if there is one.
+    fn resumed<'p>(&self, mut planner: AnyRoadmap<'p, B::State>) -> Result<AnyRoadmap<'p, B::State>> {
+        if let (Some(file), Some(fingerprint)) = (&self.options.roadmap, self.fingerprint)
+            && file.exists()
+        {
+            let help = "name another file, or delete it to begin anew";
+            let map = Roadmap::load(file, fingerprint).map_err(|e| miette!(help = help, "{e}"))?;
+            planner.resume(map).into_diagnostic()?;
+        }
+        Ok(planner)
+    }
+
+    /// Writes the roadmap where it is to be kept, and says what is in it.
+    fn keep(&self, planner: &mut dyn HasRoadmap<B::State, ()>) -> Result<Map> {
+        if let (Some(file), Some(fingerprint)) = (&self.options.roadmap, self.fingerprint) {
+            crate::output::write(file, &planner.map().to_bytes(fingerprint))?;
+        }
+        Ok(Map { edges: planner.map().edges(), components: planner.map_mut().components() })
+    }
+
     /// Plans in `space`, which differs from that of the run in its metric only.
     pub(crate) fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<B::State>>
     where
@@ -226,35 +198,45 @@ where
     {
         let options = self.options;
         let queries = AtomicU64::new(0);
-        let began = Instant::now();
-        let (outcome, progress, first) = {
+        let (began, used) = (Instant::now(), nanoseconds());
+        let (outcome, progress, first, map, time, processor) = {
             let problem = || {
                 let unmade = |e: ParameterError| BuildError::Unmade { reason: e.to_string() };
                 let check = self.check(space, &queries).map_err(unmade)?;
                 let goal = Goals::states(self.goals.iter().cloned());
                 let (local, verifier) = (Straight::new(space, check), self.verifier.clone());
                 let problem = Problem::new(space, local, verifier, self.start.clone(), goal)?;
-                Ok(problem.with_hints(Counted { robot: self.robot.clone(), queries: &queries }))
+                Ok(problem.with_hints(Counted::new(self.robot.clone(), &queries)))
             };
-            let name = options.planner.to_string();
-            let bends = snake_planners().iter().any(|info| info.name == name);
-            let mut planner = if bends {
-                let field = Counted { robot: self.robot.clone(), queries: &queries };
-                problem().and_then(|problem| build_snake(&name, problem, field, index, &options.settings))
-            } else {
-                build_from(&name, problem, index, &options.settings, &options.workers)
-            }
-            .into_diagnostic()?;
+            let mut planner = match &options.planner {
+                Chosen::Tree(named) => {
+                    let (name, settings) = (named.to_string(), &options.settings);
+                    let tree = if snake_planners().iter().any(|info| info.name == name) {
+                        let field = Counted::new(self.robot.clone(), &queries);
+                        problem().and_then(|problem| build_snake(&name, problem, field, index, settings))
+                    } else {
+                        build_from(&name, problem, index, settings, &options.workers)
+                    };
+                    Grower::Tree(tree.into_diagnostic()?)
+                }
+                Chosen::Roadmap(info) => {
+                    let problem = problem().into_diagnostic()?;
+                    let robot = self.robot.clone();
+                    let made = robot.roadmap(info.name, problem, index, &options.settings, &queries);
+                    Grower::Roadmap(self.resumed(made.into_diagnostic()?)?)
+                }
+            };
             let mut stop = self
                 .cancel
                 .clone()
                 .or(options.iterations.map(Iterations))
                 .or(Deadline::at(began + options.time))
+                .or(options.processor.map(|s| Processor { until: used + s * 1e9 }))
                 .or(line);
             let mut first = None;
-            let improves = planner.improves();
+            let improves = planner.planner().improves();
             let (best, reason) =
-                improve(&mut *planner, &mut Rng::seed(self.seed), &mut stop, &mut (), |path, _| {
+                improve(planner.planner(), &mut Rng::seed(self.seed), &mut stop, &mut (), |path, _| {
                     first = first.or_else(|| improves.then(|| (began.elapsed(), path.length(space))));
                 });
             let outcome = match (best, reason) {
@@ -262,9 +244,15 @@ where
                 (Some(path), _) => Outcome::Solved(path),
                 (None, reason) => Outcome::Stopped(reason.unwrap_or(StopReason::Cancelled)),
             };
-            (outcome, planner.progress(), first)
+            let (time, processor) = (began.elapsed(), (nanoseconds() - used) * 1e-9);
+            let progress = planner.planner().progress();
+            let map = match &mut planner {
+                Grower::Tree(_) => None,
+                Grower::Roadmap(planner) => Some(self.keep(&mut **planner)?),
+            };
+            (outcome, progress, first, map, time, processor)
         };
-        Ok(Search { outcome, progress, queries: queries.into_inner(), time: began.elapsed(), first })
+        Ok(Search { outcome, progress, queries: queries.into_inner(), time, processor, first, map })
     }
 }
 

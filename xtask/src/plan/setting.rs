@@ -6,9 +6,10 @@ use crate::output::note;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use mp::collide::Query;
 use mp::cspace::{Clearance, Space};
-use mp::geom::six_from_pose;
+use mp::geom::{TriMesh, six_from_pose};
 use mp::io::{Problem, SpaceKind};
 use mp::robot::{Planar, RigidBody, Spatial, Verifier};
+use nalgebra::Isometry3;
 use std::path::Path;
 
 /// A problem and everything made of it once, for all runs.
@@ -94,6 +95,24 @@ impl<M: Mover> Setting<M> {
     /// The independent checker.
     pub(crate) fn verifier(&self) -> Result<Verifier<'_, M::Space, M>> {
         Verifier::new(&self.space, &self.robot).into_diagnostic()
+    }
+
+    /// A hash of the scene, the robot and the name of the metric.
+    pub(crate) fn fingerprint(&self, metric: &str) -> u64 {
+        let problem = &self.problem;
+        let bounds = problem.position_bounds();
+        let mut numbers: Vec<f64> = [bounds.min, bounds.max].iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        numbers.push(f64::from(u8::from(problem.space == SpaceKind::Se2)));
+        numbers.extend(metric.bytes().map(f64::from));
+        let mut mesh = |mesh: &TriMesh, pose: &Isometry3<f64>| {
+            numbers.push(mesh.vertices().len() as f64);
+            numbers.extend(mesh.vertices().iter().flat_map(|p| [p.x, p.y, p.z]));
+            numbers.extend(mesh.triangles().iter().flatten().map(|&i| f64::from(i)));
+            numbers.extend(pose.to_homogeneous().iter());
+        };
+        mesh(&problem.robot.mesh, &Isometry3::identity());
+        problem.obstacles.iter().for_each(|o| mesh(&o.mesh, &o.pose));
+        mp::roadmap::fingerprint(numbers)
     }
 
     fn overlaps(&self) -> Vec<String> {

@@ -44,7 +44,9 @@
 //! ```
 
 use crate::settings::UNDIRECTED;
-use crate::{AStar, Candidate, Connector, Free, Growing, Nearest, Pace, Reachable, Recipe, RoadmapPlanner};
+use crate::{
+    AStar, Candidate, Connector, Foreseeing, Free, Growing, Nearest, Pace, Reachable, Recipe, RoadmapPlanner,
+};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
     Reversible, Settings, Space, Uniform,
@@ -89,6 +91,11 @@ impl Star {
         let per_log = factor * std::f64::consts::E * (1.0 + 1.0 / dim.max(1) as f64);
         Ok(Self { nearest: Nearest::new(within)?, per_log })
     }
+
+    /// k(n).
+    fn neighbours(&self, n: usize) -> usize {
+        (self.per_log * (n as f64).ln()).ceil().max(1.0) as usize
+    }
 }
 
 impl<C, L> Connector<C, L> for Star
@@ -104,13 +111,19 @@ where
         Some(self.adopt(candidate, growing))
     }
 
+    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Foreseeing<'_, '_, C, L, N>) {
+        let k = self.neighbours(ahead.nodes() + 1);
+        ahead.near(k, f64::INFINITY).iter().for_each(|hit| {
+            ahead.reach(hit.id);
+        });
+    }
+
     fn adopt<N: NearestNeighbors<C>>(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId {
-        let n = (growing.map().len() + 1) as f64;
-        self.nearest.within.neighbours = (self.per_log * n.ln()).ceil().max(1.0) as usize;
+        self.nearest.within.neighbours = self.neighbours(growing.map().len() + 1);
         self.nearest.adopt(candidate, growing)
     }
 }

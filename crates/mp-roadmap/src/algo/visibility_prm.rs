@@ -83,7 +83,7 @@ pub struct Visibility {
     /// The guards of each component, in the order of their first.
     parts: Vec<Vec<NodeId>>,
     /// How many edges were blocked when these were the components.
-    blocked: usize,
+    blocked: Option<usize>,
 }
 
 /// A guard that sees a candidate, the number of its component, and the motion from it.
@@ -96,7 +96,7 @@ impl Visibility {
     /// When that is not from 1 to 10⁹.
     pub fn new(failures: u64) -> Result<Self, BuildError> {
         let most = BuildError::count_within(FAILURES.name, failures, 1, 1_000_000_000)?;
-        Ok(Self { most, failures: 0, parts: Vec::new(), blocked: 0 })
+        Ok(Self { most, failures: 0, parts: Vec::new(), blocked: Some(0) })
     }
 
     /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry
@@ -114,10 +114,10 @@ impl Visibility {
 
     /// Works the components of guards out anew when edges were blocked.
     fn regroup<S, E>(&mut self, map: &mut Roadmap<S, E>) {
-        if map.blocked() == self.blocked {
+        if self.blocked == Some(map.blocked()) {
             return;
         }
-        self.blocked = map.blocked();
+        self.blocked = Some(map.blocked());
         let mut guards: Vec<NodeId> = std::mem::take(&mut self.parts).concat();
         guards.sort_unstable();
         let mut names: Vec<NodeId> = Vec::new();
@@ -236,6 +236,11 @@ where
             true => self.guard(candidate, growing),
             false => self.join(candidate, seen, growing),
         }
+    }
+
+    fn resumed(&mut self, map: &Roadmap<C::State, L::Edge>) {
+        let guards = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == Kind::Guard);
+        (self.parts, self.blocked, self.failures) = (vec![guards.collect()], None, 0);
     }
 
     fn exhausted(&self) -> bool {

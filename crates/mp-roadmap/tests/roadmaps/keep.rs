@@ -193,3 +193,60 @@ fn exported_for_other_programs() {
 fn petgraph_edge(index: usize) -> petgraph::graph::EdgeIndex {
     petgraph::graph::EdgeIndex::new(index)
 }
+
+/// The same bytes on any number of threads, with any number of hands, and as without.
+#[test]
+fn threads_change_nothing() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    fn built<'c, K>(
+        space: &'c Rn<2>,
+        boxes: &Boxes<2>,
+        connect: K,
+        hands: usize,
+        threads: usize,
+    ) -> (Vec<u8>, Progress)
+    where
+        K: Connector<Rn<2>, Local<'c>> + Sync,
+    {
+        let learning = Learning { learn: 150, ..Learning::default() };
+        let generate = Learn::new(space, learning).unwrap();
+        let mut builder = Builder::new(steer(space, boxes), generate, connect, KdTree::<2>::new());
+        if hands > 0 {
+            let hands = (0..hands).map(|_| steer(space, boxes));
+            builder = builder.on(Workers::new(threads).unwrap(), hands);
+        }
+        let mut rng = Rng::seed(4);
+        for nodes in [37, 600] {
+            builder.build(&mut rng, &mut Nodes(nodes), &mut ());
+        }
+        (builder.map().to_bytes(PRINT), builder.progress())
+    }
+    let reach = Reachable { neighbours: 8, radius: 0.3, cycles: false };
+    let nearest = || Nearest::new(reach).unwrap();
+    let star = || Star::new(2, 1.1).unwrap();
+    let alone = (built(&space, &boxes, nearest(), 0, 1), built(&space, &boxes, star(), 0, 1));
+    for (hands, threads) in [(1, 1), (2, 2), (5, 3)] {
+        assert!(built(&space, &boxes, nearest(), hands, threads) == alone.0, "{hands} {threads}");
+        assert!(built(&space, &boxes, star(), hands, threads) == alone.1, "{hands} {threads}");
+    }
+}
+
+/// A planner goes on with what another has built: the second query finds its way at once.
+#[test]
+fn planners_go_on_with_a_roadmap() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    for info in planners() {
+        let planner = || {
+            let problem = crate::engine::problem(&space, &boxes, ENDS, false);
+            build(info.name, problem, &Settings::default()).unwrap()
+        };
+        let mut first = planner();
+        let outcome = first.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());
+        assert!(matches!(outcome, Outcome::Solved(_)), "{}", info.name);
+        let mut second = planner();
+        second.resume(first.map().clone()).unwrap();
+        let outcome = second.solve(&mut Rng::seed(2), &mut Iterations(1), &mut ());
+        assert!(matches!(outcome, Outcome::Solved(_)), "{}", info.name);
+        assert!(second.map_mut().components() <= first.map_mut().components() + 2);
+    }
+}

@@ -1,6 +1,7 @@
 //! Processor time, and what was measured with it.
 
 use crate::bench::median;
+use mp::cspace::{Progress, Stop, StopReason};
 use std::hint::black_box;
 
 /// Nanoseconds of processor time this thread has used; other work on the machine disturbs it less than the
@@ -16,6 +17,20 @@ pub(crate) fn nanoseconds() -> f64 {
 pub(crate) fn nanoseconds() -> f64 {
     static BEGIN: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
     BEGIN.get_or_init(std::time::Instant::now).elapsed().as_nanos() as f64
+}
+
+/// Stops after so much processor time of this thread.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Processor {
+    /// Of [`nanoseconds`].
+    pub(crate) until: f64,
+}
+
+impl Stop for Processor {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        let due = progress.iterations.is_multiple_of(16) && nanoseconds() > self.until;
+        due.then_some(StopReason::Deadline)
+    }
 }
 
 /// What was asked.

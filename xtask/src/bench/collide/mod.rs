@@ -15,7 +15,7 @@ mod poses;
 mod referee;
 mod tables;
 
-pub(crate) use clock::nanoseconds;
+pub(crate) use clock::{Processor, nanoseconds};
 pub(crate) use pairs::PAIRS;
 
 use super::Table;

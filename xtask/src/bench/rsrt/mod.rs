@@ -8,19 +8,18 @@
 
 mod clutter;
 mod expansion;
-mod log;
 mod movers;
+mod record;
 mod series;
 mod solve;
-mod stats;
 mod tables;
 
 use super::chart::Labels;
+use super::log::Log;
 use super::report;
 use crate::cli;
 use crate::output::{note, print, write};
 use clutter::LEVELS;
-use log::Log;
 use miette::Result;
 use mp::cspace::Cancel;
 use std::time::Duration;

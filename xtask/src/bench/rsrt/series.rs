@@ -1,9 +1,10 @@
 //! All series of problems, level by level.
 
 use super::clutter::Obstacle;
-use super::log::{Case, Log, Run};
 use super::movers::{Flyer, Mover, SixAxes};
+use super::record::{Case, Run};
 use super::solve::{How, Kind, positions, velocities};
+use crate::bench::log::Log;
 use crate::plan::progress;
 use miette::{IntoDiagnostic, Result, miette};
 use mp::cspace::{Cancel, Euclidean, Manhattan, Product, ScaledEuclidean};
@@ -57,13 +58,13 @@ impl Series {
 }
 
 /// Whether a series is worth going on with at the level after `level`: some instance was solved, or is not known.
-fn goes_on(log: &Log, plan: &Plan, series: &Series, level: usize) -> bool {
+fn goes_on(log: &Log<Case, Run>, plan: &Plan, series: &Series, level: usize) -> bool {
     (0..u64::from(plan.instances))
         .any(|instance| log.get(&series.case(level, instance)).is_none_or(|run| run.solved))
 }
 
 /// Measures what is not known yet. False when it was interrupted.
-pub(super) fn measure(plan: &Plan, log: &mut Log, cancel: &Cancel) -> Result<bool> {
+pub(super) fn measure(plan: &Plan, log: &mut Log<Case, Run>, cancel: &Cancel) -> Result<bool> {
     let (flyer, arm) = (Flyer::new()?, SixAxes::new()?);
     let most = plan.levels.last().copied().unwrap_or(0);
     let instances = 0..u64::from(plan.instances);

@@ -1,15 +1,15 @@
 //! One run of one planner on one problem.
 
-use super::log::Run;
 use super::movers::{Mover, Six};
-use crate::bench::collide::nanoseconds;
+use super::record::Run;
+use crate::bench::collide::{Processor, nanoseconds};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::inputs::{
     Along, Between, DoubleIntegrator, InputPlanner, InputSet, Kinematic, OnPosition, ReplayFinely,
 };
 use mp::cspace::{
-    Cancel, Discrete, Exactly, MotionValidity, NnOn, Outcome, Planner, Product, Progress, Resolution, Rn,
-    Rng, Space, Stop, StopReason, Straight, Validity, WithMetric,
+    Cancel, Discrete, Exactly, MotionValidity, NnOn, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
+    Stop, StopReason, Straight, Validity, WithMetric,
 };
 use mp::tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Tuning};
 use std::sync::Arc;
@@ -50,19 +50,6 @@ impl<S, V: Validity<S>> Validity<S> for Counted<V> {
     fn is_valid(&mut self, q: &S) -> bool {
         self.count.fetch_add(1, Ordering::Relaxed);
         self.valid.is_valid(q)
-    }
-}
-
-/// Stops after so much processor time of this thread.
-#[derive(Clone, Copy, Debug)]
-struct Processor {
-    until: f64,
-}
-
-impl Stop for Processor {
-    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
-        let due = progress.iterations.is_multiple_of(16) && nanoseconds() > self.until;
-        due.then_some(StopReason::Deadline)
     }
 }
 

@@ -1,17 +1,18 @@
 //! What was found, as tables and charts.
 
 use super::Labels;
-use super::log::{Log, Run};
+use super::record::{Case, Run};
 use super::series::{METRICS, MODELS, MOVERS, PLANNERS, Plan, Series};
-use super::stats::{Median, ratio};
 use crate::bench::Table;
 use crate::bench::chart::{Curve, log_log};
+use crate::bench::log::Log;
+use crate::bench::stats::{Median, ratio};
 use miette::Result;
 
 /// The runs, to be summed up.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found<'a> {
-    log: &'a Log,
+    log: &'a Log<Case, Run>,
     plan: &'a Plan,
 }
 
@@ -28,7 +29,7 @@ struct Group {
 }
 
 impl<'a> Found<'a> {
-    pub(super) fn new(log: &'a Log, plan: &'a Plan) -> Self {
+    pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
         Self { log, plan }
     }
 

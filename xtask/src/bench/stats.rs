@@ -5,17 +5,17 @@
 
 /// A median with a confidence interval. Infinite where the cap hides it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Median {
-    pub(super) median: f64,
+pub(crate) struct Median {
+    pub(crate) median: f64,
     /// The interval by order statistics that holds the true median with at least 95%, or as nearly as so few
     /// runs allow.
-    pub(super) low: f64,
-    pub(super) high: f64,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
 }
 
 impl Median {
     /// Of values, infinite for those that were cut short. `None` of nothing.
-    pub(super) fn of(values: &[f64]) -> Option<Self> {
+    pub(crate) fn of(values: &[f64]) -> Option<Self> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let n = sorted.len();
@@ -31,7 +31,7 @@ impl Median {
     }
 
     /// As a cell of a table, in units of `unit`; `cap` stands for what is beyond it.
-    pub(super) fn cell(&self, cap: &str, show: impl Fn(f64) -> String) -> String {
+    pub(crate) fn cell(&self, cap: &str, show: impl Fn(f64) -> String) -> String {
         let show = |v: f64| if v.is_finite() { show(v) } else { cap.to_owned() };
         format!("{} ({} – {})", show(self.median), show(self.low), show(self.high))
     }
@@ -54,7 +54,7 @@ fn outside(n: usize) -> usize {
 }
 
 /// `a / b` of two medians, with what the cap leaves of it.
-pub(super) fn ratio(a: &Median, b: &Median, cap: f64) -> String {
+pub(crate) fn ratio(a: &Median, b: &Median, cap: f64) -> String {
     match (a.median.is_finite(), b.median.is_finite()) {
         (true, true) => format!("{:.2}", a.median / b.median),
         (false, true) => format!("> {:.2}", cap / b.median),

@@ -1,63 +1,40 @@
 //! Finished runs, one line of JSON each: a measurement that was interrupted goes on where it was.
 
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fs::File;
+use std::hash::Hash;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// What was run.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) struct Case {
-    pub(super) mover: String,
-    pub(super) model: String,
-    pub(super) metric: String,
-    pub(super) planner: String,
-    pub(super) obstacles: usize,
-    pub(super) instance: u64,
-}
-
-/// What came of it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Run {
-    pub(super) solved: bool,
-    /// Processor time, with the verification of candidate paths.
-    pub(super) seconds: f64,
-    pub(super) iterations: u64,
-    pub(super) nodes: usize,
-    /// Configurations asked of the collision checker.
-    pub(super) checks: u64,
-    /// Times a node was expanded: motions asked of the local planner.
-    pub(super) expansions: u64,
-    /// Candidate paths that failed verification.
-    pub(super) rejected: u64,
-    /// Time along the path, in steps of the inputs (positions: number of edges).
-    pub(super) edges: usize,
-}
-
 #[derive(Serialize, Deserialize)]
-struct Line {
+struct Line<K, R> {
     /// Seconds of processor time a run might take.
     cap: f64,
-    case: Case,
-    run: Run,
+    case: K,
+    run: R,
 }
 
 /// The runs there are, and the file that grows by each new one.
 #[derive(Debug)]
-pub(super) struct Log {
+pub(crate) struct Log<K, R> {
     path: PathBuf,
     cap: f64,
-    runs: HashMap<Case, Run>,
+    runs: HashMap<K, R>,
     file: Mutex<File>,
 }
 
-impl Log {
+/// What was run.
+pub(crate) trait Case: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned {}
+impl<K: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned> Case for K {}
+
+impl<K: Case, R: Copy + Serialize + DeserializeOwned> Log<K, R> {
     /// Opens the log at `path`, or begins it; `fresh` forgets what is in it. Only runs of the same cap count.
     /// A last line that was cut off is left out.
-    pub(super) fn open(path: &Path, cap: f64, fresh: bool) -> Result<Self> {
+    pub(crate) fn open(path: &Path, cap: f64, fresh: bool) -> Result<Self> {
         let failed = || format!("cannot use {}", path.display());
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).into_diagnostic().wrap_err_with(failed)?;
@@ -69,7 +46,7 @@ impl Log {
         let (mut runs, mut kept) = (HashMap::new(), String::new());
         let lines: Vec<&str> = text.lines().collect();
         for (i, line) in lines.iter().enumerate() {
-            match serde_json::from_str::<Line>(line) {
+            match serde_json::from_str::<Line<K, R>>(line) {
                 Ok(known) => {
                     kept.push_str(line);
                     kept.push('\n');
@@ -90,12 +67,12 @@ impl Log {
     }
 
     /// What is known of `case`.
-    pub(super) fn get(&self, case: &Case) -> Option<&Run> {
+    pub(crate) fn get(&self, case: &K) -> Option<&R> {
         self.runs.get(case)
     }
 
     /// Appends a finished run to the file. [`learn`](Self::learn) makes it known.
-    pub(super) fn write(&self, case: &Case, run: &Run) -> Result<()> {
+    pub(crate) fn write(&self, case: &K, run: &R) -> Result<()> {
         let line = Line { cap: self.cap, case: case.clone(), run: *run };
         let text = serde_json::to_string(&line).into_diagnostic()? + "\n";
         let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -105,12 +82,12 @@ impl Log {
     }
 
     /// Makes finished runs known.
-    pub(super) fn learn(&mut self, runs: impl IntoIterator<Item = (Case, Run)>) {
+    pub(crate) fn learn(&mut self, runs: impl IntoIterator<Item = (K, R)>) {
         self.runs.extend(runs);
     }
 
     /// All runs, sorted.
-    pub(super) fn all(&self) -> Vec<(&Case, &Run)> {
+    pub(crate) fn all(&self) -> Vec<(&K, &R)> {
         let mut all: Vec<_> = self.runs.iter().collect();
         all.sort_by_key(|(case, _)| *case);
         all
@@ -121,39 +98,30 @@ impl Log {
 mod tests {
     use super::*;
 
-    fn case(obstacles: usize) -> Case {
-        let [mover, model, metric, planner] = ["arm", "positions", "manhattan", "rsrt"].map(str::to_owned);
-        Case { mover, model, metric, planner, obstacles, instance: 3 }
+    fn case(obstacles: usize) -> (String, usize) {
+        ("rsrt".to_owned(), obstacles)
     }
 
     #[test]
     fn what_was_interrupted_goes_on() {
-        let run = Run {
-            solved: true,
-            seconds: 0.1,
-            iterations: 5,
-            nodes: 4,
-            checks: 9,
-            expansions: 5,
-            rejected: 0,
-            edges: 3,
-        };
+        let run = (true, 0.1);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a/runs.jsonl");
-        let log = Log::open(&path, 6.0, false).unwrap();
+        let open = |cap, fresh| Log::<(String, usize), (bool, f64)>::open(&path, cap, fresh);
+        let log = open(6.0, false).unwrap();
         log.write(&case(2), &run).unwrap();
         log.write(&case(4), &run).unwrap();
         std::fs::write(&path, std::fs::read_to_string(&path).unwrap() + "{\"cap\":6").unwrap();
-        let mut log = Log::open(&path, 6.0, false).unwrap();
+        let mut log = open(6.0, false).unwrap();
         assert_eq!(log.get(&case(4)), Some(&run));
         assert_eq!(log.get(&case(8)), None);
         log.write(&case(8), &run).unwrap();
         log.learn([(case(8), run)]);
         assert_eq!(log.all().len(), 3);
-        assert_eq!(Log::open(&path, 6.0, false).unwrap().all().len(), 3);
-        assert_eq!(Log::open(&path, 7.0, false).unwrap().all().len(), 0, "another cap");
-        assert_eq!(Log::open(&path, 6.0, true).unwrap().all().len(), 0, "afresh");
+        assert_eq!(open(6.0, false).unwrap().all().len(), 3);
+        assert_eq!(open(7.0, false).unwrap().all().len(), 0, "another cap");
+        assert_eq!(open(6.0, true).unwrap().all().len(), 0, "afresh");
         std::fs::write(&path, "nonsense\nnonsense\n").unwrap();
-        assert!(Log::open(&path, 6.0, false).unwrap_err().to_string().contains("line 1"));
+        assert!(open(6.0, false).unwrap_err().to_string().contains("line 1"));
     }
 }

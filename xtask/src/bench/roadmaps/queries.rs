@@ -1,0 +1,140 @@
+//! Many queries to one roadmap, and each by RRT-Connect.
+
+use super::tables::short;
+use crate::bench::stats::Median;
+use crate::bench::{Processor, Table, nanoseconds};
+use crate::output::note;
+use crate::plan::Ready;
+use crate::plan::mover::Mover;
+use crate::plan::setting::Setting;
+use crate::scenes;
+use miette::{IntoDiagnostic, Result};
+use mp::cspace::{Certified, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity};
+use mp::roadmap::algo::prm;
+use mp::roadmap::{Builder, Learning, PATIENCE, Reachable, Steer};
+use mp::robot::{RigidBody, Verifier};
+use mp::tree::{RrtConnect, Tuning};
+use std::path::Path;
+
+/// Nodes of the roadmaps.
+const SIZES: [usize; 3] = [500, 2_000, 8_000];
+const QUERIES: usize = 1_000;
+/// Neighbours that an end is connected to.
+const NEIGHBOURS: usize = 10;
+/// Seconds of processor time that RRT-Connect may take for one query.
+const CAP: f64 = 2.0;
+
+pub(super) type Local<'c, M> =
+    Straight<'c, <M as Mover>::Space, Certified<'c, <M as Mover>::Space, RigidBody<M>>>;
+
+/// Straight motions, proved.
+pub(super) fn local<M: Mover>(setting: &Setting<M>) -> Result<Local<'_, M>> {
+    let check = Certified::new(&setting.space, setting.robot.clone(), setting.tolerance).into_diagnostic()?;
+    Ok(Straight::new(&setting.space, check))
+}
+
+/// How roadmaps of the setting move.
+pub(super) fn steer<'c, M: Mover>(
+    setting: &'c Setting<M>,
+    verifier: Verifier<'c, M::Space, M>,
+) -> Result<Steer<'c, M::Space, Local<'c, M>>> {
+    Ok(Steer::new(&setting.space, local(setting)?, verifier, PATIENCE))
+}
+
+/// Measures on the scene `cubicles`.
+pub(super) fn measure(quick: bool) -> Result<Table> {
+    match Ready::load(&scenes::find(Path::new("cubicles"))?)? {
+        Ready::Space(setting) => on(&setting, quick),
+        Ready::Plane(setting) => on(&setting, quick),
+    }
+}
+
+fn on<M: Mover>(setting: &Setting<M>, quick: bool) -> Result<Table> {
+    let (sizes, count) = if quick { (&SIZES[..1], 100) } else { (&SIZES[..], QUERIES) };
+    let space = &setting.space;
+    let mut robot = setting.robot.clone();
+    let mut rng = Rng::stream(1, 99);
+    let mut free = || loop {
+        let q = space.sample_uniform(&mut rng);
+        if robot.is_valid(&q) {
+            return q;
+        }
+    };
+    let pairs: Vec<_> = (0..count).map(|_| [free(), free()]).collect();
+    let verifier = setting.verifier()?;
+
+    let mut alone = Vec::new();
+    for (seed, [start, goal]) in (1..).zip(&pairs) {
+        let began = nanoseconds();
+        let problem = Problem::new(space, local(setting)?, verifier.clone(), start.clone(), goal.clone());
+        let solved = match problem {
+            Err(_) => false,
+            Ok(problem) => {
+                let mut planner = RrtConnect::new(problem, Tuning::default()).into_diagnostic()?;
+                let mut stop = Processor { until: began + CAP * 1e9 };
+                matches!(planner.solve(&mut Rng::seed(seed), &mut stop, &mut ()), Outcome::Solved(_))
+            }
+        };
+        let seconds = (nanoseconds() - began) * 1e-9;
+        alone.push(if solved { seconds } else { f64::INFINITY });
+    }
+    let mut table = Table::new([
+        "",
+        "nodes",
+        "components",
+        "build s",
+        "answered",
+        "median ms (95%)",
+        "mean ms",
+        "queries per s",
+        "RRT-Connect : this, medians",
+        "means",
+    ]);
+    let of = |times: &[f64]| Median::of(times).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 });
+    let mean = |times: &[f64]| {
+        let known: Vec<f64> = times.iter().copied().filter(|t| t.is_finite()).collect();
+        known.iter().sum::<f64>() / known.len().max(1) as f64
+    };
+    let connect = (of(&alone), mean(&alone));
+    let mut row = |what: &str, map: [String; 3], times: &[f64]| {
+        let (median, mean) = (of(times), mean(times));
+        let answered = times.iter().filter(|t| t.is_finite()).count();
+        let mut cells = vec![what.to_owned()];
+        cells.extend(map);
+        cells.extend([
+            format!("{:.1}%", 100.0 * answered as f64 / times.len() as f64),
+            median.cell("–", |s| short(1e3 * s)),
+            short(1e3 * mean),
+            format!("{:.0}", 1.0 / mean),
+            format!("{:.1}", connect.0.median / median.median),
+            format!("{:.1}", connect.1 / mean),
+        ]);
+        note(&cells.join(" | "));
+        table.rows.push(cells);
+    };
+    row("RRT-Connect", [const { String::new() }; 3], &alone);
+    for &size in sizes {
+        let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
+        let recipe = prm::recipe(space, reach, Learning::default()).into_diagnostic()?;
+        let index = <M::Space as mp::cspace::DefaultNn>::Nn::default();
+        let mut builder =
+            Builder::new(steer(setting, verifier.clone())?, recipe.generate, recipe.connect, index);
+        let began = nanoseconds();
+        builder.build(&mut Rng::seed(1), &mut Nodes(size), &mut ());
+        let build = (nanoseconds() - began) * 1e-9;
+        let components = builder.map_mut().components();
+        let mut answers = builder.into_answers(NEIGHBOURS);
+        let map = [size.to_string(), components.to_string(), short(build)];
+        for what in ["roadmap, first time", "roadmap, edges verified before"] {
+            let mut times = Vec::new();
+            for [start, goal] in &pairs {
+                let began = nanoseconds();
+                let solved = answers.answer(start, goal).is_ok();
+                let seconds = (nanoseconds() - began) * 1e-9;
+                times.push(if solved { seconds } else { f64::INFINITY });
+            }
+            row(what, map.clone(), &times);
+        }
+    }
+    Ok(table)
+}

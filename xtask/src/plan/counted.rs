@@ -1,0 +1,199 @@
+//! Robots whose collision queries are counted, and the roadmaps made for them.
+
+use super::mover::Mover;
+use crate::arm::State;
+use mp::cspace::{
+    BuildError, Clearance, ClearanceGradient, LocalPlanner, MotionBound, NearestNeighbors, ObstacleGeometry,
+    ObstacleHints, Outline, PointOf, Problem, Rng, Room, Settings, Space, Stretch, Validity,
+};
+use mp::roadmap::{build_among, build_with};
+use mp::robot::{Arm, RigidBody};
+use nalgebra::Vector3;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A roadmap with straight edges.
+pub(crate) type AnyRoadmap<'p, S> = mp::roadmap::AnyPlanner<'p, S, ()>;
+
+/// What counts collision queries.
+pub(crate) trait Queries {
+    /// How many were asked so far.
+    fn queries(&self) -> u64;
+}
+
+impl<M: Mover> Queries for RigidBody<M> {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
+impl Queries for Arm {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
+/// A robot whose counters go into a common sum when it is dropped.
+pub(super) struct Counted<'a, R: Queries> {
+    robot: R,
+    /// What the robot had counted before.
+    before: u64,
+    queries: &'a AtomicU64,
+}
+
+impl<'a, R: Queries> Counted<'a, R> {
+    pub(super) fn new(robot: R, queries: &'a AtomicU64) -> Self {
+        Self { before: robot.queries(), robot, queries }
+    }
+}
+
+impl<R: Queries + Clone> Clone for Counted<'_, R> {
+    fn clone(&self) -> Self {
+        Self::new(self.robot.clone(), self.queries)
+    }
+}
+
+impl<R: Queries> Drop for Counted<'_, R> {
+    fn drop(&mut self) {
+        self.queries.fetch_add(self.robot.queries() - self.before, Ordering::Relaxed);
+    }
+}
+impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
+    fn is_valid(&mut self, q: &S) -> bool {
+        self.robot.is_valid(q)
+    }
+    fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
+        self.robot.first_invalid(states)
+    }
+    fn batch_size(&self) -> usize {
+        self.robot.batch_size()
+    }
+}
+impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
+    fn clearance(&mut self, q: &S, enough: f64) -> f64 {
+        self.robot.clearance(q, enough)
+    }
+    fn in_contact(&mut self, q: &S) -> bool {
+        self.robot.in_contact(q)
+    }
+    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
+        self.robot.room(stretch)
+    }
+}
+impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
+    fn motion_bound(&self, from: &S, to: &S) -> f64 {
+        self.robot.motion_bound(from, to)
+    }
+}
+
+impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
+    fn touches(&mut self, q: &S) -> bool {
+        self.robot.touches(q)
+    }
+    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        self.robot.along(from, toward, hit, rng)
+    }
+    fn turned(&self, position: &S, rotation: &S) -> S {
+        self.robot.turned(position, rotation)
+    }
+    fn carried(&self, q: &S, from: &S, to: &S) -> S {
+        self.robot.carried(q, from, to)
+    }
+}
+
+impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, R> {
+    fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
+        self.robot.clearance_gradient(q, reach, gradient)
+    }
+}
+
+impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R> {
+    fn obstacles(&self) -> &[Outline] {
+        self.robot.obstacles()
+    }
+    fn robot(&self) -> Outline {
+        self.robot.robot()
+    }
+    fn touched(&mut self, q: &S) -> Option<usize> {
+        self.robot.touched(q)
+    }
+    fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
+        self.robot.obstacle_point(obstacle, of, rng)
+    }
+    fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
+        self.robot.robot_point(of, rng)
+    }
+    fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
+        self.robot.place_of(q, point)
+    }
+    fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
+        self.robot.brought(q, point, place)
+    }
+    fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
+        self.robot.aligned(place, direction, angle)
+    }
+    fn is_far(&self, q: &S) -> bool {
+        self.robot.is_far(q)
+    }
+}
+
+/// A robot that roadmaps are made for by name, with what is known of its obstacles.
+pub(crate) trait Roadmaps<S>: Queries + Sized {
+    /// The planner called `name`; the robot's queries go into `queries`.
+    fn roadmap<'c, C, L, N>(
+        self,
+        name: &str,
+        problem: Problem<'c, C, L>,
+        index: N,
+        settings: &Settings,
+        queries: &'c AtomicU64,
+    ) -> Result<AnyRoadmap<'c, S>, BuildError>
+    where
+        Self: 'c,
+        S: 'c,
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = ()> + Send + 'c,
+        N: NearestNeighbors<C> + Send + 'c;
+}
+
+impl<M: Mover> Roadmaps<M::State> for RigidBody<M> {
+    fn roadmap<'c, C, L, N>(
+        self,
+        name: &str,
+        problem: Problem<'c, C, L>,
+        index: N,
+        settings: &Settings,
+        queries: &'c AtomicU64,
+    ) -> Result<AnyRoadmap<'c, M::State>, BuildError>
+    where
+        Self: 'c,
+        M::State: 'c,
+        C: Space<State = M::State>,
+        L: LocalPlanner<M::State, Edge = ()> + Send + 'c,
+        N: NearestNeighbors<C> + Send + 'c,
+    {
+        build_among(name, problem, index, Counted::new(self, queries), settings)
+    }
+}
+
+impl Roadmaps<State> for Arm {
+    /// The outlines of obstacles are those that rigid bodies have.
+    fn roadmap<'c, C, L, N>(
+        self,
+        name: &str,
+        problem: Problem<'c, C, L>,
+        index: N,
+        settings: &Settings,
+        _: &'c AtomicU64,
+    ) -> Result<AnyRoadmap<'c, State>, BuildError>
+    where
+        Self: 'c,
+        State: 'c,
+        C: Space<State = State>,
+        L: LocalPlanner<State, Edge = ()> + Send + 'c,
+        N: NearestNeighbors<C> + Send + 'c,
+    {
+        build_with(name, problem, index, settings)
+    }
+}
