@@ -6,10 +6,10 @@ use crate::output::print;
 use crate::plan::mover::Mover;
 use crate::plan::setting::{Ready, Setting};
 use crate::plan::tuples::travel;
-use crate::{arm, scenes};
+use crate::{arm, flat, scenes};
 use miette::{IntoDiagnostic, Result, WrapErr};
 use mp::cspace::{MotionCheck, Path, PathFault, Space, least_clearance, verify_path};
-use mp::io::{JointPath, PathFile, RobotProblem, SpaceKind};
+use mp::io::{FlatProblem, JointPath, PathFile, RobotProblem, SpaceKind};
 use serde::Serialize;
 
 /// A path begins at the start and ends at the goal if no point of the robot is farther off than this, in
@@ -36,7 +36,9 @@ pub(crate) struct Verdict {
 /// Verifies a path. True when it is certified free.
 pub(crate) fn run(args: &Check) -> Result<bool> {
     let scene = scenes::find(&args.scene)?;
-    let mut verdict = if RobotProblem::is_named(&scene) {
+    let mut verdict = if FlatProblem::is_one(&scene) {
+        flat::check(&flat::AnyTask::load(&scene)?, &JointPath::read(&args.path)?)?
+    } else if RobotProblem::is_named(&scene) {
         arm::check(&arm::Task::load(&scene)?, &JointPath::read(&args.path)?)?
     } else {
         let (ready, file) = (Ready::load(&scene)?, PathFile::read(&args.path)?);

@@ -85,7 +85,7 @@ pub(crate) struct Plan {
     /// `{seed}` stand for their names.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// Where the picture goes (`.png`). `{scene}` and `{seed}` stand for their names.
+    /// Where the picture goes (`.png`; of worlds in the plane `.svg` too). `{scene}` and `{seed}` stand for their names.
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
     /// Print one JSON object on standard output, and write only the files asked for.
@@ -128,7 +128,7 @@ pub(crate) struct Render {
     pub(crate) scene: PathBuf,
     /// A path: GEMPA configuration file or `.json`.
     pub(crate) path: Option<PathBuf>,
-    /// Where the picture goes (`.png`).
+    /// Where the picture goes (`.png`; of worlds in the plane `.svg` too).
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: PathBuf,
     /// Width and height in pixels.
@@ -163,11 +163,13 @@ pub(crate) struct Bench {
     pub(crate) collide: BenchCollide,
     #[command(flatten)]
     pub(crate) rsrt: BenchRsrt,
+    #[command(flatten)]
+    pub(crate) rrs: BenchRrs,
 }
 
-/// What only the suites `rsrt` and `roadmaps` have.
+/// What only the suites `rsrt`, `rrs` and `roadmaps` have.
 #[derive(Clone, Debug, Default, Args)]
-#[command(next_help_heading = "Of the suites `rsrt` and `roadmaps`")]
+#[command(next_help_heading = "Of the suites `rsrt`, `rrs` and `roadmaps`")]
 pub(crate) struct BenchRsrt {
     /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6, of `roadmaps`
     /// 2; 0.25 with --quick].
@@ -179,6 +181,15 @@ pub(crate) struct BenchRsrt {
     /// Measure anew what was measured before and is in the folder for results.
     #[arg(long)]
     pub(crate) fresh: bool,
+}
+
+/// What only the suite `rrs` has.
+#[derive(Clone, Copy, Debug, Default, Args)]
+#[command(next_help_heading = "Of the suite `rrs`")]
+pub(crate) struct BenchRrs {
+    /// Let a robot with noisy wheels and a noisy laser follow the paths instead.
+    #[arg(long)]
+    pub(crate) follow: bool,
 }
 
 /// What only the suite `collide` has.
@@ -217,6 +228,8 @@ pub(crate) enum Suite {
     Planners,
     /// Queries between two meshes.
     Collide,
+    /// The experiment of Baizid et al.: RRT and RRS, whose blocked edges are bent by snakes, in four worlds.
+    Rrs,
     /// Experiments of Jouandeau et al. 2008: natural expansion; RSRT and RRT in growing clutter.
     Rsrt,
     /// Roadmaps: corridors that shrink by halves, shipped scenes, many queries, growth.

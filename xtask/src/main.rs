@@ -8,6 +8,7 @@ mod bench;
 mod check;
 mod ci;
 mod cli;
+mod flat;
 mod info;
 mod names;
 mod output;

@@ -1,4 +1,4 @@
-//! Arms on the command line: plan, check, render, info, and bad input.
+//! Arms, and robots in the plane, on the command line: plan, check, render, info, and bad input.
 
 mod common;
 
@@ -105,4 +105,49 @@ fn bad_problems_are_told_what_to_do() {
     dir.write("shut.toml", shut.replace("pose = [1.5, 0", "pose = [0.8, 0"));
     let run = xtask(&dir, &["plan", "shut.toml", "--iterations", "300", "--json"]);
     assert_eq!((run.code, run.json()["solved"].as_bool()), (1, Some(false)), "{run:?}");
+}
+
+const ROOM: &str = "[world]\nwalls = [[0, 0], [3, 2]]\n\n[robot]\ndisc = 0.1\n\n[motion]\nstart = [0.5, 0.5]\n\
+                    goal = [2.5, 0.5]\n\n[[obstacle]]\nname = \"shelf\"\nrectangle = [[1.4, 0], [1.6, 1.5]]\n";
+
+#[test]
+fn worlds_in_the_plane_are_planned_checked_drawn_and_described() {
+    let dir = Dir::new();
+    let rod =
+        ROOM.replace("disc = 0.1", "polygon = [[-0.2, -0.05], [0.2, -0.05], [0.2, 0.05], [-0.2, 0.05]]");
+    dir.write("room.toml", ROOM);
+    dir.write(
+        "rod.toml",
+        rod.replace("[0.5, 0.5]", "[0.5, 0.5, 0]").replace("[2.5, 0.5]", "[2.5, 0.5, 1.5]"),
+    );
+    for (scene, space, picture) in [("room", "R2", "p.svg"), ("rod", "SE2", "p.png")] {
+        let file = format!("{scene}.toml");
+        let run = xtask(&dir, &["plan", &file, "--json", "--out", "p.txt", "--picture", picture]);
+        assert_eq!(run.code, 0, "{run:?}");
+        let report = run.json();
+        assert_eq!((&report["verified"], &report["space"]), (&true.into(), &space.into()));
+        let found = report["path_length"].as_f64().unwrap();
+        assert!(found > 2.5 && found < 6.0 && report["clearance"].as_f64().unwrap() > 0.0, "{report}");
+        let check = xtask(&dir, &["check", &file, "p.txt", "--json"]);
+        assert_eq!((check.code, &check.json()["free"]), (0, &true.into()), "{check:?}");
+        let info = xtask(&dir, &["info", &file]);
+        assert!(info.code == 0 && info.stdout.contains("world in the plane"), "{info:?}");
+        assert_eq!(xtask(&dir, &["render", &file, "p.txt", "--picture", "r.svg"]).code, 0);
+        assert!(dir.read("r.svg").contains("<path"));
+    }
+    assert!(dir.read("p.svg").starts_with("<svg") && dir.bytes("p.png").starts_with(b"\x89PNG"));
+    dir.write("straight.txt", "2 2\n0.5 0.5\n2.5 0.5\n");
+    let check = xtask(&dir, &["check", "room.toml", "straight.txt"]);
+    assert_eq!((check.code, check.stdout.contains("hits shelf")), (1, true), "{check:?}");
+    let three = xtask(&dir, &["check", "rod.toml", "straight.txt"]);
+    assert_eq!((three.code, three.stderr.contains("2 numbers")), (2, true), "{three:?}");
+    dir.write("shut.toml", ROOM.replace("start = [0.5, 0.5]", "start = [1.5, 0.5]"));
+    let shut = xtask(&dir, &["plan", "shut.toml"]);
+    assert!(shut.code == 2 && shut.stderr.contains("in collision with shelf"), "{shut:?}");
+    assert!(
+        shut.stderr.contains("a free place nearby is [") && shut.stderr.contains("shut.toml"),
+        "{shut:?}"
+    );
+    let metric = xtask(&dir, &["plan", "room.toml", "--metric", "manhattan"]);
+    assert_eq!((metric.code, metric.stderr.contains("leave --metric out")), (2, true), "{metric:?}");
 }

@@ -7,6 +7,7 @@ mod alpha;
 mod apartment;
 mod arm;
 mod bugtrap;
+pub(crate) mod courses;
 mod cubicles;
 mod flat;
 mod furniture;
@@ -67,6 +68,7 @@ fn generate() -> Files {
     alpha::add(&mut files);
     flat::add(&mut files);
     arm::add(&mut files);
+    courses::add(&mut files);
     files
 }
 

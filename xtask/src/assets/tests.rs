@@ -141,3 +141,11 @@ fn the_arm_has_something_to_do() {
         assert!(!verifier.check_motion(&task.start, goal).is_free());
     }
 }
+
+#[test]
+fn worlds_in_the_plane_are_sound() {
+    for file in generate().keys().filter(|path| path.contains("/rrs-")) {
+        let task = crate::flat::AnyTask::load(&assets().join(file)).expect(file);
+        task.check_ends().expect(file);
+    }
+}

@@ -2,6 +2,7 @@
 
 use crate::output::write;
 use miette::{Result, miette};
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use std::path::Path;
 
@@ -74,43 +75,94 @@ pub(crate) fn log_log(labels: Labels<'_>, marks: &[f64], curves: &[Curve]) -> Re
         let area = SVGBackend::with_string(&mut text, (WIDTH, 600)).into_drawing_area();
         let drawn = || -> std::result::Result<(), DrawingAreaErrorKind<_>> {
             area.fill(&WHITE)?;
-            let mut chart = ChartBuilder::on(&area)
-                .caption(labels.title, ("sans-serif", 20))
-                .margin(16)
-                .margin_right(LEGEND)
-                .x_label_area_size(48)
-                .y_label_area_size(72)
-                .build_cartesian_2d(
-                    (xs.0 * 0.95..xs.1 * 1.05).log_scale().with_key_points(marks.to_vec()),
-                    (ys.0 * 0.8..ys.1 * 1.25).log_scale(),
-                )?;
-            chart
-                .configure_mesh()
-                .light_line_style(RGBColor(0xf0, 0xf2, 0xf4))
-                .bold_line_style(RGBColor(0xdd, 0xe1, 0xe6))
-                .x_desc(labels.x)
-                .y_desc(labels.y)
-                .x_label_formatter(&|v| number(*v))
-                .y_label_formatter(&|v| number(*v))
-                .draw()?;
-            for (i, curve) in curves.iter().enumerate() {
-                let colour = COLOURS[curve.colour % COLOURS.len()];
-                let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
-                let points: Vec<_> =
-                    curve.points.iter().copied().filter(|p| shown(p.0) && shown(p.1)).collect();
-                chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
-                // Beside the curves, where it hides none.
-                let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
-                area.draw(&PathElement::new([(x, y), (x + 18, y)], style))?;
-                area.draw(&Text::new(curve.name.clone(), (x + 24, y - 6), ("sans-serif", 12)))?;
-                if points.len() <= 40 && !curve.thin {
-                    chart.draw_series(points.iter().map(|p| Circle::new(*p, 3, colour.filled())))?;
-                }
-                let ranges = curve.ranges.iter().filter(|r| shown(r.0) && shown(r.1) && shown(r.2));
-                chart.draw_series(ranges.map(|&(x, low, high)| {
-                    PathElement::new([(x, low), (x, high)], colour.mix(0.5).stroke_width(1))
-                }))?;
-            }
+            let mut chart = builder(&area, labels).build_cartesian_2d(
+                (xs.0 * 0.95..xs.1 * 1.05).log_scale().with_key_points(marks.to_vec()),
+                (ys.0 * 0.8..ys.1 * 1.25).log_scale(),
+            )?;
+            fill(&area, &mut chart, labels, curves, |p| shown(p.0) && shown(p.1))?;
+            area.present()
+        };
+        drawn().map_err(|e| miette!("cannot draw the chart `{}`: {e}", labels.title))?;
+    }
+    Ok(text)
+}
+
+/// A chart with room for its labels and the names of its curves.
+fn builder<'a, 'b, DB: DrawingBackend>(
+    area: &'a DrawingArea<DB, plotters::coord::Shift>,
+    labels: Labels<'_>,
+) -> ChartBuilder<'a, 'b, DB> {
+    let mut builder = ChartBuilder::on(area);
+    builder
+        .caption(labels.title, ("sans-serif", 20))
+        .margin(16)
+        .margin_right(LEGEND)
+        .x_label_area_size(48)
+        .y_label_area_size(72);
+    builder
+}
+
+/// The mesh, the curves and their names.
+fn fill<DB, X, Y>(
+    area: &DrawingArea<DB, plotters::coord::Shift>,
+    chart: &mut ChartContext<'_, DB, Cartesian2d<X, Y>>,
+    labels: Labels<'_>,
+    curves: &[Curve],
+    shown: impl Fn((f64, f64)) -> bool,
+) -> std::result::Result<(), DrawingAreaErrorKind<DB::ErrorType>>
+where
+    DB: DrawingBackend,
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    chart
+        .configure_mesh()
+        .light_line_style(RGBColor(0xf0, 0xf2, 0xf4))
+        .bold_line_style(RGBColor(0xdd, 0xe1, 0xe6))
+        .x_desc(labels.x)
+        .y_desc(labels.y)
+        .x_label_formatter(&|v| number(*v))
+        .y_label_formatter(&|v| number(*v))
+        .draw()?;
+    for (i, curve) in curves.iter().enumerate() {
+        let colour = COLOURS[curve.colour % COLOURS.len()];
+        let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
+        let points: Vec<_> = curve.points.iter().copied().filter(|p| shown(*p)).collect();
+        chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
+        // Beside the curves, where it hides none.
+        let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
+        area.draw(&PathElement::new([(x, y), (x + 18, y)], style))?;
+        area.draw(&Text::new(curve.name.clone(), (x + 24, y - 6), ("sans-serif", 12)))?;
+        if points.len() <= 40 && !curve.thin {
+            chart.draw_series(points.iter().map(|p| Circle::new(*p, 3, colour.filled())))?;
+        }
+        let ranges = curve.ranges.iter().filter(|r| shown((r.0, r.1)) && shown((r.0, r.2)));
+        chart.draw_series(ranges.map(|&(x, low, high)| {
+            PathElement::new([(x, low), (x, high)], colour.mix(0.5).stroke_width(1))
+        }))?;
+    }
+    Ok(())
+}
+
+/// Draws curves over two plain axes; that of y begins at zero.
+pub(crate) fn plain(labels: Labels<'_>, curves: &[Curve]) -> Result<String> {
+    let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
+    let points: Vec<(f64, f64)> =
+        curves.iter().flat_map(|c| c.points.iter().copied()).filter(finite).collect();
+    let xs = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |b, p| (b.0.min(p.0), b.1.max(p.0)));
+    let top = points.iter().fold(0.0, |top: f64, p| top.max(p.1));
+    if points.is_empty() {
+        return Err(miette!("nothing to draw in the chart `{}`", labels.title));
+    }
+    let top = if top > 0.0 { 1.05 * top } else { 1.0 };
+    let side = if xs.1 > xs.0 { 0.02 * (xs.1 - xs.0) } else { 1.0 };
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (WIDTH, 480)).into_drawing_area();
+        let drawn = || -> std::result::Result<(), DrawingAreaErrorKind<_>> {
+            area.fill(&WHITE)?;
+            let mut chart = builder(&area, labels).build_cartesian_2d(xs.0 - side..xs.1 + side, 0.0..top)?;
+            fill(&area, &mut chart, labels, curves, |p| finite(&p))?;
             area.present()
         };
         drawn().map_err(|e| miette!("cannot draw the chart `{}`: {e}", labels.title))?;
@@ -125,6 +177,9 @@ pub(crate) fn save(path: &Path, chart: Result<String>) -> Result<()> {
 
 /// Three digits, or a power of ten when it is far from one.
 fn number(v: f64) -> String {
+    if v == 0.0 {
+        return "0".into();
+    }
     if (1e-3..1e5).contains(&v) {
         let digits = (2 - v.log10().floor() as i32).max(0) as usize;
         let text = format!("{v:.digits$}");
@@ -159,5 +214,8 @@ mod tests {
         let text = log_log(labels, &[2.0, 4.0], &[curve]).unwrap();
         assert!(text.contains("RSRT") && text.contains("obstacles") && text.contains("<polyline"));
         assert!(log_log(labels, &[], &[]).is_err());
+        let text = plain(labels, &[Curve::new("RRS", 1, vec![(30.0, 0.0), (60.0, 2.0)])]).unwrap();
+        assert!(text.contains("RRS") && text.contains("<polyline"));
+        assert!(plain(labels, &[]).is_err());
     }
 }

@@ -7,6 +7,7 @@ mod log;
 mod planners;
 mod rigid;
 mod roadmaps;
+mod rrs;
 mod rsrt;
 mod scaling;
 mod stats;
@@ -23,6 +24,7 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         cli::Suite::Collide => collide::run(args),
         cli::Suite::Planners => planners::run(args),
         cli::Suite::Rigid => rigid::run(args),
+        cli::Suite::Rrs => rrs::run(args),
         cli::Suite::Rsrt => rsrt::run(args),
         cli::Suite::Roadmaps => roadmaps::run(args),
         cli::Suite::Scaling => growth::run(args),

@@ -8,7 +8,7 @@ use crate::cli::Info;
 use crate::output::print;
 use crate::scenes;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use mp::io::PathFile;
+use mp::io::{FlatProblem, PathFile};
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
@@ -19,6 +19,7 @@ enum Kind {
     Mesh,
     Scene,
     Robot,
+    Flat,
     Path,
     JointPath,
 }
@@ -31,6 +32,7 @@ pub(crate) fn run(args: &Info) -> Result<bool> {
         Kind::Mesh => show(&mesh::Facts::read(&file)?, args.json),
         Kind::Scene => show(&scene::Facts::read(&file)?, args.json),
         Kind::Robot => show(&crate::arm::Facts::read(&file)?, args.json),
+        Kind::Flat => show(&crate::flat::Facts::read(&file)?, args.json),
         Kind::JointPath => show(&path::JointFacts::read(&file)?, args.json),
         Kind::Path => show(&path::Facts::read(&file)?, args.json),
     }?;
@@ -50,6 +52,7 @@ fn kind(file: &Path) -> Result<Kind> {
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
         "env" | "cfg" => return Ok(Kind::Scene),
+        "toml" if FlatProblem::is_one(file) => return Ok(Kind::Flat),
         "toml" => return Ok(Kind::Robot),
         "json" => return Ok(if PathFile::read(file).is_ok() { Kind::Path } else { Kind::JointPath }),
         "off" | "stl" | "obj" | "dae" => return Ok(Kind::Mesh),

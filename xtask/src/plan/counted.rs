@@ -138,7 +138,8 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
     }
 }
 
-/// A robot that roadmaps are made for by name, with what is known of its obstacles.
+/// A robot that roadmaps are made for by name, with what is known of its obstacles; of robots other than rigid bodies
+/// that is nothing.
 pub(crate) trait Roadmaps<S>: Queries + Sized {
     /// The planner called `name`; the robot's queries go into `queries`.
     fn roadmap<'c, C, L, N>(
@@ -147,15 +148,20 @@ pub(crate) trait Roadmaps<S>: Queries + Sized {
         problem: Problem<'c, C, L>,
         index: N,
         settings: &Settings,
-        queries: &'c AtomicU64,
+        _queries: &'c AtomicU64,
     ) -> Result<AnyRoadmap<'c, S>, BuildError>
     where
         Self: 'c,
         S: 'c,
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = ()> + Send + 'c,
-        N: NearestNeighbors<C> + Send + 'c;
+        N: NearestNeighbors<C> + Send + 'c,
+    {
+        build_with(name, problem, index, settings)
+    }
 }
+
+impl Roadmaps<State> for Arm {}
 
 impl<M: Mover> Roadmaps<M::State> for RigidBody<M> {
     fn roadmap<'c, C, L, N>(
@@ -174,26 +180,5 @@ impl<M: Mover> Roadmaps<M::State> for RigidBody<M> {
         N: NearestNeighbors<C> + Send + 'c,
     {
         build_among(name, problem, index, Counted::new(self, queries), settings)
-    }
-}
-
-impl Roadmaps<State> for Arm {
-    /// The outlines of obstacles are those that rigid bodies have.
-    fn roadmap<'c, C, L, N>(
-        self,
-        name: &str,
-        problem: Problem<'c, C, L>,
-        index: N,
-        settings: &Settings,
-        _: &'c AtomicU64,
-    ) -> Result<AnyRoadmap<'c, State>, BuildError>
-    where
-        Self: 'c,
-        State: 'c,
-        C: Space<State = State>,
-        L: LocalPlanner<State, Edge = ()> + Send + 'c,
-        N: NearestNeighbors<C> + Send + 'c,
-    {
-        build_with(name, problem, index, settings)
     }
 }

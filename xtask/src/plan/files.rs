@@ -32,9 +32,6 @@ impl Files {
         };
         let files =
             Self { out: by_default(out, "{scene}.path.txt"), picture: by_default(picture, "{scene}.png") };
-        if let Some(picture) = &files.picture {
-            render::wanted(picture)?;
-        }
         for (option, path) in [("--out", &files.out), ("--picture", &files.picture)] {
             let Some(path) = path else { continue };
             let text = path.to_string_lossy();
@@ -61,8 +58,9 @@ impl Files {
     }
 
     /// Complains about files that cannot be written, before any work is done.
-    pub(crate) fn check(&self, scene: &str, seed: u64) -> Result<()> {
+    pub(crate) fn check(&self, scene: &str, flat: bool, seed: u64) -> Result<()> {
         let (out, picture) = self.of(scene, seed);
+        picture.iter().try_for_each(|file| render::wanted(file, flat))?;
         out.iter().chain(&picture).try_for_each(|path| output::writable(path))
     }
 }

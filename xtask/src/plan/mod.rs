@@ -1,7 +1,7 @@
 //! `plan`.
 
 mod chosen;
-mod counted;
+pub(crate) mod counted;
 mod files;
 pub(crate) mod finish;
 pub(crate) mod interrupt;
@@ -9,6 +9,7 @@ mod measured;
 pub(crate) mod metrics;
 pub(crate) mod mover;
 mod options;
+mod plane;
 pub(crate) mod progress;
 mod report;
 mod run;

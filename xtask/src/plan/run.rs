@@ -3,6 +3,7 @@
 use super::files::Files;
 use super::mover::Mover;
 use super::options::Options;
+use super::plane::one_in_the_plane;
 use super::progress::{self, Line};
 use super::report::{Medians, Report, Runs, medians, table};
 use super::scene::Scene;
@@ -10,6 +11,7 @@ use super::setting::{Ready, Setting};
 use super::{finish, interrupt, search};
 use crate::arm::{self, Task};
 use crate::cli::{self, Motion};
+use crate::flat::either;
 use crate::output::{note, print, write};
 use crate::{render, scenes};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
@@ -53,6 +55,9 @@ pub(crate) fn run(args: &cli::Plan) -> Result<bool> {
                 one(setting, &source, &options, seed, &cancel, &files, quiet)
             }
             Scene::Arm(task) => one_of_arm(task, &source, &options, seed, &cancel, &files, quiet),
+            Scene::Flat(any) => {
+                either!(any, task => one_in_the_plane((any, task), &source, &options, seed, &cancel, &files, quiet))
+            }
         }
     };
     let reports = match jobs.as_slice() {
@@ -109,7 +114,7 @@ fn check_files(files: &Files, ready: &[Scene], jobs: &[(usize, u64)]) -> Result<
     let mut taken = HashSet::new();
     for &(scene, seed) in jobs {
         let name = ready[scene].name();
-        files.check(name, seed)?;
+        files.check(name, matches!(ready[scene], Scene::Flat(_)), seed)?;
         let (out, picture) = files.of(name, seed);
         for path in out.into_iter().chain(picture) {
             if !taken.insert(path.clone()) {
@@ -207,7 +212,7 @@ fn one<M: Mover>(
 }
 
 /// The report of a run that has been planned but not finished.
-fn begun<S>(
+pub(super) fn begun<S>(
     name: &str,
     source: &str,
     space: String,

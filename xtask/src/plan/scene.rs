@@ -2,8 +2,9 @@
 
 use super::setting::Ready;
 use crate::arm::Task;
+use crate::flat::AnyTask;
 use miette::{Result, miette};
-use mp::io::RobotProblem;
+use mp::io::{FlatProblem, RobotProblem};
 use std::path::{Path, PathBuf};
 
 /// A scene made ready to plan on.
@@ -11,12 +12,14 @@ use std::path::{Path, PathBuf};
 pub(crate) enum Scene {
     Rigid(Ready),
     Arm(Box<Task>),
+    Flat(AnyTask),
 }
 
 impl Scene {
     /// Reads the scene `file` and makes it ready.
     pub(crate) fn load(file: &Path) -> Result<Self> {
         Ok(match RobotProblem::is_named(file) {
+            true if FlatProblem::is_one(file) => Self::Flat(AnyTask::load(file)?),
             true => Self::Arm(Box::new(Task::load(file)?)),
             false => Self::Rigid(Ready::load(file)?),
         })
@@ -26,6 +29,7 @@ impl Scene {
         match self {
             Self::Rigid(ready) => ready.name(),
             Self::Arm(task) => task.name(),
+            Self::Flat(task) => task.name(),
         }
     }
 
@@ -34,6 +38,7 @@ impl Scene {
         match self {
             Self::Rigid(ready) => ready.check_ends(),
             Self::Arm(task) => task.check_ends(),
+            Self::Flat(task) => task.check_ends(),
         }
     }
 
@@ -44,6 +49,11 @@ impl Scene {
             Self::Arm(task) => Err(miette!(
                 help = "leave --export out: its URDF and obstacles are files already",
                 "{} is an arm: only rigid bodies are exported",
+                task.name()
+            )),
+            Self::Flat(task) => Err(miette!(
+                help = "leave --export out: its file is text already",
+                "{} is a world in the plane: only rigid bodies in space are exported",
                 task.name()
             )),
         }

@@ -3,9 +3,10 @@
 use super::{Shown, Subject, draw, sweep};
 use crate::arm::{Task, draw_task};
 use crate::cli::Render;
+use crate::flat::AnyTask;
 use crate::{output, scenes};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
-use mp::io::{JointPath, PathFile, Problem, RobotProblem, SpaceKind};
+use mp::io::{FlatProblem, JointPath, PathFile, Problem, RobotProblem, SpaceKind};
 use nalgebra::{Isometry3, Point3};
 use std::io::Cursor;
 use std::path::Path;
@@ -15,13 +16,22 @@ pub(crate) const SIZE: (usize, usize) = (1280, 960);
 
 /// Draws a scene, and a path through it.
 pub(crate) fn run(args: &Render) -> Result<bool> {
-    wanted(&args.picture)?;
-    output::writable(&args.picture)?;
     let scene = scenes::find(&args.scene)?;
+    let flat = FlatProblem::is_one(&scene);
+    wanted(&args.picture, flat)?;
+    output::writable(&args.picture)?;
     let subtitle = |configurations: usize| match configurations {
         0 => String::new(),
         n => format!("{n} configurations"),
     };
+    if flat {
+        let task = AnyTask::load(&scene)?;
+        let path = args.path.as_ref().map(JointPath::read).transpose()?;
+        let subtitle = subtitle(path.as_ref().map_or(0, |p| p.configurations.len()));
+        crate::flat::draw(&args.picture, &task, path.as_ref(), subtitle, Some(args.size))?;
+        output::note(&format!("wrote {}", args.picture.display()));
+        return Ok(true);
+    }
     let picture = if RobotProblem::is_named(&scene) {
         let task = Task::load(&scene)?;
         let states = match &args.path {
@@ -40,11 +50,17 @@ pub(crate) fn run(args: &Render) -> Result<bool> {
     Ok(true)
 }
 
-/// Refuses picture files of formats that cannot be written.
-pub(crate) fn wanted(file: &Path) -> Result<()> {
+/// Refuses picture files of formats that cannot be written; only scenes that are `flat` are drawn as SVG.
+pub(crate) fn wanted(file: &Path, flat: bool) -> Result<()> {
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
         "png" => Ok(()),
+        "svg" if flat => Ok(()),
+        "svg" => Err(miette!(
+            help = "end its name in .png",
+            "only worlds in the plane are drawn as .svg, not for {}",
+            file.display()
+        )),
         "" => Err(miette!(help = "end its name in .png", "{} has no ending", file.display())),
         _ => Err(miette!(
             help = "pictures are written as .png",

@@ -6,6 +6,7 @@ mod canvas;
 mod command;
 mod cutaway;
 mod decorate;
+mod drawing;
 mod model;
 mod plot;
 mod raster;
@@ -14,6 +15,7 @@ mod text;
 mod view;
 
 pub(crate) use command::{SIZE, run, subject, wanted, write};
+pub(crate) use drawing::{Drawing, Item};
 pub(crate) use plot::{Series, plot};
 pub(crate) use sweep::evenly;
 

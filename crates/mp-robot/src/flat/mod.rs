@@ -1,6 +1,7 @@
 //! Robots in the plane: discs and polygons in a [`FlatWorld`](mp_geom::flat::FlatWorld).
 
 mod disc;
+mod hints;
 mod plain;
 mod polygon;
 mod verify;

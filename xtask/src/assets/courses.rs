@@ -1,0 +1,252 @@
+//! Courses for a small round robot: the four worlds of Baizid et al., *RRS: rapidly-exploring random snakes*, figure 4,
+//! rebuilt. The paper gives their sizes, the numbers of obstacles and pictures that are too small to measure; what is
+//! in them here was chosen to fit what it says about them.
+
+use super::scene::Files;
+use miette::{IntoDiagnostic, Result, miette};
+use mp::cspace::{Clearance, MotionValidity, Rng, Validity};
+use mp::geom::flat::{FlatWorld, Polygon};
+use mp::robot::DiscRobot;
+use nalgebra::{Point2, Vector2};
+use rand::RngExt;
+use std::collections::VecDeque;
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+/// The radius of the robot, metres: that of a Khepera III.
+pub(crate) const RADIUS: f64 = 0.065;
+
+/// A walled world, a start and a goal; numbers to a tenth of a millimetre.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Course {
+    pub(crate) size: [f64; 2],
+    pub(crate) obstacles: Vec<Vec<[f64; 2]>>,
+    pub(crate) start: [f64; 2],
+    pub(crate) goal: [f64; 2],
+}
+
+impl Course {
+    /// The robot in its world.
+    pub(crate) fn robot(&self) -> Result<DiscRobot> {
+        let polygons =
+            self.obstacles.iter().map(|ring| Polygon::outlined(ring.iter().copied()).into_diagnostic());
+        let polygons = polygons.collect::<Result<Vec<_>>>()?;
+        let world = FlatWorld::new(polygons, Some([[0.0; 2], self.size])).into_diagnostic()?;
+        DiscRobot::new(Arc::new(world), RADIUS).into_diagnostic()
+    }
+
+    /// As a file; `about` is its first line.
+    fn text(&self, about: &str) -> String {
+        let point = |p: &[f64; 2]| format!("[{}, {}]", p[0], p[1]);
+        let mut out = format!(
+            "# {about}\n\n[world]\nwalls = [[0, 0], {}]\n\n[robot]\ndisc = {RADIUS}\n\n[motion]\nstart = {}\ngoal = {}\n",
+            point(&self.size),
+            point(&self.start),
+            point(&self.goal)
+        );
+        for ring in &self.obstacles {
+            let points: Vec<String> = ring.iter().map(point).collect();
+            let _ = write!(out, "\n[[obstacle]]\npolygon = [{}]\n", points.join(", "));
+        }
+        out
+    }
+}
+
+/// Adds the four worlds, and the one for following paths.
+pub(super) fn add(files: &mut Files) {
+    for (name, course, about) in [
+        ("rrs-maze", maze(), "A maze with one way through; 3 × 3 m."),
+        ("rrs-low", low(), "17 obstacles; 4 × 3 m."),
+        ("rrs-high", high(), "48 obstacles; 7 × 4 m."),
+        ("rrs-random", random(0), "A random world of 50 to 80 obstacles; 7 × 4 m."),
+        ("rrs-follow", follow(), "For following paths; 5 × 2 m."),
+    ] {
+        files.insert(format!("scenes/{name}.toml"), course.text(about).into_bytes());
+    }
+}
+
+fn bar(low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
+    vec![low, [high[0], low[1]], high, [low[0], high[1]]]
+}
+
+/// Three walls with a gap at alternate ends, and a spur.
+pub(crate) fn maze() -> Course {
+    let obstacles = vec![
+        bar([0.0, 0.72], [2.4, 0.78]),
+        bar([0.6, 1.47], [3.0, 1.53]),
+        bar([0.0, 2.22], [2.4, 2.28]),
+        bar([1.47, 2.28], [1.53, 2.6]),
+    ];
+    Course { size: [3.0, 3.0], obstacles, start: [0.35, 0.35], goal: [0.4, 2.65] }
+}
+
+/// Scattered bars and blocks with room to pass between any two.
+pub(crate) fn low() -> Course {
+    let course = Course { size: [4.0, 3.0], obstacles: vec![], start: [0.25, 0.25], goal: [3.75, 2.75] };
+    scattered(course, 17, [0.18, 0.42], 2.6 * RADIUS, 11)
+}
+
+/// The same, more of them.
+pub(crate) fn high() -> Course {
+    let course = Course { size: [7.0, 4.0], obstacles: vec![], start: [0.25, 0.25], goal: [6.75, 3.75] };
+    scattered(course, 48, [0.15, 0.4], 2.4 * RADIUS, 12)
+}
+
+/// 5 × 2 m with a few obstacles.
+pub(crate) fn follow() -> Course {
+    let course = Course { size: [5.0, 2.0], obstacles: vec![], start: [0.3, 1.0], goal: [4.7, 1.0] };
+    scattered(course, 9, [0.15, 0.35], 4.0 * RADIUS, 13)
+}
+
+/// 50 to 80 obstacles that may touch each other, start and goal free and surely connected, and at least 3 m apart.
+pub(crate) fn random(trial: u64) -> Course {
+    let mut attempt = 0;
+    loop {
+        attempt += 1;
+        let mut rng = Rng::stream(1000 + trial, attempt);
+        let count = rng.random_range(50..=80);
+        let size = [7.0, 4.0];
+        let obstacles = (0..count).map(|_| block(&mut rng, size, [0.1, 0.3])).collect();
+        let mut course = Course { size, obstacles, start: [0.0; 2], goal: [0.0; 2] };
+        let Ok(mut robot) = course.robot() else { continue };
+        let mut free = || {
+            let q = [0, 1].map(|k| rounded(rng.random_range(0.0..size[k])));
+            (robot.clearance(&q.into(), 1.0) > 0.01).then_some(q)
+        };
+        let mut found = (0..200).filter_map(|_| free());
+        let (Some(start), Some(goal)) = (found.next(), found.next()) else { continue };
+        (course.start, course.goal) = (start, goal);
+        let apart = (Vector2::from(goal) - Vector2::from(start)).norm();
+        if apart >= 3.0 && connected(&course) {
+            return course;
+        }
+    }
+}
+
+fn rounded(v: f64) -> f64 {
+    (v * 1e4).round() / 1e4
+}
+
+/// A convex block of four to six corners somewhere in the world: its corners are on an ellipse, between `radii`.
+fn block(rng: &mut Rng, size: [f64; 2], [small, large]: [f64; 2]) -> Vec<[f64; 2]> {
+    let center = Vector2::new(rng.random_range(0.0..size[0]), rng.random_range(0.0..size[1]));
+    let corners = rng.random_range(4..=6);
+    let (long, slim) = (rng.random_range(small..large), rng.random_range(0.3..1.0));
+    let turn = rng.random_range(0.0..std::f64::consts::PI);
+    let phase = rng.random_range(0.0..1.0);
+    let corner = |i: usize| {
+        let (s, c) = (std::f64::consts::TAU * (i as f64 + phase) / f64::from(corners)).sin_cos();
+        let (sin, cos) = turn.sin_cos();
+        let (x, y) = (long * c, long * slim * s);
+        [rounded(center.x + cos * x - sin * y), rounded(center.y + sin * x + cos * y)]
+    };
+    (0..corners as usize).map(corner).collect()
+}
+
+/// `course` with `count` blocks at least `gap` metres from each other and from the walls, or touching the walls, start
+/// and goal left free.
+fn scattered(mut course: Course, count: usize, radii: [f64; 2], gap: f64, seed: u64) -> Course {
+    let mut rng = Rng::seed(seed);
+    while course.obstacles.len() < count {
+        let ring = block(&mut rng, course.size, radii);
+        let inside = ring.iter().all(|p| {
+            p[0] > 0.05 && p[1] > 0.05 && p[0] < course.size[0] - 0.05 && p[1] < course.size[1] - 0.05
+        });
+        let ends = [course.start, course.goal].map(Point2::from);
+        let Ok(polygon) = Polygon::outlined(ring.iter().copied()) else { continue };
+        let Ok(own) = FlatWorld::new(vec![polygon], None) else { continue };
+        let others = course.obstacles.iter().filter_map(|r| Polygon::outlined(r.iter().copied()).ok());
+        let Ok(others) = FlatWorld::new(others.collect(), None) else { continue };
+        let sides = ring.iter().zip(ring.iter().skip(1).chain(ring.first()));
+        let mut sides = sides.map(|(a, b)| (Point2::from(*a), Point2::from(*b)));
+        let apart =
+            sides.all(|(a, b)| others.nearest_to_segment(&a, &b, gap).is_none() && !others.contains(&a));
+        if inside && apart && ends.iter().all(|p| own.signed_distance(p) > 2.5 * RADIUS) {
+            course.obstacles.push(ring);
+        }
+    }
+    course
+}
+
+/// Whether a grid of free motions leads from start to goal.
+fn connected(course: &Course) -> bool {
+    const CELL: f64 = 0.04;
+    let Ok(mut robot) = course.robot() else { return false };
+    let counts = course.size.map(|s| (s / CELL) as usize);
+    let at = |i: usize, j: usize| Vector2::new((i as f64 + 0.5) * CELL, (j as f64 + 0.5) * CELL);
+    let cell = |q: [f64; 2]| [0, 1].map(|k| ((q[k] / CELL) as usize).min(counts[k] - 1));
+    let (from, to) = (cell(course.start), cell(course.goal));
+    for (q, [i, j]) in [(course.start, from), (course.goal, to)] {
+        if !robot.check_motion(&q.into(), &at(i, j)).is_free() {
+            return false;
+        }
+    }
+    let mut seen = vec![false; counts[0] * counts[1]];
+    let mut open = VecDeque::from([from]);
+    seen[from[1] * counts[0] + from[0]] = true;
+    while let Some([i, j]) = open.pop_front() {
+        if [i, j] == to {
+            return true;
+        }
+        for (di, dj) in [(1, 0), (0, 1), (-1, 0), (0, -1)] {
+            let (Some(x), Some(y)) = (i.checked_add_signed(di), j.checked_add_signed(dj)) else { continue };
+            if x >= counts[0] || y >= counts[1] || seen[y * counts[0] + x] {
+                continue;
+            }
+            if robot.check_motion(&at(i, j), &at(x, y)).is_free() {
+                seen[y * counts[0] + x] = true;
+                open.push_back([x, y]);
+            }
+        }
+    }
+    false
+}
+
+/// A course by name, and of random ones which.
+pub(crate) fn course(name: &str, trial: u64) -> Result<Course> {
+    let course = match name {
+        "maze" => maze(),
+        "low" => low(),
+        "high" => high(),
+        "random" => random(trial),
+        _ => return Err(miette!("there is no course `{name}`")),
+    };
+    let mut robot = course.robot()?;
+    match [course.start, course.goal].iter().all(|q| robot.is_valid(&(*q).into())) {
+        true => Ok(course),
+        false => Err(miette!("start or goal of the course `{name}` is not free")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn courses_are_as_the_paper_says_and_can_be_done() {
+        for (course, count, size) in
+            [(maze(), 4, [3.0, 3.0]), (low(), 17, [4.0, 3.0]), (high(), 48, [7.0, 4.0])]
+        {
+            assert_eq!((course.obstacles.len(), course.size), (count, size));
+            assert!(connected(&course));
+        }
+        assert!(connected(&follow()));
+        for trial in 0..3 {
+            let course = random(trial);
+            assert!((50..=80).contains(&course.obstacles.len()) && connected(&course));
+            assert_eq!(course, random(trial));
+        }
+        let blocked = Course { obstacles: vec![bar([0.0, 1.0], [3.0, 1.1])], ..maze() };
+        assert!(!connected(&blocked));
+    }
+
+    /// The files say what the courses are.
+    #[test]
+    fn files_read_back() {
+        let course = high();
+        let file = mp::io::FlatFile::parse("high.toml", course.text("48").as_bytes()).unwrap();
+        let rings = |p: &Polygon| p.rings()[0].iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
+        assert_eq!(file.obstacles.iter().map(|o| rings(&o.polygon)).collect::<Vec<_>>(), course.obstacles);
+        assert_eq!((file.walls, file.start), (Some([[0.0; 2], course.size]), course.start.to_vec()));
+    }
+}

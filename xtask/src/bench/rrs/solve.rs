@@ -1,0 +1,165 @@
+//! One trial.
+
+use crate::assets::courses::Course;
+use crate::bench::collide::nanoseconds;
+use miette::{IntoDiagnostic, Result, miette};
+use mp::cspace::{
+    Cancel, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner, Reach, Rn, Rng, Space,
+    Stop, StopReason, Straight, least_clearance,
+};
+use mp::robot::{DiscRobot, DiscVerifier};
+use mp::snake::{Pieces, SnakePlanner, unbent};
+use mp::tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+
+/// Iterations a trial may take (§4).
+pub(super) const ITERATIONS: u64 = 5000;
+/// How far obstacles push snakes, metres.
+const RANGE: f64 = 0.15;
+/// How well the safety of a path is known, metres.
+const ACCURACY: f64 = 1e-4;
+
+type Point = Vector2<f64>;
+
+/// What was run.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) struct Case {
+    pub(super) world: String,
+    pub(super) planner: String,
+    /// Δq, centimetres.
+    pub(super) step: u32,
+    pub(super) trial: u64,
+}
+
+/// What came of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Run {
+    pub(super) solved: bool,
+    /// Processor time, with the verification of candidate paths.
+    pub(super) seconds: f64,
+    pub(super) iterations: u64,
+    pub(super) nodes: usize,
+    /// Of the path, metres; zero when there is none.
+    pub(super) length: f64,
+    /// Its least distance from an obstacle, metres.
+    pub(super) safety: f64,
+}
+
+/// Steps of Δq, as NEW_CONF of the paper takes them: exactly that long, whether the sample is nearer or farther, but for
+/// those toward the goal, which end at it; or at most that long, as is customary. None is longer: a planner that tries
+/// the whole way from start to goal first would have a snake solve the problem.
+#[derive(Clone, Debug)]
+struct Steps<'c, L> {
+    space: &'c Rn<2>,
+    goal: Point,
+    step: f64,
+    exactly: bool,
+    local: L,
+}
+
+impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
+    type Edge = L::Edge;
+
+    fn extend(
+        &mut self,
+        from: &Point,
+        toward: &Point,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<Point, L::Edge> {
+        let distance = (toward - from).norm();
+        if reach == Reach::Full && distance > self.step {
+            return Extension::Trapped;
+        }
+        if !self.exactly || reach == Reach::Full || *toward == self.goal || distance == 0.0 {
+            return self.local.extend(from, toward, direction, reach);
+        }
+        let end = from + (toward - from) * (self.step / distance);
+        if !self.space.contains(&end) {
+            return Extension::Trapped;
+        }
+        match self.local.extend(from, &end, direction, Reach::Full) {
+            Extension::Reached(motion) if end != *toward => Extension::Advanced(motion),
+            other => other,
+        }
+    }
+
+    fn admits(&mut self, q: &Point) -> bool {
+        self.local.admits(q)
+    }
+}
+
+/// Runs `case` in its world. `None` when it was cancelled.
+pub(super) fn one(course: &Course, robot: &DiscRobot, case: &Case, cancel: &Cancel) -> Result<Option<Run>> {
+    Ok(planned(course, robot, case, cancel)?.map(|(run, _)| run))
+}
+
+/// What came of a trial, and the path it found.
+type Planned = (Run, Option<Path<Point>>);
+
+/// As [`one`], with the path.
+pub(super) fn planned(
+    course: &Course,
+    robot: &DiscRobot,
+    case: &Case,
+    cancel: &Cancel,
+) -> Result<Option<Planned>> {
+    let space = Rn::<2>::new([0.0; 2], course.size).into_diagnostic()?;
+    let step = f64::from(case.step) / 100.0;
+    let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
+    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let verifier = DiscVerifier::new(robot);
+    let how = How { seed: case.trial + 1, cancel, space: &space, robot };
+    let exactly = matches!(case.planner.as_str(), "rrt" | "rrs");
+    match case.planner.as_str() {
+        "rrt" | "rrt-upto" | "rrt-connect" => {
+            let local = Straight::new(&space, robot.clone());
+            let local = Steps { space: &space, goal, step, exactly, local };
+            let problem = Problem::new(&space, local, verifier, start, goal).into_diagnostic()?;
+            match case.planner.as_str() {
+                "rrt-connect" => how.run(RrtConnect::new(problem, tuning), |path| path),
+                _ => how.run(Rrt::new(problem, tuning), |path| path),
+            }
+        }
+        "rrs" | "rrs-upto" => {
+            let local = SnakePlanner::new(&space, robot.clone(), robot.clone(), RANGE).into_diagnostic()?;
+            let local = Steps { space: &space, goal, step, exactly, local };
+            let problem = Problem::new(&space, local, Pieces(verifier), start, goal).into_diagnostic()?;
+            how.run(Rrt::new(problem, tuning), |path| unbent(&path))
+        }
+        other => Err(miette!("there is no planner `{other}` here")),
+    }
+}
+
+struct How<'a> {
+    seed: u64,
+    cancel: &'a Cancel,
+    space: &'a Rn<2>,
+    robot: &'a DiscRobot,
+}
+
+impl How<'_> {
+    fn run<E: Clone>(
+        &self,
+        planner: std::result::Result<impl Planner<Point, Edge = E>, BuildError>,
+        plain: impl Fn(Path<Point, E>) -> Path<Point>,
+    ) -> Result<Option<Planned>> {
+        let mut planner = planner.into_diagnostic()?;
+        let began = nanoseconds();
+        let mut stop = Iterations(ITERATIONS).or(self.cancel.clone());
+        let outcome = planner.solve(&mut Rng::seed(self.seed), &mut stop, &mut ());
+        let seconds = (nanoseconds() - began) * 1e-9;
+        let progress = planner.progress();
+        let (iterations, nodes) = (progress.iterations, progress.nodes);
+        let none = Run { solved: false, seconds, iterations, nodes, length: 0.0, safety: 0.0 };
+        let path = match outcome {
+            Outcome::Solved(path) => plain(path),
+            Outcome::Stopped(StopReason::Cancelled) => return Ok(None),
+            Outcome::Stopped(_) => return Ok(Some((none, None))),
+        };
+        let safety = least_clearance(self.space, &mut self.robot.clone(), &path, ACCURACY);
+        let safety = safety.map_or(0.0, |tightest| tightest.found);
+        Ok(Some((Run { solved: true, length: path.length(self.space), safety, ..none }, Some(path))))
+    }
+}

@@ -1,0 +1,229 @@
+//! Drawings in the plane: areas and lines, as SVG or as pixels.
+
+use super::canvas::{Colour, mix, resolve, srgb};
+use super::text;
+use nalgebra::Point2;
+use std::fmt::Write as _;
+
+/// Samples per pixel in each direction.
+const SUPERSAMPLING: usize = 3;
+/// What the margins leave free on the left, top, right and bottom, pixels.
+const MARGINS: [f64; 4] = [24.0, 72.0, 24.0, 24.0];
+const INK: u32 = 0x2b3440;
+
+/// Something drawn, over what was drawn before.
+#[derive(Clone, Debug)]
+pub(crate) struct Item {
+    /// Lines, or rings of which what an odd number goes around is filled; metres.
+    points: Vec<Vec<Point2<f64>>>,
+    colour: u32,
+    /// Of a line, its width in pixels; areas have none.
+    width: Option<f64>,
+    opacity: f64,
+}
+
+impl Item {
+    /// A filled area.
+    pub(crate) fn area(rings: Vec<Vec<Point2<f64>>>, colour: u32) -> Self {
+        Self { points: rings, colour, width: None, opacity: 1.0 }
+    }
+
+    /// Lines of `width` pixels.
+    pub(crate) fn lines(points: Vec<Vec<Point2<f64>>>, colour: u32, width: f64) -> Self {
+        Self { points, colour, width: Some(width), opacity: 1.0 }
+    }
+
+    /// Of which something is seen through, 1 being nothing.
+    pub(crate) fn faint(self, opacity: f64) -> Self {
+        Self { opacity, ..self }
+    }
+}
+
+/// What is drawn between two corners of the world.
+#[derive(Clone, Debug)]
+pub(crate) struct Drawing {
+    pub(crate) title: String,
+    pub(crate) subtitle: String,
+    pub(crate) low: Point2<f64>,
+    pub(crate) high: Point2<f64>,
+    pub(crate) items: Vec<Item>,
+}
+
+/// World to pixels.
+#[derive(Clone, Copy)]
+struct View {
+    low: Point2<f64>,
+    at: [f64; 2],
+    scale: f64,
+}
+
+impl View {
+    fn put(&self, p: &Point2<f64>) -> [f64; 2] {
+        [self.at[0] + (p.x - self.low.x) * self.scale, self.at[1] - (p.y - self.low.y) * self.scale]
+    }
+}
+
+impl Drawing {
+    fn view(&self, (width, height): (usize, usize)) -> View {
+        let [left, top, right, bottom] = MARGINS;
+        let (w, h) = (width as f64 - left - right, height as f64 - top - bottom);
+        let extent = self.high - self.low;
+        let scale = (w / extent.x).min(h / extent.y);
+        let at = [left + 0.5 * (w - extent.x * scale), top + 0.5 * (h + extent.y * scale)];
+        View { low: self.low, at, scale }
+    }
+
+    /// As SVG, `size` pixels wide and high at its natural size.
+    pub(crate) fn svg(&self, size: (usize, usize)) -> String {
+        let view = self.view(size);
+        let (w, h) = size;
+        let mut out = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\">\n\
+             <rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n"
+        );
+        for item in &self.items {
+            let mut d = String::new();
+            for part in &item.points {
+                for (i, p) in part.iter().enumerate() {
+                    let [x, y] = view.put(p);
+                    let _ = write!(d, "{}{x:.2} {y:.2}", if i == 0 { "M" } else { "L" });
+                }
+                if item.width.is_none() {
+                    d.push('Z');
+                }
+            }
+            let (colour, opacity) = (item.colour, item.opacity);
+            let _ = match item.width {
+                Some(width) => writeln!(
+                    out,
+                    "<path d=\"{d}\" fill=\"none\" stroke=\"#{colour:06x}\" stroke-width=\"{width}\" stroke-linejoin=\"round\" \
+                     stroke-linecap=\"round\" stroke-opacity=\"{opacity}\"/>"
+                ),
+                None => writeln!(
+                    out,
+                    "<path d=\"{d}\" fill=\"#{colour:06x}\" fill-rule=\"evenodd\" fill-opacity=\"{opacity}\"/>"
+                ),
+            };
+        }
+        for (words, y, height) in [(&self.title, 34, 20), (&self.subtitle, 58, 13)] {
+            let words = words.replace('&', "&amp;").replace('<', "&lt;");
+            let _ = writeln!(
+                out,
+                "<text x=\"24\" y=\"{y}\" font-family=\"sans-serif\" font-size=\"{height}\" fill=\"#{INK:06x}\">{words}</text>"
+            );
+        }
+        out + "</svg>\n"
+    }
+
+    /// As pixels.
+    pub(crate) fn pixels(&self, size: (usize, usize)) -> image::RgbImage {
+        let fine = (size.0 * SUPERSAMPLING, size.1 * SUPERSAMPLING);
+        let factor = SUPERSAMPLING as f64;
+        let view = self.view(size);
+        let mut samples = vec![[1.0; 3]; fine.0 * fine.1];
+        let put = |p: &Point2<f64>| view.put(p).map(|v| v * factor);
+        for item in &self.items {
+            let (colour, opacity) = (srgb(item.colour), item.opacity as f32);
+            let Some(width) = item.width else {
+                let rings: Vec<Vec<[f64; 2]>> =
+                    item.points.iter().map(|r| r.iter().map(put).collect()).collect();
+                fill(&rings, fine, |i| samples[i] = mix(samples[i], colour, opacity));
+                continue;
+            };
+            // What a line covers more than once is drawn once.
+            let mut covered = Vec::new();
+            for part in &item.points {
+                let points: Vec<[f64; 2]> = part.iter().map(put).collect();
+                for w in points.windows(2) {
+                    fill(&[capsule(w[0], w[1], 0.5 * width * factor)], fine, |i| covered.push(i));
+                }
+            }
+            covered.sort_unstable();
+            covered.dedup();
+            for i in covered {
+                samples[i] = mix(samples[i], colour, opacity);
+            }
+        }
+        let ink: Colour = srgb(INK);
+        for (words, y, height, bold) in [(&self.title, 34.0, 15.0, 1.3), (&self.subtitle, 58.0, 9.0, 1.0)] {
+            let at = (MARGINS[0] as f32 * factor as f32, y * factor as f32);
+            text::write(fine, words, at, height * factor as f32, bold, |i, coverage| {
+                samples[i] = mix(samples[i], ink, coverage.clamp(0.0, 1.0));
+            });
+        }
+        resolve(&samples, fine, SUPERSAMPLING)
+    }
+}
+
+/// The ring around a line with round ends.
+fn capsule(a: [f64; 2], b: [f64; 2], half: f64) -> Vec<[f64; 2]> {
+    let along = (b[1] - a[1]).atan2(b[0] - a[0]);
+    let end = |p: [f64; 2], from: f64| {
+        (0..=6).map(move |i| {
+            let (s, c) = (from + f64::from(i) * std::f64::consts::PI / 6.0).sin_cos();
+            [p[0] + half * c, p[1] + half * s]
+        })
+    };
+    let right = std::f64::consts::FRAC_PI_2;
+    end(b, along - right).chain(end(a, along + right)).collect()
+}
+
+/// Calls `fragment` once for each sample whose centre an odd number of rings goes around.
+fn fill(rings: &[Vec<[f64; 2]>], (width, height): (usize, usize), mut fragment: impl FnMut(usize)) {
+    let ys = rings.iter().flatten().map(|p| p[1]);
+    let (low, high) = ys.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+    let first = |v: f64, limit: usize| (v - 0.5).ceil().clamp(0.0, limit as f64) as usize;
+    let mut crossings = Vec::new();
+    for row in first(low, height)..first(high, height) {
+        let y = row as f64 + 0.5;
+        crossings.clear();
+        for ring in rings {
+            for (a, b) in ring.iter().zip(ring.iter().skip(1).chain(ring.first())) {
+                if (a[1] > y) != (b[1] > y) {
+                    crossings.push(a[0] + (y - a[1]) * (b[0] - a[0]) / (b[1] - a[1]));
+                }
+            }
+        }
+        crossings.sort_by(f64::total_cmp);
+        for pair in crossings.chunks_exact(2) {
+            for column in first(pair[0], width)..first(pair[1], width) {
+                fragment(row * width + column);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_forms_show_areas_and_lines() {
+        let p = |x: f64, y: f64| Point2::new(x, y);
+        let square = |r: f64| vec![p(-r, -r), p(r, -r), p(r, r), p(-r, r)];
+        let frame = Item::area(vec![square(2.0), square(1.0)], 0x0000ff);
+        let line = Item::lines(vec![vec![p(-3.0, 0.0), p(0.0, 0.0)]], 0xff0000, 4.0).faint(0.5);
+        let drawing = Drawing {
+            title: "A < B".into(),
+            subtitle: String::new(),
+            low: p(-4.0, -4.0),
+            high: p(4.0, 4.0),
+            items: vec![frame, line],
+        };
+        let svg = drawing.svg((400, 400));
+        assert!(
+            svg.contains("evenodd") && svg.contains("A &lt; B") && svg.contains("stroke-opacity=\"0.5\"")
+        );
+        let picture = drawing.pixels((400, 400));
+        let view = drawing.view((400, 400));
+        let at = |x: f64, y: f64| {
+            let [x, y] = view.put(&p(x, y));
+            picture.get_pixel(x as u32, y as u32).0
+        };
+        assert_eq!(at(0.0, 1.5), [0, 0, 255], "the frame");
+        assert_eq!(at(0.5, 0.5), [255, 255, 255], "its hole");
+        assert_eq!(at(3.0, 3.0), [255, 255, 255], "outside");
+        let [r, g, b] = at(-0.5, 0.0);
+        assert!(r == 255 && g == b && (150..220).contains(&g), "half of the line is seen: {r} {g} {b}");
+    }
+}
