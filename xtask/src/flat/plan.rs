@@ -30,6 +30,9 @@ pub(crate) fn search<M: FlatMover>(
             options.metric_name
         ));
     }
+    if options.roadmap.is_some() {
+        return Err(miette!(help = "leave --roadmap out", "roadmaps are kept of rigid bodies only"));
+    }
     let run = Run {
         space: &task.space,
         robot: &task.robot,
