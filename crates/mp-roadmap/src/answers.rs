@@ -1,5 +1,6 @@
 //! Many queries to one roadmap.
 
+use crate::forest::Forest;
 use crate::planner::verify;
 use crate::{AStar, Builder, Query, Roadmap, Steer, Way};
 use mp_cspace::shortest::shortest_paths;
@@ -38,6 +39,7 @@ pub struct Answers<'c, C: Space, L: LocalPlanner<C::State>, N> {
     map: Roadmap<C::State, L::Edge>,
     index: N,
     star: AStar,
+    forest: Forest,
     neighbours: usize,
     near: [Vec<Hit>; 2],
 }
@@ -51,7 +53,8 @@ where
     #[must_use]
     pub fn into_answers(self, neighbours: usize) -> Answers<'c, C, L, N> {
         let Self { steer, map, index, .. } = self;
-        Answers { steer, map, index, star: AStar::new(), neighbours, near: Default::default() }
+        let (star, forest) = (AStar::new(), Forest::default());
+        Answers { steer, map, index, star, forest, neighbours, near: Default::default() }
     }
 }
 
@@ -86,7 +89,8 @@ where
         neighbours: usize,
     ) -> Result<Self, BuildError> {
         map.fill(steer.space(), &mut index)?;
-        Ok(Self { steer, map, index, star: AStar::new(), neighbours, near: Default::default() })
+        let (star, forest) = (AStar::new(), Forest::default());
+        Ok(Self { steer, map, index, star, forest, neighbours, near: Default::default() })
     }
 
     /// The roadmap.
@@ -124,8 +128,7 @@ where
         }
         loop {
             let ends = self.join(start, goal)?;
-            let [a, b] = ends.nodes.map(|node| (node, 0.0));
-            let way = self.star.search(&mut self.map, &mut self.steer, &[a], &[b]);
+            let way = self.way(ends.nodes);
             // Without a way a lazy search has blocked what connected the ends.
             if let Some(way) = way
                 && verify(&mut self.map, &mut self.steer, &way)
@@ -134,6 +137,15 @@ where
                 return Ok(whole(&ends, path));
             }
         }
+    }
+
+    /// A shortest way between two nodes, all of whose edges have motions.
+    fn way(&mut self, [from, to]: [NodeId; 2]) -> Option<Way> {
+        if !self.forest.holds(&mut self.map) {
+            return self.star.search(&mut self.map, &mut self.steer, &[(from, 0.0)], &[(to, 0.0)]);
+        }
+        let way = self.forest.way(&self.map, from, to)?;
+        self.star.check(&mut self.map, &mut self.steer, &way).then_some(way)
     }
 
     /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin and

@@ -66,6 +66,7 @@ mod builder;
 mod connect;
 mod export;
 mod file;
+mod forest;
 mod generate;
 mod mixed;
 mod planner;

@@ -1,6 +1,6 @@
 //! Two meshes, a scene of many, groups, and trees in files.
 //!
-//! `cargo run --release -p mp-collide --example scene`
+//! `cargo run --release -p mp-collide --example bodies`
 
 use std::error::Error;
 use std::io::Write;
