@@ -94,6 +94,13 @@ mod tests {
         assert!(files(Some("{scene}.txt"), None, false, 2, 2).is_err());
         let both = files(Some("{scene}-{seed}.txt"), None, false, 2, 2).unwrap();
         assert_eq!(both.of("easy", 3).0, Some("easy-3.txt".into()));
-        assert!(files(None, Some("p.svg"), true, 1, 1).is_err());
+    }
+
+    #[test]
+    fn drawings_are_made_in_the_plane_only() {
+        let svg = files(None, Some("p.svg"), true, 1, 1).unwrap();
+        assert!(svg.check("easy", false, 1).is_err());
+        assert!(render::wanted(Path::new("p.svg"), true).is_ok());
+        assert!(render::wanted(Path::new("p.png"), false).is_ok());
     }
 }
