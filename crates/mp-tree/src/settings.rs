@@ -2,13 +2,13 @@
 
 use crate::{Demand, Parameter};
 
-/// [`PlannerInfo::cannot`] of planners that grow a tree from the goal.
+/// [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that grow a tree from the goal.
 pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[
     (Demand::Region, "it also grows a tree from the goal, which needs a state to grow from"),
     (Demand::OneWay, "it also grows a tree from the goal, by motions run backward"),
 ];
 
-/// [`Tuning::step`].
+/// [`Tuning::step`](crate::Tuning::step).
 pub const STEP: Parameter = Parameter {
     name: "step",
     range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
@@ -16,7 +16,7 @@ pub const STEP: Parameter = Parameter {
     doc: "longest step, in the metric of the space",
 };
 
-/// [`Tuning::goal_bias`].
+/// [`Tuning::goal_bias`](crate::Tuning::goal_bias).
 pub const GOAL_BIAS: Parameter = Parameter {
     name: "goal-bias",
     range: "in [0, 1]",
@@ -24,7 +24,7 @@ pub const GOAL_BIAS: Parameter = Parameter {
     doc: "probability of aiming at the goal (with two trees: of sampling a new goal state)",
 };
 
-/// [`Tuning::patience`].
+/// [`Tuning::patience`](crate::Tuning::patience).
 pub const PATIENCE: Parameter = Parameter {
     name: "patience",
     range: "a whole number",
