@@ -43,7 +43,7 @@
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`NearObstacles`], [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
+//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
 //! | what becomes a node, with which edges | [`Connector`] | [`Nearest`], [`Star`], [`Visibility`], [`Stages`] |
 //! | how a way is looked for | [`Query`] | [`AStar`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
@@ -91,7 +91,7 @@ pub use builder::{Builder, Pace, Recipe};
 pub use connect::{Connector, Growing, Nearest, Reachable};
 pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Came, Candidate, Free, NodeGenerator};
-pub use mixed::Mixing;
+pub use mixed::{Mixing, PairRule, Pairs};
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
 pub use registry::{AnyPlanner, build, build_among, build_with, planner, planners, planners_among};
 pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};

@@ -3,7 +3,7 @@
 use crate::algo::{
     bridge_prm, gaussian_prm, lazy_prm, obprm, obstacle_geometry_prm, prm, prm_star, visibility_prm,
 };
-use crate::{HasRoadmap, RoadmapPlanner};
+use crate::{BetweenObstacles, HasRoadmap, NearObstacles, Pairs, RoadmapPlanner};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, PlannerInfo, Problem,
     Reversible, Settings, Space, closest,
@@ -88,12 +88,16 @@ where
         "visibility-prm" => {
             Box::new(RoadmapPlanner::assemble(problem, index, visibility_prm::read(space, settings)?))
         }
-        "gaussian-prm" => {
-            Box::new(RoadmapPlanner::assemble(problem, index, gaussian_prm::read(space, settings)?))
-        }
-        "bridge-prm" => {
-            Box::new(RoadmapPlanner::assemble(problem, index, bridge_prm::read(space, settings)?))
-        }
+        "gaussian-prm" => Box::new(RoadmapPlanner::assemble(
+            problem,
+            index,
+            Pairs::<NearObstacles>::read(space, settings, gaussian_prm::MIXING)?,
+        )),
+        "bridge-prm" => Box::new(RoadmapPlanner::assemble(
+            problem,
+            index,
+            Pairs::<BetweenObstacles>::read(space, settings, bridge_prm::MIXING)?,
+        )),
         name => {
             let reason = format!("{name} must know what obstacles look like, and nothing here tells it");
             return Err(BuildError::Unmade { reason });

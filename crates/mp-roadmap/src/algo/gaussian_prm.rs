@@ -47,16 +47,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::mixed::{drew_uniform, sigma, uniform};
-use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
-use crate::{
-    AStar, Candidate, Kind, Mixing, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner,
-    Steer,
-};
-use mp_cspace::{
-    BuildError, DefaultNn, Gaussian, LocalPlanner, NearestNeighbors, PlannerInfo, Problem, Reversible, Rng,
-    Settings, Space, Step,
-};
+use crate::mixed::{sigma, uniform};
+use crate::settings::{CYCLES, NEIGHBOURS, RADIUS};
+use crate::{AStar, Mixing, Nearest, PairRule, Pairs, RoadmapPlanner};
+use mp_cspace::{Gaussian, PlannerInfo, Rng, Space, Step};
 
 /// The defaults.
 pub const MIXING: Mixing = Mixing { sigma: Step::Fraction(0.05), uniform: 0.1 };
@@ -71,106 +65,20 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: crate::settings::UNDIRECTED,
 };
 
-/// Free states with one beside them that is not, and some uniform ones: the generator of Gaussian PRM.
+/// Of two states, the free one where the other is not: the rule of Gaussian PRM.
 #[derive(Clone, Copy, Debug)]
-pub struct NearObstacles {
-    sigma: f64,
-    uniform: f64,
-}
+pub struct NearObstacles;
 
-impl NearObstacles {
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new<C: Space>(space: &C, mixing: Mixing) -> Result<Self, BuildError> {
-        let (sigma, uniform) = mixing.checked(space)?;
-        Ok(Self { sigma, uniform })
-    }
-}
-
-impl<C, L> NodeGenerator<C, L> for NearObstacles
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-{
-    fn generate(
-        &mut self,
-        _: u64,
-        _: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+impl PairRule for NearObstacles {
+    fn attempt<C: Space>(
+        space: &C,
+        free: impl FnMut(&C::State) -> bool,
+        sigma: f64,
         rng: &mut Rng,
-        out: &mut Vec<Candidate<C::State, L::Edge>>,
-    ) {
-        if drew_uniform(self.uniform, steer, rng, out) {
-            return;
-        }
-        let space = steer.space();
-        let pair = Gaussian::new(space, |q: &C::State| steer.admits(q), self.sigma);
-        let found = pair.ok().and_then(|mut pair| pair.attempt(rng));
-        out.extend(found.map(|q| Candidate::new(q, Kind::Near)));
-    }
-
-    fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
-        u64::MAX
+    ) -> Option<C::State> {
+        Gaussian::new(space, free, sigma).ok()?.attempt(rng)
     }
 }
 
 /// Gaussian PRM: see the [module](self).
-pub type GaussianPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, NearObstacles, Nearest, AStar, N>;
-
-impl<'c, C, L, N> GaussianPrm<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// With the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, mixing: Mixing) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), reach, mixing)
-    }
-
-    /// With an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        reach: Reachable,
-        mixing: Mixing,
-    ) -> Result<Self, BuildError> {
-        let recipe = recipe(problem.space(), reach, mixing)?;
-        Ok(Self::assemble(problem, index, recipe))
-    }
-}
-
-/// The recipe of Gaussian PRM.
-///
-/// # Errors
-/// When a parameter is out of range.
-pub fn recipe<C: Space>(
-    space: &C,
-    reach: Reachable,
-    mixing: Mixing,
-) -> Result<Recipe<NearObstacles, Nearest, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: NearObstacles::new(space, mixing)?,
-        connect: Nearest::new(reach)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-pub(crate) fn read<C: Space>(
-    space: &C,
-    settings: &Settings,
-) -> Result<Recipe<NearObstacles, Nearest, AStar>, BuildError> {
-    recipe(space, reachable(space, settings)?, MIXING.read(settings)?)
-}
+pub type GaussianPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Pairs<NearObstacles>, Nearest, AStar, N>;
