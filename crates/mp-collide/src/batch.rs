@@ -46,7 +46,8 @@ impl Query {
     ) -> Option<usize> {
         let pace = Pace::of(poses);
         let step = pace.step + 2.0 * pace.turn * a.radius();
-        let near = step <= NEAR * a.tree().radius_center && in_lanes(a, poses, b, pose_wb, step);
+        let near =
+            pace.rigid && step <= NEAR * a.tree().radius_center && in_lanes(a, &poses[0], b, pose_wb, step);
         let first = if near { 1 } else { poses.len() };
         if let Some(i) = poses[..first].iter().position(|p| self.intersects(a, p, b, pose_wb)) {
             return Some(i);
@@ -71,21 +72,17 @@ impl Query {
     }
 }
 
-/// Whether poses and sizes are such that lanes may be used.
+/// Whether sizes are such that lanes may be used on poses from `first` on, each within `step` of the one before.
 fn in_lanes(
     a: &CollisionMesh,
-    poses: &[Isometry3<f64>],
+    first: &Isometry3<f64>,
     b: &CollisionMesh,
     pose_wb: &Isometry3<f64>,
     step: f64,
 ) -> bool {
-    let Some(first) = poses.first() else { return false };
     let Some(relative) = Relative::between(first, a.radius(), pose_wb, b.radius()) else { return false };
     let frames = Frames::new(a.tree(), b.tree(), &relative);
-    // NaN in a pose makes the first step or the quaternion's length NaN, and is passed over by maxima.
-    poses.iter().all(is_rigid)
-        && frames.fits_f32(a.tree(), b.tree())
-        && frames.apart + step * CHUNK as f64 <= 1e8
+    frames.fits_f32(a.tree(), b.tree()) && frames.apart + step * CHUNK as f64 <= 1e8
 }
 
 /// Only a single pose stands still (metres).
@@ -97,6 +94,8 @@ const NEAR: f64 = 0.25;
 /// How a sequence of poses advances: the most of all steps.
 #[derive(Clone, Copy, Debug)]
 struct Pace {
+    /// Whether all poses are within the limits of the crate docs; if not, the rest means nothing.
+    rigid: bool,
     /// Of the origin, metres.
     step: f64,
     /// Between quaternions of unit length.
@@ -115,7 +114,9 @@ impl Pace {
             None => (Vector3::zeros(), Quaternion::identity()),
         };
         let mut length = (last.1.norm_squared() - 1.0).abs();
+        let mut rigid = poses.first().is_none_or(is_rigid);
         for pose in &poses[1.min(poses.len())..] {
+            rigid &= is_rigid(pose);
             let p = pose.translation.vector;
             let q = *pose.rotation.quaternion();
             // Of the two quaternions of a rotation the nearer.
@@ -134,6 +135,7 @@ impl Pace {
         // Quaternions off unit length by `length` differ by up to so much from those that are not.
         let off = 2.0 * length + 1e-15;
         Self {
+            rigid,
             step: step.sqrt(),
             turn: turn.sqrt() + 2.0 * off,
             bend: bend.sqrt(),

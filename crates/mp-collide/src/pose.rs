@@ -38,9 +38,21 @@ impl Relative {
         }
         let (q_wa, q_wb) = (pose_wa.rotation.quaternion(), pose_wb.rotation.quaternion());
         let (t_wa, t_wb) = (&pose_wa.translation.vector, &pose_wb.translation.vector);
-        let translation = rotation_matrix(q_wa).tr_mul(&(t_wb - t_wa));
-        let rotation =
-            if q_wa == q_wb { Matrix3::identity() } else { rotation_matrix(&(q_wa.conjugate() * q_wb)) };
+        let apart = t_wb - t_wa;
+        // What stands still mostly has not been turned, and then the product below does nothing.
+        let (rotation, translation) = if is_identity(q_wa) {
+            (rotation_matrix(q_wb), apart)
+        } else {
+            let back = rotation_matrix(q_wa).transpose();
+            let rotation = if q_wa == q_wb {
+                Matrix3::identity()
+            } else if is_identity(q_wb) {
+                back
+            } else {
+                rotation_matrix(&(q_wa.conjugate() * q_wb))
+            };
+            (rotation, back * apart)
+        };
         // Differences of world coordinates are exact to rounding of the world coordinates themselves, and
         // boxes and triangles see the same difference: only the relative size counts.
         let slack = SLACK * (radius_a + radius_b + translation.norm());
@@ -78,8 +90,16 @@ impl Relative {
 /// Whether `pose` is within the limits of the crate docs; NaN is not.
 #[inline(always)]
 pub(crate) fn is_rigid(pose: &Isometry3<f64>) -> bool {
-    (pose.rotation.quaternion().norm_squared() - 1.0).abs() <= UNIT_TOLERANCE
-        && pose.translation.vector.iter().all(|c| c.abs() <= LIMIT)
+    let t = &pose.translation.vector;
+    ((pose.rotation.quaternion().norm_squared() - 1.0).abs() <= UNIT_TOLERANCE)
+        & (t.x.abs() <= LIMIT)
+        & (t.y.abs() <= LIMIT)
+        & (t.z.abs() <= LIMIT)
+}
+
+#[inline(always)]
+fn is_identity(q: &Quaternion<f64>) -> bool {
+    (q.w == 1.0) & (q.i == 0.0) & (q.j == 0.0) & (q.k == 0.0)
 }
 
 /// A point of a body placed in the world.
@@ -103,4 +123,31 @@ fn rotation_matrix(q: &Quaternion<f64>) -> Matrix3<f64> {
         s * (y * z + w * x),
         1.0 - s * (x * x + y * y),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::UnitQuaternion;
+
+    /// The short cuts for poses that are not turned are the formulas of the contract, bit for bit.
+    #[test]
+    fn short_cuts_change_nothing() {
+        let here = Isometry3::translation(0.3, -1.7, 0.9);
+        for k in 0..50 {
+            let x = f64::from(k);
+            let turn = UnitQuaternion::from_euler_angles(x, 0.7 * x, -1.3 * x);
+            let there = Isometry3::from_parts(Vector3::new(x, 0.1, -x).into(), turn);
+            for (a, b) in [(&here, &there), (&there, &here), (&there, &there), (&here, &here)] {
+                let (q_a, q_b) = (a.rotation.quaternion(), b.rotation.quaternion());
+                let found = Relative::between(a, 1.0, b, 1.0).unwrap();
+                let equal = q_a == q_b;
+                let rotation =
+                    if equal { Matrix3::identity() } else { rotation_matrix(&(q_a.conjugate() * q_b)) };
+                let apart = b.translation.vector - a.translation.vector;
+                assert_eq!(found.rotation, rotation);
+                assert_eq!(found.translation, rotation_matrix(q_a).tr_mul(&apart));
+            }
+        }
+    }
 }

@@ -92,7 +92,7 @@ impl Query {
     ) -> bool {
         self.counters.queries += 1;
         match Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) {
-            Some(relative) => self.colliding_pair(a.tree(), b.tree(), &relative).is_some(),
+            Some(relative) => self.collide(a.tree(), b.tree(), relative, true).is_some(),
             None => true,
         }
     }
@@ -115,24 +115,28 @@ impl Query {
         }
     }
 
-    /// Two intersecting triangles, as positions in the trees.
-    #[inline]
+    /// Two intersecting triangles, as positions in the trees: always the same.
     pub(crate) fn colliding_pair(
         &mut self,
         a: &Tree,
         b: &Tree,
         relative: &Relative,
     ) -> Option<(usize, usize)> {
-        let frames = Frames::new(a, b, relative);
+        self.collide(a, b, *relative, false)
+    }
+
+    /// Two intersecting triangles, as positions in the trees; any, or always the same.
+    #[inline(always)]
+    fn collide(&mut self, a: &Tree, b: &Tree, relative: Relative, any: bool) -> Option<(usize, usize)> {
+        let frames = Frames::new(a, b, &relative);
         if frames.apart > (a.radius_center + b.radius_center) * (1.0 + 1e-12) + relative.slack {
             return None;
         }
         if !frames.fits_f32(a, b) {
             return any_of_all(a, b, &frames);
         }
-        let kernel =
-            Intersect { a, b, frames: &frames, stack: &mut self.stack, counters: &mut self.counters };
-        run(self.isa, kernel)
+        let (frames, stack, counters) = (&frames, &mut self.stack, &mut self.counters);
+        run(self.isa, Intersect { a, b, frames, any, stack, counters })
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::boxes::touching;
 use super::frames::{Carrier, Frames, Placed};
-use super::leaves::{Meeting, Near, Verdict, corners, near_box};
+use super::leaves::{Near, corners, near_box};
+use super::meeting::{Meeting, Verdict};
 use super::{LEAF, Leaf, Node, Tree};
 use crate::query::Counters;
 use crate::simd::{Kernel, Lanes, prefetch};
@@ -13,6 +14,8 @@ pub(crate) struct Intersect<'q> {
     pub(crate) a: &'q Tree,
     pub(crate) b: &'q Tree,
     pub(crate) frames: &'q Frames,
+    /// Any two triangles that meet will do, not always the same.
+    pub(crate) any: bool,
     pub(crate) stack: &'q mut Vec<(u32, u32)>,
     pub(crate) counters: &'q mut Counters,
 }
@@ -23,7 +26,7 @@ impl Kernel for Intersect<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        let Self { a, b, frames, stack, counters } = self;
+        let Self { a, b, frames, any, stack, counters } = self;
         let pad = frames.pad;
         let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
         let (far_a, far_b) = (a.is_large(), b.is_large());
@@ -35,7 +38,7 @@ impl Kernel for Intersect<'_> {
             if x & y & LEAF != 0 {
                 let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
                 tests += 2;
-                found = leaf_pair::<L>(a, i, b, j, frames, &into_a, counters);
+                found = leaf_pair::<L>((a, i), (b, j), frames, &into_a, any, counters);
                 if found.is_some() {
                     break;
                 }
@@ -89,14 +92,14 @@ pub(super) fn ahead(tree: &Tree, reference: u32) {
     prefetch(tree.own(reference));
 }
 
+/// Two triangles of two leaves that meet: the first two, or any that surely do.
 #[inline(always)]
 pub(super) fn leaf_pair<L: Lanes>(
-    a: &Tree,
-    i: usize,
-    b: &Tree,
-    j: usize,
+    (a, i): (&Tree, usize),
+    (b, j): (&Tree, usize),
     frames: &Frames,
     into_a: &Carrier<L>,
+    any: bool,
     counters: &mut Counters,
 ) -> Option<(usize, usize)> {
     let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
@@ -114,20 +117,20 @@ pub(super) fn leaf_pair<L: Lanes>(
     if mask_b == 0 {
         return None;
     }
-    // The fewer, one by one, against the more at once.
-    let swap = mask_b.count_ones() > mask_a.count_ones();
-    let meeting = Meeting::new((leaf_a, &corners_a), (leaf_b, &corners_b, &own_b), (&near, frames), swap);
-    let (mut singles, mask) = if swap { (mask_a, mask_b) } else { (mask_b, mask_a) };
+    let meeting = Meeting::new((leaf_a, &corners_a), (leaf_b, &corners_b, &own_b), (&near, frames));
     let (first_a, first_b) = (leaf_a.first as usize, leaf_b.first as usize);
+    let mut singles = mask_b;
     while singles != 0 {
         let single = singles.trailing_zeros() as usize;
         singles &= singles - 1;
         counters.triangle_tests += 1;
-        let Verdict { mut maybe, sure } = meeting.of(single, mask);
+        let Verdict { mut maybe, sure } = meeting.of(single, mask_a);
+        if any && sure != 0 {
+            maybe = sure;
+        }
         while maybe != 0 {
             let lane = maybe.trailing_zeros() as usize;
-            let (k, l) = if swap { (single, lane) } else { (lane, single) };
-            let (k, l) = (first_a + k, first_b + l);
+            let (k, l) = (first_a + lane, first_b + single);
             if sure & (1 << lane) != 0 || intersect(&a.triangles[k], &frames.exact.triangle(&b.triangles[l]))
             {
                 return Some((k, l));

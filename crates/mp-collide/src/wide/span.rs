@@ -78,6 +78,7 @@ const UP: f64 = 1.0 + 1e-6;
 
 impl Span {
     /// `None` when `a` stays farther than `clearance` from `b` by the balls around them.
+    #[inline(always)]
     pub(crate) fn new(
         (a, b): (&Tree, &Tree),
         relative: &Relative,

@@ -94,7 +94,8 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                 tests += 2;
                 if still {
                     let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
-                    if leaf_pair(a, i, b, j, frames, &Carrier::<L>::new(&frames.into_a), counters).is_none() {
+                    let into_a = Carrier::<L>::new(&frames.into_a);
+                    if leaf_pair((a, i), (b, j), frames, &into_a, true, counters).is_none() {
                         continue;
                     }
                 } else {

@@ -1,0 +1,244 @@
+//! Eight `f32` lanes on every CPU: the one module of this crate that may say `unsafe`.
+//!
+//! A kernel is generic over [`Lanes`] and never names an instruction set. [`run`] picks the widest
+//! implementation the CPU has. [`Scalar`] is the twin the others are tested against.
+#![allow(unsafe_code)] // Intrinsics and `#[target_feature]` calls; each block says why it is sound.
+
+#[cfg(target_arch = "aarch64")]
+mod arm;
+mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+use scalar::Scalar;
+
+/// An instruction set a kernel can run on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Isa {
+    /// Plain arrays, on any CPU.
+    Scalar,
+    /// Two 128-bit registers (every x86-64).
+    Sse2,
+    /// One 256-bit register with fused multiply-add.
+    Avx2,
+    /// As AVX2 with the 32 registers and mask registers of AVX-512VL.
+    Avx512,
+    /// Two 128-bit registers (every aarch64).
+    Neon,
+}
+
+impl Isa {
+    /// The widest this CPU has.
+    #[must_use]
+    pub fn detect() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512vl")
+                && is_x86_feature_detected!("avx2")
+                && is_x86_feature_detected!("fma")
+            {
+                return Self::Avx512;
+            }
+            if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+                return Self::Avx2;
+            }
+            Self::Sse2
+        }
+        #[cfg(target_arch = "aarch64")]
+        {
+            Self::Neon
+        }
+        #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
+        {
+            Self::Scalar
+        }
+    }
+
+    /// Every instruction set this CPU has, scalar first.
+    #[must_use]
+    pub fn available() -> Vec<Self> {
+        let mut all = vec![Self::Scalar];
+        match Self::detect() {
+            Self::Scalar => {}
+            Self::Sse2 => all.push(Self::Sse2),
+            Self::Avx2 => all.extend([Self::Sse2, Self::Avx2]),
+            Self::Avx512 => all.extend([Self::Sse2, Self::Avx2, Self::Avx512]),
+            Self::Neon => all.push(Self::Neon),
+        }
+        all
+    }
+}
+
+/// Eight lanes of `f32`. Comparisons give a bit per lane; a NaN compares false.
+pub(crate) trait Lanes: Copy {
+    fn load(a: &[f32; 8]) -> Self;
+    fn store(self, a: &mut [f32; 8]);
+    fn splat(x: f32) -> Self;
+    /// Four values in the lower lanes and again in the upper.
+    fn twice(a: &[f32; 4]) -> Self;
+    /// One value in the four lower lanes, another in the upper.
+    fn halves(low: f32, high: f32) -> Self;
+    fn add(self, b: Self) -> Self;
+    fn sub(self, b: Self) -> Self;
+    fn mul(self, b: Self) -> Self;
+    fn div(self, b: Self) -> Self;
+    /// `self · b + c`, fused where the CPU can.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// `self · b − c`, fused where the CPU can.
+    fn mul_sub(self, b: Self, c: Self) -> Self;
+    fn abs(self) -> Self;
+    #[inline(always)]
+    fn square(self) -> Self {
+        self.mul(self)
+    }
+    /// The lesser; `b` where they cannot be compared.
+    fn min(self, b: Self) -> Self;
+    /// The greater; `b` where they cannot be compared.
+    fn max(self, b: Self) -> Self;
+    /// Bit `i` set where lane `i` of `self` ≤ lane `i` of `b`.
+    fn le(self, b: Self) -> u32;
+}
+
+/// A computation generic over the lanes. `run` must be `#[inline(always)]`, and so must all it
+/// calls, so that it is compiled with the instruction set it is run on.
+pub(crate) trait Kernel {
+    type Output;
+    fn run<L: Lanes>(self) -> Self::Output;
+}
+
+/// Runs `kernel` on `isa`, or on what this CPU has where it lacks `isa`.
+#[inline]
+pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
+    #[cfg(target_arch = "x86_64")]
+    match isa {
+        // SAFETY: `Isa` values other than Scalar and Sse2 come from `detect`/`available`, or pass
+        // `supported` below, so the CPU has the features the function enables.
+        Isa::Avx512 if supported(isa) => return unsafe { x86::avx512(kernel) },
+        // SAFETY: as above.
+        Isa::Avx2 if supported(isa) => return unsafe { x86::avx2(kernel) },
+        Isa::Sse2 => return kernel.run::<x86::Sse2>(),
+        _ => {}
+    }
+    #[cfg(target_arch = "aarch64")]
+    if isa == Isa::Neon {
+        return kernel.run::<arm::Neon>();
+    }
+    kernel.run::<Scalar>()
+}
+
+/// Whether this CPU has `isa` (the standard library caches the answer).
+#[cfg(target_arch = "x86_64")]
+#[inline]
+fn supported(isa: Isa) -> bool {
+    let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+    match isa {
+        Isa::Avx512 => avx2 && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl"),
+        Isa::Avx2 => avx2,
+        _ => true,
+    }
+}
+
+/// Asks the CPU to fetch the `size_of::<T>()` bytes at `item` into its cache.
+#[inline(always)]
+pub(crate) fn prefetch<T>(item: &T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        let p = std::ptr::from_ref(item).cast::<i8>();
+        let mut at = 0;
+        while at < size_of::<T>() {
+            // SAFETY: a prefetch is a hint that never faults; the address is inside `item`.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(p.add(at)) };
+            at += 64;
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = item;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every operation on one pair of vectors and a third: the bits of the results, and the comparison.
+    struct Each([[f32; 8]; 3]);
+
+    impl Kernel for Each {
+        type Output = (Vec<[f32; 8]>, u32);
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let [a, b, c] = [L::load(&self.0[0]), L::load(&self.0[1]), L::load(&self.0[2])];
+            let results = [
+                a.add(b),
+                a.sub(b),
+                a.mul(b),
+                a.div(b),
+                a.abs(),
+                a.min(b),
+                a.max(b),
+                L::splat(self.0[0][3]),
+                c,
+            ];
+            let mut out = vec![[0.0; 8]; results.len()];
+            for (r, o) in results.iter().zip(&mut out) {
+                r.store(o);
+            }
+            (out, a.le(b))
+        }
+    }
+
+    /// The two fused operations.
+    struct Fused([[f32; 8]; 3]);
+
+    impl Kernel for Fused {
+        type Output = [[f32; 8]; 2];
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let [a, b, c] = [L::load(&self.0[0]), L::load(&self.0[1]), L::load(&self.0[2])];
+            let mut out = [[0.0; 8]; 2];
+            a.mul_add(b, c).store(&mut out[0]);
+            a.mul_sub(b, c).store(&mut out[1]);
+            out
+        }
+    }
+
+    fn same(x: f32, y: f32) -> bool {
+        x.to_bits() == y.to_bits() || (x.is_nan() && y.is_nan())
+    }
+
+    #[test]
+    fn every_instruction_set_agrees_with_scalar_lane_by_lane() {
+        let special =
+            [0.0, -0.0, 1.0, -1.5, f32::MIN_POSITIVE, f32::MAX, f32::INFINITY, f32::NAN, -1e-30, 3e7];
+        let mut state = 1u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            if state.is_multiple_of(5) {
+                special[(state >> 8) as usize % special.len()]
+            } else {
+                (state >> 8) as f32 * 1e-4 - 800.0
+            }
+        };
+        for _ in 0..2000 {
+            let input: [[f32; 8]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| next()));
+            let (expected, mask) = run(Isa::Scalar, Each(input));
+            for isa in Isa::available() {
+                let (got, got_mask) = run(isa, Each(input));
+                assert_eq!(got_mask, mask, "{isa:?} {input:?}");
+                for (g, e) in got.iter().flatten().zip(expected.iter().flatten()) {
+                    assert!(same(*g, *e), "{isa:?}: {g} is not {e} for {input:?}");
+                }
+                let fused = run(isa, Fused(input));
+                for lane in 0..8 {
+                    let [a, b, c] = [input[0][lane], input[1][lane], input[2][lane]];
+                    for (got, c) in [(fused[0][lane], c), (fused[1][lane], -c)] {
+                        let both = [a * b + c, a.mul_add(b, c)];
+                        assert!(both.iter().any(|x| same(*x, got)), "{isa:?}: {a} · {b} + {c} = {got}");
+                    }
+                }
+            }
+        }
+    }
+}

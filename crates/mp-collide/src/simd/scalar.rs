@@ -1,0 +1,77 @@
+//! Plain arrays, on any CPU.
+
+use super::Lanes;
+
+/// Plain arrays.
+#[derive(Clone, Copy)]
+pub(crate) struct Scalar([f32; 8]);
+
+impl Scalar {
+    #[inline(always)]
+    fn zip(self, b: Self, f: impl Fn(f32, f32) -> f32) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], b.0[i])))
+    }
+}
+
+impl Lanes for Scalar {
+    #[inline(always)]
+    fn load(a: &[f32; 8]) -> Self {
+        Self(*a)
+    }
+    #[inline(always)]
+    fn store(self, a: &mut [f32; 8]) {
+        *a = self.0;
+    }
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Self([x; 8])
+    }
+    #[inline(always)]
+    fn twice(a: &[f32; 4]) -> Self {
+        Self(std::array::from_fn(|i| a[i % 4]))
+    }
+    #[inline(always)]
+    fn halves(low: f32, high: f32) -> Self {
+        Self(std::array::from_fn(|i| if i < 4 { low } else { high }))
+    }
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        self.zip(b, |x, y| x + y)
+    }
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        self.zip(b, |x, y| x - y)
+    }
+    #[inline(always)]
+    fn mul(self, b: Self) -> Self {
+        self.zip(b, |x, y| x * y)
+    }
+    #[inline(always)]
+    fn div(self, b: Self) -> Self {
+        self.zip(b, |x, y| x / y)
+    }
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self.mul(b).add(c)
+    }
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self.mul(b).sub(c)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.map(f32::abs))
+    }
+    #[inline(always)]
+    fn min(self, b: Self) -> Self {
+        self.zip(b, |x, y| if x < y { x } else { y })
+    }
+    #[inline(always)]
+    fn max(self, b: Self) -> Self {
+        self.zip(b, |x, y| if x > y { x } else { y })
+    }
+    #[inline(always)]
+    fn le(self, b: Self) -> u32 {
+        (0..8).fold(0, |m, i| m | (u32::from(self.0[i] <= b.0[i]) << i))
+    }
+}
