@@ -3,7 +3,7 @@
 //! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads, saved and loaded.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
 //!   stretches of motions.
-//! * [`Solid`]: balls, capsules, boxes and half-spaces, to compare with meshes.
+//! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
 //! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.

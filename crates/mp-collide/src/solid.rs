@@ -1,8 +1,9 @@
-//! Meshes and solid primitives: balls, capsules, boxes, half-spaces.
+//! Meshes and solid primitives: balls, capsules, boxes, cylinders, cones, half-spaces.
 //!
 //! A ball is all that is near a point and a capsule all that is near a segment, so queries about them are
 //! distance queries against a mesh of one degenerate triangle. A box is a mesh of twelve and what is inside;
-//! a half-space asks for the lowest point of the mesh.
+//! cylinders and cones are compared with triangles as the convex solids of revolution they are; a half-space asks
+//! for the lowest point of the mesh.
 
 use mp_geom::primitives::{PrimitiveError, cuboid};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -13,6 +14,7 @@ use crate::query::{Query, Separation};
 use crate::simd::run;
 use crate::wide::frames::Frames;
 use crate::wide::inside::{Inside, is_inside};
+use crate::wide::revolved::{Apart, Frustum, Revolved};
 
 /// A primitive in a frame of its own: a closed *solid*, unlike a mesh, which is a surface.
 ///
@@ -43,6 +45,11 @@ enum Shape {
     Cuboid {
         surface: CollisionMesh,
         half: Vector3<f64>,
+    },
+    Revolved {
+        /// The box around it.
+        around: CollisionMesh,
+        frustum: Frustum,
     },
     HalfSpace,
 }
@@ -88,6 +95,30 @@ impl Solid {
         Ok(Self { shape: Shape::Cuboid { surface, half: Vector3::new(x, y, z) * 0.5 } })
     }
 
+    /// The cylinder about Z of this radius and height (metres), centred on the origin.
+    ///
+    /// # Errors
+    /// [`PrimitiveError::NotPositive`].
+    pub fn cylinder(radius: f64, height: f64) -> Result<Self, PrimitiveError> {
+        let (radius, half) = (positive("radius", radius)?, positive("height", height)? * 0.5);
+        Self::revolved(Frustum { low: radius, high: radius, half })
+    }
+
+    /// The cone about Z with a base of this radius at z = −`height`/2 and its tip at z = `height`/2 (metres).
+    ///
+    /// # Errors
+    /// [`PrimitiveError::NotPositive`].
+    pub fn cone(radius: f64, height: f64) -> Result<Self, PrimitiveError> {
+        let (radius, half) = (positive("radius", radius)?, positive("height", height)? * 0.5);
+        Self::revolved(Frustum { low: radius, high: 0.0, half })
+    }
+
+    fn revolved(frustum: Frustum) -> Result<Self, PrimitiveError> {
+        let width = 2.0 * frustum.low.max(frustum.high);
+        let around = CollisionMesh::new(&cuboid(width, width, 2.0 * frustum.half)?);
+        Ok(Self { shape: Shape::Revolved { around, frustum } })
+    }
+
     /// All points with z ≤ 0: its pose says where the plane goes.
     #[must_use]
     pub fn half_space() -> Self {
@@ -99,7 +130,8 @@ impl Solid {
 ///
 /// The mesh is a surface and the solid is filled: a mesh wholly inside a solid collides with it, a solid
 /// wholly inside a closed mesh does not. **Touching counts**, to rounding: balls, capsules and half-spaces
-/// collide when the distance, computed as accurately as the crate docs say, is not above zero; the surface
+/// collide when the distance, computed as accurately as the crate docs say, is not above zero, and so do cylinders
+/// and cones, where about a microsecond goes into each triangle that may be the nearest; the surface
 /// of a box is compared exactly, as meshes are. Bad input counts as in collision with everything.
 impl Query {
     /// Whether mesh and solid have a point in common.
@@ -115,6 +147,9 @@ impl Query {
             Shape::Cuboid { surface, half } => {
                 self.intersects(mesh, pose_wm, surface, pose_ws)
                     || self.corner_inside(mesh, pose_wm, surface, half, pose_ws).is_some()
+            }
+            Shape::Revolved { around, frustum } => {
+                self.revolved(mesh, pose_wm, (around, frustum), pose_ws, 0.0, true).is_some()
             }
             Shape::HalfSpace => self.lowest(mesh, pose_wm, pose_ws).is_none_or(|(height, _)| height <= 0.0),
         }
@@ -148,6 +183,15 @@ impl Query {
                     return apart;
                 }
                 self.corner_inside(mesh, pose_wm, surface, half, pose_ws).map_or(apart, touching)
+            }
+            Shape::Revolved { around, frustum } => {
+                let solid = (around, frustum);
+                let nearest = self.revolved(mesh, pose_wm, solid, pose_ws, f64::INFINITY, false);
+                let Some(Apart { distance, other, solid }) = nearest else {
+                    return touching(Point3::origin());
+                };
+                let [point_a, point_b] = [other, solid].map(|p| to_world(pose_wm, &p));
+                if distance > 0.0 { Separation { distance, point_a, point_b } } else { touching(point_a) }
             }
             Shape::HalfSpace => match self.lowest(mesh, pose_wm, pose_ws) {
                 None => touching(Point3::origin()),
@@ -189,6 +233,11 @@ impl Query {
                     clearance > 0.0 && self.corner_inside(mesh, pose_wm, surface, half, pose_ws).is_some();
                 if inside { 0.0 } else { clearance }
             }
+            Shape::Revolved { around, frustum } => {
+                let enough = if enough.is_nan() { f64::INFINITY } else { enough.max(0.0) };
+                let nearest = self.revolved(mesh, pose_wm, (around, frustum), pose_ws, enough, false);
+                nearest.map_or(enough.max(f64::MIN_POSITIVE), |apart| apart.distance)
+            }
             Shape::HalfSpace => {
                 self.lowest(mesh, pose_wm, pose_ws).map_or(0.0, |(height, _)| height.max(0.0))
             }
@@ -213,6 +262,10 @@ impl Query {
             Shape::Cuboid { surface, half } => {
                 self.within(mesh, pose_wm, surface, pose_ws, tolerance)
                     || self.corner_inside(mesh, pose_wm, surface, half, pose_ws).is_some()
+            }
+            Shape::Revolved { around, frustum } => {
+                let tolerance = if tolerance.is_nan() { f64::INFINITY } else { tolerance.max(0.0) };
+                self.revolved(mesh, pose_wm, (around, frustum), pose_ws, tolerance, true).is_some()
             }
             Shape::HalfSpace => {
                 let lowest = self.lowest(mesh, pose_wm, pose_ws);
@@ -247,6 +300,35 @@ impl Query {
             corners.find(|corner| is_inside(corner, half, &relative))
         };
         corner.map(|corner| to_world(pose_wm, &corner))
+    }
+
+    /// Nearest points of mesh and solid in the frame of the mesh, if no farther apart than `enough` (metres), or any
+    /// that are not. For bad input the origin.
+    fn revolved(
+        &mut self,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        (around, solid): (&CollisionMesh, &Frustum),
+        pose_ws: &Isometry3<f64>,
+        enough: f64,
+        any: bool,
+    ) -> Option<Apart> {
+        self.counters.queries += 1;
+        let Some(relative) = Relative::between(pose_wm, mesh.radius(), pose_ws, around.radius()) else {
+            let origin = Point3::origin();
+            return Some(Apart { distance: 0.0, other: origin, solid: origin });
+        };
+        let (a, b) = (mesh.tree(), around.tree());
+        let frames = Frames::new(a, b, &relative);
+        if frames.apart > (a.radius_center + b.radius_center + enough) * (1.0 + 1e-12) + relative.slack {
+            return None;
+        }
+        if frames.fits_f32(a, b) {
+            let (frames, stack, counters) = (&frames, &mut self.stack, &mut self.counters);
+            return run(self.isa, Revolved { a, b, solid, frames, enough, any, stack, counters });
+        }
+        let all = a.triangles.iter().map(|triangle| solid.near_triangle_of_a(triangle, &relative));
+        all.filter(|apart| apart.distance <= enough).min_by(|x, y| x.distance.total_cmp(&y.distance))
     }
 
     /// How high the lowest point of the mesh is above the plane z = 0 of `pose_ws`, and that point, in the

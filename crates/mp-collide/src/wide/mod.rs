@@ -35,6 +35,7 @@ pub(crate) mod intersect;
 pub(crate) mod leaves;
 mod meeting;
 pub(crate) mod nearest;
+pub(crate) mod revolved;
 pub(crate) mod span;
 mod split;
 pub(crate) mod sweep;

@@ -35,6 +35,16 @@ fn cases(rng: &mut Pcg64) -> Vec<Case> {
         let apart = |i| triangle::closest(&faces.triangle(i), t).distance;
         (0..12).map(apart).fold(f64::INFINITY, f64::min)
     };
+    // Nested golden sections, of a function that is convex along every line.
+    let revolved = |low: f64, high: f64, half: f64| {
+        move |t: &triangle::Triangle| {
+            let across = |u: f64| {
+                let (p, q) = (t[0] + (t[1] - t[0]) * u, t[0] + (t[2] - t[0]) * u);
+                least(|v| to_frustum(&(p + (q - p) * v), low, high, half))
+            };
+            least(across)
+        }
+    };
     let to_plane = |t: &triangle::Triangle| t.iter().map(|p| p.z).fold(f64::INFINITY, f64::min).max(0.0);
     vec![
         Case {
@@ -52,8 +62,62 @@ fn cases(rng: &mut Pcg64) -> Vec<Case> {
             parry: Some(Box::new(shape::Cuboid::new(vector(&Point3::new(0.5 * x, 0.5 * y, 0.5 * z))))),
             brute: Box::new(to_box),
         },
+        Case {
+            solid: Solid::cylinder(r, l).unwrap(),
+            parry: Some(Box::new(upright(shape::Cylinder::new(0.5 * l, r)))),
+            brute: Box::new(revolved(r, r, 0.5 * l)),
+        },
+        Case {
+            solid: Solid::cone(r, l).unwrap(),
+            parry: Some(Box::new(upright(shape::Cone::new(0.5 * l, r)))),
+            brute: Box::new(revolved(r, 0.0, 0.5 * l)),
+        },
         Case { solid: Solid::half_space(), parry: None, brute: Box::new(to_plane) },
     ]
+}
+
+/// A shape about Y, put about Z.
+fn upright(shape: impl shape::Shape) -> shape::Compound {
+    let turn = nalgebra::UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::FRAC_PI_2);
+    let pose = placed(&Isometry3::from_parts(Vector3::zeros().into(), turn));
+    shape::Compound::new(vec![(pose, shape::SharedShape::new(shape))])
+}
+
+/// The least value of a convex function on 0..1.
+fn least(f: impl Fn(f64) -> f64) -> f64 {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let (mut lo, mut hi) = (0.0, 1.0);
+    let (mut x, mut y) = (1.0 - golden, golden);
+    let (mut at_x, mut at_y) = (f(x), f(y));
+    let mut best = f(0.0).min(f(1.0));
+    for _ in 0..38 {
+        best = best.min(at_x).min(at_y);
+        if at_x < at_y {
+            (hi, y, at_y) = (y, x, at_x);
+            x = hi - golden * (hi - lo);
+            at_x = f(x);
+        } else {
+            (lo, x, at_x) = (x, y, at_y);
+            y = lo + golden * (hi - lo);
+            at_y = f(y);
+        }
+    }
+    best
+}
+
+/// The distance of a point from the solid between two discs about Z: from the outline of its section.
+fn to_frustum(p: &Point3<f64>, low: f64, high: f64, half: f64) -> f64 {
+    let p = [p.x.hypot(p.y), p.z];
+    let outline = [[0.0, -half], [low, -half], [high, half], [0.0, half]];
+    let (mut inside, mut least) = (true, f64::INFINITY);
+    for [a, b] in [[outline[0], outline[1]], [outline[1], outline[2]], [outline[2], outline[3]]] {
+        let (d, e) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+        inside &= d[0] * e[1] - d[1] * e[0] >= 0.0;
+        let length = d[0] * d[0] + d[1] * d[1];
+        let t = if length > 0.0 { ((d[0] * e[0] + d[1] * e[1]) / length).clamp(0.0, 1.0) } else { 0.0 };
+        least = least.min((e[0] - d[0] * t).hypot(e[1] - d[1] * t));
+    }
+    if inside { 0.0 } else { least }
 }
 
 #[test]
@@ -115,7 +179,7 @@ fn solids_answer_as_brute_force_and_parry_do() {
         }
     }
     assert!(hits > total / 10 && hits < total * 9 / 10, "{hits} of {total}");
-    assert!(counted * 4 == total * 3, "{counted} of {total} compared with parry");
+    assert!(counted * 6 == total * 5, "{counted} of {total} compared with parry");
 }
 
 #[test]
@@ -124,7 +188,9 @@ fn solids_are_filled_and_meshes_are_not() {
     let here = Isometry3::identity();
     let small = CollisionMesh::new(&primitives::cuboid(0.1, 0.1, 0.1).unwrap());
     let large = CollisionMesh::new(&primitives::cuboid(10.0, 10.0, 10.0).unwrap());
-    for solid in [Solid::ball(1.0), Solid::capsule(1.0, 1.0), Solid::cuboid(2.0, 2.0, 2.0)] {
+    let round =
+        [Solid::ball(1.0), Solid::capsule(1.0, 1.0), Solid::cylinder(1.0, 2.0), Solid::cone(1.5, 3.0)];
+    for solid in round.into_iter().chain([Solid::cuboid(2.0, 2.0, 2.0)]) {
         let solid = solid.unwrap();
         for at in [here, Isometry3::new(Vector3::new(0.3, -0.2, 0.4), Vector3::new(1.0, 0.3, -2.0))] {
             assert!(query.solid_intersects(&small, &at, &solid, &here));
@@ -156,7 +222,9 @@ fn touching_a_solid_counts() {
     let mut query = Query::default();
     let here = Isometry3::identity();
     let mesh = CollisionMesh::new(&primitives::cuboid(2.0, 2.0, 2.0).unwrap());
-    let solids: [(Solid, f64); 3] = [
+    let solids: [(Solid, f64); 5] = [
+        (Solid::cylinder(0.25, 0.5).unwrap(), 1.25),
+        (Solid::cone(0.25, 0.5).unwrap(), 1.25),
         (Solid::ball(0.25).unwrap(), 1.25),
         (Solid::capsule(0.25, 0.5).unwrap(), 1.5),
         (Solid::cuboid(1.0, 1.0, 0.5).unwrap(), 1.25),
@@ -177,7 +245,9 @@ fn touching_a_solid_counts() {
 #[test]
 fn sizes_and_poses_of_any_kind_are_answered() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        for solid in [Solid::ball(bad), Solid::capsule(1.0, bad), Solid::cuboid(1.0, bad, 1.0)] {
+        let round =
+            [Solid::ball(bad), Solid::capsule(1.0, bad), Solid::cylinder(bad, 1.0), Solid::cone(1.0, bad)];
+        for solid in round.into_iter().chain([Solid::cuboid(1.0, bad, 1.0)]) {
             assert!(matches!(solid, Err(PrimitiveError::NotPositive { .. })));
         }
     }
@@ -193,8 +263,9 @@ fn sizes_and_poses_of_any_kind_are_answered() {
     let here = Isometry3::identity();
     let nan = Isometry3::translation(f64::NAN, 0.0, 0.0);
     for size in [1e-300, 1e-20, 1.0, 1e20, 1e74, 1e300] {
-        let solids = [Solid::ball(size), Solid::capsule(size, size), Solid::cuboid(size, size, size)];
-        for solid in solids.into_iter().map(Result::unwrap).chain([Solid::half_space()]) {
+        let round = [Solid::ball(size), Solid::capsule(size, size), Solid::cylinder(size, size)];
+        let others = [Solid::cone(size, size), Solid::cuboid(size, size, size)];
+        for solid in round.into_iter().chain(others).map(Result::unwrap).chain([Solid::half_space()]) {
             for mesh in &meshes {
                 for at in [here, Isometry3::translation(0.0, 0.0, 1e3)] {
                     let hit = query.solid_intersects(mesh, &here, &solid, &at);
