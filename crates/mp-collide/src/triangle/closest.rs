@@ -78,6 +78,20 @@ pub(crate) fn closest_within(a: &Triangle, b: &Triangle, squared: f64) -> Option
 /// Whether the slab between `p` on `a` and `q` on `b`, at right angles to their join, keeps the triangles
 /// apart: then no points are nearer, up to rounding.
 pub(crate) fn is_nearest(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> bool {
+    let (gap, rounding) = gap_along(a, b, p, q);
+    gap >= (q - p).norm_squared() - rounding
+}
+
+/// Whether `a` and `b` are farther apart than `p` and `q` are, points of other triangles, by more than rounding
+/// makes of one distance: by the gap between them along the join of the points.
+pub(crate) fn is_farther(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> bool {
+    let (gap, rounding) = gap_along(a, b, p, q);
+    gap > (q - p).norm_squared() * (1.0 + 1e-9) + 1e3 * rounding
+}
+
+/// The gap between triangles along the join of two points, times the length of the join, and what rounding makes
+/// of it.
+fn gap_along(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> (f64, f64) {
     let join = q - p;
     let (mut top_a, mut bottom_b, mut size) = (f64::NEG_INFINITY, f64::INFINITY, 0.0_f64);
     for corner in a {
@@ -90,7 +104,7 @@ pub(crate) fn is_nearest(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f
         bottom_b = bottom_b.min(along);
         size = size.max(along.abs());
     }
-    bottom_b - top_a >= join.norm_squared() - 4.0 * f64::EPSILON * size
+    (bottom_b - top_a, 4.0 * f64::EPSILON * size)
 }
 
 /// The nearest points of two closed segments (either may be a point).
