@@ -1,88 +1,274 @@
 //! The curve a snake begins with where the straight one is blocked.
 
-use crate::snake::{Shape, norm};
+use crate::snake::norm;
 use crate::{Field, Snake};
 use mp_cspace::Space;
 use std::ops::Range;
 
-/// How high the bulges tried are, in units of the depth of the deepest node and a spacing.
-const HEIGHTS: [f64; 3] = [1.0, 2.0, 4.0];
+/// A way for some nodes to go together.
+struct March<'a> {
+    /// The nodes between the ends that are blocked.
+    blocked: Range<usize>,
+    /// A unit vector (scaled), whither they go.
+    side: &'a [f64],
+    /// The clearance they should have, where they have the least of it now, and how far they may go.
+    wanted: f64,
+    least: f64,
+    longest: f64,
+}
+
+/// How far nodes go aside at least at a time, as part of how far they may.
+const STRIDE: f64 = 0.125;
+
+/// What came of a [bulge](Snake::bulge).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Bulged {
+    /// There is one that fits: the curve is its corners.
+    Fits,
+    /// There is one, which does not fit: the curve is laid along it.
+    Laid,
+    /// There is no side where the blocked nodes are clear: the curve is as it was.
+    Nowhere,
+}
 
 impl<C: Space> Snake<'_, C> {
-    /// Bends a curve out of what blocks it, all of it to one side, as a better place to
+    /// Bends a straight curve out of what blocks it, all of it to one side. That may do; else it is a better place to
     /// [begin](Self::deform) from: a curve that enters an obstacle by one face and leaves it by another is pushed
     /// to different sides along its way, and one that meets a face squarely to no side at all.
     ///
-    /// Bulges of a few heights, over the nodes of negative clearance, are tried to the side to which the field
-    /// pushes those nodes together, and to the other; where it pushes them along the curve only, along the two axes
-    /// most across it. It becomes the first whose nodes are all clear, else the one of least energy, which may be
-    /// the curve itself. Asks the field at most seven times per node, thirteen times where there is no side.
-    pub fn bulge(&mut self, curve: &mut Vec<C::State>, field: &mut impl Field<C::State>) {
-        let dim = self.dim();
+    /// The nodes from the first to the last that are blocked (where none is, the one of least clearance) go together to
+    /// the side to which the field pushes them, until all have the clearance `wanted` (m); in strides of what they
+    /// lack of it, at most as far as the curve is long. Where the first and the last of them are then, are the corners
+    /// of the bulge. When it does not fit, as `fits` says of its ends and corners, they try the other side; where the
+    /// field pushes along the curve only, the two axes most across it, both ways.
+    ///
+    /// Asks the field once per node, and in each stride until it meets a node that is blocked, in the middle first.
+    pub fn bulge(
+        &mut self,
+        curve: &mut Vec<C::State>,
+        field: &mut impl Field<C::State>,
+        wanted: f64,
+        mut fits: impl FnMut(&[C::State]) -> bool,
+    ) -> Bulged {
         if curve.len() < 3 {
-            return;
+            return Bulged::Nowhere;
         }
-        let mut shape = Shape::default();
-        self.measure(curve, field, &mut shape);
-        let blocked = |c: &f64| *c <= 0.0;
-        let (Some(first), Some(last)) =
-            (shape.clearances.iter().position(blocked), shape.clearances.iter().rposition(blocked))
-        else {
-            return;
-        };
-        let inner = shape.clearances.len();
-        let height = |i: usize| {
-            let (up, down) =
-                ((i + 1) as f64 / (first + 1) as f64, (inner - i) as f64 / (inner - last) as f64);
-            up.min(down).min(1.0) * (self.params().spacing - shape.clearance())
-        };
-        let heights: Vec<f64> = (0..inner).map(height).collect();
-        let (mut least, mut best) = (shape.energy.total(), None);
-        let mut bulged = Vec::with_capacity(curve.len());
-        for side in sides(&shape, first..last + 1, dim) {
-            *self.step_mut() = heights.iter().flat_map(|h| side.iter().map(move |s| s * h)).collect();
-            for height in HEIGHTS.iter().flat_map(|height| [*height, -height]) {
-                self.displaced(curve, height, &mut bulged);
-                let energy = self.energy(&bulged, field).total();
-                if self.measured().clearance() > 0.0 {
-                    *curve = bulged;
-                    return;
-                }
-                if energy < least {
-                    least = energy;
-                    best = Some(std::mem::take(&mut bulged));
-                }
+        let mut sight = std::mem::take(&mut self.sight);
+        let bulged = self.aside_of(curve, field, wanted, &mut sight, &mut fits);
+        self.sight = sight;
+        bulged
+    }
+
+    fn aside_of(
+        &mut self,
+        curve: &mut Vec<C::State>,
+        field: &mut impl Field<C::State>,
+        wanted: f64,
+        sight: &mut Sight,
+        fits: &mut impl FnMut(&[C::State]) -> bool,
+    ) -> Bulged {
+        self.look(curve, field, sight);
+        let Some(blocked) = sight.blocked() else { return Bulged::Nowhere };
+        let (dim, least, longest) = (self.dim(), sight.least(), norm(&sight.way));
+        sight.find_sides(&blocked);
+        let mut corners = std::mem::take(&mut self.next);
+        let mut lowest: Option<(&[f64], f64)> = None;
+        let mut found = false;
+        for side in sight.sides.chunks_exact(dim) {
+            let march = March { blocked: blocked.clone(), side, wanted, least, longest };
+            let Some(height) = self.march(&march, curve, field) else { continue };
+            corners.clear();
+            corners.push(curve[0].clone());
+            let ends = [blocked.start, blocked.end - 1];
+            for &i in &ends[..2.min(blocked.len())] {
+                corners.extend(self.aside(&curve[i + 1], side, height));
+            }
+            corners.extend(curve.last().cloned());
+            found = corners.len() > 2 && fits(&corners);
+            if found {
+                std::mem::swap(curve, &mut corners);
+                break;
+            }
+            if lowest.is_none_or(|(_, h)| height < h) {
+                lowest = Some((side, height));
             }
         }
-        if let Some(best) = best {
-            *curve = best;
+        let bulged = match lowest {
+            _ if found => Bulged::Fits,
+            None => Bulged::Nowhere,
+            Some((side, height)) => {
+                for i in 0..curve.len() - 2 {
+                    let part = part(i, &blocked, curve.len() - 2);
+                    if let Some(q) = self.aside(&curve[i + 1], side, part * height) {
+                        curve[i + 1] = q;
+                    }
+                }
+                Bulged::Laid
+            }
+        };
+        self.next = corners;
+        bulged
+    }
+
+    /// Asks the field at each node between the ends of a straight curve.
+    fn look(&mut self, curve: &[C::State], field: &mut impl Field<C::State>, sight: &mut Sight) {
+        let dim = self.dim();
+        let inner = curve.len() - 2;
+        sight.way.resize(dim, 0.0);
+        self.space.velocity_into(&curve[0], &curve[inner + 1], &mut sight.way);
+        sight.way.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+        sight.clearances.clear();
+        sight.pushes.resize(inner * dim, 0.0);
+        for (q, push) in curve[1..].iter().zip(sight.pushes.chunks_exact_mut(dim)) {
+            field.energy(q, push);
+            push.iter_mut().zip(&self.scale).for_each(|(x, s)| *x /= s);
+            sight.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
         }
     }
+
+    /// How far the blocked nodes go to be as clear as wanted; as clear as they get where that is not to be had.
+    fn march(
+        &mut self,
+        march: &March<'_>,
+        curve: &[C::State],
+        field: &mut impl Field<C::State>,
+    ) -> Option<f64> {
+        let stride = (0.5 * self.params().spacing).max(STRIDE * march.longest);
+        let mut height = (march.wanted - march.least).max(stride);
+        let mut best: Option<(f64, f64)> = None;
+        while height <= march.longest {
+            let mut least = f64::INFINITY;
+            for i in from_the_middle(&march.blocked) {
+                let Some(q) = self.aside(&curve[i + 1], march.side, height) else {
+                    return best.map(|b| b.1);
+                };
+                least = least.min(self.clearance_at(&q, field));
+                if least <= 0.0 {
+                    break;
+                }
+            }
+            if least >= march.wanted {
+                return Some(height);
+            }
+            if least > best.map_or(0.0, |b| b.0) {
+                best = Some((least, height));
+            } else if best.is_some() {
+                break;
+            }
+            // Where they are clear already, little is lacking.
+            let at_least = if least > 0.0 { 0.1 * self.params().spacing } else { stride };
+            height += (march.wanted - least).max(at_least);
+        }
+        best.map(|b| b.1)
+    }
+
+    fn clearance_at(&mut self, q: &C::State, field: &mut impl Field<C::State>) -> f64 {
+        self.velocity.resize(self.scale.len(), 0.0);
+        field.energy(q, &mut self.velocity);
+        field.clearance().unwrap_or(f64::INFINITY)
+    }
+
+    /// The state `by` to a side, if it is in the space.
+    fn aside(&mut self, q: &C::State, side: &[f64], by: f64) -> Option<C::State> {
+        self.velocity.clear();
+        self.velocity.extend(side.iter().zip(&self.scale).map(|(x, s)| x / s));
+        self.space.moved(q, &self.velocity, by).filter(|moved| self.space.contains(moved))
+    }
 }
 
-/// The directions (unit, scaled) to try for the blocked nodes: where the field pushes them together, across the curve;
-/// where it pushes along the curve only, the two axes most across it.
-fn sides(shape: &Shape, blocked: Range<usize>, dim: usize) -> Vec<Vec<f64>> {
-    let mut side = vec![0.0; dim];
-    let mut strength = 0.0;
-    for push in shape.pushes[blocked.start * dim..blocked.end * dim].chunks_exact(dim) {
-        side.iter_mut().zip(push).for_each(|(s, p)| *s -= p);
-        strength += norm(push);
-    }
-    if norm(&side) > 1e-6 * strength {
-        return unit(side).into_iter().collect();
-    }
-    let way: Vec<f64> = (0..dim).map(|k| shape.ways.iter().skip(k).step_by(dim).sum()).collect();
-    let Some(way) = unit(way) else { return Vec::new() };
-    let mut axes: Vec<usize> = (0..dim).collect();
-    axes.sort_by(|&i, &j| way[i].abs().total_cmp(&way[j].abs()));
-    let across =
-        |&axis: &usize| unit((0..dim).map(|k| f64::from(u8::from(k == axis)) - way[axis] * way[k]).collect());
-    axes.iter().take(2.min(dim - 1)).filter_map(across).collect()
+/// What part of the way of the blocked nodes node `i` of `inner` goes.
+fn part(i: usize, blocked: &Range<usize>, inner: usize) -> f64 {
+    let (up, down) =
+        ((i + 1) as f64 / (blocked.start + 1) as f64, (inner - i) as f64 / (inner + 1 - blocked.end) as f64);
+    up.min(down).min(1.0)
 }
 
-fn unit(mut v: Vec<f64>) -> Option<Vec<f64>> {
-    let length = norm(&v);
+fn from_the_middle(range: &Range<usize>) -> impl Iterator<Item = usize> + use<> {
+    let middle = (range.start + range.end) / 2;
+    (middle..range.end).chain((range.start..middle).rev())
+}
+
+/// What a straight curve meets. Numbers are scaled: lengths in the metric.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sight {
+    /// From end to end.
+    way: Vec<f64>,
+    /// The clearance of each node between the ends, and the gradient of the field there.
+    clearances: Vec<f64>,
+    pushes: Vec<f64>,
+    /// Directions (unit) to try, one after the other.
+    sides: Vec<f64>,
+}
+
+impl Sight {
+    fn least(&self) -> f64 {
+        self.clearances.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// From the first to the last node of no clearance; the one of least where all have some; `None` where it is unknown.
+    fn blocked(&self) -> Option<Range<usize>> {
+        let none = |c: &f64| *c <= 0.0;
+        let mut clearances = self.clearances.iter();
+        if let Some(first) = clearances.position(none) {
+            let last = self.clearances.iter().rposition(none).unwrap_or(first);
+            return Some(first..last + 1);
+        }
+        let least = self.least();
+        let at = self.clearances.iter().position(|c| *c == least && c.is_finite())?;
+        Some(at..at + 1)
+    }
+
+    /// Finds the sides: where the field pushes the blocked nodes together, across the curve, and back; where it pushes
+    /// along the curve only, the two axes most across it, both ways.
+    fn find_sides(&mut self, blocked: &Range<usize>) {
+        let dim = self.way.len();
+        self.sides.clear();
+        self.sides.resize(dim, 0.0);
+        let mut strength = 0.0;
+        for push in self.pushes[blocked.start * dim..blocked.end * dim].chunks_exact(dim) {
+            self.sides.iter_mut().zip(push).for_each(|(s, p)| *s -= p);
+            strength += norm(push);
+        }
+        let length = norm(&self.way);
+        if length <= 0.0 || !length.is_finite() {
+            self.sides.clear();
+            return;
+        }
+        let part = dot(&self.sides, &self.way) / (length * length);
+        self.sides.iter_mut().zip(&self.way).for_each(|(s, w)| *s -= part * w);
+        if norm(&self.sides) > 1e-6 * strength && unit(&mut self.sides) {
+            self.and_back(0);
+            return;
+        }
+        self.sides.clear();
+        self.way.iter_mut().for_each(|w| *w /= length);
+        let mut axes: Vec<usize> = (0..dim).collect();
+        axes.sort_by(|&i, &j| self.way[i].abs().total_cmp(&self.way[j].abs()));
+        for &axis in axes.iter().take(2.min(dim - 1)) {
+            let begin = self.sides.len();
+            let way = &self.way;
+            self.sides.extend((0..dim).map(|k| f64::from(u8::from(k == axis)) - way[axis] * way[k]));
+            match unit(&mut self.sides[begin..]) {
+                true => self.and_back(begin),
+                false => self.sides.truncate(begin),
+            }
+        }
+    }
+
+    /// Adds the side opposite to that at `begin`.
+    fn and_back(&mut self, begin: usize) {
+        let dim = self.way.len();
+        self.sides.extend_from_within(begin..begin + dim);
+        self.sides[begin + dim..].iter_mut().for_each(|x| *x = -*x);
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+fn unit(v: &mut [f64]) -> bool {
+    let length = norm(v);
     v.iter_mut().for_each(|x| *x /= length);
-    (length > 0.0 && length.is_finite()).then_some(v)
+    length > 0.0 && length.is_finite()
 }

@@ -11,6 +11,8 @@ use nalgebra::Vector2;
 pub struct Grid {
     origin: Vector2<f64>,
     cell: f64,
+    /// Cells per metre.
+    per_metre: f64,
     width: usize,
     values: Vec<f64>,
 }
@@ -37,7 +39,7 @@ impl Grid {
             let expected = "a whole number of rows, at least two by two in all";
             return Err(ParameterError { name: "the number of cells", expected, value: values.len() as f64 });
         }
-        Ok(Self { origin, cell, width, values })
+        Ok(Self { origin, cell, per_metre: 1.0 / cell, width, values })
     }
 
     /// The map of a function of the middle of each cell.
@@ -100,7 +102,7 @@ impl Grid {
     pub fn at(&self, p: &Vector2<f64>) -> (f64, Vector2<f64>) {
         let (width, height) = self.size();
         let axis = |x: f64, n: usize| {
-            let x = x / self.cell - 0.5;
+            let x = x * self.per_metre - 0.5;
             let most = (n - 1) as f64;
             let inside = f64::from(u8::from(x > 0.0 && x < most));
             let x = if x > 0.0 { x.min(most) } else { 0.0 };
@@ -113,7 +115,7 @@ impl Grid {
         let (a, b, c, d) = (row[0], row[1], row[width], row[width + 1]);
         let (low, high) = (a + (b - a) * u, c + (d - c) * u);
         let slope_x = (b - a) * (1.0 - v) + (d - c) * v;
-        let gradient = Vector2::new(slope_x * inside_x, (high - low) * inside_y) / self.cell;
+        let gradient = Vector2::new(slope_x * inside_x, (high - low) * inside_y) * self.per_metre;
         (low + (high - low) * v, gradient)
     }
 }
@@ -131,8 +133,18 @@ impl Field<Vector2<f64>> for Grid {
 /// The numbers are signed clearances (m), as of [`signed_distance`](crate::signed_distance).
 impl ClearanceGradient<Vector2<f64>> for Grid {
     #[inline]
+    fn clearance_gradient(&mut self, q: &Vector2<f64>, reach: f64, gradient: &mut [f64]) -> f64 {
+        (&mut &*self).clearance_gradient(q, reach, gradient)
+    }
+}
+
+/// As that of the map, which may be shared.
+impl ClearanceGradient<Vector2<f64>> for &Grid {
+    #[inline]
     fn clearance_gradient(&mut self, q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]) -> f64 {
-        self.energy(q, gradient)
+        let (value, slope) = self.at(q);
+        gradient.copy_from_slice(slope.as_slice());
+        value
     }
 }
 

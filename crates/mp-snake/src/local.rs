@@ -1,6 +1,6 @@
 //! The local planner whose edges bend.
 
-use crate::{Params, Repulsion, Rest, Snake, SnakeError};
+use crate::{Bulged, Params, Repulsion, Rest, Snake, SnakeError};
 use mp_cspace::{
     ClearanceGradient, Direction, Extension, KnownFree, LocalPlanner, Motion, MotionCheck, MotionValidity,
     Path, Reach, Space, Verify,
@@ -89,16 +89,23 @@ pub struct SnakeCounters {
     pub bent: u64,
     /// Motions given up at once: their end is not free, or they are too long.
     pub hopeless: u64,
-    /// Motions that no snake could save.
+    /// Motions that could not be bent free.
     pub lost: u64,
+    /// Those of them for which a snake relaxed.
+    pub vain: u64,
     /// Steps of all snakes.
     pub iterations: u64,
 }
 
 /// Goes straight, and where that is blocked sends a snake around what blocks it.
 ///
+/// A motion whose end is not free is given up at once. Else it is [bulged](Snake::bulge) out of what blocks it: where a
+/// bulge is free it is the edge, with one or two states between the ends. Where it is not, but its top is clear, a snake
+/// relaxes from there, a few steps. Snakes that relax in vain are limited to as many as motions were bent so far, and
+/// four, so that where there is nothing to bend around a motion costs some questions to the field and little more.
+///
 /// A motion ends where the straight one would. Each piece of a bent one has been found free by `check`; the field
-/// only guides. Its cost is its length in the metric of the space. Motions of more than 48 nodes are not bent. Paths are
+/// only guides. Its cost is its length in the metric of the space. Motions of more than 24 nodes are not bent. Paths are
 /// made plain by [`unbent`].
 #[derive(Clone, Debug)]
 pub struct SnakePlanner<'c, C: Space, M, F> {
@@ -109,6 +116,8 @@ pub struct SnakePlanner<'c, C: Space, M, F> {
     snake: Snake<'c, C>,
     wanted: f64,
     counters: SnakeCounters,
+    /// The motion that is being bent.
+    curve: Vec<C::State>,
 }
 
 /// A snake is checked as soon as all its nodes are this part of the range away from obstacles.
@@ -118,8 +127,11 @@ const WANTED: f64 = 0.3;
 const PATIENCE: u32 = 3;
 const GAIN: f64 = 0.05;
 
+/// So many more snakes may relax in vain than motions were bent.
+const VAIN: u64 = 4;
+
 /// Motions that take more nodes are not bent.
-const LONGEST: f64 = 48.0;
+const LONGEST: f64 = 24.0;
 
 impl<'c, C, M, F> SnakePlanner<'c, C, M, F>
 where
@@ -148,7 +160,7 @@ where
     ) -> Result<Self, SnakeError> {
         let wanted = WANTED * field.range();
         let snake = Snake::new(space, params)?;
-        Ok(Self { check, field, snake, wanted, counters: SnakeCounters::default() })
+        Ok(Self { check, field, snake, wanted, counters: SnakeCounters::default(), curve: Vec::new() })
     }
 
     /// What was done so far.
@@ -157,33 +169,42 @@ where
         self.counters
     }
 
-    /// A bent motion in forward time, its ends included, every piece checked; `None` when there is none.
-    fn bend(&mut self, from: &C::State, to: &C::State) -> Option<Vec<C::State>> {
-        let mut curve = self.snake.between(from, to);
-        self.snake.bulge(&mut curve, &mut self.field);
-        let (check, wanted, gain) = (&mut self.check, self.wanted, GAIN * self.field.range());
+    /// Bends the motion: whether `curve` is one in forward time now, its ends included, every piece checked.
+    fn bend(&mut self, from: &C::State, to: &C::State) -> bool {
+        let Self { check, field, snake, wanted, counters, curve } = self;
+        snake.between_into(from, to, curve);
+        match snake.bulge(curve, field, *wanted, |corners| all_free(check, corners)) {
+            Bulged::Fits => return true,
+            Bulged::Nowhere => return false,
+            Bulged::Laid => {}
+        }
+        if counters.vain > counters.bent + VAIN {
+            return false;
+        }
+        let gain = GAIN * field.range();
         let (mut passed, mut iterations, mut best) = (false, 0, (0, f64::NEG_INFINITY));
-        let rest = self.snake.deform(&mut curve, &mut self.field, |moment| {
+        let rest = snake.deform(curve, field, |moment| {
             iterations = moment.iteration;
             if moment.clearance > best.1 + gain {
                 best = (iterations, moment.clearance);
             }
-            passed = moment.clearance >= wanted && all_free(check, moment.curve);
+            passed = moment.clearance >= *wanted && all_free(check, moment.curve);
             passed || (moment.clearance <= 0.0 && iterations >= best.0 + PATIENCE)
         });
-        self.counters.iterations += u64::from(iterations);
-        if !passed && rest != Rest::Stopped {
-            passed = all_free(check, &curve);
-        }
-        passed.then_some(curve)
+        counters.iterations += u64::from(iterations);
+        passed = passed || rest != Rest::Stopped && all_free(check, curve);
+        counters.vain += u64::from(!passed);
+        passed
     }
 }
 
 /// Whether every piece is free. The middle is looked at first: there a snake is tightest.
 fn all_free<S>(check: &mut impl MotionValidity<S>, curve: &[S]) -> bool {
     let middle = curve.len() / 2;
-    let mut free = |i: usize| check.check_motion(&curve[i], &curve[i + 1]).is_free();
-    (middle..curve.len() - 1).all(&mut free) && (0..middle).all(free)
+    let mut free = |i: usize, known| check.check_extension(&curve[i], &curve[i + 1], known).is_free();
+    free(middle, KnownFree::Neither)
+        && (middle + 1..curve.len() - 1).all(|i| free(i, KnownFree::From))
+        && (0..middle).rev().all(|i| free(i, KnownFree::To))
 }
 
 impl<C, M, F> LocalPlanner<C::State> for SnakePlanner<'_, C, M, F>
@@ -217,22 +238,25 @@ where
             Direction::Forward => (from, &end, KnownFree::From),
             Direction::Backward => (&end, from, KnownFree::To),
         };
-        let failed_at = self.check.check_extension(a, b, known).failed_at();
-        let Some(failed_at) = failed_at else {
-            self.counters.straight += 1;
-            return found(Curve::straight(), length);
-        };
-        let end_at = if direction == Direction::Forward { 1.0 } else { 0.0 };
-        let bendable = length > 0.0 && length <= LONGEST * self.snake.params().spacing;
-        if !bendable || failed_at == end_at || !self.check.check_motion(&end, &end).is_free() {
+        // The end first: one question, and where it is not free nothing can be saved.
+        if !self.check.check_motion(&end, &end).is_free() {
             self.counters.hopeless += 1;
             return Extension::Trapped;
         }
-        let Some(curve) = self.bend(a, b) else {
+        if self.check.check_extension(a, b, known).is_free() {
+            self.counters.straight += 1;
+            return found(Curve::straight(), length);
+        }
+        if length <= 0.0 || length > LONGEST * self.snake.params().spacing {
+            self.counters.hopeless += 1;
+            return Extension::Trapped;
+        }
+        if !self.bend(a, b) {
             self.counters.lost += 1;
             return Extension::Trapped;
-        };
+        }
         self.counters.bent += 1;
+        let curve = &self.curve;
         let cost = curve.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
         found(Curve::through(&curve[1..curve.len() - 1]), cost)
     }

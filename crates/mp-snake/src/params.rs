@@ -66,14 +66,14 @@ impl Params {
         })
     }
 
-    /// The same for edges of a tree, where a snake must be cheap: at most 12 steps, four times the membrane stiffness,
-    /// and converged at a tenth of the spacing.
+    /// The same for edges of a tree, where a snake must be cheap: nodes a whole range apart, at most 4 steps, four times
+    /// the membrane stiffness, and converged at a tenth of the spacing.
     ///
     /// # Errors
     /// When the range is not positive and finite.
     pub fn for_edges(range: f64) -> Result<Self, ParameterError> {
         let whole = Self::for_range(range)?;
-        Ok(Self { membrane: 4.0 * whole.membrane, iterations: 12, tolerance: 0.1, ..whole })
+        Ok(Self { membrane: 4.0 * whole.membrane, spacing: range, iterations: 4, tolerance: 0.1, ..whole })
     }
 
     /// These, if all are within their range.

@@ -1,5 +1,6 @@
 //! The snake: a curve that moves until its energy is least.
 
+use crate::bulge::Sight;
 use crate::params::scale;
 use crate::{Band, Field, Params, SnakeError};
 use mp_cspace::Space;
@@ -90,17 +91,19 @@ pub struct Moment<'a, S> {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Snake<'c, C: Space> {
-    space: &'c C,
+    pub(crate) space: &'c C,
     params: Params,
-    scale: Vec<f64>,
+    pub(crate) scale: Vec<f64>,
     /// By the number of nodes that move.
     bands: Vec<Option<Band>>,
     now: Shape,
     trial: Shape,
     /// Where each moving node goes, then what a node is moved by.
     step: Vec<f64>,
-    velocity: Vec<f64>,
-    next: Vec<C::State>,
+    pub(crate) velocity: Vec<f64>,
+    /// What bulges begin with.
+    pub(crate) sight: Sight,
+    pub(crate) next: Vec<C::State>,
     trace: Vec<Energy>,
 }
 
@@ -149,6 +152,7 @@ impl<'c, C: Space> Snake<'c, C> {
             trial: Shape::default(),
             step: Vec::new(),
             velocity: Vec::new(),
+            sight: Sight::default(),
             next: Vec::new(),
             trace: Vec::new(),
         })
@@ -175,9 +179,17 @@ impl<'c, C: Space> Snake<'c, C> {
     /// The straight curve from one state to another: as many nodes as the spacing asks for, at least five and at
     /// most ten thousand.
     pub fn between(&self, from: &C::State, to: &C::State) -> Vec<C::State> {
+        let mut curve = Vec::new();
+        self.between_into(from, to, &mut curve);
+        curve
+    }
+
+    /// As [`between`](Self::between), in the place of what was in `curve`.
+    pub fn between_into(&self, from: &C::State, to: &C::State, curve: &mut Vec<C::State>) {
         let wanted = (self.space.distance(from, to) / self.params.spacing).ceil();
         let parts = wanted.clamp(4.0, (MOST_NODES - 1) as f64) as usize;
-        (0..=parts).map(|i| self.space.interpolate(from, to, i as f64 / parts as f64)).collect()
+        curve.clear();
+        curve.extend((0..=parts).map(|i| self.space.interpolate(from, to, i as f64 / parts as f64)));
     }
 
     /// The energy of a curve.
@@ -233,12 +245,7 @@ impl<'c, C: Space> Snake<'c, C> {
     }
 
     /// Measures a curve: its energy, its ways and the forces on it.
-    pub(crate) fn measure(
-        &mut self,
-        curve: &[C::State],
-        field: &mut impl Field<C::State>,
-        shape: &mut Shape,
-    ) {
+    fn measure(&mut self, curve: &[C::State], field: &mut impl Field<C::State>, shape: &mut Shape) {
         let (dim, h) = (self.scale.len(), self.params.spacing);
         let parts = curve.len().saturating_sub(1);
         shape.ways.resize(parts * dim, 0.0);
@@ -324,7 +331,7 @@ impl<'c, C: Space> Snake<'c, C> {
     }
 
     /// The curve with each node between the ends moved by a part of the step.
-    pub(crate) fn displaced(&mut self, curve: &[C::State], part: f64, out: &mut Vec<C::State>) {
+    fn displaced(&mut self, curve: &[C::State], part: f64, out: &mut Vec<C::State>) {
         out.clear();
         out.extend_from_slice(curve);
         let dim = self.scale.len();
@@ -336,16 +343,6 @@ impl<'c, C: Space> Snake<'c, C> {
                 _ => {}
             }
         }
-    }
-
-    /// What [`energy`](Self::energy) found last.
-    pub(crate) fn measured(&self) -> &Shape {
-        &self.trial
-    }
-
-    /// Sets the step of all nodes.
-    pub(crate) fn step_mut(&mut self) -> &mut Vec<f64> {
-        &mut self.step
     }
 
     /// The number of degrees of freedom.

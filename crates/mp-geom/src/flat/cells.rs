@@ -37,6 +37,8 @@ pub(super) struct Cells {
     low: Point2<f64>,
     high: Point2<f64>,
     pub(super) size: Vector2<f64>,
+    /// Cells per metre.
+    per_metre: Vector2<f64>,
     counts: [usize; 2],
     cells: Vec<Cell>,
     candidates: Vec<u32>,
@@ -64,6 +66,7 @@ impl Cells {
             low,
             high,
             size,
+            per_metre: size.map(|s| 1.0 / s),
             counts,
             cells: Vec::with_capacity(counts[0] * counts[1] + 1),
             candidates: Vec::new(),
@@ -136,7 +139,7 @@ impl Cells {
     /// Which column (axis 0) or row (axis 1) a coordinate is in, kept within the grid; never decreasing.
     #[inline]
     fn index(&self, v: f64, axis: usize) -> usize {
-        (((v - self.low[axis]) / self.size[axis]) as usize).min(self.counts[axis] - 1)
+        (((v - self.low[axis]) * self.per_metre[axis]) as usize).min(self.counts[axis] - 1)
     }
 
     /// The column and row of the cell that holds `p`, if one does.
@@ -153,15 +156,20 @@ impl Cells {
         (cell, &self.candidates[cell.first as usize..next.first as usize])
     }
 
-    /// The fraction of the segment from `a` along `u` at which it leaves a cell.
+    /// The fraction of the segment from `a` at which it leaves a cell; `inverse` is one over each component of its way.
     #[inline]
-    pub(super) fn leaves(&self, a: &Point2<f64>, u: &Vector2<f64>, (column, row): (usize, usize)) -> f64 {
+    pub(super) fn leaves(
+        &self,
+        a: &Point2<f64>,
+        inverse: &Vector2<f64>,
+        (column, row): (usize, usize),
+    ) -> f64 {
         let at = |i: usize, axis: usize| {
-            if u[axis] == 0.0 {
+            if inverse[axis].is_infinite() {
                 return f64::INFINITY;
             }
-            let line = i + usize::from(u[axis] > 0.0);
-            (self.low[axis] + line as f64 * self.size[axis] - a[axis]) / u[axis]
+            let line = i + usize::from(inverse[axis] > 0.0);
+            (self.low[axis] + line as f64 * self.size[axis] - a[axis]) * inverse[axis]
         };
         at(column, 0).min(at(row, 1))
     }

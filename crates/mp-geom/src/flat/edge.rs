@@ -40,6 +40,14 @@ impl Edge {
         [self.a.inf(&self.b), self.a.sup(&self.b)]
     }
 
+    /// Whether it is wholly on one side of the line through the other edge, and farther than `far` from it: a quick look.
+    #[inline]
+    pub(super) fn is_beside(&self, other: &Edge, far: f64) -> bool {
+        let (a, b) = (other.along.perp(&(self.a - other.a)), other.along.perp(&(self.b - other.a)));
+        let least = a.abs().min(b.abs());
+        (a > 0.0) == (b > 0.0) && least * least * other.inverse > far * far
+    }
+
     /// The points of the other edge and of this one that are nearest to each other, when they are less than
     /// `below` apart.
     #[inline]

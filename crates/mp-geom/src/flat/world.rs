@@ -197,8 +197,13 @@ impl FlatWorld {
     ) -> Option<NearestToSegment> {
         let segment = Edge::new([*a, *b], 0);
         let mut best = (below, None);
+        let slack = self.cells.as_ref().map_or(f64::INFINITY, |cells| cells.slack);
         let mut look = |i: u32, below: f64| -> f64 {
-            match self.edges[i as usize].nearest_to(&segment, below) {
+            let edge = &self.edges[i as usize];
+            if edge.is_beside(&segment, below + slack) {
+                return below;
+            }
+            match edge.nearest_to(&segment, below) {
                 Some((points, distance)) => {
                     best = (distance, Some((points, i)));
                     distance
@@ -229,6 +234,8 @@ impl FlatWorld {
             });
             return;
         };
+        let (inverse, per_length) = (u.map(|x| 1.0 / x), 1.0 / length);
+        let nudge = 0.5 * cells.slack * per_length;
         let mut t = 0.0;
         loop {
             let p = a + u * t;
@@ -246,8 +253,7 @@ impl FlatWorld {
                 }
             }
             let clear = clear - (p - cells.center(at.0, at.1)).norm();
-            let nudge = 0.5 * cells.slack / length;
-            let next = (cells.leaves(a, &u, at) + nudge).max(t + nudge).max(t + clear / length);
+            let next = (cells.leaves(a, &inverse, at) + nudge).max(t + nudge).max(t + clear * per_length);
             // A segment of no length leaves nowhere, or never.
             if next.is_nan() || next >= 1.0 {
                 return;

@@ -10,28 +10,59 @@ type Segment = [Point2<f64>; 2];
 pub(super) struct Plain {
     /// The rings of each polygon.
     polygons: Vec<Vec<Vec<Point2<f64>>>>,
+    /// A diagonal of the box around each polygon.
+    boxes: Vec<Segment>,
     walls: Option<[Point2<f64>; 2]>,
     pub(super) edges: Vec<Segment>,
+    /// Where the edges of each polygon end; behind them those of the walls.
+    ends: Vec<usize>,
 }
 
 impl Plain {
     pub(super) fn new(world: &FlatWorld) -> Self {
         let polygons: Vec<Vec<Vec<Point2<f64>>>> =
             world.polygons().iter().map(|p| p.rings().to_vec()).collect();
-        let mut edges: Vec<Segment> = polygons.iter().flatten().flat_map(|ring| sides(ring)).collect();
+        let (mut edges, mut ends, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
+        for rings in &polygons {
+            edges.extend(rings.iter().flat_map(|ring| sides(ring)));
+            ends.push(edges.len());
+            boxes.push(around(rings));
+        }
         let walls = world.walls();
         if let Some([low, high]) = walls {
             let ring = [low, Point2::new(low.x, high.y), high, Point2::new(high.x, low.y)];
             edges.extend(sides(&ring));
         }
-        Self { polygons, walls, edges }
+        Self { polygons, boxes, walls, edges, ends }
     }
 
     /// Whether a point is in an obstacle; right for points not within rounding of a boundary.
     pub(super) fn inside(&self, p: &Point2<f64>) -> bool {
         let beyond =
             |[low, high]: [Point2<f64>; 2]| !(low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y);
-        self.walls.is_some_and(beyond) || self.polygons.iter().any(|rings| within(rings, p))
+        let mut near = self.boxes.iter().zip(&self.polygons).filter(|(around, _)| !beyond(**around));
+        self.walls.is_some_and(beyond) || near.any(|(_, rings)| within(rings, p))
+    }
+
+    /// The distance of the nearest edge from a segment.
+    pub(super) fn nearest(&self, way: &Segment) -> f64 {
+        let look = |edges: &[Segment], least: f64| {
+            let near = |least: f64, e: &Segment| {
+                if boxes_apart(e, way) < least { least.min(apart(e, way)) } else { least }
+            };
+            edges.iter().fold(least, near)
+        };
+        let gap = |i: usize| boxes_apart(&self.boxes[i], way);
+        let edges = |i: usize| &self.edges[if i == 0 { 0 } else { self.ends[i - 1] }..self.ends[i]];
+        // What seems nearest first: then most of the others are seen to be farther by their boxes.
+        let first = (0..self.boxes.len()).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
+        let mut least = first.map_or(f64::INFINITY, |i| look(edges(i), f64::INFINITY));
+        for i in (0..self.boxes.len()).filter(|&i| Some(i) != first) {
+            if gap(i) < least {
+                least = look(edges(i), least);
+            }
+        }
+        look(&self.edges[self.ends.last().copied().unwrap_or(0)..], least)
     }
 
     /// The first points of all rings.
@@ -41,8 +72,14 @@ impl Plain {
 }
 
 /// The sides of a ring.
-pub(super) fn sides(ring: &[Point2<f64>]) -> Vec<Segment> {
-    (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]).collect()
+pub(super) fn sides(ring: &[Point2<f64>]) -> impl Iterator<Item = Segment> {
+    ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])
+}
+
+/// Lower and upper corner of rings.
+fn around(rings: &[Vec<Point2<f64>>]) -> Segment {
+    let none = [Point2::from([f64::INFINITY; 2]), Point2::from([f64::NEG_INFINITY; 2])];
+    rings.iter().flatten().fold(none, |[low, high], p| [low.inf(p), high.sup(p)])
 }
 
 /// Whether `p` is within `rings`, by upward rays.

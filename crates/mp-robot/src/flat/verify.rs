@@ -43,13 +43,7 @@ impl MotionValidity<Vector2<f64>> for DiscVerifier {
         if self.plain.inside(&way[0]) {
             return MotionCheck::Collides { at: 0.0 };
         }
-        let mut least = f64::INFINITY;
-        for edge in &self.plain.edges {
-            if boxes_apart(edge, &way) < least {
-                least = least.min(apart(edge, &way));
-            }
-        }
-        let clearance = least - self.radius;
+        let clearance = self.plain.nearest(&way) - self.radius;
         if clearance >= self.tolerance {
             return MotionCheck::Free { clearance };
         }

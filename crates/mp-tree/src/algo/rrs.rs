@@ -16,11 +16,12 @@
 //!
 //! So it is [RRT](super::rrt) with the local planner [`SnakePlanner`], and an end that is in collision itself is not
 //! rescued. What differs from the paper: before a snake relaxes it is laid to the side to which the obstacle pushes it
-//! as a whole ([`Snake::bulge`](mp_snake::Snake::bulge)); it stops as soon as it is free with some clearance; and the
-//! energies are those of [`Snake`](mp_snake::Snake), with its remarks on the formulas.
+//! as a whole ([`Snake::bulge`](mp_snake::Snake::bulge)), and where that is free it does not relax at all; it stops as
+//! soon as it is free with some clearance; and the energies are those of [`Snake`](mp_snake::Snake), with its remarks on
+//! the formulas.
 //!
-//! **When to use it.** Where the clearance and its gradient are cheap to ask (in the plane, by a distance map, a
-//! tenth of a microsecond) and obstacles are many and small: then much longer steps can be taken, and far fewer
+//! **When to use it.** Where the clearance and its gradient are cheap to ask (in the plane, by a distance map, some
+//! nanoseconds) and obstacles are many and small: then much longer steps can be taken, and far fewer
 //! iterations are needed. It does not help through long walls: there is nothing to bend around within a step.
 //!
 //! | parameter | range | default |
@@ -29,7 +30,7 @@
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
-//! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 12 |
+//! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 4 |
 //!
 //! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). [`build_snake`] makes
 //! it by name.
@@ -72,14 +73,14 @@ pub const RANGE: Parameter = Parameter {
     name: "range",
     range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
     default: "3%",
-    doc: "how far obstacles repel snakes; nodes are half as far apart",
+    doc: "how far obstacles repel snakes; nodes are as far apart",
 };
 
 /// Most steps of a snake.
 pub const SNAKE_STEPS: Parameter = Parameter {
     name: "snake-steps",
     range: "a whole number, 1 to 1000000",
-    default: "12",
+    default: "4",
     doc: "most steps of a snake that bends one edge",
 };
 

@@ -15,7 +15,7 @@
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
-//! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 12 |
+//! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 4 |
 //!
 //! A point goes around a disc in the unit square, by name:
 //! ```

@@ -4,7 +4,7 @@
 //! believes to be, which a particle filter tells from its wheels and from what the laser measures (Thrun, Burgard and
 //! Fox 2005, *Probabilistic robotics*, tables 5.3, 6.1 and 8.2). Where it really is counts for safety.
 
-use super::solve::{Case, planned};
+use super::solve::{Case, Place, planned};
 use crate::assets::courses::Course;
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::shorten::{Effort, simplify};
@@ -212,16 +212,17 @@ pub(super) const KINDS: [&str; 3] = ["rrt", "rrt smoothed", "rrs"];
 
 /// Plans a path of a kind and follows it; `None` where there is none.
 pub(super) fn planned_and_followed(course: &Course, kind: &str, trial: u64) -> Result<Option<Followed>> {
-    let robot = course.robot()?;
+    let place = Place::new(course.clone())?;
+    let robot = &place.robot;
     let space = Rn::<2>::new([0.0; 2], course.size).into_diagnostic()?;
     let planner = if kind == "rrs" { "rrs-upto" } else { "rrt-upto" };
     let case = Case { world: "follow".into(), planner: planner.into(), step: 50, trial };
-    let Some((_, Some(mut path))) = planned(course, &robot, &case, &Cancel::new())? else { return Ok(None) };
+    let Some((_, Some(mut path))) = planned(&place, &case, &Cancel::new())? else { return Ok(None) };
     if kind == "rrt smoothed" {
         let mut rng = Rng::stream(trial, 7);
         path = simplify(&space, &mut robot.clone(), &path, Effort::default(), &mut rng);
     }
-    Ok(follow(&robot, &space, &path, trial))
+    Ok(follow(robot, &space, &path, trial))
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! All trials, side by side.
 
-use super::solve::{Case, Run, one};
+use super::solve::{Case, Place, Run, one};
 use crate::assets::courses::course;
 use crate::bench::log::Log;
 use miette::{IntoDiagnostic, Result};
@@ -60,14 +60,13 @@ pub(super) fn measure(
     // A world is made once for all that is tried in it.
     let groups: Vec<&[Case]> = open.chunk_by(|a, b| (&a.world, a.trial) == (&b.world, b.trial)).collect();
     let group = |cases: &&[Case]| -> Result<Vec<(Case, Run)>> {
-        let course = course(&cases[0].world, cases[0].trial)?;
-        let robot = course.robot()?;
+        let place = Place::new(course(&cases[0].world, cases[0].trial)?)?;
         let mut done = Vec::new();
         for case in *cases {
             if cancel.0.load(Ordering::Relaxed) {
                 break;
             }
-            let Some(run) = one(&course, &robot, case, cancel)? else { break };
+            let Some(run) = one(&place, case, cancel)? else { break };
             log.write(case, &run)?;
             done.push((case.clone(), run));
             tick();

@@ -4,19 +4,22 @@ use crate::assets::courses::Course;
 use crate::bench::collide::nanoseconds;
 use miette::{IntoDiagnostic, Result, miette};
 use mp::cspace::{
-    Cancel, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner, Reach, Rn, Rng, Space,
-    Stop, StopReason, Straight, least_clearance,
+    Cancel, DefaultNn, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner, Reach, Rn,
+    Rng, Space, Stop, StopReason, Straight, least_clearance,
 };
 use mp::robot::{DiscRobot, DiscVerifier};
-use mp::snake::{Pieces, SnakePlanner, unbent};
+use mp::snake::{Grid, Pieces, SnakePlanner, unbent};
 use mp::tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Iterations a trial may take (§4).
 pub(super) const ITERATIONS: u64 = 5000;
 /// How far obstacles push snakes, metres.
 const RANGE: f64 = 0.15;
+/// The size of a cell of the clearance map, metres.
+const CELL: f64 = 0.04;
 /// How well the safety of a path is known, metres.
 const ACCURACY: f64 = 1e-4;
 
@@ -90,21 +93,35 @@ impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
     }
 }
 
+/// A course with what is made of it once for all that is tried in it.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    pub(super) course: Course,
+    pub(super) robot: DiscRobot,
+    /// The signed clearance of the robot; snakes are guided by it, and by nothing else.
+    pub(super) map: Arc<Grid>,
+}
+
+impl Place {
+    pub(super) fn new(course: Course) -> Result<Self> {
+        let robot = course.robot()?;
+        let cells = course.size.map(|s| (s / CELL).round() as usize);
+        let map = Grid::from_fn([0.0; 2], CELL, cells.into(), |p| robot.signed_clearance(&p));
+        Ok(Self { course, robot, map: Arc::new(map.into_diagnostic()?) })
+    }
+}
+
 /// Runs `case` in its world. `None` when it was cancelled.
-pub(super) fn one(course: &Course, robot: &DiscRobot, case: &Case, cancel: &Cancel) -> Result<Option<Run>> {
-    Ok(planned(course, robot, case, cancel)?.map(|(run, _)| run))
+pub(super) fn one(place: &Place, case: &Case, cancel: &Cancel) -> Result<Option<Run>> {
+    Ok(planned(place, case, cancel)?.map(|(run, _)| run))
 }
 
 /// What came of a trial, and the path it found.
 type Planned = (Run, Option<Path<Point>>);
 
 /// As [`one`], with the path.
-pub(super) fn planned(
-    course: &Course,
-    robot: &DiscRobot,
-    case: &Case,
-    cancel: &Cancel,
-) -> Result<Option<Planned>> {
+pub(super) fn planned(place: &Place, case: &Case, cancel: &Cancel) -> Result<Option<Planned>> {
+    let Place { course, robot, .. } = place;
     let space = Rn::<2>::new([0.0; 2], course.size).into_diagnostic()?;
     let step = f64::from(case.step) / 100.0;
     let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
@@ -122,15 +139,29 @@ pub(super) fn planned(
                 _ => how.run(Rrt::new(problem, tuning), |path| path),
             }
         }
-        "rrs" | "rrs-upto" => {
-            let local = SnakePlanner::new(&space, robot.clone(), robot.clone(), RANGE).into_diagnostic()?;
-            let local = Steps { space: &space, goal, step, exactly, local };
-            let problem = Problem::new(&space, local, Pieces(verifier), start, goal).into_diagnostic()?;
-            how.run(Rrt::new(problem, tuning), |path| unbent(&path))
-        }
+        "rrs" | "rrs-upto" => how.run(rrs(place, &space, step, exactly), |path| unbent(&path)),
         other => Err(miette!("there is no planner `{other}` here")),
     }
 }
+
+/// RRS as it is measured.
+fn rrs<'a>(
+    place: &'a Place,
+    space: &'a Rn<2>,
+    step: f64,
+    exactly: bool,
+) -> std::result::Result<Rrs<'a>, BuildError> {
+    let Place { course, robot, map } = place;
+    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let snakes = SnakePlanner::new(space, robot.clone(), &**map, RANGE);
+    let local = snakes.map_err(|e| BuildError::Unmade { reason: e.to_string() })?;
+    let local = Steps { space, goal, step, exactly, local };
+    let problem = Problem::new(space, local, Pieces(DiscVerifier::new(robot)), start, goal)?;
+    Rrt::new(problem, Tuning { step: Step::Length(step), ..Tuning::default() })
+}
+
+type Rrs<'a> =
+    Rrt<'a, Rn<2>, Steps<'a, SnakePlanner<'a, Rn<2>, DiscRobot, &'a Grid>>, <Rn<2> as DefaultNn>::Nn>;
 
 struct How<'a> {
     seed: u64,
