@@ -171,10 +171,13 @@ pub(crate) struct Bench {
 #[derive(Clone, Debug, Default, Args)]
 #[command(next_help_heading = "Of the suites `rsrt`, `rrs` and `roadmaps`")]
 pub(crate) struct BenchRsrt {
-    /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6, of `roadmaps`
-    /// 2; 0.25 with --quick].
+    /// Seconds of processor time a run of `rsrt` may take, for the paper's 60 s of 2008 [default: 6; 0.25 with
+    /// --quick].
     #[arg(long, value_name = "S", value_parser = positive)]
     pub(crate) cap: Option<f64>,
+    /// Collision queries a run of `roadmaps` may ask [default: 100000; 10000 with --quick].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) queries: Option<u64>,
     /// How many runs at once [default: one for each core]; what is found does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
@@ -232,7 +235,7 @@ pub(crate) enum Suite {
     Rrs,
     /// Experiments of Jouandeau et al. 2008: natural expansion; RSRT and RRT in growing clutter.
     Rsrt,
-    /// Roadmaps: corridors that shrink by halves, shipped scenes, many queries, growth.
+    /// Roadmaps: corridors that shrink, shipped scenes, many queries, growth, pictures.
     Roadmaps,
     /// Growth of an RRT where nothing is in the way, against its size.
     Scaling,

@@ -54,7 +54,7 @@
 //! # What is promised
 //! - A path is returned only after the verifier has passed each of its edges, in the direction in which it
 //!   is run. An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
-//! - On several threads ([`Builder::on`]) the roadmap is the same to the bit as on one.
+//! - On several threads ([`Builder::on`], [`Team`]) the roadmap is the same to the bit as on one.
 //! - Bad input is a [`BuildError`](mp_cspace::BuildError) before planning begins.
 //! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
 //!   and going on changes nothing.
@@ -93,7 +93,7 @@ pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Came, Candidate, Free, NodeGenerator};
 pub use mixed::{Mixing, PairRule, Pairs};
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
-pub use registry::{AnyPlanner, build, build_among, build_with, planner, planners, planners_among};
+pub use registry::{AnyPlanner, Team, build, build_among, build_with, planner, planners, planners_among};
 pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};
 pub use search::{AStar, Entry, Query};
 pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};

@@ -3,7 +3,7 @@
 use crate::{Builder, Candidate, Connector, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap, Steer, Way};
 use mp_cspace::{
     BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
-    ProblemParts, Progress, Reversible, Rng, Space,
+    ProblemParts, Progress, Reversible, Rng, Space, Workers,
 };
 
 /// Rejected paths after which each new motion is verified.
@@ -43,8 +43,7 @@ where
 {
     /// The planner made by a recipe, with an empty index.
     pub fn assemble(problem: Problem<'c, C, L>, index: N, recipe: Recipe<G, K, Q>) -> Self {
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
-        let steer = Steer::boxed(space, local, verify, PATIENCE);
+        let (steer, start, goals) = taken_apart(problem);
         Self {
             builder: Builder::new(steer, recipe.generate, recipe.connect, index),
             query: recipe.query,
@@ -57,6 +56,20 @@ where
             best: f64::INFINITY,
             looked: 0,
         }
+    }
+
+    /// Builds on several threads: see [`Builder::on`].
+    #[must_use]
+    pub fn on(self, workers: Workers, hands: impl IntoIterator<Item = Steer<'c, C, L>>) -> Self
+    where
+        C::State: 'c,
+        L: Send + 'c,
+        L::Edge: 'c,
+        G: Clone + Send + Sync + 'c,
+        K: Sync,
+        N: Sync,
+    {
+        Self { builder: self.builder.on(workers, hands), ..self }
     }
 
     /// The roadmap; before the first step without start and goal.
@@ -141,6 +154,18 @@ where
         let better = if self.best.is_finite() && self.improves { self.looked / 10 } else { 0 };
         nodes >= self.pace.first && nodes - self.looked >= self.pace.more.max(better)
     }
+}
+
+/// How a problem is moved in, and from where to where.
+pub(crate) fn taken_apart<'c, C, L>(
+    problem: Problem<'c, C, L>,
+) -> (Steer<'c, C, L>, C::State, Goals<'c, C::State>)
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
+    (Steer::boxed(space, local, verify, PATIENCE), start, goals)
 }
 
 /// Verifies the edges of a way that have not passed yet, in the direction in which they are run. Blocks

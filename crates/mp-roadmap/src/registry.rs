@@ -3,10 +3,14 @@
 use crate::algo::{
     bridge_prm, gaussian_prm, lazy_prm, obprm, obstacle_geometry_prm, prm, prm_star, visibility_prm,
 };
-use crate::{BetweenObstacles, HasRoadmap, NearObstacles, Pairs, RoadmapPlanner};
+use crate::planner::taken_apart;
+use crate::{
+    BetweenObstacles, Connector, HasRoadmap, NearObstacles, NodeGenerator, Pairs, Query, Recipe,
+    RoadmapPlanner, Steer,
+};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, PlannerInfo, Problem,
-    Reversible, Settings, Space, closest,
+    Reversible, Settings, Space, Workers, closest,
 };
 
 /// A planner chosen at run time.
@@ -43,6 +47,60 @@ fn unknown(name: &str) -> BuildError {
     BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
 }
 
+/// A problem, and as many local planners and verifiers for it beside as threads are to build the roadmap.
+#[derive(Debug)]
+pub struct Team<'c, C: Space, L: LocalPlanner<C::State>> {
+    problem: Problem<'c, C, L>,
+    workers: Workers,
+    hands: Vec<Steer<'c, C, L>>,
+}
+
+impl<'c, C, L> Team<'c, C, L>
+where
+    C: Space + 'c,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    /// `problem` makes the same problem again and again; `hands` is how many work at the same time, best as many as
+    /// `workers` are threads. The roadmap is the same to the bit however many there are. Only generators whose
+    /// attempts are [independent](crate::NodeGenerator::independent) use them.
+    ///
+    /// # Errors
+    /// Those of `problem`.
+    pub fn new(
+        workers: Workers,
+        hands: usize,
+        problem: impl Fn() -> Result<Problem<'c, C, L>, BuildError>,
+    ) -> Result<Self, BuildError> {
+        let more = if hands > 1 { hands } else { 0 };
+        let hands = (0..more).map(|_| Ok(taken_apart(problem()?).0)).collect::<Result<_, BuildError>>()?;
+        Ok(Self { problem: problem()?, workers, hands })
+    }
+
+    /// The planner of a recipe.
+    fn made<G, K, Q, N>(self, index: N, recipe: Recipe<G, K, Q>) -> AnyPlanner<'c, C::State, L::Edge>
+    where
+        C::State: 'c,
+        L: Send + 'c,
+        G: NodeGenerator<C, L> + Clone + Send + Sync + 'c,
+        K: Connector<C, L> + Send + Sync + 'c,
+        Q: Query<C, L> + Send + 'c,
+        N: NearestNeighbors<C> + Send + Sync + 'c,
+    {
+        let planner = RoadmapPlanner::assemble(self.problem, index, recipe);
+        match self.hands.is_empty() {
+            true => Box::new(planner),
+            false => Box::new(planner.on(self.workers, self.hands)),
+        }
+    }
+}
+
+/// On the thread of the caller.
+impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for Team<'c, C, L> {
+    fn from(problem: Problem<'c, C, L>) -> Self {
+        Self { problem, workers: Workers::alone(), hands: Vec::new() }
+    }
+}
+
 /// Makes the planner called `name`, with the nearest neighbours that suit the space.
 ///
 /// # Errors
@@ -54,50 +112,45 @@ pub fn build<'c, C, L>(
     settings: &Settings,
 ) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
 where
-    C: DefaultNn,
-    C::Nn: 'c,
+    C: DefaultNn + Clone + 'c,
+    C::Nn: Sync + 'c,
     C::State: 'c,
     L: LocalPlanner<C::State, Edge: Reversible> + Send + 'c,
 {
     build_with(name, problem, C::Nn::default(), settings)
 }
 
-/// As [`build`], with an empty index of your choice.
+/// As [`build`], with an empty index of your choice, and for a problem or a [`Team`].
 ///
 /// # Errors
 /// As [`build`].
 pub fn build_with<'c, C, L, N>(
     name: &str,
-    problem: Problem<'c, C, L>,
+    team: impl Into<Team<'c, C, L>>,
     index: N,
     settings: &Settings,
 ) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
 where
-    C: Space,
+    C: Space + Clone + 'c,
     C::State: 'c,
     L: LocalPlanner<C::State, Edge: Reversible> + Send + 'c,
-    N: NearestNeighbors<C> + Send + 'c,
+    N: NearestNeighbors<C> + Send + Sync + 'c,
 {
     let info = planner(name)?;
     settings.check(info)?;
-    let space = problem.space();
+    let team = team.into();
+    let space = team.problem.space();
     Ok(match info.name {
-        "prm" => Box::new(RoadmapPlanner::assemble(problem, index, prm::read(space, settings)?)),
-        "prm-star" => Box::new(RoadmapPlanner::assemble(problem, index, prm_star::read(space, settings)?)),
-        "lazy-prm" => Box::new(RoadmapPlanner::assemble(problem, index, lazy_prm::read(space, settings)?)),
-        "visibility-prm" => {
-            Box::new(RoadmapPlanner::assemble(problem, index, visibility_prm::read(space, settings)?))
+        "prm" => team.made(index, prm::read(space, settings)?),
+        "prm-star" => team.made(index, prm_star::read(space, settings)?),
+        "lazy-prm" => team.made(index, lazy_prm::read(space, settings)?),
+        "visibility-prm" => team.made(index, visibility_prm::read(space, settings)?),
+        "gaussian-prm" => {
+            team.made(index, Pairs::<NearObstacles>::read(space, settings, gaussian_prm::MIXING)?)
         }
-        "gaussian-prm" => Box::new(RoadmapPlanner::assemble(
-            problem,
-            index,
-            Pairs::<NearObstacles>::read(space, settings, gaussian_prm::MIXING)?,
-        )),
-        "bridge-prm" => Box::new(RoadmapPlanner::assemble(
-            problem,
-            index,
-            Pairs::<BetweenObstacles>::read(space, settings, bridge_prm::MIXING)?,
-        )),
+        "bridge-prm" => {
+            team.made(index, Pairs::<BetweenObstacles>::read(space, settings, bridge_prm::MIXING)?)
+        }
         name => {
             let reason = format!("{name} must know what obstacles look like, and nothing here tells it");
             return Err(BuildError::Unmade { reason });
@@ -111,29 +164,25 @@ where
 /// As [`build`].
 pub fn build_among<'c, C, L, N, H>(
     name: &str,
-    problem: Problem<'c, C, L>,
+    team: impl Into<Team<'c, C, L>>,
     index: N,
     geometry: H,
     settings: &Settings,
 ) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
 where
-    C: Space,
+    C: Space + Clone + 'c,
     C::State: 'c,
     L: LocalPlanner<C::State, Edge: Reversible> + Send + 'c,
-    N: NearestNeighbors<C> + Send + 'c,
-    H: ObstacleGeometry<C::State> + Clone + Send + 'c,
+    N: NearestNeighbors<C> + Send + Sync + 'c,
+    H: ObstacleGeometry<C::State> + Clone + Send + Sync + 'c,
 {
     let info = planner(name)?;
     settings.check(info)?;
-    let space = problem.space();
+    let team = team.into();
+    let space = team.problem.space();
     Ok(match info.name {
-        "obprm" => {
-            Box::new(RoadmapPlanner::assemble(problem, index, obprm::read(space, geometry, settings)?))
-        }
-        "obstacle-geometry-prm" => {
-            let recipe = obstacle_geometry_prm::read(space, geometry, settings)?;
-            Box::new(RoadmapPlanner::assemble(problem, index, recipe))
-        }
-        _ => return build_with(name, problem, index, settings),
+        "obprm" => team.made(index, obprm::read(space, geometry, settings)?),
+        "obstacle-geometry-prm" => team.made(index, obstacle_geometry_prm::read(space, geometry, settings)?),
+        _ => return build_with(name, team, index, settings),
     })
 }

@@ -39,7 +39,7 @@ pub(crate) fn search(
         // The metric of the space is the Euclidean one.
         Kind::Default | Kind::Euclidean => run.on(space, <KdTree>::default(), line),
         Kind::Manhattan => run.on(&with(space, Manhattan), <KdTree>::default(), line),
-        Kind::Scaled | Kind::MaxDisplacement => Err(miette!(
+        Kind::Scaled | Kind::MaxDisplacement | Kind::SweptVolume => Err(miette!(
             help = "arms have --metric default, euclidean or manhattan",
             "the metric `{}` is one of rigid bodies",
             options.metric_name

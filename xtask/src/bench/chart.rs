@@ -170,6 +170,29 @@ pub(crate) fn plain(labels: Labels<'_>, curves: &[Curve]) -> Result<String> {
     Ok(text)
 }
 
+/// Draws shares, from 0 to 1, over a logarithmic axis.
+pub(crate) fn shares(labels: Labels<'_>, curves: &[Curve]) -> Result<String> {
+    let shown = |p: &(f64, f64)| p.0 > 0.0 && p.0.is_finite() && p.1.is_finite();
+    let points = curves.iter().flat_map(|c| c.points.iter().copied()).filter(shown);
+    let xs = points.fold((f64::INFINITY, 0.0_f64), |b, p| (b.0.min(p.0), b.1.max(p.0)));
+    if xs.1 == 0.0 {
+        return Err(miette!("nothing to draw in the chart `{}`", labels.title));
+    }
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (WIDTH, 480)).into_drawing_area();
+        let drawn = || -> std::result::Result<(), DrawingAreaErrorKind<_>> {
+            area.fill(&WHITE)?;
+            let mut chart = builder(&area, labels)
+                .build_cartesian_2d((xs.0 * 0.95..xs.1 * 1.05).log_scale(), 0.0..1.02)?;
+            fill(&area, &mut chart, labels, curves, |p| shown(&p))?;
+            area.present()
+        };
+        drawn().map_err(|e| miette!("cannot draw the chart `{}`: {e}", labels.title))?;
+    }
+    Ok(text)
+}
+
 /// Writes a chart.
 pub(crate) fn save(path: &Path, chart: Result<String>) -> Result<()> {
     write(path, chart?.as_bytes())

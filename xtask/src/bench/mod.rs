@@ -67,6 +67,20 @@ impl Table {
         }
         text + "\n"
     }
+
+    /// As a list of objects, one of each row; what reads as a number is one.
+    pub(crate) fn json(&self) -> serde_json::Value {
+        let value = |cell: &String| -> serde_json::Value {
+            match cell.parse::<f64>() {
+                Ok(number) if number.is_finite() => number.into(),
+                _ => cell.as_str().into(),
+            }
+        };
+        let row = |row: &Vec<String>| -> serde_json::Value {
+            self.head.iter().cloned().zip(row.iter().map(value)).collect()
+        };
+        self.rows.iter().map(row).collect()
+    }
 }
 
 /// Prints `summary` and writes it with `each`, one line per run, to the folder for results.
@@ -107,6 +121,7 @@ mod tests {
         let mut table = Table::new(["a", "b"]);
         table.rows.push(vec!["1,5".into(), "x".into()]);
         assert_eq!(table.csv(), "a,b\n\"1,5\",x\n");
+        assert_eq!(table.json(), serde_json::json!([{ "a": "1,5", "b": "x" }]));
         assert_eq!(table.markdown(), "| a | b |\n| --- | --- |\n| 1,5 | x |");
     }
 }

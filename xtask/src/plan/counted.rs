@@ -4,9 +4,10 @@ use super::mover::Mover;
 use crate::arm::State;
 use mp::cspace::{
     BuildError, Clearance, ClearanceGradient, LocalPlanner, MotionBound, NearestNeighbors, ObstacleGeometry,
-    ObstacleHints, Outline, PointOf, Problem, Rng, Room, Settings, Space, Stretch, Validity,
+    ObstacleHints, Outline, PointOf, Progress, Rng, Room, Settings, Space, Stop, StopReason, Stretch,
+    Validity,
 };
-use mp::roadmap::{build_among, build_with};
+use mp::roadmap::{Team, build_among, build_with};
 use mp::robot::{Arm, RigidBody};
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -34,10 +35,13 @@ impl Queries for Arm {
     }
 }
 
-/// A robot whose counters go into a common sum when it is dropped.
+/// Queries that a robot may have asked and not told yet: the sum is for budgets, and telling it takes time too.
+const UNTOLD: u64 = 64;
+
+/// A robot whose counters go into a common sum: once in a while, and when it is dropped.
 pub(super) struct Counted<'a, R: Queries> {
     robot: R,
-    /// What the robot had counted before.
+    /// What the robot had counted when it last told.
     before: u64,
     queries: &'a AtomicU64,
 }
@@ -45,6 +49,34 @@ pub(super) struct Counted<'a, R: Queries> {
 impl<'a, R: Queries> Counted<'a, R> {
     pub(super) fn new(robot: R, queries: &'a AtomicU64) -> Self {
         Self { before: robot.queries(), robot, queries }
+    }
+
+    fn tell(&mut self) {
+        let now = self.robot.queries();
+        self.queries.fetch_add(now - self.before, Ordering::Relaxed);
+        self.before = now;
+    }
+
+    /// What the robot answers.
+    fn asked<T>(&mut self, ask: impl FnOnce(&mut R) -> T) -> T {
+        let answer = ask(&mut self.robot);
+        if self.robot.queries() - self.before >= UNTOLD {
+            self.tell();
+        }
+        answer
+    }
+}
+
+/// Stops when so many queries were asked. What is done until then depends on no clock.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked<'a> {
+    pub(super) queries: &'a AtomicU64,
+    pub(super) most: u64,
+}
+
+impl Stop for Asked<'_> {
+    fn check(&mut self, _: &Progress) -> Option<StopReason> {
+        (self.queries.load(Ordering::Relaxed) >= self.most).then_some(StopReason::Motions)
     }
 }
 
@@ -56,15 +88,16 @@ impl<R: Queries + Clone> Clone for Counted<'_, R> {
 
 impl<R: Queries> Drop for Counted<'_, R> {
     fn drop(&mut self) {
-        self.queries.fetch_add(self.robot.queries() - self.before, Ordering::Relaxed);
+        self.tell();
     }
 }
+
 impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
     fn is_valid(&mut self, q: &S) -> bool {
-        self.robot.is_valid(q)
+        self.asked(|robot| robot.is_valid(q))
     }
     fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
-        self.robot.first_invalid(states)
+        self.asked(|robot| robot.first_invalid(states))
     }
     fn batch_size(&self) -> usize {
         self.robot.batch_size()
@@ -72,13 +105,13 @@ impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
 }
 impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn clearance(&mut self, q: &S, enough: f64) -> f64 {
-        self.robot.clearance(q, enough)
+        self.asked(|robot| robot.clearance(q, enough))
     }
     fn in_contact(&mut self, q: &S) -> bool {
-        self.robot.in_contact(q)
+        self.asked(|robot| robot.in_contact(q))
     }
     fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
-        self.robot.room(stretch)
+        self.asked(|robot| robot.room(stretch))
     }
 }
 impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
@@ -89,10 +122,10 @@ impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
 
 impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
     fn touches(&mut self, q: &S) -> bool {
-        self.robot.touches(q)
+        self.asked(|robot| robot.touches(q))
     }
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        self.robot.along(from, toward, hit, rng)
+        self.asked(|robot| robot.along(from, toward, hit, rng))
     }
     fn turned(&self, position: &S, rotation: &S) -> S {
         self.robot.turned(position, rotation)
@@ -104,7 +137,7 @@ impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
 
 impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, R> {
     fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
-        self.robot.clearance_gradient(q, reach, gradient)
+        self.asked(|robot| robot.clearance_gradient(q, reach, gradient))
     }
 }
 
@@ -116,7 +149,7 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
         self.robot.robot()
     }
     fn touched(&mut self, q: &S) -> Option<usize> {
-        self.robot.touched(q)
+        self.asked(|robot| robot.touched(q))
     }
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
         self.robot.obstacle_point(obstacle, of, rng)
@@ -145,7 +178,7 @@ pub(crate) trait Roadmaps<S>: Queries + Sized {
     fn roadmap<'c, C, L, N>(
         self,
         name: &str,
-        problem: Problem<'c, C, L>,
+        team: Team<'c, C, L>,
         index: N,
         settings: &Settings,
         _queries: &'c AtomicU64,
@@ -153,11 +186,11 @@ pub(crate) trait Roadmaps<S>: Queries + Sized {
     where
         Self: 'c,
         S: 'c,
-        C: Space<State = S>,
+        C: Space<State = S> + Clone + 'c,
         L: LocalPlanner<S, Edge = ()> + Send + 'c,
-        N: NearestNeighbors<C> + Send + 'c,
+        N: NearestNeighbors<C> + Send + Sync + 'c,
     {
-        build_with(name, problem, index, settings)
+        build_with(name, team, index, settings)
     }
 }
 
@@ -167,7 +200,7 @@ impl<M: Mover> Roadmaps<M::State> for RigidBody<M> {
     fn roadmap<'c, C, L, N>(
         self,
         name: &str,
-        problem: Problem<'c, C, L>,
+        team: Team<'c, C, L>,
         index: N,
         settings: &Settings,
         queries: &'c AtomicU64,
@@ -175,10 +208,10 @@ impl<M: Mover> Roadmaps<M::State> for RigidBody<M> {
     where
         Self: 'c,
         M::State: 'c,
-        C: Space<State = M::State>,
+        C: Space<State = M::State> + Clone + 'c,
         L: LocalPlanner<M::State, Edge = ()> + Send + 'c,
-        N: NearestNeighbors<C> + Send + 'c,
+        N: NearestNeighbors<C> + Send + Sync + 'c,
     {
-        build_among(name, problem, index, Counted::new(self, queries), settings)
+        build_among(name, team, index, Counted::new(self, queries), settings)
     }
 }

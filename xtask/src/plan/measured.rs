@@ -4,8 +4,8 @@ use super::metrics::Kind;
 use super::mover::Mover;
 use miette::{Result, miette};
 use mp::cspace::{
-    Embed, Euclidean, Hit, KdTree, Layout, Manhattan, Metric, MetricTree, NearestNeighbors, NodeId, Rng,
-    ScaledEuclidean, Space, TrueMetric, WithMetric,
+    Embed, Euclidean, Hit, KdTree, Layout, Linear, Manhattan, Metric, MetricTree, NearestNeighbors, NodeId,
+    Rng, ScaledEuclidean, Space, TrueMetric, WithMetric,
 };
 
 /// The space of a mover under one of these metrics.
@@ -15,6 +15,7 @@ pub(crate) enum Measured<M: Mover> {
     Scaled(WithMetric<M::Space, ScaledEuclidean>),
     Manhattan(WithMetric<M::Space, Manhattan>),
     Displacement(WithMetric<M::Space, M::Displacement>),
+    Swept(WithMetric<M::Space, M::Swept>),
 }
 
 /// Calls a method of whichever it is.
@@ -25,17 +26,19 @@ macro_rules! each {
             Self::Scaled($space) => $body,
             Self::Manhattan($space) => $body,
             Self::Displacement($space) => $body,
+            Self::Swept($space) => $body,
         }
     };
 }
 
 impl<M: Mover> Measured<M> {
-    /// `space` under a metric that is not its own; `scaled` and `displacement` make theirs.
+    /// `space` under a metric that is not its own; `scaled`, `displacement` and `swept` make theirs.
     pub(crate) fn new(
         space: &M::Space,
         kind: Kind,
         scaled: impl FnOnce() -> Result<ScaledEuclidean>,
         displacement: impl FnOnce() -> Result<M::Displacement>,
+        swept: impl FnOnce() -> Result<M::Swept>,
     ) -> Result<Self> {
         let space = space.clone();
         Ok(match kind {
@@ -43,6 +46,7 @@ impl<M: Mover> Measured<M> {
             Kind::Euclidean => Self::Euclidean(WithMetric::new(space, Euclidean)),
             Kind::Manhattan => Self::Manhattan(WithMetric::new(space, Manhattan)),
             Kind::Scaled => Self::Scaled(WithMetric::new(space, scaled()?)),
+            Kind::SweptVolume => Self::Swept(WithMetric::new(space, swept()?)),
             Kind::MaxDisplacement => Self::Displacement(WithMetric::new(space, displacement()?)),
         })
     }
@@ -51,6 +55,7 @@ impl<M: Mover> Measured<M> {
     pub(crate) fn index(&self) -> Index {
         match self {
             Self::Displacement(_) => Index::Metric(Box::default()),
+            Self::Swept(_) => Index::Every(Linear::default()),
             _ => Index::Coordinates(Box::default()),
         }
     }
@@ -62,6 +67,7 @@ impl<M: Mover> Metric<M::State> for Measured<M> {
         each!(self, space => space.distance(from, to))
     }
 }
+/// All but the swept volume, which [`Measured::index`] keeps from whatever relies on it.
 impl<M: Mover> TrueMetric<M::State> for Measured<M> {}
 
 impl<M: Mover> Space for Measured<M> {
@@ -105,7 +111,7 @@ impl<M: Mover> Embed for Measured<M> {
             Self::Euclidean(space) => space.layout(),
             Self::Scaled(space) => space.layout(),
             Self::Manhattan(space) => space.layout(),
-            Self::Displacement(_) => Layout::default(),
+            Self::Displacement(_) | Self::Swept(_) => Layout::default(),
         }
     }
     #[inline]
@@ -114,16 +120,17 @@ impl<M: Mover> Embed for Measured<M> {
             Self::Euclidean(space) => space.embed(state, out),
             Self::Scaled(space) => space.embed(state, out),
             Self::Manhattan(space) => space.embed(state, out),
-            Self::Displacement(_) => 0,
+            Self::Displacement(_) | Self::Swept(_) => 0,
         }
     }
 }
 
-/// By coordinates where the metric has them, else by the metric alone.
+/// By coordinates where the metric has them, else by the metric alone; by looking at all where it is none.
 #[derive(Clone, Debug)]
 pub(crate) enum Index {
     Coordinates(Box<KdTree>),
     Metric(Box<MetricTree>),
+    Every(Linear),
 }
 
 impl<M: Mover> NearestNeighbors<Measured<M>> for Index {
@@ -131,18 +138,21 @@ impl<M: Mover> NearestNeighbors<Measured<M>> for Index {
         match self {
             Self::Coordinates(tree) => tree.inserted(space, points, id),
             Self::Metric(tree) => tree.inserted(space, points, id),
+            Self::Every(all) => all.inserted(space, points, id),
         }
     }
     fn clear(&mut self) {
         match self {
             Self::Coordinates(tree) => NearestNeighbors::<Measured<M>>::clear(&mut **tree),
             Self::Metric(tree) => NearestNeighbors::<Measured<M>>::clear(&mut **tree),
+            Self::Every(all) => NearestNeighbors::<Measured<M>>::clear(all),
         }
     }
     fn nearest(&self, space: &Measured<M>, points: &[M::State], q: &M::State) -> Option<Hit> {
         match self {
             Self::Coordinates(tree) => tree.nearest(space, points, q),
             Self::Metric(tree) => tree.nearest(space, points, q),
+            Self::Every(all) => all.nearest(space, points, q),
         }
     }
     fn k_nearest(
@@ -156,6 +166,7 @@ impl<M: Mover> NearestNeighbors<Measured<M>> for Index {
         match self {
             Self::Coordinates(tree) => tree.k_nearest(space, points, q, k, out),
             Self::Metric(tree) => tree.k_nearest(space, points, q, k, out),
+            Self::Every(all) => all.k_nearest(space, points, q, k, out),
         }
     }
     fn within(
@@ -169,6 +180,7 @@ impl<M: Mover> NearestNeighbors<Measured<M>> for Index {
         match self {
             Self::Coordinates(tree) => tree.within(space, points, q, radius, out),
             Self::Metric(tree) => tree.within(space, points, q, radius, out),
+            Self::Every(all) => all.within(space, points, q, radius, out),
         }
     }
 }

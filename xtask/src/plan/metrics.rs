@@ -16,14 +16,21 @@ pub(crate) enum Kind {
     Manhattan,
     /// The farthest that any point of the robot moves.
     MaxDisplacement,
+    /// About how much volume the robot sweeps.
+    SweptVolume,
 }
 
-const METRICS: [(&str, Kind, &str); 5] = [
+const METRICS: [(&str, Kind, &str); 6] = [
     ("default", Kind::Default, "‖Δp‖ + 0.5·θ"),
     ("euclidean", Kind::Euclidean, "√(‖Δp‖² + θ²)"),
     ("scaled", Kind::Scaled, "√(‖Δp‖² + (r·θ)²), r the radius of the robot about its origin"),
     ("manhattan", Kind::Manhattan, "|Δx| + |Δy| + |Δz| + θ"),
     ("max-displacement", Kind::MaxDisplacement, "how far the point of the robot moves that moves farthest"),
+    (
+        "swept-volume",
+        Kind::SweptVolume,
+        "about how much volume the robot sweeps, m³; slow for robots of many triangles",
+    ),
 ];
 
 /// Their names, each with its formula (metres; θ in radians).

@@ -2,7 +2,8 @@
 
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{
-    DefaultNn, Embed, EmbedFactors, MaxDisplacement, Numbers, ScaledEuclidean, Se2, Se3, Space, TrueMetricOn,
+    DefaultNn, Embed, EmbedFactors, MaxDisplacement, MetricOn, Numbers, ScaledEuclidean, Se2, Se3, Space,
+    SweptVolume, TrueMetricOn,
 };
 use mp::geom::{Aabb, TriMesh};
 use mp::robot::{Placement, Planar, Spatial};
@@ -19,7 +20,8 @@ pub(crate) trait Mover: Placement<State: PartialEq + Send + Sync + Numbers> {
         + Debug
         + Send
         + Sync;
-    type Displacement: TrueMetricOn<Self::Space>;
+    type Displacement: TrueMetricOn<Self::Space> + Clone;
+    type Swept: MetricOn<Self::Space> + Clone + Debug;
 
     /// The space of configurations with the origin within `bounds`.
     fn space(bounds: &Aabb) -> Result<Self::Space>;
@@ -27,11 +29,14 @@ pub(crate) trait Mover: Placement<State: PartialEq + Send + Sync + Numbers> {
     fn scaled(space: &Self::Space, radius: f64) -> Result<ScaledEuclidean>;
     /// How far the point of the robot moves that moves farthest.
     fn displacement(robot: &TriMesh) -> Result<Self::Displacement>;
+    /// About how much volume the robot sweeps.
+    fn swept(robot: &TriMesh) -> Result<Self::Swept>;
 }
 
 impl Mover for Spatial {
     type Space = Se3;
     type Displacement = MaxDisplacement<Point3<f64>>;
+    type Swept = SweptVolume;
 
     fn space(bounds: &Aabb) -> Result<Se3> {
         Se3::new(bounds.min.coords, bounds.max.coords).into_diagnostic()
@@ -42,11 +47,15 @@ impl Mover for Spatial {
     fn displacement(robot: &TriMesh) -> Result<Self::Displacement> {
         MaxDisplacement::new(robot.vertices().to_vec()).into_diagnostic()
     }
+    fn swept(robot: &TriMesh) -> Result<SweptVolume> {
+        swept(robot)
+    }
 }
 
 impl Mover for Planar {
     type Space = Se2;
     type Displacement = MaxDisplacement<Point2<f64>>;
+    type Swept = SweptVolume;
 
     fn space(bounds: &Aabb) -> Result<Se2> {
         Se2::new(bounds.min.coords.xy(), bounds.max.coords.xy()).into_diagnostic()
@@ -58,4 +67,11 @@ impl Mover for Planar {
         let points: Vec<_> = robot.vertices().iter().map(Point3::xy).collect();
         MaxDisplacement::planar(points).into_diagnostic()
     }
+    fn swept(robot: &TriMesh) -> Result<SweptVolume> {
+        swept(robot)
+    }
+}
+
+fn swept(robot: &TriMesh) -> Result<SweptVolume> {
+    SweptVolume::new((0..robot.triangles().len()).map(|i| robot.triangle(i))).into_diagnostic()
 }

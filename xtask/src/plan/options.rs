@@ -14,6 +14,7 @@ pub(crate) struct Options {
     pub(crate) planner: Chosen,
     /// Threads that a planner may use.
     pub(crate) workers: Workers,
+    pub(crate) threads: usize,
     pub(crate) settings: Settings,
     pub(crate) metric: metrics::Kind,
     pub(crate) metric_name: String,
@@ -21,7 +22,11 @@ pub(crate) struct Options {
     pub(crate) time: Duration,
     /// Seconds of processor time, beside.
     pub(crate) processor: Option<f64>,
+    /// Collision queries, beside.
+    pub(crate) queries: Option<u64>,
     pub(crate) iterations: Option<u64>,
+    /// To the first path, also of a planner that goes on for better ones.
+    pub(crate) bare: bool,
     pub(crate) shorten: bool,
     /// Relax the path instead.
     pub(crate) relax: bool,
@@ -63,13 +68,16 @@ impl Options {
         Ok(Self {
             planner,
             workers: Workers::new(threads).into_diagnostic()?,
+            threads,
             settings,
             metric,
             metric_name: args.metric.clone(),
             motion: args.motion,
             time,
             processor: None,
+            queries: None,
             iterations: args.iterations,
+            bare: false,
             shorten: !args.no_shorten && !args.relax,
             relax: args.relax,
             roadmap: args.roadmap.clone(),
@@ -81,13 +89,16 @@ impl Options {
         Ok(Self {
             planner: Chosen::new(planner)?,
             workers: Workers::alone(),
+            threads: 1,
             settings: Settings::default(),
             metric: metrics::Kind::Default,
             metric_name: metrics::DEFAULT.to_owned(),
             motion,
             time: Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX),
             processor: None,
+            queries: None,
             iterations: None,
+            bare: true,
             shorten: false,
             relax: false,
             roadmap: None,

@@ -80,12 +80,6 @@ pub(crate) struct Planned {
     pub(crate) seconds: f64,
     pub(crate) queries: u64,
     pub(crate) iterations: u64,
-    pub(crate) nodes: usize,
-    /// Seconds of processor time.
-    pub(crate) processor: f64,
-    pub(crate) motions: u64,
-    /// Of a roadmap.
-    pub(crate) map: Option<search::Map>,
 }
 
 /// Plans, and neither shortens nor writes.
@@ -95,13 +89,9 @@ pub(crate) fn planned(ready: &Ready, options: &Options, seed: u64) -> Result<Pla
         let search = search::search(setting, options, seed, &Cancel(interrupt::flag()), &mut line)?;
         Ok(Planned {
             solved: matches!(search.outcome, Outcome::Solved(_)),
-            seconds: search.first.map_or(search.time, |(first, _)| first).as_secs_f64(),
+            seconds: search.time.as_secs_f64(),
             queries: search.queries,
             iterations: search.progress.iterations,
-            nodes: search.progress.nodes,
-            processor: search.processor,
-            motions: search.progress.motions,
-            map: search.map,
         })
     }
     match ready {

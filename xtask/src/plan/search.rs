@@ -1,7 +1,7 @@
 //! One run of a planner.
 
 use super::chosen::Chosen;
-use super::counted::{AnyRoadmap, Counted, Queries, Roadmaps};
+use super::counted::{AnyRoadmap, Asked, Counted, Queries, Roadmaps};
 use super::measured::Measured;
 use super::metrics;
 use super::mover::Mover;
@@ -17,7 +17,7 @@ use mp::cspace::{
     Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Validity, WithMetric,
 };
 use mp::cspace::{ClearanceGradient, shorten::reduce, verify_path};
-use mp::roadmap::{HasRoadmap, Roadmap};
+use mp::roadmap::{HasRoadmap, Roadmap, Team};
 use mp::snake::{Params, Repulsion, relax};
 use mp::tree::{AnyPlanner, BuildError, Goals, Problem, build_from, build_snake, improve, snake_planners};
 use std::sync::atomic::AtomicU64;
@@ -42,6 +42,8 @@ pub(crate) struct Search<S> {
     pub(crate) first: Option<(Duration, f64)>,
     /// Of a planner that builds a roadmap.
     pub(crate) map: Option<Map>,
+    /// The roadmap itself, of a bare search.
+    pub(crate) roadmap: Option<Roadmap<S>>,
 }
 
 /// What there is in a roadmap.
@@ -77,7 +79,8 @@ pub(crate) fn search<M: Mover>(
     }
     let scaled = || M::scaled(space, setting.radius);
     let displacement = || M::displacement(&setting.problem.robot.mesh);
-    let measured = Measured::<M>::new(space, options.metric, scaled, displacement)?;
+    let swept = || M::swept(&setting.problem.robot.mesh);
+    let measured = Measured::<M>::new(space, options.metric, scaled, displacement, swept)?;
     run.on(&measured, measured.index(), line)
 }
 
@@ -193,13 +196,13 @@ where
     /// Plans in `space`, which differs from that of the run in its metric only.
     pub(crate) fn on<C, N>(&self, space: &C, index: N, line: &mut Line) -> Result<Search<B::State>>
     where
-        C: Space<State = B::State>,
+        C: Space<State = B::State> + Clone,
         N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
     {
         let options = self.options;
         let queries = AtomicU64::new(0);
         let (began, used) = (Instant::now(), nanoseconds());
-        let (outcome, progress, first, map, time, processor) = {
+        let (outcome, progress, first, map, roadmap, time, processor) = {
             let problem = || {
                 let unmade = |e: ParameterError| BuildError::Unmade { reason: e.to_string() };
                 let check = self.check(space, &queries).map_err(unmade)?;
@@ -220,9 +223,10 @@ where
                     Grower::Tree(tree.into_diagnostic()?)
                 }
                 Chosen::Roadmap(info) => {
-                    let problem = problem().into_diagnostic()?;
+                    let team =
+                        Team::new(options.workers.clone(), options.threads, problem).into_diagnostic()?;
                     let robot = self.robot.clone();
-                    let made = robot.roadmap(info.name, problem, index, &options.settings, &queries);
+                    let made = robot.roadmap(info.name, team, index, &options.settings, &queries);
                     Grower::Roadmap(self.resumed(made.into_diagnostic()?)?)
                 }
             };
@@ -232,13 +236,20 @@ where
                 .or(options.iterations.map(Iterations))
                 .or(Deadline::at(began + options.time))
                 .or(options.processor.map(|s| Processor { until: used + s * 1e9 }))
+                .or(options.queries.map(|most| Asked { queries: &queries, most }))
                 .or(line);
             let mut first = None;
             let improves = planner.planner().improves();
-            let (best, reason) =
-                improve(planner.planner(), &mut Rng::seed(self.seed), &mut stop, &mut (), |path, _| {
+            let mut rng = Rng::seed(self.seed);
+            let (best, reason) = match options.bare {
+                true => match planner.planner().solve(&mut rng, &mut stop, &mut ()) {
+                    Outcome::Solved(path) => (Some(path), None),
+                    Outcome::Stopped(reason) => (None, Some(reason)),
+                },
+                false => improve(planner.planner(), &mut rng, &mut stop, &mut (), |path, _| {
                     first = first.or_else(|| improves.then(|| (began.elapsed(), path.length(space))));
-                });
+                }),
+            };
             let outcome = match (best, reason) {
                 (Some(path), _) if options.relax => Outcome::Solved(self.relaxed(path)?),
                 (Some(path), _) => Outcome::Solved(path),
@@ -246,13 +257,15 @@ where
             };
             let (time, processor) = (began.elapsed(), (nanoseconds() - used) * 1e-9);
             let progress = planner.planner().progress();
-            let map = match &mut planner {
-                Grower::Tree(_) => None,
-                Grower::Roadmap(planner) => Some(self.keep(&mut **planner)?),
+            let (map, roadmap) = match &mut planner {
+                Grower::Tree(_) => (None, None),
+                Grower::Roadmap(planner) => {
+                    (Some(self.keep(&mut **planner)?), options.bare.then(|| planner.map().clone()))
+                }
             };
-            (outcome, progress, first, map, time, processor)
+            (outcome, progress, first, map, roadmap, time, processor)
         };
-        Ok(Search { outcome, progress, queries: queries.into_inner(), time, processor, first, map })
+        Ok(Search { outcome, progress, queries: queries.into_inner(), time, processor, first, map, roadmap })
     }
 }
 

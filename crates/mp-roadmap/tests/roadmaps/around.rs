@@ -87,6 +87,24 @@ fn a_rod_goes_through_a_corridor() {
 }
 
 #[test]
+fn a_team_finds_what_one_finds() {
+    let (space, robot) = (plane(), corridor(0.3));
+    for name in ["prm", "obprm", "geometry-prm"] {
+        let found = |hands: usize| {
+            let workers = Workers::new(hands).unwrap();
+            let team = Team::new(workers, hands, || Ok(problem(&space, &robot))).unwrap();
+            let index = <Se2 as DefaultNn>::Nn::default();
+            let mut planner = build_among(name, team, index, robot.clone(), &Settings::default()).unwrap();
+            let outcome = planner.solve(&mut Rng::seed(5), &mut Iterations(20_000), &mut ());
+            (outcome, planner.map().states().to_vec(), planner.map().edges())
+        };
+        let alone = found(1);
+        assert!(matches!(alone.0, Outcome::Solved(_)), "{name}");
+        assert!(alone == found(3), "{name}");
+    }
+}
+
+#[test]
 fn a_closed_corridor_is_never_solved() {
     let (space, robot) = (plane(), corridor(0.05));
     for (name, settings) in [ALL[0], ALL[5], ALL[7], ALL[9]] {

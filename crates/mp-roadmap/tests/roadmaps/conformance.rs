@@ -31,7 +31,7 @@ fn settings(name: &str) -> Settings {
 
 impl<'c, C, V> World<'c, C, V>
 where
-    C: DefaultNn<Nn: Send> + Sync,
+    C: DefaultNn<Nn: Send + Sync> + Clone,
     V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + Clone + Send + 'c,
 {
     fn planner(&self, name: &str, certified: bool) -> AnyPlanner<'c, C::State, ()> {

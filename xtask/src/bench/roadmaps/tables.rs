@@ -1,9 +1,9 @@
 //! What was found, as tables and a chart.
 
 use super::runs::{BESIDE, Case, Plan, Run, planners};
-use super::world::{SLACKS, name};
+use super::world::Corridors;
 use crate::bench::Table;
-use crate::bench::chart::{Curve, Labels, log_log};
+use crate::bench::chart::{Curve, Labels, shares};
 use crate::bench::log::Log;
 use crate::bench::stats::Median;
 use miette::Result;
@@ -13,7 +13,6 @@ use miette::Result;
 pub(super) struct Found<'a> {
     pub(super) log: &'a Log<Case, Run>,
     pub(super) plan: &'a Plan,
-    pub(super) scenes: &'a [&'a str],
 }
 
 /// The interval that holds a share of which `k` of `n` were seen, with 95% (Wilson 1927, *Probable inference,
@@ -26,6 +25,16 @@ fn wilson(k: usize, n: usize) -> (f64, f64) {
     ((middle - half).max(0.0), (middle + half).min(1.0))
 }
 
+/// Where a share falls under one half, going down from the widest: between two widths by the logarithm of the width.
+/// Infinite if it is under half at the widest already, zero if it never is.
+fn falls(points: &[(f64, f64)]) -> f64 {
+    let Some(i) = points.iter().position(|(_, share)| *share < 0.5) else { return 0.0 };
+    let Some(before) = i.checked_sub(1) else { return f64::INFINITY };
+    let [(wide, high), (narrow, low)] = [points[before], points[i]];
+    let t = (high - 0.5) / (high - low);
+    (wide.ln() + t * (narrow.ln() - wide.ln())).exp()
+}
+
 /// Three digits.
 pub(super) fn short(v: f64) -> String {
     match v {
@@ -35,62 +44,67 @@ pub(super) fn short(v: f64) -> String {
     }
 }
 
+/// In thousands.
+fn thousands(v: f64) -> String {
+    if v < 10_000.0 { format!("{:.1}k", 1e-3 * v) } else { format!("{:.0}k", 1e-3 * v) }
+}
+
 impl Found<'_> {
     fn runs(&self, scene: &str, planner: &str) -> Vec<&Run> {
         let case = |seed| Case { scene: scene.to_owned(), planner: planner.to_owned(), seed };
         (1..=u64::from(self.plan.seeds)).filter_map(|seed| self.log.get(&case(seed))).collect()
     }
 
-    fn seconds(&self, scene: &str, planner: &str) -> Option<Median> {
+    /// How many of how many runs were solved by so many queries.
+    fn share(&self, scene: &str, planner: &str, budget: u64) -> (usize, usize) {
         let runs = self.runs(scene, planner);
-        let time = |run: &&Run| if run.solved { run.seconds } else { f64::INFINITY };
-        Median::of(&runs.iter().map(time).collect::<Vec<_>>())
+        (runs.iter().filter(|run| run.solved_within(budget)).count(), runs.len())
     }
 
-    fn share(&self, scene: &str, planner: &str) -> (usize, usize) {
-        let runs = self.runs(scene, planner);
-        (runs.iter().filter(|run| run.solved).count(), runs.len())
+    /// The whole budget and smaller ones: a run that needed less would have been solved by them.
+    fn budgets(&self) -> [u64; 3] {
+        [self.plan.budget / 10, self.plan.budget * 3 / 10, self.plan.budget]
     }
 
-    /// A row for each scene and planner: the medians are over all runs, solved or not, those of time with what
-    /// is not solved beyond the cap.
-    pub(super) fn summary(&self) -> Table {
-        let mut table = Table::new([
-            "scene",
-            "planner",
-            "solved",
-            "95%",
-            "median s (95%)",
-            "nodes",
-            "edges",
-            "components",
-            "checks",
-            "motions",
-        ]);
-        for scene in self.scenes {
+    /// A row for each scene and planner: medians over all runs, solved or not; of queries and time that is not solved
+    /// counts as beyond the budget.
+    pub(super) fn summary(&self, scenes: &[String]) -> Table {
+        let [few, some, all] = self.budgets();
+        let mut head: Vec<String> = ["scene", "planner"].map(str::to_owned).to_vec();
+        head.extend([few, some].map(|budget| format!("by {}", thousands(budget as f64))));
+        head.push(format!("solved by {}", thousands(all as f64)));
+        let rest = ["95%", "queries (95%)", "build s", "query ms", "nodes", "edges", "components", "motions"];
+        let mut table = Table::new(head.into_iter().chain(rest.map(str::to_owned)));
+        for scene in scenes {
             for planner in planners() {
                 let runs = self.runs(scene, planner);
-                let (solved, of) = self.share(scene, planner);
-                let Some(seconds) = self.seconds(scene, planner) else { continue };
+                if runs.is_empty() {
+                    continue;
+                }
+                let [first, second, (solved, of)] =
+                    self.budgets().map(|budget| self.share(scene, planner, budget));
                 let (low, high) = wilson(solved, of);
-                let count = |value: &dyn Fn(&Run) -> f64| {
+                let median = |value: &dyn Fn(&Run) -> f64| {
                     let values: Vec<f64> = runs.iter().map(|run| value(run)).collect();
-                    Median::of(&values).map_or_else(String::new, |m| format!("{:.0}", m.median))
+                    Median::of(&values).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
                 };
-                let of_map = |value: &dyn Fn(&Run) -> f64| match planner == BESIDE {
-                    true => "–".to_owned(),
-                    false => count(value),
-                };
+                let count = |value: &dyn Fn(&Run) -> f64| format!("{:.0}", median(value).median);
+                let of_map = |cell: String| if planner == BESIDE { "–".to_owned() } else { cell };
+                let queries = median(&|run| if run.solved { run.checks as f64 } else { f64::INFINITY });
+                let again: Vec<f64> = runs.iter().filter_map(|run| run.again).collect();
                 table.rows.push(vec![
-                    (*scene).to_owned(),
+                    scene.clone(),
                     planner.to_owned(),
+                    first.0.to_string(),
+                    second.0.to_string(),
                     format!("{solved}/{of}"),
                     format!("{:.0}–{:.0}%", 100.0 * low, 100.0 * high),
-                    seconds.cell(&format!("> {}", self.plan.cap), short),
+                    queries.cell(&format!("> {}", thousands(all as f64)), thousands),
+                    short(median(&|run| run.seconds).median),
+                    Median::of(&again).map_or_else(|| "–".to_owned(), |m| short(1e3 * m.median)),
                     count(&|run| run.nodes as f64),
-                    of_map(&|run| run.edges as f64),
-                    of_map(&|run| run.components as f64),
-                    count(&|run| run.checks as f64),
+                    of_map(count(&|run| run.edges as f64)),
+                    of_map(count(&|run| run.components as f64)),
                     count(&|run| run.motions as f64),
                 ]);
             }
@@ -98,51 +112,74 @@ impl Found<'_> {
         table
     }
 
-    /// Success in each corridor, and the widest in which a planner solves less than half.
-    pub(super) fn corridor(&self) -> Table {
-        let head = SLACKS.iter().map(|slack| format!("{slack} m"));
-        let mut table =
-            Table::new(["planner".to_owned()].into_iter().chain(head).chain(["below 50% from".to_owned()]));
+    /// The width at which the planner falls under half by so many queries, and from where to where it may be: where the
+    /// ends of the intervals of the shares do.
+    fn width(&self, corridors: &Corridors, planner: &str, budget: u64) -> [f64; 3] {
+        let seeds = self.plan.seeds as usize;
+        let points = |end: fn(usize, usize) -> f64| -> Vec<(f64, f64)> {
+            // What was not run, as nothing was solved where it is wider, would not be solved.
+            let share = |slack: f64| end(self.share(&corridors.scene(slack), planner, budget).0, seeds);
+            corridors.slacks.iter().map(|&slack| (slack, share(slack))).collect()
+        };
+        [
+            falls(&points(|k, n| k as f64 / n as f64)),
+            falls(&points(|k, n| wilson(k, n).1)),
+            falls(&points(|k, n| wilson(k, n).0)),
+        ]
+    }
+
+    /// Success in each corridor, and the width at which a planner falls under half.
+    pub(super) fn corridor(&self, corridors: &Corridors) -> Table {
+        let [few, _, all] = self.budgets();
+        let mut head = vec!["planner".to_owned()];
+        head.extend(corridors.slacks.iter().map(|slack| format!("{slack} m")));
+        head.push(format!("half by {} (95%)", thousands(all as f64)));
+        head.push(format!("half by {}", thousands(few as f64)));
+        let mut table = Table::new(head);
+        let [widest, narrowest] = [corridors.slacks[0], corridors.slacks[corridors.slacks.len() - 1]];
+        let metres = |v: f64| match v {
+            0.0 => format!("< {narrowest}"),
+            v if v.is_infinite() => format!("> {widest}"),
+            v => format!("{v:.3}"),
+        };
         for planner in planners() {
-            let shares: Vec<_> =
-                SLACKS.iter().map(|&slack| (slack, self.share(&name(slack), planner))).collect();
             let mut row = vec![planner.to_owned()];
-            row.extend(shares.iter().map(|(_, (solved, of))| format!("{solved}/{of}")));
-            let fails = shares.iter().find(|(_, (solved, of))| 2 * solved < *of);
-            row.push(fails.map_or_else(|| "–".to_owned(), |(slack, _)| format!("{slack} m")));
+            row.extend(corridors.slacks.iter().map(|&slack| {
+                match self.share(&corridors.scene(slack), planner, all) {
+                    (_, 0) => "–".to_owned(),
+                    (solved, _) => solved.to_string(),
+                }
+            }));
+            let [half, low, high] = self.width(corridors, planner, all).map(metres);
+            row.push(format!("{half} ({low} – {high})"));
+            row.push(metres(self.width(corridors, planner, few)[0]));
             table.rows.push(row);
         }
         table
     }
 
-    /// Time to a path against the width of the corridor.
-    pub(super) fn chart(&self) -> Result<String> {
-        let curves: Vec<Curve> = planners()
-            .into_iter()
-            .enumerate()
-            .map(|(i, planner)| {
-                let medians: Vec<_> = SLACKS
-                    .iter()
-                    .filter_map(|&slack| Some((slack, self.seconds(&name(slack), planner)?)))
-                    .collect();
-                Curve {
-                    ranges: medians.iter().map(|(x, m)| (*x, m.low, m.high)).collect(),
-                    ..Curve::new(planner, i, medians.iter().map(|(x, m)| (*x, m.median)).collect())
-                }
-            })
-            .collect();
-        let labels = Labels {
-            title: "Through a corridor",
-            x: "width of the corridor less that of the robot, m",
-            y: "median processor time, s",
+    /// The share of solved runs against the width of the corridor.
+    pub(super) fn chart(&self, corridors: &Corridors) -> Result<String> {
+        let curve = |(i, planner): (usize, &'static str)| {
+            let share = |slack: f64| self.share(&corridors.scene(slack), planner, self.plan.budget);
+            let shares = corridors.slacks.iter().map(|&slack| (slack, share(slack)));
+            let points = shares.map(|(slack, (k, n))| (slack, k as f64 / n.max(1) as f64));
+            Curve::new(planner, i, points.collect())
         };
-        log_log(labels, &SLACKS, &curves)
+        let curves: Vec<Curve> = planners().into_iter().enumerate().map(curve).collect();
+        let labels = Labels {
+            title: corridors.title,
+            x: "width of the corridor less that of the robot, m",
+            y: "share of runs solved",
+        };
+        shares(labels, &curves)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::roadmaps::world::CORRIDORS;
 
     /// 81 of 263 (Newcombe 1998, table I).
     #[test]
@@ -151,5 +188,50 @@ mod tests {
         assert!((low - 0.2553).abs() < 5e-5 && (high - 0.3662).abs() < 5e-5, "{low} {high}");
         assert_eq!(wilson(0, 20).0, 0.0);
         assert_eq!(wilson(20, 20).1, 1.0);
+    }
+
+    #[test]
+    fn success_falls_between_two_widths() {
+        let half = falls(&[(0.8, 1.0), (0.4, 0.75), (0.1, 0.25), (0.05, 0.6)]);
+        assert!((half - 0.2).abs() < 1e-12, "halfway in the logarithm: {half}");
+        assert_eq!(falls(&[(0.8, 0.4), (0.4, 1.0)]), f64::INFINITY);
+        assert_eq!(falls(&[(0.8, 0.9), (0.4, 0.5)]), 0.0);
+    }
+
+    #[test]
+    fn smaller_budgets_are_in_the_log_of_the_larger() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut log = Log::open(&folder.path().join("runs.jsonl"), 1e4, false).unwrap();
+        let corridors = CORRIDORS[0];
+        for (i, &slack) in corridors.slacks.iter().enumerate() {
+            for seed in 1..=2 {
+                let case = Case { scene: corridors.scene(slack), planner: "prm".to_owned(), seed };
+                let checks = if i < 2 { 900 } else { 9_000 };
+                let (solved, seconds, again) = (i < 4, 0.1, Some(1e-3));
+                let run =
+                    Run { solved, seconds, again, nodes: 5, edges: 4, components: 1, checks, motions: 9 };
+                log.learn([(case, run)]);
+            }
+        }
+        let plan = Plan { budget: 10_000, seeds: 2, threads: None };
+        let found = Found { log: &log, plan: &plan };
+        let table = found.corridor(&corridors);
+        let row = &table.rows[0];
+        assert_eq!((&*row[0], &*row[1], &*row[4], &*row[5]), ("prm", "2", "2", "0"));
+        let between = |text: &str, [low, high]: [f64; 2]| {
+            let v: f64 = text.split(' ').next().unwrap().parse().unwrap();
+            assert!((low..high).contains(&v), "{text}");
+        };
+        let slacks = corridors.slacks;
+        between(&row[slacks.len() + 1], [slacks[4], slacks[3]]);
+        between(&row[slacks.len() + 2], [slacks[2], slacks[1]]);
+        let summary = found.summary(&[corridors.scene(slacks[3])]);
+        assert_eq!(summary.rows.len(), 1, "only what was run");
+        assert_eq!(
+            summary.rows[0][2..5],
+            ["0", "0", "2/2"].map(str::to_owned),
+            "9,000 of 1,000, 3,000, 10,000"
+        );
+        assert!(found.chart(&corridors).unwrap().contains("<polyline"));
     }
 }

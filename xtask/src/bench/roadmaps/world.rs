@@ -3,7 +3,7 @@
 use crate::plan::Ready;
 use miette::{IntoDiagnostic, Result};
 use mp::geom::primitives::cuboid;
-use mp::geom::{Aabb, TriMesh};
+use mp::geom::{Aabb, pose_from_six};
 use mp::io::{Body, PlacedBody, Problem, SpaceKind};
 use nalgebra::{Isometry3, Point3};
 use std::path::PathBuf;
@@ -12,57 +12,104 @@ use std::path::PathBuf;
 pub(super) const SCENES: [&str; 8] =
     ["gempa-1", "gempa-2", "gempa-3", "gempa-4", "twisty", "cubicles", "bugtrap", "alpha-1.5"];
 
-/// By how much the corridors are wider than the robot, metres.
-pub(super) const SLACKS: [f64; 6] = [1.6, 0.8, 0.4, 0.2, 0.1, 0.05];
-
-/// The robot is a bar of this length and width, metres.
-const BAR: [f64; 2] = [0.3, 0.1];
-/// How thick the wall is, and half the sides of the room.
-const WALL: f64 = 1.0;
-const ROOM: [f64; 3] = [2.0, 1.5, 1.5];
-
-/// The name of the corridor with this slack.
-pub(super) fn name(slack: f64) -> String {
-    format!("corridor {slack}")
+/// Corridors of one kind, which differ in how much wider they are than the robot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corridors {
+    pub(super) name: &'static str,
+    pub(super) title: &'static str,
+    /// By how much they are wider than the robot, metres: halves first, then nearer to each other, where planners fail.
+    pub(super) slacks: [f64; 11],
+    make: fn(&str, f64) -> Result<Problem>,
 }
 
-/// A bar must pass a square corridor through a wall, as many metres wider than it is. The straight way from start to
-/// goal hits the wall beside it.
-pub(super) fn corridors() -> Result<Vec<(String, Ready)>> {
-    SLACKS.iter().map(|&slack| Ok((name(slack), Ready::of(corridor(slack)?)?))).collect()
+/// All kinds of corridors.
+pub(super) const CORRIDORS: [Corridors; 2] = [
+    Corridors {
+        name: "rod",
+        title: "A rod in the plane",
+        slacks: [0.3, 0.15, 0.1261, 0.1061, 0.0892, 0.075, 0.0631, 0.053, 0.0446, 0.0375, 0.0315],
+        make: rod,
+    },
+    Corridors {
+        name: "bar",
+        title: "A bar in space",
+        slacks: [1.6, 0.8, 0.4, 0.3364, 0.2828, 0.2378, 0.2, 0.1682, 0.1414, 0.1189, 0.1],
+        make: bar,
+    },
+];
+
+impl Corridors {
+    /// The name of the one with this slack.
+    pub(super) fn scene(&self, slack: f64) -> String {
+        format!("{} {slack}", self.name)
+    }
+
+    /// All of them, the widest first.
+    pub(super) fn ready(&self) -> Result<Vec<(String, Ready)>> {
+        let one = |&slack: &f64| {
+            let name = self.scene(slack);
+            let ready = Ready::of((self.make)(&name, slack)?)?;
+            Ok((name, ready))
+        };
+        self.slacks.iter().map(one).collect()
+    }
 }
 
-fn corridor(slack: f64) -> Result<Problem> {
-    let half = 0.5 * (BAR[1] + slack);
-    let [_, y, z] = ROOM.map(|r| r + 0.5);
-    let slab = |low: [f64; 2], high: [f64; 2]| -> Result<(TriMesh, Isometry3<f64>)> {
-        let mesh = cuboid(WALL, high[0] - low[0], high[1] - low[1]).into_diagnostic()?;
-        let at = Isometry3::translation(0.0, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1]));
-        Ok((mesh, at))
-    };
-    let slabs = [
-        slab([-y, -z], [-half, z])?,
-        slab([half, -z], [y, z])?,
-        slab([-half, -z], [half, -half])?,
-        slab([-half, half], [half, z])?,
-    ];
-    let obstacles = slabs.into_iter().zip(1..).map(|((mesh, pose), i)| PlacedBody {
-        name: format!("slab {i}"),
-        file: PathBuf::new(),
-        mesh,
-        pose,
-    });
-    let bar = cuboid(BAR[0], BAR[1], BAR[1]).into_diagnostic()?;
-    let high = Point3::from(ROOM);
+/// A block of these sides about a place.
+fn block(name: &str, sides: [f64; 3], at: [f64; 3]) -> Result<PlacedBody> {
+    let mesh = cuboid(sides[0], sides[1], sides[2]).into_diagnostic()?;
+    let pose = Isometry3::translation(at[0], at[1], at[2]);
+    Ok(PlacedBody { name: name.to_owned(), file: PathBuf::new(), mesh, pose })
+}
+
+fn problem(
+    name: &str,
+    space: SpaceKind,
+    robot: [f64; 3],
+    obstacles: Vec<PlacedBody>,
+    [start, goal]: [[f64; 6]; 2],
+    room: [f64; 3],
+) -> Result<Problem> {
+    let mesh = cuboid(robot[0], robot[1], robot[2]).into_diagnostic()?;
+    let high = Point3::from(room);
     Ok(Problem {
-        name: name(slack),
-        space: SpaceKind::Se3,
-        robot: Body { name: "bar".to_owned(), file: PathBuf::new(), mesh: bar },
-        obstacles: obstacles.collect(),
-        start: Isometry3::translation(-1.5, 1.1, -1.1),
-        goal: Isometry3::translation(1.5, 1.1, 1.1),
+        name: name.to_owned(),
+        space,
+        robot: Body { name: "robot".to_owned(), file: PathBuf::new(), mesh },
+        obstacles,
+        start: pose_from_six(start),
+        goal: pose_from_six(goal),
         bounds: Some(Aabb { min: -high, max: high }),
     })
+}
+
+/// A bar of 0.3 by 0.1 by 0.1 m must pass a square corridor 1 m long. The straight way from start to goal hits the
+/// wall beside it.
+fn bar(name: &str, slack: f64) -> Result<Problem> {
+    let room = [2.0, 1.5, 1.5];
+    let half = 0.5 * (0.1 + slack);
+    let [_, y, z] = room.map(|r| r + 0.5);
+    let slab = |name, low: [f64; 2], high: [f64; 2]| {
+        let sides = [1.0, high[0] - low[0], high[1] - low[1]];
+        block(name, sides, [0.0, 0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])])
+    };
+    let slabs = vec![
+        slab("left", [-y, -z], [-half, z])?,
+        slab("right", [half, -z], [y, z])?,
+        slab("low", [-half, -z], [half, -half])?,
+        slab("high", [-half, half], [half, z])?,
+    ];
+    let ends = [[-1.5, 1.1, -1.1, 0.0, 0.0, 0.0], [1.5, 1.1, 1.1, 0.0, 0.0, 0.0]];
+    problem(name, SpaceKind::Se3, [0.3, 0.1, 0.1], slabs, ends, room)
+}
+
+/// A rod of 0.8 by 0.1 m must pass a corridor 0.8 m long, in the plane, and turn before and behind it.
+fn rod(name: &str, slack: f64) -> Result<Problem> {
+    let y = 1.0 + 0.5 * (0.1 + slack);
+    let walls =
+        vec![block("low", [0.8, 2.0, 1.0], [0.0, -y, 0.0])?, block("high", [0.8, 2.0, 1.0], [0.0, y, 0.0])?];
+    let ends = [[-1.4, 0.3, 0.0, 0.0, 0.0, 1.5], [1.4, -0.3, 0.0, 0.0, 0.0, -1.0]];
+    problem(name, SpaceKind::Se2, [0.8, 0.1, 0.2], walls, ends, [2.0, 1.5, 0.5])
 }
 
 #[cfg(test)]
@@ -71,9 +118,12 @@ mod tests {
 
     #[test]
     fn corridors_can_be_planned_in() {
-        for (_, ready) in corridors().unwrap() {
-            ready.check_ends().unwrap();
-            assert_eq!(ready.overlaps().iter().filter(|text| text.contains("robot")).count(), 0);
+        for corridors in CORRIDORS {
+            assert!(corridors.slacks.is_sorted_by(|a, b| a > b));
+            for (_, ready) in corridors.ready().unwrap() {
+                ready.check_ends().unwrap();
+                assert_eq!(ready.overlaps().iter().filter(|text| text.contains("robot")).count(), 0);
+            }
         }
     }
 }
