@@ -61,7 +61,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) iterations: Option<u64>,
     /// Longest edge of a tree, not of a roadmap: a distance of the metric, or a percentage of the extent of the space
-    /// [default: 20%].
+    /// [default: 5%].
     #[arg(long, value_name = "ε")]
     pub(crate) step: Option<Length>,
     /// How motions are checked: `certified` (no wall is ever missed) or `discrete:R`, at steps of R (a
@@ -153,6 +153,9 @@ pub(crate) struct Bench {
     /// Seconds a run may take.
     #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
     pub(crate) time: f64,
+    /// Of the suite `rigid`: longest edge of a tree, as a percentage of the extent of the space or a distance of the metric.
+    #[arg(long, value_name = "ε", default_value = "20%")]
+    pub(crate) step: Length,
     /// Another program to measure beside ours, in turn; how it is called is in docs/benchmarks.md.
     #[arg(long, value_name = "PROGRAM")]
     pub(crate) peer: Option<PathBuf>,

@@ -6,7 +6,7 @@ use crate::{BuildError, PlannerInfo, Settings, Step};
 /// The parameters every planner of the family has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Longest step, in (0, extent of the space]; default a fifth of the extent.
+    /// Longest step, in (0, extent of the space]; default a twentieth of the extent.
     pub step: Step,
     /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; default 0.05. Planners
     /// that grow a tree from the goal use it for sampling new goal states, where there is a
@@ -19,7 +19,7 @@ pub struct Tuning {
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self { step: Step::Fraction(0.2), goal_bias: 0.05, patience: 10 }
+        Self { step: Step::Fraction(0.05), goal_bias: 0.05, patience: 10 }
     }
 }
 

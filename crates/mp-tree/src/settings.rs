@@ -12,7 +12,7 @@ pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[
 pub const STEP: Parameter = Parameter {
     name: "step",
     range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
-    default: "20%",
+    default: "5%",
     doc: "longest step, in the metric of the space",
 };
 

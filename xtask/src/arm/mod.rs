@@ -8,6 +8,5 @@ mod task;
 
 pub(crate) use check::check;
 pub(crate) use info::Facts;
-pub(crate) use picture::{draw_task, subject};
-pub(crate) use plan::{finish, search};
+pub(crate) use picture::draw_task;
 pub(crate) use task::{State, Task};

@@ -1,12 +1,12 @@
 //! RRT-Connect on the shipped scenes, seed by seed in turn with another program on the same problems.
 //!
-//! Both sides plan with motion checks at 1% of the extent and steps of 20% of it, in the metric
-//! ‖Δp‖ + 0.5·angle, from the same start to the same goal in the same bounds, one thread, until the first
+//! Both sides plan with motion checks at 1% of the extent and steps of `--step`, by default 20% of it as is theirs, in
+//! the metric ‖Δp‖ + 0.5·angle, from the same start to the same goal in the same bounds, one thread, until the first
 //! solution. Neither time includes reading files and building the trees of meshes, with us those of the verifier
 //! among them. Our time includes the independent verification of candidate solutions; theirs does not verify.
 //!
 //! The other program is called as
-//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S`, reads what
+//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S --range D`, D the longest step, reads what
 //! `plan --export` writes and prints a line of JSON with `solved`, `time` (seconds), `checks` and
 //! `valid_at_20x_finer` (0 when its path collides at twenty times finer steps).
 
@@ -38,7 +38,9 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         given => given.to_vec(),
     };
     let seeds = args.runs.unwrap_or(if args.quick { 3 } else { 20 });
-    let options = Options::comparable("rrt-connect", Motion::Discrete(Length::Fraction(0.01)), args.time)?;
+    let mut options =
+        Options::comparable("rrt-connect", Motion::Discrete(Length::Fraction(0.01)), args.time)?;
+    options.settings.set("step", &args.step.to_string());
     let problems = tempfile::tempdir().into_diagnostic()?;
     let mut each = Table::new([
         "scene",
@@ -72,11 +74,15 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
             Some(_) => Some(ready.export(problems.path())?),
             None => None,
         };
+        let range = match args.step {
+            Length::Absolute(length) => length,
+            Length::Fraction(part) => part * ready.extent(),
+        };
         let (mut ours, mut theirs) = (Vec::new(), Vec::new());
         for seed in 1..=u64::from(seeds) {
             let own = planned(&ready, &options, seed)?;
             let peer = match (&args.peer, &file) {
-                (Some(program), Some(file)) => Some(ask(program, file, seed, args.time)?),
+                (Some(program), Some(file)) => Some(ask(program, file, seed, args.time, range)?),
                 _ => None,
             };
             note(&format!(
@@ -133,10 +139,11 @@ fn mean(values: &[f64]) -> Option<f64> {
 }
 
 /// One run of the other program.
-fn ask(program: &Path, problem: &Path, seed: u64, time: f64) -> Result<Theirs> {
+fn ask(program: &Path, problem: &Path, seed: u64, time: f64, range: f64) -> Result<Theirs> {
     let mut command = Command::new(program);
     command.arg("--problem").arg(problem).args(["--planner", "rrtconnect", "--seeds", "1"]);
     command.args(["--seed0", &seed.to_string(), "--time", &time.to_string()]);
+    command.args(["--range", &range.to_string()]);
     let done =
         command.output().into_diagnostic().wrap_err_with(|| format!("cannot run {}", program.display()))?;
     let text = String::from_utf8_lossy(&done.stdout);

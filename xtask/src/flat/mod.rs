@@ -11,5 +11,4 @@ pub(crate) use check::check;
 pub(crate) use info::Facts;
 pub(crate) use mover::FlatMover;
 pub(crate) use picture::{draw, world};
-pub(crate) use plan::{finish, search};
 pub(crate) use task::{AnyTask, Task, either};

@@ -1,7 +1,6 @@
 //! Pictures of worlds in the plane.
 
-use super::task::either;
-use super::{AnyTask, FlatMover, Task};
+use super::{FlatMover, Task};
 use crate::output;
 use crate::render::{Drawing, Item, SIZE, write as write_pixels};
 use miette::Result;
@@ -59,17 +58,15 @@ fn picture<M: FlatMover>(task: &Task<M>, states: &[M::State], subtitle: String) 
 }
 
 /// Writes the picture of `task` with the path `rows` in it, as its ending says: SVG or PNG.
-pub(crate) fn draw(
+pub(crate) fn draw<M: FlatMover>(
     file: &Path,
-    task: &AnyTask,
+    task: &Task<M>,
     path: Option<&mp::io::JointPath>,
     subtitle: String,
     size: Option<(usize, usize)>,
 ) -> Result<()> {
-    let drawing = either!(task, task => {
-        let states = path.map(|path| task.path(path)).transpose()?.unwrap_or_default();
-        picture(task, &states, subtitle)
-    });
+    let states = path.map(|path| task.path(path)).transpose()?.unwrap_or_default();
+    let drawing = picture(task, &states, subtitle);
     let size = size.unwrap_or(SIZE);
     match file.extension().is_some_and(|e| e.eq_ignore_ascii_case("svg")) {
         true => output::write(file, drawing.svg(size).as_bytes()),

@@ -1,99 +1,82 @@
-//! Planning in the plane, and what becomes of the path.
+//! Robots of the plane: what is their own in `plan`.
 
-use super::{FlatMover, Task};
+use super::{FlatMover, Task, draw};
 use crate::plan::Options;
-use crate::plan::finish::{STREAM, Until};
 use crate::plan::metrics::Kind;
 use crate::plan::progress::Line;
 use crate::plan::search::{Run, Search};
-use miette::{IntoDiagnostic, Result, miette};
-use mp::cspace::shorten::{Effort, simplify};
-use mp::cspace::{Cancel, Certified, DefaultNn, Path, Rng, least_clearance, verify_path};
+use crate::plan::task;
+use miette::{Result, miette};
+use mp::cspace::{Cancel, Clearance, DefaultNn, MotionBound, MotionValidity, Path};
 use mp::io::JointPath;
 
 /// Shortcuts keep this share of the robot's radius away from obstacles: a path that grazes every corner is of no
 /// use to anybody.
 const ROOM: f64 = 0.002;
 
-/// Plans from start to goals of `task` with `seed`.
-pub(crate) fn search<M: FlatMover>(
-    task: &Task<M>,
-    options: &Options,
-    seed: u64,
-    cancel: &Cancel,
-    line: &mut Line,
-) -> Result<Search<M::State>> {
-    if options.metric != Kind::Default {
-        return Err(miette!(
-            help = "leave --metric out",
-            "worlds in the plane have the metric of their space only, not `{}`",
-            options.metric_name
-        ));
-    }
-    if options.roadmap.is_some() {
-        return Err(miette!(help = "leave --roadmap out", "roadmaps are kept of rigid bodies only"));
-    }
-    let run = Run {
-        space: &task.space,
-        robot: &task.robot,
-        verifier: task.robot.verifier(&task.space),
-        start: &task.start,
-        goals: task.goals.clone(),
-        fingerprint: None,
-        tolerance: task.tolerance,
-        options,
-        seed,
-        cancel,
-    };
-    run.on(&task.space, <M::Space as DefaultNn>::Nn::default(), line)
-}
+impl<M: FlatMover> task::Task for Task<M> {
+    type Space = M::Space;
+    type File = JointPath;
 
-/// A path that the verifier passed as it will be read.
-#[derive(Clone, Debug)]
-pub(crate) struct Finished {
-    pub(crate) file: JointPath,
-    /// In the metric of the space.
-    pub(crate) length: f64,
-    /// A lower bound all along, metres.
-    pub(crate) clearance: f64,
-    pub(crate) shortened: bool,
-}
-
-/// Shortens `found` if asked to, and verifies what will be written. Falls back to `found` itself; `None` when
-/// not even that is free after it has been through its text.
-pub(crate) fn finish<M: FlatMover>(
-    task: &Task<M>,
-    found: &Path<M::State>,
-    shorten: bool,
-    seed: u64,
-    cancel: &Cancel,
-) -> Result<Option<Finished>> {
-    if shorten {
-        let room = (ROOM * task.robot.radius()).max(task.tolerance);
-        let certified = Certified::new(&task.space, task.robot.clone(), room).into_diagnostic()?;
-        let mut check = Until(certified, cancel);
-        let mut rng = Rng::stream(seed, STREAM);
-        let short = simplify(&task.space, &mut check, found, Effort::default(), &mut rng);
-        if let Some(finished) = written(task, &short, true)? {
-            return Ok(Some(finished));
+    fn name(&self) -> &str {
+        &self.problem.name
+    }
+    fn kind(&self) -> String {
+        M::SPACE.to_owned()
+    }
+    fn space(&self) -> &M::Space {
+        &self.space
+    }
+    fn search(
+        &self,
+        options: &Options,
+        seed: u64,
+        cancel: &Cancel,
+        line: &mut Line,
+    ) -> Result<Search<M::State>> {
+        if options.metric != Kind::Default {
+            return Err(miette!(
+                help = "leave --metric out",
+                "worlds in the plane have the metric of their space only, not `{}`",
+                options.metric_name
+            ));
         }
-        tracing::info!("the shortened path does not pass the verifier: the path as found is written");
+        if options.roadmap.is_some() {
+            return Err(miette!(help = "leave --roadmap out", "roadmaps are kept of rigid bodies only"));
+        }
+        let run = Run {
+            space: &self.space,
+            robot: &self.robot,
+            verifier: self.robot.verifier(&self.space),
+            start: &self.start,
+            goals: self.goals.clone(),
+            fingerprint: None,
+            tolerance: self.tolerance,
+            options,
+            seed,
+            cancel,
+        };
+        run.on(&self.space, <M::Space as DefaultNn>::Nn::default(), line)
     }
-    written(task, found, false)
-}
-
-/// `path` as it reads back from its text, if the verifier passes that.
-fn written<M: FlatMover>(task: &Task<M>, path: &Path<M::State>, shortened: bool) -> Result<Option<Finished>> {
-    let text = JointPath { configurations: path.states.iter().map(M::row).collect() }.to_text();
-    let file = JointPath::parse("the path", text.as_bytes())?;
-    let read = Path::straight(task.path(&file)?);
-    let report = verify_path(&task.space, &read, &mut task.robot.verifier(&task.space));
-    if let Some(fault) = report.fault {
-        tracing::info!("{fault}");
-        return Ok(None);
+    fn robot(&self) -> impl Clearance<M::State> + MotionBound<M::State> + Clone {
+        self.robot.clone()
     }
-    let accuracy = task.tolerance.max(1e-4 * task.robot.radius());
-    let tightest = least_clearance(&task.space, &mut task.robot.clone(), &read, accuracy);
-    let clearance = tightest.map_or(report.clearance, |t| t.clearance.max(report.clearance));
-    Ok(Some(Finished { file, length: report.length, clearance, shortened }))
+    fn verifier(&self) -> Result<impl MotionValidity<M::State>> {
+        Ok(self.robot.verifier(&self.space))
+    }
+    fn room(&self) -> f64 {
+        (ROOM * self.robot.radius()).max(self.tolerance)
+    }
+    fn accuracy(&self) -> f64 {
+        self.tolerance.max(1e-4 * self.robot.radius())
+    }
+    fn to_file(&self, path: &Path<M::State>) -> JointPath {
+        JointPath { configurations: path.states.iter().map(M::row).collect() }
+    }
+    fn states_of(&self, file: &JointPath) -> Result<Vec<M::State>> {
+        self.path(file)
+    }
+    fn draw(&self, to: &std::path::Path, file: &JointPath, caption: String) -> Result<()> {
+        draw(to, self, Some(file), caption, None)
+    }
 }

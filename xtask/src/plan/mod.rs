@@ -3,19 +3,19 @@
 mod chosen;
 pub(crate) mod counted;
 mod files;
-pub(crate) mod finish;
 pub(crate) mod interrupt;
 mod measured;
 pub(crate) mod metrics;
 pub(crate) mod mover;
 mod options;
-mod plane;
 pub(crate) mod progress;
 mod report;
+mod rigid;
 mod run;
 mod scene;
 pub(crate) mod search;
 pub(crate) mod setting;
+pub(crate) mod task;
 pub(crate) mod tuples;
 
 pub(crate) use options::Options;

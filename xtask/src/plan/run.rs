@@ -3,17 +3,16 @@
 use super::files::Files;
 use super::mover::Mover;
 use super::options::Options;
-use super::plane::one_in_the_plane;
 use super::progress::{self, Line};
 use super::report::{Medians, Report, Runs, medians, table};
 use super::scene::Scene;
-use super::setting::{Ready, Setting};
-use super::{finish, interrupt, search};
-use crate::arm::{self, Task};
+use super::setting::Ready;
+use super::task::{State, Task, Written, finish};
+use super::{interrupt, search};
 use crate::cli::{self, Motion};
 use crate::flat::either;
 use crate::output::{note, print, write};
-use crate::{render, scenes};
+use crate::scenes;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use mp::cspace::{Cancel, Outcome};
 use std::collections::HashSet;
@@ -47,16 +46,13 @@ pub(crate) fn run(args: &cli::Plan) -> Result<bool> {
     let cancel = Cancel(interrupt::flag());
     let job = |(scene, seed): (usize, u64), quiet: bool| -> Result<Report> {
         let source = found[scene].display().to_string();
+        let (source, options, files) = (&source, &options, &files);
         match &ready[scene] {
-            Scene::Rigid(Ready::Space(setting)) => {
-                one(setting, &source, &options, seed, &cancel, &files, quiet)
-            }
-            Scene::Rigid(Ready::Plane(setting)) => {
-                one(setting, &source, &options, seed, &cancel, &files, quiet)
-            }
-            Scene::Arm(task) => one_of_arm(task, &source, &options, seed, &cancel, &files, quiet),
+            Scene::Rigid(Ready::Space(task)) => one(&**task, source, options, seed, &cancel, files, quiet),
+            Scene::Rigid(Ready::Plane(task)) => one(&**task, source, options, seed, &cancel, files, quiet),
+            Scene::Arm(task) => one(&**task, source, options, seed, &cancel, files, quiet),
             Scene::Flat(any) => {
-                either!(any, task => one_in_the_plane((any, task), &source, &options, seed, &cancel, &files, quiet))
+                either!(any, task => one(&**task, source, options, seed, &cancel, files, quiet))
             }
         }
     };
@@ -86,7 +82,7 @@ pub(crate) struct Planned {
 pub(crate) fn planned(ready: &Ready, options: &Options, seed: u64) -> Result<Planned> {
     fn on<M: Mover>(setting: &super::setting::Setting<M>, options: &Options, seed: u64) -> Result<Planned> {
         let mut line = Line::new(&setting.problem.name, options.time, false);
-        let search = search::search(setting, options, seed, &Cancel(interrupt::flag()), &mut line)?;
+        let search = setting.search(options, seed, &Cancel(interrupt::flag()), &mut line)?;
         Ok(Planned {
             solved: matches!(search.outcome, Outcome::Solved(_)),
             seconds: search.time.as_secs_f64(),
@@ -150,8 +146,8 @@ fn many(
 }
 
 /// One run: plan, finish, write.
-fn one<M: Mover>(
-    setting: &Setting<M>,
+fn one<T: Task>(
+    task: &T,
     source: &str,
     options: &Options,
     seed: u64,
@@ -159,10 +155,9 @@ fn one<M: Mover>(
     files: &Files,
     quiet: bool,
 ) -> Result<Report> {
-    let problem = &setting.problem;
-    let mut line = Line::new(&problem.name, options.time, !quiet);
-    let search = search::search(setting, options, seed, cancel, &mut line)?;
-    let mut report = begun(&problem.name, source, problem.space.to_string(), options, seed, &search);
+    let mut line = Line::new(task.name(), options.time, !quiet);
+    let search = task.search(options, seed, cancel, &mut line)?;
+    let mut report = begun(task, source, options, seed, &search);
     let path = match search.outcome {
         Outcome::Stopped(reason) => {
             report.stopped_by = Some(search::word(reason));
@@ -171,10 +166,10 @@ fn one<M: Mover>(
         }
         Outcome::Solved(path) => path,
     };
-    report.path_length_found = Some(path.length(&setting.space));
+    report.path_length_found = Some(path.length(task.space()));
     line.say("solved; shortening and verifying the path");
     let began = Instant::now();
-    let finished = finish::finish(setting, &path, options.shorten, seed, cancel)?;
+    let finished = finish(task, &path, options.shorten, seed, cancel)?;
     report.finish_s = began.elapsed().as_secs_f64();
     let Some(finished) = finished else {
         report.stopped_by = Some("verification");
@@ -184,36 +179,36 @@ fn one<M: Mover>(
     (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
     report.path_length = Some(finished.length);
     report.clearance = Some(finished.clearance);
-    let (out, picture) = files.of(&problem.name, seed);
+    let (out, picture) = files.of(task.name(), seed);
     if let Some(file) = out {
         line.say("writing the path");
-        write(&file, text_for(&file, &finished.file).as_bytes())?;
+        let json = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+        let text = if json { finished.file.json() } else { finished.file.text() };
+        write(&file, text.as_bytes())?;
         report.path_file = Some(file.display().to_string());
     }
     if let Some(file) = picture {
         line.say("drawing the picture");
-        let subject = render::subject(problem, &finished.file.poses(), report.caption());
-        render::write(&file, &render::draw(&subject, render::SIZE))?;
+        task.draw(&file, &finished.file, report.caption())?;
         report.picture_file = Some(file.display().to_string());
     }
-    report.path = Some(finished.file.configurations.iter().map(|c| c.to_vec()).collect());
+    report.path = Some(finished.file.rows());
     line.clear();
     Ok(report)
 }
 
 /// The report of a run that has been planned but not finished.
-pub(super) fn begun<S>(
-    name: &str,
+fn begun<T: Task>(
+    task: &T,
     source: &str,
-    space: String,
     options: &Options,
     seed: u64,
-    search: &search::Search<S>,
+    search: &search::Search<State<T>>,
 ) -> Report {
     Report {
-        scene: name.to_owned(),
+        scene: task.name().to_owned(),
         scene_file: source.to_owned(),
-        space,
+        space: task.kind(),
         solved: false,
         verified: false,
         stopped_by: None,
@@ -243,66 +238,6 @@ pub(super) fn begun<S>(
         picture_file: None,
         path: None,
     }
-}
-
-/// One run of an arm: plan, finish, write.
-fn one_of_arm(
-    task: &Task,
-    source: &str,
-    options: &Options,
-    seed: u64,
-    cancel: &Cancel,
-    files: &Files,
-    quiet: bool,
-) -> Result<Report> {
-    let mut line = Line::new(task.name(), options.time, !quiet);
-    let search = arm::search(task, options, seed, cancel, &mut line)?;
-    let space = format!("{} joints", task.arm.dof());
-    let mut report = begun(task.name(), source, space, options, seed, &search);
-    let path = match search.outcome {
-        Outcome::Stopped(reason) => {
-            report.stopped_by = Some(search::word(reason));
-            line.clear();
-            return Ok(report);
-        }
-        Outcome::Solved(path) => path,
-    };
-    report.path_length_found = Some(path.length(&task.space));
-    line.say("solved; shortening and verifying the path");
-    let began = Instant::now();
-    let finished = arm::finish(task, &path, options.shorten, seed, cancel)?;
-    report.finish_s = began.elapsed().as_secs_f64();
-    let Some(finished) = finished else {
-        report.stopped_by = Some("verification");
-        line.clear();
-        return Ok(report);
-    };
-    (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
-    report.path_length = Some(finished.length);
-    report.clearance = Some(finished.clearance);
-    let (out, picture) = files.of(task.name(), seed);
-    if let Some(file) = out {
-        line.say("writing the path");
-        let json = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-        let text = if json { finished.file.to_json() } else { finished.file.to_text() };
-        write(&file, text.as_bytes())?;
-        report.path_file = Some(file.display().to_string());
-    }
-    if let Some(file) = picture {
-        line.say("drawing the picture");
-        let subject = arm::subject(task, &task.states(&finished.file), report.caption());
-        render::write(&file, &render::draw(&subject, render::SIZE))?;
-        report.picture_file = Some(file.display().to_string());
-    }
-    report.path = Some(finished.file.configurations);
-    line.clear();
-    Ok(report)
-}
-
-/// The path as a file of this name holds it.
-fn text_for(file: &Path, path: &mp::io::PathFile) -> String {
-    let json = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
-    if json { path.to_json() } else { path.to_text() }
 }
 
 /// Prints what came of it: JSON on standard output, or a summary or table.

@@ -2,19 +2,15 @@
 
 use super::chosen::Chosen;
 use super::counted::{AnyRoadmap, Asked, Counted, Queries, Roadmaps};
-use super::measured::Measured;
-use super::metrics;
-use super::mover::Mover;
 use super::options::Options;
 use super::progress::Line;
-use super::setting::Setting;
 use crate::bench::{Processor, nanoseconds};
 use crate::cli::{Length, Motion};
 use miette::{IntoDiagnostic, Result, miette};
 use mp::cspace::{
-    Cancel, Certified, Clearance, Deadline, DefaultNn, Discrete, Iterations, MetricOn, MotionBound,
-    MotionValidity, NearestNeighbors, Numbers, ObstacleHints, Outcome, ParameterError, Path, Planner,
-    Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Validity, WithMetric,
+    Cancel, Certified, Clearance, Deadline, Discrete, Iterations, MetricOn, MotionBound, MotionValidity,
+    NearestNeighbors, Numbers, ObstacleHints, Outcome, ParameterError, Path, Planner, Progress, Resolution,
+    Rng, Space, Stop, StopReason, Straight, Validity, WithMetric,
 };
 use mp::cspace::{ClearanceGradient, shorten::reduce, verify_path};
 use mp::roadmap::{HasRoadmap, Roadmap, Team};
@@ -51,37 +47,6 @@ pub(crate) struct Search<S> {
 pub(crate) struct Map {
     pub(crate) edges: usize,
     pub(crate) components: usize,
-}
-
-/// Plans from start to goal of `setting` with `seed`.
-pub(crate) fn search<M: Mover>(
-    setting: &Setting<M>,
-    options: &Options,
-    seed: u64,
-    cancel: &Cancel,
-    line: &mut Line,
-) -> Result<Search<M::State>> {
-    let space = &setting.space;
-    let run = Run {
-        space,
-        robot: &setting.robot,
-        verifier: setting.verifier()?,
-        start: &setting.start,
-        goals: vec![setting.goal.clone()],
-        fingerprint: options.roadmap.as_ref().map(|_| setting.fingerprint(&options.metric_name)),
-        tolerance: setting.tolerance,
-        options,
-        seed,
-        cancel,
-    };
-    if options.metric == metrics::Kind::Default {
-        return run.on(space, <M::Space as DefaultNn>::Nn::default(), line);
-    }
-    let scaled = || M::scaled(space, setting.radius);
-    let displacement = || M::displacement(&setting.problem.robot.mesh);
-    let swept = || M::swept(&setting.problem.robot.mesh);
-    let measured = Measured::<M>::new(space, options.metric, scaled, displacement, swept)?;
-    run.on(&measured, measured.index(), line)
 }
 
 pub(crate) fn with<C: Space + Clone, D: MetricOn<C>>(space: &C, metric: D) -> WithMetric<C, D> {

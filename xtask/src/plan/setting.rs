@@ -71,6 +71,14 @@ impl Ready {
         }
     }
 
+    /// The largest distance in the space, in the default metric.
+    pub(crate) fn extent(&self) -> f64 {
+        match self {
+            Self::Space(setting) => setting.space.extent(),
+            Self::Plane(setting) => setting.space.extent(),
+        }
+    }
+
     /// Writes the problem to `folder` as one JSON and two OFF files for other planners; returns the former.
     pub(crate) fn export(&self, folder: &Path) -> Result<std::path::PathBuf> {
         Ok(mp::io::export_ompl(self.problem(), folder, self.name(), &mp::io::OmplExport::default())?)

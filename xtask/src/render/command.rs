@@ -3,7 +3,7 @@
 use super::{Shown, Subject, draw, sweep};
 use crate::arm::{Task, draw_task};
 use crate::cli::Render;
-use crate::flat::AnyTask;
+use crate::flat::{self, AnyTask, either};
 use crate::{output, scenes};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 use mp::io::{FlatProblem, JointPath, PathFile, Problem, RobotProblem, SpaceKind};
@@ -28,7 +28,7 @@ pub(crate) fn run(args: &Render) -> Result<bool> {
         let task = AnyTask::load(&scene)?;
         let path = args.path.as_ref().map(JointPath::read).transpose()?;
         let subtitle = subtitle(path.as_ref().map_or(0, |p| p.configurations.len()));
-        crate::flat::draw(&args.picture, &task, path.as_ref(), subtitle, Some(args.size))?;
+        either!(&task, task => flat::draw(&args.picture, task, path.as_ref(), subtitle, Some(args.size)))?;
         output::note(&format!("wrote {}", args.picture.display()));
         return Ok(true);
     }

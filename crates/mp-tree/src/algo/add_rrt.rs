@@ -18,8 +18,8 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
-//! | `radius`: of nodes that failed for the first time, in steps | (0, ∞) | 1 |
+//! | `step`: longest step | (0, extent of the space] | 5% of the extent |
+//! | `radius`: of nodes that failed for the first time, in steps | (0, ∞) | 2 |
 //! | `adapt`: part by which a radius grows and shrinks | \[0, 1) | 0.05 |
 //! | `least`: smallest radius, in steps | (0, `radius`\] | 0.5 |
 //! | `tries`: samples refused in a row before one is taken as it is | 0, 1, 2, … | 100 |
@@ -70,7 +70,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "add-rrt",
     summary: "dynamic-domain RRT that tunes itself; for traps and tight spaces",
     citation: "Jaillet, Yershova, LaValle and Siméon 2005",
-    parameters: &[STEP, Parameter { default: "1", ..RADIUS }, ADAPT, LEAST, TRIES, GOAL_BIAS, PATIENCE],
+    parameters: &[STEP, RADIUS, ADAPT, LEAST, TRIES, GOAL_BIAS, PATIENCE],
     aliases: &["adaptive-dynamic-domain"],
     cannot: NEEDS_BOTH_ENDS,
 };
@@ -79,6 +79,6 @@ impl Domain {
     /// The defaults of the adaptive dynamic domain.
     #[must_use]
     pub fn adaptive() -> Self {
-        Self { adapt: 0.05, radius: 1.0, least: 0.5, ..Self::fixed() }
+        Self { adapt: 0.05, ..Self::fixed() }
     }
 }

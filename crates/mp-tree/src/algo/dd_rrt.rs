@@ -18,14 +18,13 @@
 //! nearest to nodes at a wall, and plain RRT runs into the walls again and again. Pays off where
 //! checking a motion costs more than finding a nearest neighbour.
 //!
-//! The paper has steps much shorter than the space, and a radius of ten of them. Here steps are
-//! long, and the radius is a part of one. `tries` bounds what the paper does not: in spaces of
+//! The paper has a radius of ten steps, of steps much shorter than these. `tries` bounds what the paper does not: in spaces of
 //! many dimensions nearly every sample may be refused.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
-//! | `radius`: of nodes that failed, in steps | (0, ∞) | 0.5 |
+//! | `step`: longest step | (0, extent of the space] | 5% of the extent |
+//! | `radius`: of nodes that failed, in steps | (0, ∞) | 2 |
 //! | `tries`: samples refused in a row before one is taken as it is | 0, 1, 2, … | 100 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
@@ -61,7 +60,7 @@ use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Spa
 pub(super) const RADIUS: Parameter = Parameter {
     name: "radius",
     range: "positive and finite, in steps",
-    default: "0.5",
+    default: "2",
     doc: "how far a sample may be from a node that failed",
 };
 /// [`Domain::tries`].
@@ -100,7 +99,7 @@ impl Domain {
     /// The defaults of dynamic-domain RRT.
     #[must_use]
     pub fn fixed() -> Self {
-        Self { radius: 0.5, adapt: 0.0, least: 0.5, tries: 100 }
+        Self { radius: 2.0, adapt: 0.0, least: 0.5, tries: 100 }
     }
 
     /// As set, by default where not.

@@ -42,7 +42,7 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `step`: longest step | (0, extent of the space] | 5% of the extent |
 //! | weights of G0 … G7 | each 0 or more, finite, some positive | see [`GrowthWeights`] |
 //! | `goal_bias`: probability of aiming at a goal | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |

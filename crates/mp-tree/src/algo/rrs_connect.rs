@@ -11,7 +11,7 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `step`: longest step | (0, extent of the space] | 20% of the extent |
+//! | `step`: longest step | (0, extent of the space] | 5% of the extent |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |

@@ -26,7 +26,7 @@
 //! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
-//! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 20% of the extent |
+//! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 5% of the extent |
 //! | `inputs` (by name): directions of motion, 0 for both ways along each degree of freedom | 0, 1, 2, … | 0 |
 //! | `levels` (by name): lengths of motion, each a quarter of the one before | 1 to 20 | 3 |
 //!

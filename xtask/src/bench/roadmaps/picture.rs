@@ -9,7 +9,8 @@ use crate::output::{note, write};
 use crate::plan::mover::Mover;
 use crate::plan::progress::Line;
 use crate::plan::setting::Setting;
-use crate::plan::{Options, Ready, search};
+use crate::plan::task::Task;
+use crate::plan::{Options, Ready};
 use crate::scenes;
 use miette::{IntoDiagnostic, Result, miette};
 use mp::cspace::{Cancel, DefaultNn, Iterations, Nodes, ObstacleGeometry, Outcome, Rng, Stop};
@@ -142,7 +143,7 @@ fn passed<M: Mover>(setting: &Setting<M>, planner: &str, folder: &Path) -> Resul
     let options =
         Options { queries: Some(1_000_000), ..Options::comparable(planner, Motion::Certified, 1e9)? };
     let mut line = Line::new(planner, options.time, false);
-    let done = search::search(setting, &options, 1, &Cancel::new(), &mut line)?;
+    let done = setting.search(&options, 1, &Cancel::new(), &mut line)?;
     let (Some(map), Outcome::Solved(path)) = (done.roadmap, done.outcome) else {
         return Err(miette!("{planner} did not get through the corridor of the picture"));
     };

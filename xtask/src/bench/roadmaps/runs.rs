@@ -8,7 +8,8 @@ use crate::output::note;
 use crate::plan::mover::Mover;
 use crate::plan::progress::Line;
 use crate::plan::setting::Setting;
-use crate::plan::{Map, Options, Ready, search};
+use crate::plan::task::Task;
+use crate::plan::{Map, Options, Ready};
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{Cancel, DefaultNn, Outcome};
 use mp::roadmap::Answers;
@@ -142,7 +143,7 @@ fn run(ready: &Ready, case: &Case, budget: u64, cancel: &Cancel) -> Result<Optio
 
 fn one<M: Mover>(setting: &Setting<M>, options: &Options, seed: u64, cancel: &Cancel) -> Result<Run> {
     let mut line = Line::new(&setting.problem.name, options.time, false);
-    let done = search::search(setting, options, seed, cancel, &mut line)?;
+    let done = setting.search(options, seed, cancel, &mut line)?;
     let Map { edges, components } = done.map.unwrap_or(Map { edges: 0, components: 0 });
     let budget = options.queries.unwrap_or(u64::MAX);
     let mut run = Run {

@@ -11,7 +11,7 @@ use mp::cspace::{
     Cancel, Discrete, Exactly, MotionValidity, NnOn, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
     Stop, StopReason, Straight, Validity, WithMetric,
 };
-use mp::tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Tuning};
+use mp::tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Step, Tuning};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -95,7 +95,7 @@ where
     let resolution = Resolution::Length(mover.resolution());
     let check = Discrete::new(mover.space(), valid, resolution).into_diagnostic()?;
     let straight = Straight::new(&space, check);
-    let (start, goal, tuning) = (mover.start().clone(), mover.goal().clone(), Tuning::default());
+    let (start, goal, tuning) = (mover.start().clone(), mover.goal().clone(), tuning());
     let done = if how.kind == Kind::Connect {
         let problem = Problem::new(&space, straight, verifier, start, goal).into_diagnostic()?;
         run(RrtConnect::new(problem, tuning), how, began)
@@ -112,6 +112,11 @@ where
         }
     }?;
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
+}
+
+/// Inputs connect to a goal within a fifth of the extent, and RRT-Connect's edges are no longer than that.
+fn tuning() -> Tuning {
+    Tuning { step: Step::Fraction(0.2), ..Tuning::default() }
 }
 
 /// The trajectory as a list of positions with a velocity for each degree of freedom, under `metric`; the
@@ -144,7 +149,7 @@ where
         .with_sampler(Exactly((mover.goal().clone(), rest)));
     let start = (mover.start().clone(), rest);
     let problem = Problem::new(&space, local, verifier, start, goals).into_diagnostic()?;
-    let tuning = Tuning::default();
+    let tuning = tuning();
     let done = match how.kind {
         Kind::Rrt => run(RrtInputs::new(problem, tuning), how, began),
         _ => run(Rsrt::new(problem, tuning), how, began),
