@@ -196,6 +196,12 @@ pub(crate) struct BenchRrs {
     /// Let a robot with noisy wheels and a noisy laser follow the paths instead.
     #[arg(long)]
     pub(crate) follow: bool,
+    /// Compare for a body that flies instead: RRT and RRS on `gempa-3` or the scenes given, with the same steps.
+    #[arg(long, conflicts_with = "follow")]
+    pub(crate) flying: bool,
+    /// Draw what pushes snakes, and a tree whose edges bend, instead.
+    #[arg(long, conflicts_with_all = ["follow", "flying"])]
+    pub(crate) pictures: bool,
 }
 
 /// What only the suite `collide` has.

@@ -38,8 +38,8 @@ impl<C: Space> Snake<'_, C> {
     ///
     /// The nodes from the first to the last that are blocked (where none is, the one of least clearance) go together to
     /// the side to which the field pushes them, until all have the clearance `wanted` (m); in strides of what they
-    /// lack of it, at most as far as the curve is long. Where the first and the last of them are then, are the corners
-    /// of the bulge. When it does not fit, as `fits` says of its ends and corners, they try the other side; where the
+    /// lack of it, at most as far as the curve is long. A node before the first and one after the last of them, as far
+    /// aside, are the corners of the bulge, so that its ramps do not graze. When it does not fit, as `fits` says of its ends and corners, they try the other side; where the
     /// field pushes along the curve only, the two axes most across it, both ways.
     ///
     /// Asks the field once per node, and in each stride until it meets a node that is blocked, in the middle first.
@@ -79,9 +79,10 @@ impl<C: Space> Snake<'_, C> {
             let Some(height) = self.march(&march, curve, field) else { continue };
             corners.clear();
             corners.push(curve[0].clone());
-            let ends = [blocked.start, blocked.end - 1];
-            for &i in &ends[..2.min(blocked.len())] {
-                corners.extend(self.aside(&curve[i + 1], side, height));
+            let (first, last) = (blocked.start.saturating_sub(1), blocked.end.min(curve.len() - 3));
+            corners.extend(self.aside(&curve[first + 1], side, height));
+            if last > first {
+                corners.extend(self.aside(&curve[last + 1], side, height));
             }
             corners.extend(curve.last().cloned());
             found = corners.len() > 2 && fits(&corners);

@@ -121,7 +121,7 @@ pub struct SnakePlanner<'c, C: Space, M, F> {
 }
 
 /// A snake is checked as soon as all its nodes are this part of the range away from obstacles.
-const WANTED: f64 = 0.3;
+const WANTED: f64 = 0.5;
 
 /// A snake in collision that for this many steps does not get less deep, by this part of the range, is given up.
 const PATIENCE: u32 = 3;

@@ -1,9 +1,12 @@
 //! `bench rrs`: the experiment of Baizid, Chellali, Luza, Vitezslav and Arrichiello, *RRS: rapidly-exploring random
 //! snakes, a new method for mobile robot path planning*, §4 and §5: RRT against RRS in four worlds, for steps of 30 to
-//! 150 cm, 100 trials each, by six measures. With `--follow`, §6: a robot follows the paths.
+//! 150 cm, 100 trials each, by six measures. With `--follow`, §6: a robot follows the paths. With
+//! `--flying`, a body in space; with `--pictures`, a field and a tree.
 
+mod flying;
 mod follow;
 mod following;
+mod pictures;
 mod series;
 mod solve;
 mod tables;
@@ -22,6 +25,12 @@ use tables::Found;
 pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     if args.rrs.follow {
         return following::run(args);
+    }
+    if args.rrs.flying {
+        return flying::run(args);
+    }
+    if args.rrs.pictures {
+        return pictures::run(args);
     }
     let plan = Plan::new(args.quick, args.runs, args.rsrt.threads);
     let name = if args.quick { "rrs-quick" } else { "rrs" };

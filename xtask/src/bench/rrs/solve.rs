@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Iterations a trial may take (§4).
 pub(super) const ITERATIONS: u64 = 5000;
 /// How far obstacles push snakes, metres.
-const RANGE: f64 = 0.15;
+pub(super) const RANGE: f64 = 0.15;
 /// The size of a cell of the clearance map, metres.
 const CELL: f64 = 0.04;
 /// How well the safety of a path is known, metres.
@@ -53,7 +53,7 @@ pub(super) struct Run {
 /// those toward the goal, which end at it; or at most that long, as is customary. None is longer: a planner that tries
 /// the whole way from start to goal first would have a snake solve the problem.
 #[derive(Clone, Debug)]
-struct Steps<'c, L> {
+pub(super) struct Steps<'c, L> {
     space: &'c Rn<2>,
     goal: Point,
     step: f64,
@@ -145,7 +145,7 @@ pub(super) fn planned(place: &Place, case: &Case, cancel: &Cancel) -> Result<Opt
 }
 
 /// RRS as it is measured.
-fn rrs<'a>(
+pub(super) fn rrs<'a>(
     place: &'a Place,
     space: &'a Rn<2>,
     step: f64,
@@ -160,7 +160,7 @@ fn rrs<'a>(
     Rrt::new(problem, Tuning { step: Step::Length(step), ..Tuning::default() })
 }
 
-type Rrs<'a> =
+pub(super) type Rrs<'a> =
     Rrt<'a, Rn<2>, Steps<'a, SnakePlanner<'a, Rn<2>, DiscRobot, &'a Grid>>, <Rn<2> as DefaultNn>::Nn>;
 
 struct How<'a> {
