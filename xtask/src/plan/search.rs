@@ -199,7 +199,7 @@ where
                 .cancel
                 .clone()
                 .or(options.iterations.map(Iterations))
-                .or(Deadline::at(began + options.time))
+                .or(began.checked_add(options.time).map(Deadline::at))
                 .or(options.processor.map(|s| Processor { until: used + s * 1e9 }))
                 .or(options.queries.map(|most| Asked { queries: &queries, most }))
                 .or(line);
