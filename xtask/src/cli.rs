@@ -147,7 +147,7 @@ pub(crate) struct Bench {
     /// Runs (seeds) of each case.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: Option<u32>,
-    /// Scenes to measure on (default: those of the suite).
+    /// Scenes to measure on (default: those of the suite); of `roadmaps` these alone.
     #[arg(long = "scene", value_name = "SCENE")]
     pub(crate) scenes: Vec<String>,
     /// Seconds a run may take.

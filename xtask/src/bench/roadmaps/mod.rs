@@ -1,6 +1,7 @@
 //! `bench roadmaps`: planners that build roadmaps, in corridors that shrink and on shipped scenes, each until it has a
 //! verified path or its budget of collision queries is spent; many queries to one roadmap beside RRT-Connect;
-//! building against the number of nodes; how few nodes cover as much; and pictures of all roadmaps.
+//! building against the number of nodes; how few nodes cover as much; and pictures of all roadmaps. With `--scene` these
+//! scenes alone.
 
 mod cover;
 mod drawing;
@@ -41,7 +42,9 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         [] => world::SCENES.map(str::to_owned).to_vec(),
         given => given.to_vec(),
     };
-    let corridors = CORRIDORS.iter().map(world::Corridors::ready).collect::<Result<Vec<_>>>()?;
+    let whole = args.scenes.is_empty();
+    let suites = if whole { CORRIDORS.as_slice() } else { &[] };
+    let corridors = suites.iter().map(world::Corridors::ready).collect::<Result<Vec<_>>>()?;
     let load = |name: &String| Ok((name.clone(), Ready::load(&scenes::find(Path::new(name))?)?));
     let problems = named.iter().map(load).collect::<Result<Vec<_>>>()?;
 
@@ -56,8 +59,12 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         }
     }
     let found = Found { log: &log, plan: &plan };
-    let mut parts: Vec<(&str, Table)> = CORRIDORS.iter().map(|c| (c.title, found.corridor(c))).collect();
+    let mut parts: Vec<(&str, Table)> = suites.iter().map(|c| (c.title, found.corridor(c))).collect();
     parts.push(("Shipped scenes", found.summary(&named)));
+    if !whole {
+        save(args, &format!("{name}-scenes"), &parts, &log)?;
+        return Ok(true);
+    }
     let widths: Vec<String> = corridors.into_iter().flatten().map(|(name, _)| name).collect();
     parts.push(("Corridors", found.summary(&widths)));
     parts.push(("Many queries", queries::measure(args.quick)?));
