@@ -67,7 +67,9 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     }
     let widths: Vec<String> = corridors.into_iter().flatten().map(|(name, _)| name).collect();
     parts.push(("Corridors", found.summary(&widths)));
-    parts.push(("Many queries", queries::measure(args.quick)?));
+    let many = queries::measure(args.quick)?;
+    note(&many.markdown());
+    parts.push(("Many queries", many));
     parts.push(("Growth", growth::measure(args.quick)?));
     parts.push(("Coverage", cover::measure(args.quick, args.rsrt.threads)?));
     save(args, name, &parts, &log)?;
