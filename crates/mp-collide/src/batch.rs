@@ -5,11 +5,10 @@ use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use crate::mesh::CollisionMesh;
 use crate::pose::{Relative, is_rigid};
 use crate::query::Query;
-use crate::simd::run;
 use crate::wide::Tree;
 use crate::wide::frames::Frames;
-use crate::wide::span::{Part, Span, Travel};
-use crate::wide::sweep::{Course, Item, Sweep};
+use crate::wide::span::{Parts, Span, Travel};
+use crate::wide::sweep::Course;
 
 /// Poses are taken so many at a time.
 const CHUNK: usize = 64;
@@ -56,17 +55,11 @@ impl Query {
             return None;
         }
         let (a, b) = (a.tree(), b.tree());
-        let (mut parts, mut spans) = (std::mem::take(&mut self.parts), std::mem::take(&mut self.spans));
-        parts.clear();
-        spans.clear();
-        self.items.clear();
-        let back = pose_wb.rotation.inverse();
-        let mut course = Poses { a, b, poses, pose_wb, back, pace, parts: &mut parts, spans: &mut spans };
-        course.add(first, poses.len());
-        self.items.push(Item::new(a, b, 0));
-        let sweep = Sweep { a, b, course: &mut course, stack: &mut self.items, counters: &mut self.counters };
-        let found = run(self.isa, sweep).map(|part| parts[part as usize].range[0] as usize);
-        (self.parts, self.spans) = (parts, spans);
+        let (back, parts) = (pose_wb.rotation.inverse(), std::mem::take(&mut self.parts));
+        let mut course = Poses { a, b, poses, pose_wb, back, pace, parts };
+        let found = self.sweep(a, b, &mut course, [first as u32, poses.len() as u32]);
+        self.parts = course.parts;
+        let found = found.map(|[pose, _]| pose as usize);
         self.counters.queries += found.unwrap_or(poses.len() - 1) as u64;
         found
     }
@@ -161,37 +154,13 @@ struct Poses<'q> {
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
     pace: Pace,
-    parts: &'q mut Vec<Part>,
-    spans: &'q mut Vec<Span>,
+    parts: Parts,
 }
 
 impl Poses<'_> {
-    /// The part from pose `lo` to before pose `hi`.
-    fn add(&mut self, lo: usize, hi: usize) {
-        let most =
-            if hi - lo == 1 { 0.0 } else { self.most(hi - 1 - usize::midpoint(lo, hi - 1)).max(LEAST) };
-        self.parts.push(Part::new([lo as u32, hi as u32], most));
-    }
-
     /// How far a point gets at most in `n` steps.
-    fn most(&self, n: usize) -> f64 {
+    fn farthest(&self, n: usize) -> f64 {
         n as f64 * (self.pace.step + 2.0 * self.pace.turn * self.a.radius)
-    }
-
-    /// Makes the span of a part.
-    fn make(&mut self, index: u32) -> u32 {
-        let [lo, hi] = self.parts[index as usize].range.map(|i| i as usize);
-        let middle = usize::midpoint(lo, hi - 1);
-        let relative = Relative::between(&self.poses[middle], self.a.radius, self.pose_wb, self.b.radius);
-        let span = relative.and_then(|relative| {
-            let travel =
-                if hi - lo == 1 { Travel::none() } else { self.travel(&relative, middle, hi - 1 - middle) };
-            Span::new((self.a, self.b), &relative, &travel, 0.0)
-        });
-        let made = if span.is_some() { self.spans.len() as u32 } else { Part::FAR };
-        self.spans.extend(span);
-        self.parts[index as usize].span = made;
-        made
     }
 
     /// How far points get in `n` steps from pose `middle`, where they are at `q`, turned from the frame of `a`.
@@ -201,7 +170,7 @@ impl Poses<'_> {
     /// places and quaternions. A quaternion r + d turns p to where r does, and by d·p·r* + r·p·d* + d·p·d*; for
     /// d = n·g and g·r* = (s, w) the first two are n·2·(s·q + w × q).
     fn travel(&self, relative: &Relative, middle: usize, n: usize) -> Travel {
-        let most = self.most(n);
+        let most = self.farthest(n);
         let n = n as f64;
         let (before, after) = (middle.saturating_sub(1), (middle + 1).min(self.poses.len() - 1));
         let scale = n / (after - before) as f64;
@@ -231,31 +200,26 @@ impl Course for Poses<'_> {
     const ORDERED: bool = true;
 
     #[inline]
-    fn part(&self, index: u32) -> &Part {
-        &self.parts[index as usize]
+    fn parts(&self) -> &Parts {
+        &self.parts
     }
 
     #[inline]
-    fn span(&mut self, index: u32) -> Option<&Span> {
-        let part = self.parts[index as usize];
-        let span = if part.span == Part::NONE { self.make(index) } else { part.span };
-        self.spans.get(span as usize)
+    fn parts_mut(&mut self) -> &mut Parts {
+        &mut self.parts
     }
 
-    fn halve(&mut self, index: u32) -> Option<u32> {
-        let part = self.parts[index as usize];
-        if part.halves != Part::NONE {
-            return Some(part.halves);
-        }
-        let [lo, hi] = part.range.map(|i| i as usize);
-        if hi - lo == 1 {
-            return None;
-        }
-        let halves = self.parts.len() as u32;
-        self.parts[index as usize].halves = halves;
-        let middle = usize::midpoint(lo, hi);
-        self.add(lo, middle);
-        self.add(middle, hi);
-        Some(halves)
+    fn most(&self, [lo, hi]: [u32; 2]) -> f64 {
+        let steps = hi - 1 - u32::midpoint(lo, hi - 1);
+        if hi - lo == 1 { 0.0 } else { self.farthest(steps as usize).max(LEAST) }
+    }
+
+    fn make(&self, range: [u32; 2]) -> Option<Span> {
+        let [lo, hi] = range.map(|i| i as usize);
+        let middle = usize::midpoint(lo, hi - 1);
+        let relative = Relative::between(&self.poses[middle], self.a.radius, self.pose_wb, self.b.radius)?;
+        let travel =
+            if hi - lo == 1 { Travel::none() } else { self.travel(&relative, middle, hi - 1 - middle) };
+        Span::new((self.a, self.b), &relative, &travel, 0.0)
     }
 }

@@ -4,7 +4,8 @@
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
 //!   stretches of motions.
 //! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
-//! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs.
+//! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs; [filled](CollisionMesh::filled) ones
+//!   collide with what is inside of them.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
 //!
@@ -25,7 +26,8 @@
 //!
 //! # Contract
 //! A mesh is the union of its triangles as closed sets: a surface, not a solid (a body wholly inside a
-//! closed shell does not collide with it). **Touching counts as collision.** Meshes are soups: cracks,
+//! closed shell does not collide with it; it does in a [`Scene`] when the shell is [filled](CollisionMesh::filled)).
+//! **Touching counts as collision.** Meshes are soups: cracks,
 //! holes, coplanar, overlapping and degenerate triangles (segments and points) are all welcome.
 //!
 //! A query of `a` at `pose_wa` and `b` at `pose_wb` transforms the triangles of `b` into the frame of `a`
@@ -54,6 +56,7 @@ mod batch;
 mod broad;
 mod depth;
 mod distance;
+mod filled;
 mod mesh;
 mod motion;
 mod obb;
@@ -69,6 +72,7 @@ pub mod fuzz;
 pub mod reference;
 pub mod triangle;
 
+pub use filled::FillError;
 pub use mesh::CollisionMesh;
 pub use motion::Sway;
 pub use query::{Counters, Query, Separation};

@@ -1,8 +1,9 @@
 //! The mesh as queries see it.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use mp_geom::TriMesh;
+use nalgebra::Point3;
 
 use crate::triangle::Triangle;
 use crate::wide::Tree;
@@ -11,6 +12,10 @@ use crate::wide::Tree;
 #[derive(Clone, Debug)]
 pub struct CollisionMesh {
     pub(crate) tree: Arc<Tree>,
+    /// Whether it is a solid.
+    pub(crate) filled: bool,
+    /// A corner of each part that hangs together.
+    pub(crate) parts: Arc<OnceLock<Vec<Point3<f64>>>>,
 }
 
 impl CollisionMesh {
@@ -23,7 +28,11 @@ impl CollisionMesh {
 
     /// `triangles`: at least one, at most `u32::MAX`, finite.
     pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
-        Self { tree: Arc::new(Tree::build(&triangles)) }
+        Self::from_tree(Tree::build(&triangles))
+    }
+
+    pub(crate) fn from_tree(tree: Tree) -> Self {
+        Self { tree: Arc::new(tree), filled: false, parts: Arc::default() }
     }
 
     /// How many triangles there are.
@@ -35,7 +44,7 @@ impl CollisionMesh {
     /// The triangles in the order of the mesh this was built from.
     #[must_use]
     pub fn triangles(&self) -> Vec<Triangle> {
-        let mut triangles = vec![[nalgebra::Point3::origin(); 3]; self.triangle_count()];
+        let mut triangles = vec![[Point3::origin(); 3]; self.triangle_count()];
         for (triangle, &id) in self.tree.triangles.iter().zip(&self.tree.ids) {
             triangles[id as usize] = *triangle;
         }

@@ -5,11 +5,10 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use crate::mesh::CollisionMesh;
 use crate::pose::{LIMIT, Relative};
 use crate::query::Query;
-use crate::simd::run;
 use crate::wide::Tree;
 use crate::wide::frames::Frames;
-use crate::wide::span::{Part, Span, Travel};
-use crate::wide::sweep::{Course, Item, Sweep};
+use crate::wide::span::{Parts, Span, Travel};
+use crate::wide::sweep::Course;
 
 /// A stretch of a rigid motion about a pose in its middle: from there the body moves on at constant speed to
 /// one end of the stretch, and back likewise to the other.
@@ -86,19 +85,10 @@ impl Query {
             let enough = sway.most + margin;
             return self.clearance_with(a, b, &relative, enough).0 >= enough;
         }
-        let (mut parts, mut spans) = (std::mem::take(&mut self.parts), std::mem::take(&mut self.spans));
-        parts.clear();
-        spans.clear();
-        self.items.clear();
-        let back = pose_wb.rotation.inverse();
-        let spans_of = (&mut parts, &mut spans);
-        let mut course =
-            Smooth { a, b, middle_wa, sway, pose_wb, back, margin, parts: spans_of.0, spans: spans_of.1 };
-        course.add(0, PIECES);
-        self.items.push(Item::new(a, b, 0));
-        let sweep = Sweep { a, b, course: &mut course, stack: &mut self.items, counters: &mut self.counters };
-        let clear = run(self.isa, sweep).is_none();
-        (self.parts, self.spans) = (parts, spans);
+        let (back, parts) = (pose_wb.rotation.inverse(), std::mem::take(&mut self.parts));
+        let mut course = Smooth { a, b, middle_wa, sway, pose_wb, back, margin, parts };
+        let clear = self.sweep(a, b, &mut course, [0, PIECES]).is_none();
+        self.parts = course.parts;
         clear
     }
 }
@@ -116,20 +106,34 @@ struct Smooth<'q> {
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
     margin: f64,
-    parts: &'q mut Vec<Part>,
-    spans: &'q mut Vec<Span>,
+    parts: Parts,
 }
 
-impl Smooth<'_> {
-    fn add(&mut self, lo: u32, hi: u32) {
-        let most = self.sway.most * share(lo, hi);
-        self.parts.push(Part::new([lo, hi], most.max(1e-30)));
+/// Half of a part, as a share of half the stretch.
+fn share([lo, hi]: [u32; 2]) -> f64 {
+    f64::from(hi - lo) / f64::from(PIECES)
+}
+
+impl Course for Smooth<'_> {
+    const ORDERED: bool = false;
+
+    #[inline]
+    fn parts(&self) -> &Parts {
+        &self.parts
     }
 
-    fn make(&mut self, index: u32) -> u32 {
-        let [lo, hi] = self.parts[index as usize].range;
-        let at = f64::from(lo + hi) / f64::from(PIECES) - 1.0;
-        let half = share(lo, hi);
+    #[inline]
+    fn parts_mut(&mut self) -> &mut Parts {
+        &mut self.parts
+    }
+
+    fn most(&self, range: [u32; 2]) -> f64 {
+        (self.sway.most * share(range)).max(1e-30)
+    }
+
+    fn make(&self, range: [u32; 2]) -> Option<Span> {
+        let at = f64::from(range[0] + range[1]) / f64::from(PIECES) - 1.0;
+        let half = share(range);
         let sway = self.sway;
         let pose = if at == 0.0 {
             *self.middle_wa
@@ -147,54 +151,11 @@ impl Smooth<'_> {
             rest,
             most: sway.most * half,
         };
-        let relative = Relative::between(&pose, self.a.radius, self.pose_wb, self.b.radius);
-        let span = relative.and_then(|relative| Span::new((self.a, self.b), &relative, &travel, self.margin));
-        let made = if span.is_some() { self.spans.len() as u32 } else { Part::FAR };
-        self.spans.extend(span);
-        self.parts[index as usize].span = made;
-        made
-    }
-}
-
-/// Half of a part, as a share of half the stretch.
-fn share(lo: u32, hi: u32) -> f64 {
-    f64::from(hi - lo) / f64::from(PIECES)
-}
-
-impl Course for Smooth<'_> {
-    const ORDERED: bool = false;
-
-    #[inline]
-    fn part(&self, index: u32) -> &Part {
-        &self.parts[index as usize]
+        let relative = Relative::between(&pose, self.a.radius, self.pose_wb, self.b.radius)?;
+        Span::new((self.a, self.b), &relative, &travel, self.margin)
     }
 
-    #[inline]
-    fn span(&mut self, index: u32) -> Option<&Span> {
-        let part = self.parts[index as usize];
-        let span = if part.span == Part::NONE { self.make(index) } else { part.span };
-        self.spans.get(span as usize)
-    }
-
-    fn halve(&mut self, index: u32) -> Option<u32> {
-        let part = self.parts[index as usize];
-        if part.halves != Part::NONE {
-            return Some(part.halves);
-        }
-        let [lo, hi] = part.range;
-        if hi - lo == 1 {
-            return None;
-        }
-        let halves = self.parts.len() as u32;
-        self.parts[index as usize].halves = halves;
-        let middle = u32::midpoint(lo, hi);
-        self.add(lo, middle);
-        self.add(middle, hi);
-        Some(halves)
-    }
-
-    fn keep(&self, index: u32) -> f64 {
-        let [lo, hi] = self.parts[index as usize].range;
-        self.sway.most * share(lo, hi) + self.margin
+    fn keep(&self, range: [u32; 2]) -> f64 {
+        self.sway.most * share(range) + self.margin
     }
 }

@@ -10,7 +10,7 @@ use crate::wide::Tree;
 use crate::wide::frames::Frames;
 use crate::wide::intersect::Intersect;
 use crate::wide::nearest::Scratch;
-use crate::wide::span::{Part, Span};
+use crate::wide::span::Parts;
 use crate::wide::sweep::Item;
 
 /// How much work queries have done: the same for the same queries, on any machine.
@@ -55,8 +55,7 @@ pub struct Query {
     pub(crate) stack: Vec<(u32, u32)>,
     pub(crate) scratch: Scratch,
     pub(crate) items: Vec<Item>,
-    pub(crate) parts: Vec<Part>,
-    pub(crate) spans: Vec<Span>,
+    pub(crate) parts: Parts,
     pub(crate) isa: Isa,
 }
 
@@ -67,7 +66,7 @@ impl Default for Query {
 }
 
 impl Query {
-    /// A query on a given instruction set (on the widest this CPU has where it lacks it). Answers are the
+    /// A query on a given instruction set ([`Isa::Scalar`] where this CPU lacks it). Answers are the
     /// same on all; for tests and benchmarks.
     #[must_use]
     pub fn with_isa(isa: Isa) -> Self {
@@ -76,8 +75,7 @@ impl Query {
             stack: Vec::new(),
             scratch: Scratch::default(),
             items: Vec::new(),
-            parts: Vec::new(),
-            spans: Vec::new(),
+            parts: Parts::default(),
             isa,
         }
     }

@@ -4,7 +4,6 @@
 //! computed on loading by the code that builds.
 
 use std::collections::HashMap;
-use std::sync::Arc;
 
 use nalgebra::{Point3, Vector3};
 use xxhash_rust::xxh3::xxh3_64;
@@ -192,7 +191,7 @@ pub(crate) fn read(bytes: &[u8], checked: bool) -> Result<CollisionMesh, TreeErr
         };
         TreeError::Invalid { at, expected: fault.expected, found: fault.found }
     })?;
-    Ok(CollisionMesh { tree: Arc::new(tree) })
+    Ok(CollisionMesh::from_tree(tree))
 }
 
 fn vertices(reader: &mut Reader<'_>, count: usize) -> Result<Vec<Point3<f64>>, TreeError> {

@@ -118,7 +118,8 @@ pub struct Contact {
 ///
 /// Changing a scene takes `&mut`; queries take `&` and a [`Query`](crate::Query) per thread. A clone shares
 /// the meshes and their trees, the merged ones too. A moving mesh that is asked about need not be a body of
-/// the scene. What counts as in collision with everything (see the crate docs) collides with every body here
+/// the scene. Meshes are surfaces, but those that are [filled](CollisionMesh::filled) collide also with what is wholly
+/// inside of them. What counts as in collision with everything (see the crate docs) collides with every body here
 /// too, as far as groups let it.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
@@ -129,6 +130,8 @@ pub struct Scene {
     allowed: BTreeSet<(BodyId, BodyId)>,
     /// All static bodies, or nothing.
     merged: Vec<Merged>,
+    /// How many bodies are filled.
+    filled: usize,
 }
 
 impl Scene {
@@ -174,6 +177,7 @@ impl Scene {
         let bounds = placed(&name, &mesh, &pose)?;
         let index = u32::try_from(self.bodies.len()).map_err(|_| SceneError::Full)?;
         let handle = self.broad_phase(movable).insert(index, bounds);
+        self.filled += usize::from(mesh.is_filled());
         self.bodies.push(Some(Body { name, mesh, pose, groups: Groups::ALL, movable, bounds, handle }));
         self.changed(movable);
         Ok(BodyId(index))
@@ -229,6 +233,7 @@ impl Scene {
     pub fn remove(&mut self, id: BodyId) -> Option<Body> {
         let body = self.bodies.get_mut(id.index())?.take()?;
         self.broad_phase(body.movable).remove(body.handle);
+        self.filled -= usize::from(body.mesh.is_filled());
         self.allowed.retain(|(x, y)| *x != id && *y != id);
         self.changed(body.movable);
         Some(body)

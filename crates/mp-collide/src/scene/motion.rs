@@ -17,6 +17,19 @@ impl View<'_> {
         mesh: &CollisionMesh,
         poses_wm: &[Isometry3<f64>],
     ) -> Option<(usize, BodyId)> {
+        let touching = self.first_touching(query, mesh, poses_wm);
+        let apart = touching.map_or(poses_wm.len(), |(i, _)| i);
+        let mut nested = poses_wm[..apart].iter().enumerate();
+        nested.find_map(|(i, pose_wm)| Some((i, self.nested(query, mesh, pose_wm)?))).or(touching)
+    }
+
+    /// The same for surfaces.
+    fn first_touching(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        poses_wm: &[Isometry3<f64>],
+    ) -> Option<(usize, BodyId)> {
         let scene = self.scene;
         let mut before = poses_wm.len();
         for merged in scene.merged.iter().filter(|merged| merged.groups.meets(self.groups)) {
@@ -59,7 +72,7 @@ impl View<'_> {
             min: own.min - Vector3::repeat(reach),
             max: own.max + Vector3::repeat(reach),
         });
-        self.phases(!scene.is_merged()).all(|broad| {
+        let clear = self.phases(!scene.is_merged()).all(|broad| {
             let blocked = broad.find(
                 |bounds| own.is_none_or(|own| own.overlaps(bounds)),
                 |item| {
@@ -70,7 +83,9 @@ impl View<'_> {
                 },
             );
             blocked.is_none()
-        })
+        });
+        // Nothing gets inside or outside without a surface in its way.
+        clear && self.nested(query, mesh, middle_wm).is_none()
     }
 }
 

@@ -12,7 +12,7 @@ impl Scene {
         self.view(body.groups).near(&body.mesh, &body.pose, true, |other_id, other| {
             (other_id != id
                 && !self.is_allowed(id, other_id)
-                && query.intersects(&body.mesh, &body.pose, &other.mesh, &other.pose))
+                && query.meets(&body.mesh, &body.pose, &other.mesh, &other.pose))
             .then_some(other_id)
         })
     }
@@ -30,7 +30,7 @@ impl Scene {
                 if body.bounds.overlaps(&other.bounds)
                     && body.groups.meets(other.groups)
                     && !self.is_allowed(*id, *other_id)
-                    && query.intersects(&body.mesh, &body.pose, &other.mesh, &other.pose)
+                    && query.meets(&body.mesh, &body.pose, &other.mesh, &other.pose)
                 {
                     pairs.push((*id.min(other_id), *id.max(other_id)));
                 }

@@ -40,11 +40,36 @@ impl View<'_> {
         self.near(mesh, pose_wm, !self.scene.is_merged(), |id, body| {
             query.intersects(mesh, pose_wm, &body.mesh, &body.pose).then_some(id)
         })
+        .or_else(|| self.nested(query, mesh, pose_wm))
+    }
+
+    /// A body that is inside of `mesh` or around it, in whole or in part, one of the two being filled, where no
+    /// surfaces meet.
+    pub(super) fn nested(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+    ) -> Option<BodyId> {
+        if self.scene.filled == 0 && !mesh.is_filled() {
+            return None;
+        }
+        self.near(mesh, pose_wm, true, |id, body| {
+            query.nested(mesh, pose_wm, &body.mesh, &body.pose).then_some(id)
+        })
     }
 
     /// Whether `mesh` at `pose_wm` collides with any body.
     pub fn collides(&self, query: &mut Query, mesh: &CollisionMesh, pose_wm: &Isometry3<f64>) -> bool {
-        self.collide_body(query, mesh, pose_wm).is_some()
+        let mut merged = self.scene.merged.iter().filter(|merged| merged.groups.meets(self.groups));
+        // Any pair of triangles will do here, and that is found sooner than always the same.
+        merged.any(|merged| query.intersects(mesh, pose_wm, &merged.mesh, &Isometry3::identity()))
+            || self
+                .near(mesh, pose_wm, !self.scene.is_merged(), |_, body| {
+                    query.intersects(mesh, pose_wm, &body.mesh, &body.pose).then_some(())
+                })
+                .is_some()
+            || self.nested(query, mesh, pose_wm).is_some()
     }
 
     /// A lower bound on the distance from `mesh` at `pose_wm` to the bodies, exact when below `enough`
@@ -84,10 +109,12 @@ impl View<'_> {
             });
             nearest.beyond = nearest.beyond.min(passed_over);
         }
-        match nearest.body {
+        let found = match nearest.body {
             Some(body) => (nearest.limit, Some(body)),
             None => (nearest.beyond, None),
-        }
+        };
+        let nested = if found.0 > 0.0 { self.nested(query, mesh, pose_wm) } else { None };
+        nested.map_or(found, |id| (0.0, Some(id)))
     }
 
     /// The bodies, in the order of insertion.
@@ -105,7 +132,7 @@ impl View<'_> {
     ) -> Vec<Contact> {
         let mut contacts = Vec::new();
         let _: Option<()> = self.near(mesh, pose_wm, true, |id, body| {
-            if query.intersects(mesh, pose_wm, &body.mesh, &body.pose) {
+            if query.meets(mesh, pose_wm, &body.mesh, &body.pose) {
                 let depth = query.depth(mesh, pose_wm, &body.mesh, &body.pose);
                 contacts.push(Contact { body: id, name: body.name.clone(), depth });
             }

@@ -85,9 +85,15 @@ pub(crate) trait Lanes: Copy {
     fn mul(self, b: Self) -> Self;
     fn div(self, b: Self) -> Self;
     /// `self · b + c`, fused where the CPU can.
-    fn mul_add(self, b: Self, c: Self) -> Self;
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self.mul(b).add(c)
+    }
     /// `self · b − c`, fused where the CPU can.
-    fn mul_sub(self, b: Self, c: Self) -> Self;
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self.mul(b).sub(c)
+    }
     fn abs(self) -> Self;
     #[inline(always)]
     fn square(self) -> Self {
@@ -108,7 +114,7 @@ pub(crate) trait Kernel {
     fn run<L: Lanes>(self) -> Self::Output;
 }
 
-/// Runs `kernel` on `isa`, or on what this CPU has where it lacks `isa`.
+/// Runs `kernel` on `isa`, or on plain arrays where this CPU lacks it.
 #[inline]
 pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
     #[cfg(target_arch = "x86_64")]

@@ -51,14 +51,6 @@ impl Lanes for Scalar {
         self.zip(b, |x, y| x / y)
     }
     #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        self.mul(b).add(c)
-    }
-    #[inline(always)]
-    fn mul_sub(self, b: Self, c: Self) -> Self {
-        self.mul(b).sub(c)
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
         Self(self.0.map(f32::abs))
     }

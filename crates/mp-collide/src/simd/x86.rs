@@ -152,14 +152,6 @@ impl Lanes for Sse2 {
         unsafe { Self(_mm_div_ps(self.0, b.0), _mm_div_ps(self.1, b.1)) }
     }
     #[inline(always)]
-    fn mul_add(self, b: Self, c: Self) -> Self {
-        self.mul(b).add(c)
-    }
-    #[inline(always)]
-    fn mul_sub(self, b: Self, c: Self) -> Self {
-        self.mul(b).sub(c)
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
         // SAFETY: see `Sse2`.
         unsafe {

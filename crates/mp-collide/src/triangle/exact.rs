@@ -115,6 +115,27 @@ fn decide(a: &Triangle, b: &Triangle) -> bool {
         || (0..3).any(|i| crosses(side_of_b[i], side_of_b[next(i)]) && agree((0..3).map(|j| twist(i, j))))
 }
 
+/// How the ray from `p` along x leaves a triangle: 1 through its front, −1 through its back, 0 when it passes by;
+/// `None` when `p` is on it. Exactly.
+///
+/// Seen along x, `p` counts as moved by ε along y and ε² along z, so that no edge and no corner is met, and of
+/// triangles that share an edge each ray passes through the right number.
+pub(crate) fn passes(p: &Point3<f64>, t: &Triangle) -> Option<i8> {
+    let side = |u: &Point3<f64>, v: &Point3<f64>| {
+        let signs = [area(u, v, p, 0), sign(u.z - v.z), sign(v.y - u.y)];
+        signs.into_iter().find(|s| *s != 0).unwrap_or(0)
+    };
+    let facing = side(&t[0], &t[1]);
+    if facing == 0 || side(&t[1], &t[2]) != facing || side(&t[2], &t[0]) != facing {
+        return Some(0);
+    }
+    match volume(&t[0], &t[1], &t[2], p) {
+        0 => None,
+        below if below == facing => Some(facing),
+        _ => Some(0),
+    }
+}
+
 fn next(i: usize) -> usize {
     (i + 1) % 3
 }

@@ -6,6 +6,7 @@ mod exact;
 pub use closest::closest;
 pub(crate) use closest::{Closest, closest_within, crossing, is_farther, is_nearest};
 pub use exact::intersect;
+pub(crate) use exact::passes;
 
 use nalgebra::Point3;
 

@@ -121,18 +121,66 @@ pub(crate) struct Part {
     /// How far any point moves at most (m) from the middle to either end; 0 for a single pose.
     pub(crate) most: f32,
     /// The first of its two halves, once made.
-    pub(crate) halves: u32,
+    halves: u32,
     /// Its span, once made.
-    pub(crate) span: u32,
+    span: u32,
 }
 
 impl Part {
     /// Not made yet.
-    pub(crate) const NONE: u32 = u32::MAX;
+    const NONE: u32 = u32::MAX;
     /// Made, and found to be nowhere near.
-    pub(crate) const FAR: u32 = u32::MAX - 1;
+    const FAR: u32 = u32::MAX - 1;
+}
 
-    pub(crate) fn new(range: [u32; 2], most: f64) -> Self {
-        Self { range, most: (most * UP) as f32, halves: Self::NONE, span: Self::NONE }
+/// The parts of a motion that were looked at, and their spans.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Parts {
+    parts: Vec<Part>,
+    spans: Vec<Span>,
+}
+
+impl Parts {
+    pub(crate) fn clear(&mut self) {
+        self.parts.clear();
+        self.spans.clear();
+    }
+
+    #[inline]
+    pub(crate) fn part(&self, index: u32) -> &Part {
+        &self.parts[index as usize]
+    }
+
+    /// Adds a part over `range` in which points move by `most` (m) at most.
+    pub(crate) fn add(&mut self, range: [u32; 2], most: f64) {
+        let most = (most * UP) as f32;
+        self.parts.push(Part { range, most, halves: Part::NONE, span: Part::NONE });
+    }
+
+    /// What [`Parts::set_span`] was given for a part; `None` when it was not yet called.
+    #[inline]
+    pub(crate) fn span(&self, index: u32) -> Option<Option<&Span>> {
+        let span = self.part(index).span;
+        (span != Part::NONE).then(|| self.spans.get(span as usize))
+    }
+
+    /// Says where things are in a part; `None` when the bodies are nowhere near each other.
+    pub(crate) fn set_span(&mut self, index: u32, span: Option<Span>) {
+        self.parts[index as usize].span = if span.is_some() { self.spans.len() as u32 } else { Part::FAR };
+        self.spans.extend(span);
+    }
+
+    /// The first half of a part; `None` when it was not halved yet.
+    #[inline]
+    pub(crate) fn half(&self, index: u32) -> Option<u32> {
+        let half = self.part(index).halves;
+        (half != Part::NONE).then_some(half)
+    }
+
+    /// Says that the next two parts to be added are the halves of this one; returns the first.
+    pub(crate) fn set_half(&mut self, index: u32) -> u32 {
+        let half = self.parts.len() as u32;
+        self.parts[index as usize].halves = half;
+        half
     }
 }

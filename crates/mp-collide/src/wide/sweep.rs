@@ -9,10 +9,10 @@ use super::boxes::{cross, dot, sub, touching};
 use super::frames::{Carrier, Frames, Placed};
 use super::intersect::{ahead, leaf_pair};
 use super::leaves::{Corners, Near, corners};
-use super::span::{Part, Span};
+use super::span::{Parts, Span};
 use super::{LEAF, Node, Tree, WIDTH};
-use crate::query::Counters;
-use crate::simd::{Kernel, Lanes};
+use crate::query::{Counters, Query};
+use crate::simd::{Kernel, Lanes, run};
 use crate::triangle::{closest_within, intersect};
 
 /// A pair of nodes during a part of the motion.
@@ -24,25 +24,59 @@ pub(crate) struct Item {
 }
 
 impl Item {
-    pub(crate) fn new(a: &Tree, b: &Tree, part: u32) -> Self {
+    fn new(a: &Tree, b: &Tree, part: u32) -> Self {
         Self { a: a.root, b: b.root, part }
     }
 }
 
-/// A motion and its parts.
+/// A motion, in parts that cover ranges of what it is counted in.
 pub(crate) trait Course {
     /// Whether the earliest part is wanted, or any.
     const ORDERED: bool;
-    /// A part made before.
-    fn part(&self, index: u32) -> &Part;
-    /// What lies where in it; `None` when the bodies are nowhere near each other.
-    fn span(&mut self, index: u32) -> Option<&Span>;
-    /// The first of its two halves, the earlier; the other comes after. `None` for the smallest parts, which
-    /// are not divided.
-    fn halve(&mut self, index: u32) -> Option<u32>;
-    /// For smallest parts that are not still: how far apart (m) the bodies are to be in the middle.
-    fn keep(&self, _index: u32) -> f64 {
+    /// What was made of it.
+    fn parts(&self) -> &Parts;
+    /// The same, to be added to.
+    fn parts_mut(&mut self) -> &mut Parts;
+    /// How far any point moves at most (m) from the middle of a range to either end; 0 for a single pose.
+    fn most(&self, range: [u32; 2]) -> f64;
+    /// What lies where in a range; `None` when the bodies are nowhere near each other.
+    fn make(&self, range: [u32; 2]) -> Option<Span>;
+    /// For smallest ranges that are not still: how far apart (m) the bodies are to be in the middle.
+    fn keep(&self, _range: [u32; 2]) -> f64 {
         0.0
+    }
+
+    /// Adds a part.
+    fn add(&mut self, range: [u32; 2]) {
+        let most = self.most(range);
+        self.parts_mut().add(range, most);
+    }
+
+    /// What lies where in a part, made when first asked for.
+    #[inline]
+    fn span(&mut self, index: u32) -> Option<&Span> {
+        if self.parts().span(index).is_none() {
+            let span = self.make(self.parts().part(index).range);
+            self.parts_mut().set_span(index, span);
+        }
+        self.parts().span(index).flatten()
+    }
+
+    /// The first of the two halves of a part, the earlier; the other comes after. `None` for the smallest parts,
+    /// which are not divided.
+    fn halve(&mut self, index: u32) -> Option<u32> {
+        if let Some(half) = self.parts().half(index) {
+            return Some(half);
+        }
+        let [lo, hi] = self.parts().part(index).range;
+        if hi - lo == 1 {
+            return None;
+        }
+        let half = self.parts_mut().set_half(index);
+        let middle = u32::midpoint(lo, hi);
+        self.add([lo, middle]);
+        self.add([middle, hi]);
+        Some(half)
     }
 }
 
@@ -50,30 +84,48 @@ pub(crate) trait Course {
 /// the larger box's half diagonal. Measured: half as much or twice as much is slower.
 const LONG: f32 = 0.1;
 
+impl Query {
+    /// The first range of the motion in which the trees were not shown to stay apart, of all of `range`: still ones
+    /// in which they meet, and smallest ones that are not still. `None` when they stay apart.
+    pub(crate) fn sweep(
+        &mut self,
+        a: &Tree,
+        b: &Tree,
+        course: &mut impl Course,
+        range: [u32; 2],
+    ) -> Option<[u32; 2]> {
+        course.parts_mut().clear();
+        course.add(range);
+        let (stack, counters) = (&mut self.items, &mut self.counters);
+        stack.clear();
+        stack.push(Item::new(a, b, 0));
+        run(self.isa, Sweep { a, b, course, stack, counters })
+    }
+}
+
 /// Depth-first; the earlier part of the motion first.
-pub(crate) struct Sweep<'q, C> {
-    pub(crate) a: &'q Tree,
-    pub(crate) b: &'q Tree,
-    pub(crate) course: &'q mut C,
+struct Sweep<'q, C> {
+    a: &'q Tree,
+    b: &'q Tree,
+    course: &'q mut C,
     /// What to look at, the first last.
-    pub(crate) stack: &'q mut Vec<Item>,
-    pub(crate) counters: &'q mut Counters,
+    stack: &'q mut Vec<Item>,
+    counters: &'q mut Counters,
 }
 
 impl<C: Course> Kernel for Sweep<'_, C> {
-    /// The first part of the motion in which the trees were not shown to stay apart: still ones
-    /// in which they meet, and smallest ones that are not still. `None` when they stay apart.
-    type Output = Option<u32>;
+    /// See `Query::sweep`.
+    type Output = Option<[u32; 2]>;
 
     #[inline(always)]
-    fn run<L: Lanes>(self) -> Option<u32> {
+    fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, course, stack, counters } = self;
         let mut tests = 0;
         let mut met = None;
         let mut limit = u32::MAX;
         let (far_a, far_b) = (a.is_large(), b.is_large());
         while let Some(Item { a: x, b: y, part: index }) = stack.pop() {
-            let part = course.part(index);
+            let part = *course.parts().part(index);
             let [start, _] = part.range;
             if start >= limit {
                 continue;
@@ -108,18 +160,18 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                         stack.push(Item { a: x, b: y, part: half });
                         continue;
                     }
-                    let keep = course.keep(index);
+                    let keep = course.keep(part.range);
                     let Some(span) = course.span(index) else { continue };
                     if triangles_apart((a, x, mask_a), (b, y, mask_b), &span.frames, keep, counters) {
                         continue;
                     }
                 }
                 if !C::ORDERED {
-                    met = Some(index);
+                    met = Some(part.range);
                     break;
                 }
                 limit = start;
-                met = Some(index);
+                met = Some(part.range);
                 continue;
             }
             tests += 1;

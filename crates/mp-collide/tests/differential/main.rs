@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod common;
+mod filled;
 mod meshes;
 mod motions;
 mod parry;

@@ -3,7 +3,7 @@
 use super::clock::{What, add, timed};
 use super::export::export;
 use super::ours::{self, OURS};
-use super::pairs::tori;
+use super::pairs::{smooth_tori, tori};
 use super::peers::{self, Effort};
 use super::poses::{Counts, Meshes, Poses};
 use super::tables::Measured;
@@ -23,25 +23,29 @@ const COUNTS: Counts = Counts { near: 2_000, ..Counts::FULL };
 /// Distances measured.
 const DISTANCES: usize = 200;
 /// What is asked.
-const ASKED: [(&str, &str, &str); 3] = [
+const ASKED: [(&str, &str, &str); 4] = [
     ("uniform", "collide", "boolean, uniform poses"),
     ("near", "collide", "boolean, near contact"),
     ("uniform", "distance", "distance, uniform poses"),
+    (SMOOTH, "distance", "distance, smooth tori"),
 ];
+/// Uniform poses of tori without bumps.
+const SMOOTH: &str = "smooth";
 
 /// Measures. True when all programs answered.
 pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     let programs = args.collide.peers.as_deref().map(peers::find).transpose()?.unwrap_or_default();
     let sides = if args.quick { &SIDES[..4] } else { &SIDES[..] };
     let rounds = args.runs.map_or(if args.quick { 1 } else { 3 }, |n| n as usize);
-    let (mut all, mut complete) = (Vec::new(), true);
+    let (mut all, mut opened, mut complete) = (Vec::new(), Vec::new(), true);
     for &n in sides {
-        let (measured, answered) = measure(n, args.collide.seed, rounds, &programs)?;
+        let (measured, pairs, answered) = measure(n, args.collide.seed, rounds, &programs)?;
         complete &= answered;
         note(&format!("{} triangles measured", measured.triangles / 2));
         all.push(measured);
+        opened.push(pairs);
     }
-    let table = table(&all);
+    let table = table(&all, &opened);
     report(args, "collide-growth", &table, &table)?;
     let picture = args.out.join("collide-growth.png");
     let title = "Cost against the number of triangles of each mesh";
@@ -51,11 +55,49 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     Ok(complete)
 }
 
+/// How many pairs of boxes a distance query of meshes that are apart opens: as it is asked, and when it is told the
+/// distance beforehand, which leaves only those that no search by these boxes could spare. Means.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Opened {
+    asked: f64,
+    told: f64,
+}
+
+impl Opened {
+    fn count(meshes: &Meshes, poses: &[Isometry3<f64>]) -> Self {
+        let (a, b, here, mut query) = (&meshes.a, &meshes.b, Isometry3::identity(), Query::default());
+        let (mut sum, mut free) = (Self::default(), 0.0);
+        for pose in poses {
+            let begin = query.counters.box_tests;
+            if query.intersects(a, &here, b, pose) {
+                continue;
+            }
+            // Both of the others ask this first.
+            let first = query.counters.box_tests - begin;
+            let begin = query.counters.box_tests + first;
+            let distance = query.distance(a, &here, b, pose).distance;
+            sum.asked += (query.counters.box_tests - begin) as f64;
+            let begin = query.counters.box_tests + first;
+            query.clearance(a, &here, b, pose, distance.next_up());
+            sum.told += (query.counters.box_tests - begin) as f64;
+            free += 1.0;
+        }
+        Self { asked: sum.asked / free, told: sum.told / free }
+    }
+}
+
 /// Two tori of 2·n² triangles.
-fn measure(n: usize, seed: u64, rounds: usize, programs: &[PathBuf]) -> Result<(Measured, bool)> {
+fn measure(
+    n: usize,
+    seed: u64,
+    rounds: usize,
+    programs: &[PathBuf],
+) -> Result<(Measured, [Opened; 2], bool)> {
     let pair = tori(&format!("tori-{n}"), n)?;
     let meshes = Meshes::new(&pair);
     let poses = Poses::new(&pair, &meshes, COUNTS, seed)?;
+    let smooth = Meshes::new(&smooth_tori(SMOOTH, n)?);
+    let opened = [&meshes, &smooth].map(|meshes| Opened::count(meshes, &poses.uniform[..DISTANCES]));
     let mut measured = Measured::new(&pair);
     let here = Isometry3::identity();
     let scratch = tempfile::tempdir().into_diagnostic()?;
@@ -70,6 +112,7 @@ fn measure(n: usize, seed: u64, rounds: usize, programs: &[PathBuf]) -> Result<(
         measured.built(build);
         let (a, b, mut query) = (&meshes.a, &meshes.b, Query::default());
         for (set, kind, _) in ASKED {
+            let (a, b) = if set == SMOOTH { (&smooth.a, &smooth.b) } else { (a, b) };
             let poses = if set == "near" { &poses.near } else { &poses.uniform };
             let (what, some) = (What::new(OURS, set, kind), &poses[..DISTANCES]);
             add(
@@ -92,25 +135,29 @@ fn measure(n: usize, seed: u64, rounds: usize, programs: &[PathBuf]) -> Result<(
             }
         }
     }
-    Ok((measured, complete))
+    Ok((measured, opened, complete))
 }
 
 /// A row for each size; all costs are of both meshes.
-fn table(all: &[Measured]) -> Table {
+fn table(all: &[Measured], opened: &[[Opened; 2]]) -> Table {
     let libs: Vec<&str> =
         all.first().map_or(Vec::new(), |m| m.builds.iter().map(|b| b.lib.as_str()).collect());
     let head = ["triangles of each mesh".to_owned()].into_iter();
     let asked = ASKED.map(|(_, _, name)| format!("{name}, ns"));
-    let mut table =
-        Table::new(head.chain(asked).chain(libs.iter().map(|lib| format!("{lib}: building both, ms"))));
-    for m in all {
+    let pairs =
+        ["pairs of boxes opened for a distance", "when told it", "smooth tori: opened", "when told it"];
+    let pairs = pairs.map(str::to_owned);
+    let builds = libs.iter().map(|lib| format!("{lib}: building both, ms"));
+    let mut table = Table::new(head.chain(asked).chain(pairs).chain(builds));
+    for (m, opened) in all.iter().zip(opened) {
+        let pairs = opened.iter().flat_map(|opened| [opened.asked, opened.told]).map(|n| format!("{n:.0}"));
         let costs =
             ASKED.map(|(set, query, _)| cost(m, set, query).map_or("–".into(), |c| format!("{c:.0}")));
         let builds = libs.iter().map(|lib| {
             let build = m.builds.iter().find(|b| b.lib == *lib);
             build.map_or("–".into(), |b| format!("{:.1}", b.ms))
         });
-        let row = [(m.triangles / 2).to_string()].into_iter().chain(costs).chain(builds);
+        let row = [(m.triangles / 2).to_string()].into_iter().chain(costs).chain(pairs).chain(builds);
         table.rows.push(row.collect());
     }
     table
@@ -156,9 +203,16 @@ mod tests {
 
     #[test]
     fn small_tori_are_measured() {
-        let all: Vec<Measured> = [22, 25].map(|n| measure(n, 1, 1, &[]).unwrap().0).to_vec();
-        let table = table(&all);
-        assert_eq!((table.head.len(), table.rows.len()), (5, 2));
+        let (all, opened): (Vec<Measured>, Vec<[Opened; 2]>) = [22, 25]
+            .map(|n| {
+                let (measured, opened, _) = measure(n, 1, 1, &[]).unwrap();
+                (measured, opened)
+            })
+            .into_iter()
+            .unzip();
+        assert!(opened.iter().flatten().all(|n| 1.0 < n.told && n.told < 2.0 * n.asked), "{opened:?}");
+        let table = table(&all, &opened);
+        assert_eq!((table.head.len(), table.rows.len()), (10, 2));
         assert_eq!(table.rows[0][0], "968");
         let curves = curves(&all);
         assert_eq!(curves.len(), ASKED.len() + 1);

@@ -2,9 +2,10 @@
 //!
 //! For each pair of meshes, in rounds: build the trees, then ask all booleans, tolerances, distances and motions
 //! of the pair's poses; parry3d once, in this process; then the other programs given, one after the other. All
-//! answers are compared.
+//! answers are compared. Of two scenes also certified checks of a planner's edges, beside discrete ones.
 
 mod clock;
+mod edges;
 mod export;
 mod growth;
 mod ours;
@@ -21,6 +22,7 @@ pub(crate) use pairs::PAIRS;
 use super::Table;
 use crate::cli;
 use crate::output::{note, print, write};
+use edges::Costs;
 use miette::{IntoDiagnostic, Result};
 use ours::OURS;
 use pairs::Pair;
@@ -49,7 +51,7 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     // Other programs want all poses.
     let counts =
         if args.quick && programs.is_empty() && options.export.is_none() { QUICK } else { Counts::FULL };
-    let (mut all, mut complete) = (Vec::new(), true);
+    let (mut all, mut costs, mut complete) = (Vec::new(), Vec::new(), true);
     for name in named {
         let pair = Pair::load(name)?;
         let (meshes, _) = ours::build(&pair);
@@ -65,12 +67,16 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
         complete &= answered;
         note(&told(&measured));
         all.push(measured);
+        if edges::CHECKED.contains(&name) {
+            let (count, passes) = if args.quick { (300, 3) } else { (3_000, 7) };
+            costs.extend(Costs::measure(name, count, passes)?);
+        }
     }
     if all.is_empty() {
         return Ok(complete);
     }
-    report(args, &all)?;
-    Ok(complete && tables::consistent(&all))
+    report(args, &all, &costs)?;
+    Ok(complete && tables::consistent(&all) && costs.iter().all(Costs::consistent))
 }
 
 /// How many poses of each kind a short run has.
@@ -124,14 +130,15 @@ fn told(m: &Measured) -> String {
 }
 
 /// Prints and writes the tables.
-fn report(args: &cli::Bench, all: &[Measured]) -> Result<()> {
+fn report(args: &cli::Bench, all: &[Measured], costs: &[Costs]) -> Result<()> {
     let foreign = |lib: &str| !is_ours(lib);
-    let parts: [(&str, Table); 8] = [
+    let parts: [(&str, Table); 9] = [
         ("Boolean queries, ns (how many times ours)", tables::speed(all, "collide", foreign)),
         ("Boolean queries on each instruction set, ns", tables::speed(all, "collide", is_ours)),
         ("Tolerance queries, 2% of the robot's radius, ns", tables::speed(all, "tolerance", foreign)),
         ("Distances, ns", tables::speed(all, "distance", foreign)),
         ("Motions, ns per pose", tables::speed(all, "motion", foreign)),
+        ("Certified against discrete checks, per edge", edges::table(costs)),
         ("Building the trees of both meshes, ms", tables::build_times(all)),
         ("Memory of the trees of both meshes, bytes per triangle", tables::memory(all)),
         ("Agreement", tables::agreement(all)),

@@ -34,13 +34,11 @@ impl Pair {
     /// # Errors
     /// When there is no such pair, or its scene cannot be read.
     pub(crate) fn load(name: &str) -> Result<Self> {
-        let scene = match name {
-            "alpha" => "alpha-1.0",
-            "cubicles" | "twisty" => name,
-            "piano" => "apartment",
-            "large" => return tori(name, 224),
-            _ => return Err(miette!("there is no pair `{name}`; there are: {}", PAIRS.join(", "))),
-        };
+        if name == "large" {
+            return tori(name, 224);
+        }
+        let scene = scene(name)
+            .ok_or_else(|| miette!("there is no pair `{name}`; there are: {}", PAIRS.join(", ")))?;
         let problem = Problem::load(scenes::find(Path::new(scene))?)?;
         let placed: Vec<TriMesh> = problem.obstacles.iter().map(|o| o.mesh.transformed(&o.pose)).collect();
         let a = TriMesh::merged(&placed).ok_or_else(|| miette!("{scene} has no obstacles"))?;
@@ -54,10 +52,30 @@ impl Pair {
     }
 }
 
+/// The scene that the pair called `name` is of.
+pub(crate) fn scene(name: &str) -> Option<&'static str> {
+    match name {
+        "alpha" => Some("alpha-1.0"),
+        "cubicles" => Some("cubicles"),
+        "twisty" => Some("twisty"),
+        "piano" => Some("apartment"),
+        _ => None,
+    }
+}
+
 /// Two bumpy tori of 2·n² triangles each, the second smaller, among and around the first.
 pub(crate) fn tori(name: &str, n: usize) -> Result<Pair> {
-    let a = torus(n, 1.0, 0.35, &BUMPS_A)?;
-    let b = torus(n, 0.7, 0.25, &BUMPS_B)?;
+    tori_with(name, n, &BUMPS_A, &BUMPS_B)
+}
+
+/// The same without bumps.
+pub(crate) fn smooth_tori(name: &str, n: usize) -> Result<Pair> {
+    tori_with(name, n, &[], &[])
+}
+
+fn tori_with(name: &str, n: usize, bumps_a: &[[f64; 3]], bumps_b: &[[f64; 3]]) -> Result<Pair> {
+    let a = torus(n, 1.0, 0.35, bumps_a)?;
+    let b = torus(n, 0.7, 0.25, bumps_b)?;
     let mut pair = Pair { name: name.to_owned(), bounds: a.aabb(), a, b };
     pair.bounds = pair.bounds.enlarged(pair.radius());
     Ok(pair)
