@@ -2,7 +2,7 @@
 
 use crate::forest::Forest;
 use crate::planner::verify;
-use crate::{AStar, Builder, Query, Roadmap, Steer, Way};
+use crate::{AStar, Builder, LinkState, Query, Roadmap, Steer, Way};
 use mp_cspace::shortest::shortest_paths;
 use mp_cspace::{
     BuildError, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible, Space,
@@ -91,6 +91,31 @@ where
         map.fill(steer.space(), &mut index)?;
         let (star, forest) = (AStar::new(), Forest::default());
         Ok(Self { steer, map, index, star, forest, neighbours, near: Default::default() })
+    }
+
+    /// Verifies all edges now, in both directions, so that no query waits for it; those that fail are blocked. How many
+    /// did. Edges that were only guessed are checked first.
+    ///
+    /// A planner of one path is better off with the verification of that path; of thousands each edge is on
+    /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
+    pub fn verify(&mut self) -> usize {
+        let before = self.map.blocked();
+        let edges: Vec<EdgeIndex> = self.map.graph().edge_indices().collect();
+        for edge in edges {
+            if self.map.graph()[edge].state == LinkState::Blocked {
+                continue;
+            }
+            let [a, b] = self.map.ends(edge);
+            for nodes in [vec![a, b], vec![b, a]] {
+                let way = Way { nodes, edges: vec![edge], length: self.map.graph()[edge].length };
+                if !self.star.check(&mut self.map, &mut self.steer, &way)
+                    || !verify(&mut self.map, &mut self.steer, &way)
+                {
+                    break;
+                }
+            }
+        }
+        self.map.blocked() - before
     }
 
     /// The roadmap.

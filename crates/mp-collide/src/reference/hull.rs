@@ -11,21 +11,29 @@ impl Hull {
         Self([a, b, c, d, e, f])
     }
 
-    /// How far the hull is ahead of a triangle in some direction, if possible by `enough`. Tries `first`, or
+    /// How far the hull is ahead of a triangle in some direction, if possible by `enough`, and that direction. Tries `first`, or
     /// the normal of the triangle when that is zero; then turns away from the points that are in the way
     /// (Chung and Wang, *Quick collision detection of polytopes in virtual environments*, VRST 1996).
-    pub(super) fn ahead_of(&self, triangle: &Triangle, first: Vector3<f64>, enough: f64) -> f64 {
+    pub(super) fn ahead_of(
+        &self,
+        triangle: &Triangle,
+        first: Vector3<f64>,
+        enough: f64,
+    ) -> (f64, Vector3<f64>) {
         let mut way = first;
         if way == Vector3::zeros() {
             let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0]));
             let side = normal.dot(&(self.0[0] - triangle[0]));
             way = (normal * side.signum()).try_normalize(0.0).unwrap_or(Vector3::x());
         }
-        let mut most = f64::NEG_INFINITY;
+        let mut most = (f64::NEG_INFINITY, way);
         for _ in 0..TRIES {
             let between = first_along(&self.0, &way) - first_along(triangle, &-way);
-            most = most.max(between.dot(&way));
-            if most >= enough {
+            let ahead = between.dot(&way);
+            if ahead > most.0 {
+                most = (ahead, way);
+            }
+            if ahead >= enough {
                 break;
             }
             let Some(across) = between.try_normalize(0.0) else { break };

@@ -1,7 +1,7 @@
 //! Whole motions of a mesh past another, proved free.
 
 use super::hull::Hull;
-use super::triangle::{from_segment, triangle_gap};
+use super::triangle::{Triangle, triangle_gap};
 use super::{Ball, Content, RefMesh, TOUCHING, is_usable};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
@@ -26,26 +26,46 @@ pub enum Swept {
     },
 }
 
-/// Proves that a mesh that moves keeps a distance from one that stands: a search over pairs of balls and
-/// parts of the motion. Holds the memory that takes.
+/// Proves that a mesh that moves keeps a distance from one that stands: a search over balls of the one that
+/// moves and parts of the motion, with a list of the balls of the other that may be near. Holds the memory that takes.
 ///
 /// While its mesh goes straight and turns by θ about a fixed axis, both at constant speed, a point at
 /// distance r from the origin of its frame keeps within r·θ²/8 of the point that moves evenly from where it
 /// begins to where it ends (the error of linear interpolation). So
 ///
-/// - a ball is swept within a capsule so much wider, and the box around its triangles within the box around both
-///   ends, so much wider: these are kept apart from what stands;
+/// - what a ball holds, and the box around it, is swept within the box around both ends, so much wider, which
+///   is kept apart from the boxes of what stands;
 /// - a triangle is swept within the hull of its corners at both ends, so much wider, which is kept apart from
 ///   a triangle by a direction.
 ///
-/// A pair that is not shown to be apart is cut in the larger of the two or, when the motion is longer than
-/// that, in time. Triangles nearer than twice the margin in the middle of a part end the search.
+/// Of what is not shown to be apart the larger is split: balls that stand, those that move or, when it is longer than those,
+/// the motion. Triangles nearer than twice the margin in the middle of a part end the search.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
     parts: Vec<Part>,
     moments: Vec<Moment>,
-    open: Vec<Pair>,
+    open: Vec<Open>,
+    /// What stands and may be near, as the open ones list it, and what is being looked at.
+    near: Vec<Near>,
+    todo: Vec<Near>,
     compared: u64,
+}
+
+/// A ball that moves, during a part of the motion.
+#[derive(Clone, Copy, Debug)]
+struct Open {
+    ball: usize,
+    part: usize,
+    /// From where to where what may be near is listed.
+    near: [usize; 2],
+}
+
+/// A ball that stands and may be near.
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    ball: usize,
+    /// A direction that may keep triangles apart; zero when none is known.
+    way: Vector3<f64>,
 }
 
 /// A part of a motion, cut when need be.
@@ -59,26 +79,26 @@ struct Part {
     halves: Option<(usize, [usize; 2])>,
 }
 
-/// What the balls `a` and `b` hold, during a part of the motion.
+/// Where a ball goes in a part of the motion.
 #[derive(Clone, Copy, Debug)]
-struct Pair {
-    a: usize,
-    b: usize,
-    part: usize,
-    /// A direction that may keep triangles apart; zero when none is known.
-    way: Vector3<f64>,
+struct Swath {
+    /// The box around what the ball holds at both ends.
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+    /// How far the center goes, and what the bend counts against that.
+    length: f64,
+    /// By how much points leave the straight way.
+    bend: f64,
 }
 
-/// What is to be done about a pair.
-enum Look {
-    /// Nothing: it keeps this distance (m).
-    Apart(f64),
-    /// To look at its parts.
-    Split([[usize; 2]; 2]),
-    /// To look at halves of the motion.
-    Cut,
-    /// Two triangles that may be near: to look at the middle of the motion, and then at halves.
-    Close,
+impl Swath {
+    /// A lower bound on the distance of what goes here from what a ball holds, if it is at least `enough`.
+    fn apart(&self, ball: &Ball, enough: f64) -> Option<f64> {
+        let (low, high) = (ball.center.coords - ball.half, ball.center.coords + ball.half);
+        let gap = (self.low - high).sup(&(low - self.high)).sup(&Vector3::zeros());
+        let (square, wanted) = (gap.norm_squared(), enough + self.bend);
+        (square >= wanted * wanted).then(|| square.sqrt() - self.bend)
+    }
 }
 
 /// A moment of a motion.
@@ -137,6 +157,8 @@ impl Sweep {
         self.parts.clear();
         self.moments.clear();
         self.open.clear();
+        self.near.clear();
+        self.todo.clear();
         let size = moving.size + standing.size;
         let ends = [0.0, 1.0].map(|at| (at, pose_at(at)));
         for (at, pose) in &ends {
@@ -150,80 +172,127 @@ impl Sweep {
         self.parts.push(Part { ends: [0, 1], bend: turn * turn / 8.0, halves: None });
         let far = self.moments.iter().map(|moment| moment.origin.norm()).fold(0.0, f64::max);
         let task = Task { moving, standing, margin, touching: TOUCHING * (size + far) };
-        let [a, b] = [moving, standing].map(|mesh| mesh.balls.len() - 1);
-        self.open.push(Pair { a, b, part: 0, way: Vector3::zeros() });
+        let [ball, other] = [moving, standing].map(|mesh| mesh.balls.len() - 1);
+        self.near.push(Near { ball: other, way: Vector3::zeros() });
+        self.open.push(Open { ball, part: 0, near: [0, 1] });
 
         let mut least = f64::INFINITY;
         let limit = self.compared + MAX_COMPARED;
-        while let Some(mut pair) = self.open.pop() {
-            self.compared += 1;
+        while let Some(open) = self.open.pop() {
+            let ball = &moving.balls[open.ball];
+            let swath = self.swath(ball, open.part);
+            let first = open.near[1];
+            self.list(&task, &open, &swath, &mut least);
             if self.compared > limit {
-                return Swept::Near { at: self.middle(pair.part) };
+                return Swept::Near { at: self.middle(open.part) };
             }
-            let close = match self.look(&task, &pair) {
-                Look::Apart(distance) => {
-                    least = least.min(distance);
-                    continue;
-                }
-                Look::Split(parts) => {
-                    self.open.extend(parts.map(|[a, b]| Pair { a, b, ..pair }));
-                    continue;
-                }
-                Look::Cut => false,
-                Look::Close => true,
+            let triangle = match ball.content {
+                Content::Triangle(k) => Some(moving.triangles[k]),
+                Content::Parts(_) => None,
             };
-            let Some((middle, halves)) = self.cut(pair.part, &pose_at, size) else {
-                return Swept::Contact { at: self.middle(pair.part) };
+            if let Some(triangle) = &triangle {
+                self.drop_apart(&task, triangle, &open, &swath, &mut least);
+            }
+            let near = [first, self.near.len()];
+            if near[0] == near[1] {
+                continue;
+            }
+            let short = swath.length <= ball.radius.max(2.0 * margin);
+            if let Content::Parts(parts) = ball.content
+                && short
+            {
+                self.open.extend(parts.map(|ball| Open { ball, part: open.part, near }));
+                continue;
+            }
+            let Some((middle, halves)) = self.cut(open.part, &pose_at, size) else {
+                return Swept::Contact { at: self.middle(open.part) };
             };
-            if close {
+            if let Some(triangle) = &triangle {
                 let middle = &self.moments[middle];
-                let gap = task.gap(&pair, middle);
-                let distance = gap.norm();
-                if distance <= task.touching {
-                    return Swept::Contact { at: middle.at };
+                let moved = triangle.map(|p| middle.place(&p));
+                for near in &mut self.near[first..] {
+                    near.way = match task.way(&moved, near) {
+                        Ok(way) => way,
+                        Err(distance) if distance <= task.touching => {
+                            return Swept::Contact { at: middle.at };
+                        }
+                        Err(_) => return Swept::Near { at: middle.at },
+                    };
                 }
-                if distance < 2.0 * margin {
-                    return Swept::Near { at: middle.at };
-                }
-                pair.way = gap / distance;
             }
-            self.open.extend(halves.map(|part| Pair { part, ..pair }));
+            self.open.extend(halves.map(|part| Open { ball: open.ball, part, near }));
         }
         Swept::Free { clearance: least }
     }
 
-    /// Compares a pair.
-    fn look(&self, task: &Task<'_>, pair: &Pair) -> Look {
-        let Task { moving, standing, margin, touching } = *task;
-        let (ball_a, ball_b) = (&moving.balls[pair.a], &standing.balls[pair.b]);
-        let Part { ends, bend, .. } = self.parts[pair.part];
+    /// Lists what may be near a ball in a part of the motion, of what was listed for a larger one: balls not larger than
+    /// the ball or its motion; of a triangle, triangles.
+    fn list(&mut self, task: &Task<'_>, open: &Open, swath: &Swath, least: &mut f64) {
+        let [from, to] = open.near;
+        self.near.truncate(to);
+        let size = match task.moving.balls[open.ball] {
+            Ball { content: Content::Triangle(_), .. } => f64::NEG_INFINITY,
+            ball => ball.radius.max(swath.length),
+        };
+        for i in from..to {
+            self.todo.push(self.near[i]);
+            while let Some(near) = self.todo.pop() {
+                self.compared += 1;
+                let ball = &task.standing.balls[near.ball];
+                match (swath.apart(ball, task.margin + task.touching), ball.content) {
+                    (Some(apart), _) => *least = least.min(apart - task.touching),
+                    (None, Content::Parts(parts)) if ball.radius > size => {
+                        self.todo.extend(parts.map(|ball| Near { ball, ..near }));
+                    }
+                    (None, _) => self.near.push(near),
+                }
+            }
+        }
+    }
+
+    /// Drops the triangles last listed that a direction keeps apart from one that moves.
+    fn drop_apart(
+        &mut self,
+        task: &Task<'_>,
+        triangle: &Triangle,
+        open: &Open,
+        swath: &Swath,
+        least: &mut f64,
+    ) {
+        let ends = self.parts[open.part].ends.map(|end| &self.moments[end]);
+        let [from, to] = ends.map(|moment| triangle.map(|p| moment.place(&p)));
+        let hull = Hull::new(from, to);
+        let enough = task.margin + task.touching;
+        let first = open.near[1];
+        let mut kept = first;
+        for i in first..self.near.len() {
+            let near = self.near[i];
+            let ahead = |stands| hull.ahead_of(stands, near.way, enough + swath.bend).0 - swath.bend;
+            let ahead = task.stands(&near).map_or(f64::NEG_INFINITY, ahead);
+            if ahead >= enough {
+                *least = least.min(ahead - task.touching);
+            } else {
+                self.near[kept] = near;
+                kept += 1;
+            }
+        }
+        self.near.truncate(kept);
+    }
+
+    /// Where a ball goes in a part of the motion.
+    fn swath(&self, ball: &Ball, part: usize) -> Swath {
+        let Part { ends, bend, .. } = self.parts[part];
         let ends = ends.map(|end| &self.moments[end]);
-        let centers = ends.map(|moment| moment.place(&ball_a.center));
-        let enough = margin + touching;
-        let mut apart = apart_balls(ball_a, ball_b, &centers, bend);
-        if apart < enough {
-            apart = apart.max(apart_boxes(ball_a, ball_b, &centers, &ends, bend));
-        }
-        if apart >= enough {
-            return Look::Apart(apart - touching);
-        }
-        let swept = (centers[1] - centers[0]).norm() + BEND * ball_a.reach * bend;
-        if swept > ball_a.radius.max(ball_b.radius).max(2.0 * margin) {
-            return Look::Cut;
-        }
-        match (ball_a.content, ball_b.content) {
-            (Content::Triangle(k), Content::Triangle(l)) => {
-                let [from, to] = ends.map(|moment| moving.triangles[k].map(|p| moment.place(&p)));
-                let hull = Hull::new(from, to);
-                let bend = ball_a.reach * bend;
-                let ahead = hull.ahead_of(&standing.triangles[l], pair.way, enough + bend) - bend;
-                if ahead >= enough { Look::Apart(ahead - touching) } else { Look::Close }
-            }
-            (Content::Parts([i, j]), Content::Parts(_)) if ball_a.radius >= ball_b.radius => {
-                Look::Split([[i, pair.b], [j, pair.b]])
-            }
-            (_, Content::Parts([i, j])) => Look::Split([[pair.a, i], [pair.a, j]]),
-            (Content::Parts([i, j]), Content::Triangle(_)) => Look::Split([[i, pair.b], [j, pair.b]]),
+        let [from, to] = ends.map(|moment| moment.place(&ball.center).coords);
+        // The box around a turned box, or around the ball if that is smaller.
+        let round = Vector3::repeat(ball.radius);
+        let [at_from, at_to] = ends.map(|moment| (moment.spread * ball.half).inf(&round));
+        let bend = ball.reach * bend;
+        Swath {
+            low: (from - at_from).inf(&(to - at_to)),
+            high: (from + at_from).sup(&(to + at_to)),
+            length: (to - from).norm() + BEND * bend,
+            bend,
         }
     }
 
@@ -269,30 +338,30 @@ impl Sweep {
 }
 
 impl Task<'_> {
-    /// The shortest way from the triangle that stands to the one that moves, at a moment; zero for other pairs.
-    fn gap(&self, pair: &Pair, moment: &Moment) -> Vector3<f64> {
-        match (self.moving.balls[pair.a].content, self.standing.balls[pair.b].content) {
-            (Content::Triangle(k), Content::Triangle(l)) => {
-                let moved = self.moving.triangles[k].map(|p| moment.place(&p));
-                triangle_gap(&moved, &self.standing.triangles[l])
-            }
-            _ => Vector3::zeros(),
+    /// The triangle that stands; of a triangle that moves only triangles are listed.
+    fn stands(&self, near: &Near) -> Option<&Triangle> {
+        match self.standing.balls[near.ball].content {
+            Content::Triangle(l) => Some(&self.standing.triangles[l]),
+            Content::Parts(_) => None,
         }
     }
-}
 
-/// A lower bound on the distance of two balls while the center of the first goes from one place to another.
-fn apart_balls(a: &Ball, b: &Ball, [from, to]: &[Point3<f64>; 2], bend: f64) -> f64 {
-    from_segment(&b.center, from, to).norm() - a.radius - b.radius - a.center.coords.norm() * bend
-}
-
-/// A lower bound on the distance of the boxes around what two balls hold, while the first moves.
-fn apart_boxes(a: &Ball, b: &Ball, [from, to]: &[Point3<f64>; 2], ends: &[&Moment; 2], bend: f64) -> f64 {
-    let [at_from, at_to] = ends.map(|moment| moment.spread * a.half);
-    let low = (from.coords - at_from).inf(&(to.coords - at_to));
-    let high = (from.coords + at_from).sup(&(to.coords + at_to));
-    let gap = (low - b.center.coords - b.half).sup(&(b.center.coords - b.half - high));
-    gap.sup(&Vector3::zeros()).norm() - a.reach * bend
+    /// A direction in which a triangle is ahead of one that stands by twice the margin.
+    ///
+    /// # Errors
+    /// Their distance when it is less.
+    fn way(&self, moved: &Triangle, near: &Near) -> Result<Vector3<f64>, f64> {
+        let Some(stands) = self.stands(near) else { return Err(0.0) };
+        let enough = 2.0 * self.margin + self.touching;
+        let (ahead, way) = Hull::new(*moved, *moved).ahead_of(stands, near.way, enough);
+        if ahead >= enough {
+            return Ok(way);
+        }
+        let gap = triangle_gap(moved, stands);
+        let distance = gap.norm();
+        let far = distance > self.touching && distance >= 2.0 * self.margin;
+        if far { Ok(gap / distance) } else { Err(distance) }
+    }
 }
 
 #[cfg(test)]
@@ -360,6 +429,21 @@ mod tests {
         let beside = motion(pose_from_six([-0.71, 0.0, 0.0, 0.0, 0.0, 0.0]), [0.0, 1.0, 0.0, 0.0, 0.0, 3.1]);
         assert!(matches!(sweep.sweep(&bar, beside, &wall, 1e-5), Swept::Free { .. }));
         assert!(sweep.compared() < 20_000, "{}", sweep.compared());
+    }
+
+    /// Nothing of a search is left for the next.
+    #[test]
+    fn a_sweep_used_before_finds_the_same() {
+        let [bar, other] = meshes();
+        let mut used = Sweep::default();
+        for i in 0..200 {
+            let x = f64::from(i);
+            let from =
+                pose_from_six([1.5 * (0.7 * x).sin(), 1.5 * (1.1 * x).cos(), 0.1, x, 2.0 * x, 0.3 * x]);
+            let by = [(0.9 * x).cos(), 0.4 * (1.7 * x).sin(), 0.1, 0.5, (0.3 * x).sin(), 0.2];
+            let again = used.sweep(&bar, motion(from, by), &other, 1e-4);
+            assert_eq!(again, Sweep::default().sweep(&bar, motion(from, by), &other, 1e-4), "{i}");
+        }
     }
 
     #[test]

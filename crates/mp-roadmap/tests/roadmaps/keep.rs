@@ -108,6 +108,24 @@ fn what_the_verifier_refuses_is_no_answer() {
     assert!(seen > 40 && answers.map().blocked() > 0);
 }
 
+/// All edges at once: those that are refused are blocked, and queries have nothing left to block.
+#[test]
+fn edges_can_be_verified_beforehand() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let mut answers = answers(&space, &boxes, map(&space, &Boxes::default(), 400, 2));
+    let refused = {
+        let map = answers.map();
+        let hit = |[a, b]: [NodeId; 2]| boxes.hit(map.state(a), map.state(b));
+        map.graph().edge_indices().filter(|edge| hit(map.ends(*edge))).count()
+    };
+    assert!(refused > 0);
+    assert_eq!((answers.verify(), answers.map().blocked()), (refused, refused));
+    assert_eq!(answers.verify(), 0);
+    let solved = queries(&space, &boxes, 50).iter().filter(|[a, b]| answers.answer(a, b).is_ok()).count();
+    assert!(solved > 40);
+    assert_eq!(answers.map().blocked(), refused);
+}
+
 #[test]
 fn saved_and_loaded_it_gives_identical_paths() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));

@@ -17,7 +17,7 @@ use mp::cspace::{
 use mp::roadmap::algo::{prm, visibility_prm};
 use mp::roadmap::{Builder, Learning, Reachable, Roadmap};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 const SCENES: [&str; 5] = ["maze", "planar-bugtrap", "easy", "gempa-1", "gempa-3"];
@@ -72,8 +72,24 @@ struct Seen {
     largest: f64,
 }
 
+/// A sample, and what is known of the nodes of a roadmap that grows: of none twice whether there is a motion.
+struct Sample<S> {
+    q: S,
+    seen_by: Vec<NodeId>,
+    unseen_by: HashSet<NodeId>,
+}
+
+fn fresh<S: Clone>(samples: &[S]) -> Vec<Sample<S>> {
+    let one = |q: &S| Sample { q: q.clone(), seen_by: Vec::new(), unseen_by: HashSet::new() };
+    samples.iter().map(one).collect()
+}
+
 /// What is seen, by nodes tried in order of distance.
-fn seen<M: Mover>(setting: &Setting<M>, map: &mut Roadmap<M::State>, samples: &[M::State]) -> Result<Seen> {
+fn seen<M: Mover>(
+    setting: &Setting<M>,
+    map: &mut Roadmap<M::State>,
+    samples: &mut [Sample<M::State>],
+) -> Result<Seen> {
     let (space, mut local) = (&setting.space, local(setting)?);
     let parts: Vec<NodeId> = (0..map.len() as NodeId).map(|id| map.component(id)).collect();
     let mut sizes = HashMap::new();
@@ -81,29 +97,36 @@ fn seen<M: Mover>(setting: &Setting<M>, map: &mut Roadmap<M::State>, samples: &[
     // Of equal ones that which is named first.
     let largest =
         sizes.iter().max_by_key(|(part, size)| (**size, std::cmp::Reverse(**part))).map(|(part, _)| *part);
-    let mut order: Vec<(f64, usize)> = Vec::new();
+    let counts = |id: &NodeId| Some(parts[*id as usize]) == largest;
+    let mut order: Vec<(f64, NodeId)> = Vec::new();
     let mut count = [0; 2];
-    for q in samples {
+    for sample in samples.iter_mut() {
+        let mut by_largest = sample.seen_by.iter().any(counts);
         order.clear();
-        order.extend(map.states().iter().enumerate().map(|(i, node)| (space.distance(node, q), i)));
-        order.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut any = false;
-        for &(_, i) in &order {
-            let counts = Some(parts[i]) == largest;
+        if !by_largest {
+            let unknown = (0..map.len() as NodeId).filter(|id| !sample.unseen_by.contains(id));
+            let distance = |id| (space.distance(map.state(id), &sample.q), id);
+            order.extend(unknown.map(distance));
+            order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        for (_, id) in &order {
             // Of the others one is enough.
-            if any && !counts {
+            if !sample.seen_by.is_empty() && !counts(id) {
                 continue;
             }
-            let motion = local.extend(&map.states()[i], q, Direction::Forward, Reach::Full);
-            if matches!(motion, Extension::Reached(_)) {
-                count[0] += usize::from(!any);
-                any = true;
-                if counts {
-                    count[1] += 1;
-                    break;
-                }
+            let motion = local.extend(map.state(*id), &sample.q, Direction::Forward, Reach::Full);
+            if !matches!(motion, Extension::Reached(_)) {
+                sample.unseen_by.insert(*id);
+                continue;
+            }
+            sample.seen_by.push(*id);
+            if counts(id) {
+                by_largest = true;
+                break;
             }
         }
+        count[0] += usize::from(!sample.seen_by.is_empty());
+        count[1] += usize::from(by_largest);
     }
     let [any, largest] = count.map(|n| n as f64 / samples.len() as f64);
     Ok(Seen { any, largest })
@@ -148,7 +171,7 @@ fn on<M: Mover>(setting: &Setting<M>, seed: u64) -> Result<Measured> {
     let seconds = (nanoseconds() - began) * 1e-9;
     let guards = few.map().graph().node_weights().filter(|tag| tag.kind == mp::roadmap::Kind::Guard);
     let (guards, estimate) = (guards.count() as f64, few.connector().coverage());
-    let aim = seen(setting, few.map_mut(), &samples)?;
+    let aim = seen(setting, few.map_mut(), &mut fresh(&samples))?;
     let (nodes, components) = (few.map().len() as f64, few.map_mut().components() as f64);
 
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
@@ -158,11 +181,12 @@ fn on<M: Mover>(setting: &Setting<M>, seed: u64) -> Result<Measured> {
     let mut many = Builder::new(steer(setting, verifier)?, recipe.generate, recipe.connect, index);
     let (mut size, mut spent, mut rng) = (4, 0.0, Rng::seed(seed));
     let mut needed = [None; 2];
+    let mut samples = fresh(&samples);
     while needed.contains(&None) && size < MOST {
         let began = nanoseconds();
         many.build(&mut rng, &mut Nodes(size), &mut ());
         spent += (nanoseconds() - began) * 1e-9;
-        let now = seen(setting, many.map_mut(), &samples)?;
+        let now = seen(setting, many.map_mut(), &mut samples)?;
         let enough = [now.any >= aim.any, now.any >= aim.any && now.largest >= aim.largest];
         for (needed, enough) in needed.iter_mut().zip(enough) {
             if needed.is_none() && enough {
