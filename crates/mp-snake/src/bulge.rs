@@ -2,7 +2,7 @@
 
 use crate::snake::norm;
 use crate::{Field, Snake};
-use mp_cspace::Space;
+use mp_cspace::{KnownFree, Space};
 use std::ops::Range;
 
 /// A way for some nodes to go together.
@@ -17,7 +17,10 @@ struct March<'a> {
     longest: f64,
 }
 
-/// How far nodes go aside at least at a time, as part of how far they may.
+/// How far nodes go aside at most, as part of the length of the curve. Higher bulges rarely fit.
+const HIGHEST: f64 = 0.5;
+
+/// How far they go at least at a time, as part of how far they may.
 const STRIDE: f64 = 0.125;
 
 /// What came of a [bulge](Snake::bulge).
@@ -38,9 +41,14 @@ impl<C: Space> Snake<'_, C> {
     ///
     /// The nodes from the first to the last that are blocked (where none is, the one of least clearance) go together to
     /// the side to which the field pushes them, until all have the clearance `wanted` (m); in strides of what they
-    /// lack of it, at most as far as the curve is long. A node before the first and one after the last of them, as far
-    /// aside, are the corners of the bulge, so that its ramps do not graze. When it does not fit, as `fits` says of its ends and corners, they try the other side; where the
-    /// field pushes along the curve only, the two axes most across it, both ways.
+    /// lack of it, at most as far as half the curve is long. A node before the first and one after the last of them, as
+    /// far aside, are the corners of the bulge, so that its ramps do not graze. A ramp whose middle is blocked is pushed
+    /// off there, and the first piece that `blocks` where it is blocked: it gets one more corner. When the bulge
+    /// does not fit, they try the other side; where the field pushes along the curve only, the two axes most across it,
+    /// both ways.
+    ///
+    /// `blocks` is asked of each piece, with the end of it that is known to be free, at which fraction something blocks
+    /// it: `None` where it is free.
     ///
     /// Asks the field once per node, and in each stride until it meets a node that is blocked, in the middle first.
     pub fn bulge(
@@ -48,13 +56,13 @@ impl<C: Space> Snake<'_, C> {
         curve: &mut Vec<C::State>,
         field: &mut impl Field<C::State>,
         wanted: f64,
-        mut fits: impl FnMut(&[C::State]) -> bool,
+        mut blocks: impl FnMut(&C::State, &C::State, KnownFree) -> Option<f64>,
     ) -> Bulged {
         if curve.len() < 3 {
             return Bulged::Nowhere;
         }
         let mut sight = std::mem::take(&mut self.sight);
-        let bulged = self.aside_of(curve, field, wanted, &mut sight, &mut fits);
+        let bulged = self.aside_of(curve, field, wanted, &mut sight, &mut blocks);
         self.sight = sight;
         bulged
     }
@@ -65,11 +73,11 @@ impl<C: Space> Snake<'_, C> {
         field: &mut impl Field<C::State>,
         wanted: f64,
         sight: &mut Sight,
-        fits: &mut impl FnMut(&[C::State]) -> bool,
+        blocks: &mut impl FnMut(&C::State, &C::State, KnownFree) -> Option<f64>,
     ) -> Bulged {
         self.look(curve, field, sight);
         let Some(blocked) = sight.blocked() else { return Bulged::Nowhere };
-        let (dim, least, longest) = (self.dim(), sight.least(), norm(&sight.way));
+        let (dim, least, longest) = (self.dim(), sight.least(), HIGHEST * norm(&sight.way));
         sight.find_sides(&blocked);
         let mut corners = std::mem::take(&mut self.next);
         let mut lowest: Option<(&[f64], f64)> = None;
@@ -80,12 +88,13 @@ impl<C: Space> Snake<'_, C> {
             corners.clear();
             corners.push(curve[0].clone());
             let (first, last) = (blocked.start.saturating_sub(1), blocked.end.min(curve.len() - 3));
-            corners.extend(self.aside(&curve[first + 1], side, height));
+            self.head(side);
+            corners.extend(self.aside(&curve[first + 1], height));
             if last > first {
-                corners.extend(self.aside(&curve[last + 1], side, height));
+                corners.extend(self.aside(&curve[last + 1], height));
             }
             corners.extend(curve.last().cloned());
-            found = corners.len() > 2 && fits(&corners);
+            found = corners.len() > 2 && self.fit(&mut corners, field, wanted, blocks);
             if found {
                 std::mem::swap(curve, &mut corners);
                 break;
@@ -98,9 +107,10 @@ impl<C: Space> Snake<'_, C> {
             _ if found => Bulged::Fits,
             None => Bulged::Nowhere,
             Some((side, height)) => {
+                self.head(side);
                 for i in 0..curve.len() - 2 {
                     let part = part(i, &blocked, curve.len() - 2);
-                    if let Some(q) = self.aside(&curve[i + 1], side, part * height) {
+                    if let Some(q) = self.aside(&curve[i + 1], part * height) {
                         curve[i + 1] = q;
                     }
                 }
@@ -134,16 +144,18 @@ impl<C: Space> Snake<'_, C> {
         curve: &[C::State],
         field: &mut impl Field<C::State>,
     ) -> Option<f64> {
-        let stride = (0.5 * self.params().spacing).max(STRIDE * march.longest);
+        let spacing = self.params().spacing;
+        let stride = (0.5 * spacing).max(STRIDE * march.longest);
         let mut height = (march.wanted - march.least).max(stride);
         let mut best: Option<(f64, f64)> = None;
+        self.head(march.side);
+        let Self { space, velocity, unused, .. } = self;
         while height <= march.longest {
             let mut least = f64::INFINITY;
             for i in from_the_middle(&march.blocked) {
-                let Some(q) = self.aside(&curve[i + 1], march.side, height) else {
-                    return best.map(|b| b.1);
-                };
-                least = least.min(self.clearance_at(&q, field));
+                let moved = space.moved(&curve[i + 1], velocity, height).filter(|q| space.contains(q));
+                let Some(q) = moved else { return best.map(|b| b.1) };
+                least = least.min(field.clearance_at(&q, unused));
                 if least <= 0.0 {
                     break;
                 }
@@ -157,22 +169,21 @@ impl<C: Space> Snake<'_, C> {
                 break;
             }
             // Where they are clear already, little is lacking.
-            let at_least = if least > 0.0 { 0.1 * self.params().spacing } else { stride };
+            let at_least = if least > 0.0 { 0.1 * spacing } else { stride };
             height += (march.wanted - least).max(at_least);
         }
         best.map(|b| b.1)
     }
 
-    fn clearance_at(&mut self, q: &C::State, field: &mut impl Field<C::State>) -> f64 {
-        self.velocity.resize(self.scale.len(), 0.0);
-        field.energy(q, &mut self.velocity);
-        field.clearance().unwrap_or(f64::INFINITY)
-    }
-
-    /// The state `by` to a side, if it is in the space.
-    fn aside(&mut self, q: &C::State, side: &[f64], by: f64) -> Option<C::State> {
+    /// Sets out to a side, for [`aside`](Self::aside).
+    fn head(&mut self, side: &[f64]) {
         self.velocity.clear();
         self.velocity.extend(side.iter().zip(&self.scale).map(|(x, s)| x / s));
+        self.unused.resize(side.len(), 0.0);
+    }
+
+    /// The state `by` to the side, if it is in the space.
+    fn aside(&self, q: &C::State, by: f64) -> Option<C::State> {
         self.space.moved(q, &self.velocity, by).filter(|moved| self.space.contains(moved))
     }
 }
@@ -264,11 +275,11 @@ impl Sight {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-fn unit(v: &mut [f64]) -> bool {
+pub(crate) fn unit(v: &mut [f64]) -> bool {
     let length = norm(v);
     v.iter_mut().for_each(|x| *x /= length);
     length > 0.0 && length.is_finite()

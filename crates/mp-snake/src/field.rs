@@ -15,6 +15,14 @@ pub trait Field<S> {
     fn clearance(&self) -> Option<f64> {
         None
     }
+
+    /// The signed clearance (m) at `q`, infinite where there is no such thing; what is in `gradient` afterwards is
+    /// of no meaning.
+    #[inline]
+    fn clearance_at(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
+        self.energy(q, gradient);
+        self.clearance().unwrap_or(f64::INFINITY)
+    }
 }
 
 impl<S, F: FnMut(&S, &mut [f64]) -> f64> Field<S> for F {
@@ -63,7 +71,7 @@ impl<F> Repulsion<F> {
 }
 
 impl<S, F: ClearanceGradient<S>> Field<S> for Repulsion<F> {
-    #[inline]
+    #[inline(always)]
     fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
         self.last = self.clearance.clearance_gradient(q, self.range, gradient);
         let near = 1.0 - self.last / self.range;
@@ -76,6 +84,11 @@ impl<S, F: ClearanceGradient<S>> Field<S> for Repulsion<F> {
     }
     fn clearance(&self) -> Option<f64> {
         Some(self.last)
+    }
+    #[inline]
+    fn clearance_at(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
+        self.last = self.clearance.clearance_gradient(q, self.range, gradient);
+        self.last
     }
 }
 

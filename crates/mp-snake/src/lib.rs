@@ -54,6 +54,7 @@ mod field;
 mod grid;
 mod image;
 mod local;
+mod mend;
 mod params;
 mod relax;
 pub mod risk;

@@ -87,7 +87,7 @@ pub struct SnakeCounters {
     pub straight: u64,
     /// Motions that were bent free.
     pub bent: u64,
-    /// Motions given up at once: their end is not free, or they are too long.
+    /// Motions given up at once: their end is not free, they are too long, or too many were lost.
     pub hopeless: u64,
     /// Motions that could not be bent free.
     pub lost: u64,
@@ -97,12 +97,21 @@ pub struct SnakeCounters {
     pub iterations: u64,
 }
 
+impl SnakeCounters {
+    /// All motions.
+    #[must_use]
+    pub fn motions(&self) -> u64 {
+        self.straight + self.bent + self.hopeless + self.lost
+    }
+}
+
 /// Goes straight, and where that is blocked sends a snake around what blocks it.
 ///
 /// A motion whose end is not free is given up at once. Else it is [bulged](Snake::bulge) out of what blocks it: where a
-/// bulge is free it is the edge, with one or two states between the ends. Where it is not, but its top is clear, a snake
-/// relaxes from there, a few steps. Snakes that relax in vain are limited to as many as motions were bent so far, and
-/// four, so that where there is nothing to bend around a motion costs some questions to the field and little more.
+/// bulge is free it is the edge, with one to five states between the ends. Where it is not, but its top is clear, a snake
+/// relaxes from there, a few steps. That costs many times as much and saves few: it is done for the first motion of
+/// which no bulge fits, and on while at most one in fifty bent ones was relaxed in vain. And where there is nothing
+/// to bend around snakes are tried less: so that at most a third of all motions, and sixteen, are lost.
 ///
 /// A motion ends where the straight one would. Each piece of a bent one has been found free by `check`; the field
 /// only guides. Its cost is its length in the metric of the space. Motions of more than 24 nodes are not bent. Paths are
@@ -127,8 +136,12 @@ const WANTED: f64 = 0.5;
 const PATIENCE: u32 = 3;
 const GAIN: f64 = 0.05;
 
-/// So many more snakes may relax in vain than motions were bent.
-const VAIN: u64 = 4;
+/// One snake may relax in vain for so many motions that were bent.
+const VAIN: u64 = 50;
+
+/// One motion in so many may be lost, and a few at first.
+const LOST: u64 = 3;
+const FIRST: u64 = 16;
 
 /// Motions that take more nodes are not bent.
 const LONGEST: f64 = 24.0;
@@ -173,12 +186,16 @@ where
     fn bend(&mut self, from: &C::State, to: &C::State) -> bool {
         let Self { check, field, snake, wanted, counters, curve } = self;
         snake.between_into(from, to, curve);
-        match snake.bulge(curve, field, *wanted, |corners| all_free(check, corners)) {
+        let free = |a: &C::State, b: &C::State, known| match check.check_extension(a, b, known) {
+            MotionCheck::Free { .. } => None,
+            MotionCheck::Collides { at } | MotionCheck::Undecided { at } => Some(at),
+        };
+        match snake.bulge(curve, field, *wanted, free) {
             Bulged::Fits => return true,
             Bulged::Nowhere => return false,
             Bulged::Laid => {}
         }
-        if counters.vain > counters.bent + VAIN {
+        if counters.vain > counters.bent / VAIN {
             return false;
         }
         let gain = GAIN * field.range();
@@ -247,7 +264,8 @@ where
             self.counters.straight += 1;
             return found(Curve::straight(), length);
         }
-        if length <= 0.0 || length > LONGEST * self.snake.params().spacing {
+        let long = length > LONGEST * self.snake.params().spacing;
+        if length <= 0.0 || long || self.counters.lost > FIRST + self.counters.motions() / LOST {
             self.counters.hopeless += 1;
             return Extension::Trapped;
         }

@@ -101,6 +101,8 @@ pub struct Snake<'c, C: Space> {
     /// Where each moving node goes, then what a node is moved by.
     step: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
+    /// Gradients nobody asked for.
+    pub(crate) unused: Vec<f64>,
     /// What bulges begin with.
     pub(crate) sight: Sight,
     pub(crate) next: Vec<C::State>,
@@ -152,6 +154,7 @@ impl<'c, C: Space> Snake<'c, C> {
             trial: Shape::default(),
             step: Vec::new(),
             velocity: Vec::new(),
+            unused: Vec::new(),
             sight: Sight::default(),
             next: Vec::new(),
             trace: Vec::new(),
@@ -189,7 +192,10 @@ impl<'c, C: Space> Snake<'c, C> {
         let wanted = (self.space.distance(from, to) / self.params.spacing).ceil();
         let parts = wanted.clamp(4.0, (MOST_NODES - 1) as f64) as usize;
         curve.clear();
-        curve.extend((0..=parts).map(|i| self.space.interpolate(from, to, i as f64 / parts as f64)));
+        let part = 1.0 / parts as f64;
+        curve.push(from.clone());
+        curve.extend((1..parts).map(|i| self.space.interpolate(from, to, i as f64 * part)));
+        curve.push(to.clone());
     }
 
     /// The energy of a curve.

@@ -35,6 +35,9 @@ pub enum FlatWorldError {
 /// Most edges: memory, not principle.
 const MAX_EDGES: usize = 20_000_000;
 
+/// So many edges are remembered on the way along a segment.
+const SEEN: usize = 8;
+
 /// The name edges of the walls have for a polygon: after all others.
 const WALLS: u32 = u32::MAX - 1;
 
@@ -186,6 +189,24 @@ impl FlatWorld {
         if self.contains(p) { -distance } else { distance }
     }
 
+    /// Whether `p` is in no obstacle and farther than `distance` (m) from every one. Often one look into the grid.
+    #[must_use]
+    pub fn is_clear(&self, p: &Point2<f64>, distance: f64) -> bool {
+        if let Some(cells) = &self.cells
+            && let Some(at) = cells.locate(p)
+        {
+            let (cell, _) = cells.cell(at);
+            let off = (p - cells.center(at.0, at.1)).norm() + cells.slack;
+            if cell.kind == Kind::Solid || cell.from_center + off < distance {
+                return false;
+            }
+            if cell.from_center - off > distance {
+                return !self.contains(p);
+            }
+        }
+        self.nearest(p).is_none_or(|near| near.distance > distance) && !self.contains(p)
+    }
+
     /// Where the segment from `a` to `b` and the boundary of an obstacle are nearest to each other, if that is less
     /// than `below` metres. Says nothing about which side of the boundary the segment is on.
     #[must_use]
@@ -198,9 +219,17 @@ impl FlatWorld {
         let segment = Edge::new([*a, *b], 0);
         let mut best = (below, None);
         let slack = self.cells.as_ref().map_or(f64::INFINITY, |cells| cells.slack);
+        // Cells next to each other have most of their edges in common.
+        let mut seen = [u32::MAX; SEEN];
+        let mut at = 0;
         let mut look = |i: u32, below: f64| -> f64 {
+            if seen.contains(&i) {
+                return below;
+            }
+            seen[at] = i;
+            at = (at + 1) % SEEN;
             let edge = &self.edges[i as usize];
-            if edge.is_beside(&segment, below + slack) {
+            if edge.is_beside(&segment, below + slack) || segment.is_beside(edge, below + slack) {
                 return below;
             }
             match edge.nearest_to(&segment, below) {
@@ -324,6 +353,10 @@ mod tests {
                     prop_assert!(((near.point - p).norm() - near.distance).abs() < 1e-12);
                     let signed = if inside { -near.distance } else { near.distance };
                     prop_assert_eq!(world.signed_distance(p), signed);
+                    for distance in [0.0, below, 10.0 * below.sqrt(), 0.999 * near.distance, 1.001 * near.distance] {
+                        let close = (near.distance - distance).abs() < 1e-9;
+                        prop_assert!(close || world.is_clear(p, distance) == (signed > distance));
+                    }
                 }
             }
             // Upright and level ones too.

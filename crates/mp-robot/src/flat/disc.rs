@@ -172,6 +172,13 @@ impl MotionValidity<Vector2<f64>> for DiscRobot {
             return MotionCheck::Undecided { at: 0.0 };
         }
         let [a, b] = [from, to].map(|q| Point2::from(*q));
+        if a == b {
+            return match self.world.is_clear(&a, self.radius + self.tolerance) {
+                true => MotionCheck::Free { clearance: self.tolerance },
+                false if self.world.is_clear(&a, self.radius) => MotionCheck::Undecided { at: 0.0 },
+                false => MotionCheck::Collides { at: 0.0 },
+            };
+        }
         // A segment that crosses no boundary is where one of its ends is.
         if known == KnownFree::Neither && self.world.contains(&a) {
             return MotionCheck::Collides { at: 0.0 };

@@ -44,25 +44,25 @@ impl Plain {
         self.walls.is_some_and(beyond) || near.any(|(_, rings)| within(rings, p))
     }
 
-    /// The distance of the nearest edge from a segment.
-    pub(super) fn nearest(&self, way: &Segment) -> f64 {
+    /// The distance of the nearest edge from a segment, or `reach` if that is less.
+    pub(super) fn nearest(&self, way: &Segment, reach: f64) -> f64 {
         let look = |edges: &[Segment], least: f64| {
             let near = |least: f64, e: &Segment| {
                 if boxes_apart(e, way) < least { least.min(apart(e, way)) } else { least }
             };
             edges.iter().fold(least, near)
         };
-        let gap = |i: usize| boxes_apart(&self.boxes[i], way);
-        let edges = |i: usize| &self.edges[if i == 0 { 0 } else { self.ends[i - 1] }..self.ends[i]];
-        // What seems nearest first: then most of the others are seen to be farther by their boxes.
-        let first = (0..self.boxes.len()).min_by(|&i, &j| gap(i).total_cmp(&gap(j)));
-        let mut least = first.map_or(f64::INFINITY, |i| look(edges(i), f64::INFINITY));
-        for i in (0..self.boxes.len()).filter(|&i| Some(i) != first) {
-            if gap(i) < least {
-                least = look(edges(i), least);
+        let (from, to) = (way[0].inf(&way[1]), way[0].sup(&way[1]));
+        let mut least = reach;
+        let mut begin = 0;
+        for ([low, high], &end) in self.boxes.iter().zip(&self.ends) {
+            let gap = (low - to).sup(&(from - high));
+            if gap.x.max(gap.y) < least {
+                least = look(&self.edges[begin..end], least);
             }
+            begin = end;
         }
-        look(&self.edges[self.ends.last().copied().unwrap_or(0)..], least)
+        look(&self.edges[begin..], least)
     }
 
     /// The first points of all rings.
@@ -114,9 +114,9 @@ pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
         // The point of the side nearest to the origin.
         let square = side.dot(&side);
         let along = if square > 0.0 { (-a.dot(&side) / square).clamp(0.0, 1.0) } else { 0.0 };
-        least = least.min((a + along * side).norm()).min(b.norm());
+        least = least.min((a + along * side).norm_squared()).min(b.norm_squared());
     }
-    if left == 4 || right == 4 { 0.0 } else { least }
+    if left == 4 || right == 4 { 0.0 } else { least.sqrt() }
 }
 
 /// A lower bound on the distance of two segments: that of the boxes around them, in the greater axis.

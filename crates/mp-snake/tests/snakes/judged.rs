@@ -2,8 +2,8 @@
 
 use crate::worlds::{Judge, Point, World, square};
 use mp_cspace::testkit::check_local_planner;
-use mp_cspace::{Direction, Extension, LocalPlanner, MotionValidity, Path, Reach, Rng, Space};
-use mp_snake::{Params, Repulsion, SnakePlanner, relax, unbent};
+use mp_cspace::{Direction, Extension, KnownFree, LocalPlanner, MotionValidity, Path, Reach, Rng, Space};
+use mp_snake::{Bulged, Params, Repulsion, Snake, SnakePlanner, relax, unbent};
 use rand::RngExt;
 
 /// Both ways round, steps and all the way, in ten thousand worlds.
@@ -37,6 +37,44 @@ fn bent_edges_are_free() {
         bent += u32::from(!motion.edge.states().is_empty());
     }
     assert!(bent > 1000 && bent > 2 * blocked, "{bent} bent, {blocked} lost");
+}
+
+/// Each piece of a bulge that fits was asked about, told an end that was known to be free; also where corners were
+/// added on the way.
+#[test]
+fn bulges_ask_about_every_piece() {
+    let space = square();
+    let (mut plain, mut mended) = (0, 0);
+    for seed in 0..10_000 {
+        let mut rng = Rng::seed(seed);
+        let world = World::random(&mut rng);
+        let mut check = world.check(&space);
+        let [a, b] = [(); 2].map(|()| space.sample_uniform(&mut rng));
+        if !(check.check_motion(&a, &a).is_free() && check.check_motion(&b, &b).is_free()) {
+            continue;
+        }
+        let mut field = Repulsion::new(world.field(), 0.1).unwrap();
+        let mut snake = Snake::new(&space, Params::for_edges(0.1).unwrap()).unwrap();
+        let mut curve = snake.between(&a, &b);
+        let (mut free, mut ends) = (Vec::new(), vec![a, b]);
+        let bulged = snake.bulge(&mut curve, &mut field, 0.05, |from, to, known| {
+            assert!(known != KnownFree::From || ends.contains(from), "seed {seed}");
+            assert!(known != KnownFree::To || ends.contains(to), "seed {seed}");
+            let failed = check.check_extension(from, to, known).failed_at();
+            if failed.is_none() {
+                free.push((*from, *to));
+                ends.extend([*from, *to]);
+            }
+            failed
+        });
+        if bulged == Bulged::Fits {
+            assert_eq!((curve[0], curve[curve.len() - 1]), (a, b));
+            assert!(curve.windows(2).all(|w| free.contains(&(w[0], w[1]))), "seed {seed}");
+            let count = if curve.len() > 4 { &mut mended } else { &mut plain };
+            *count += 1;
+        }
+    }
+    assert!(plain > 500 && mended > 100, "{plain} as they were laid, {mended} with more corners");
 }
 
 /// A path through random free states, relaxed: free, of the same ends, no longer, of less energy or the same path.

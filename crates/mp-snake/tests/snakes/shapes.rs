@@ -145,7 +145,7 @@ fn energy_never_rises() {
         let mut field = With::new(repulsion, pull, 0.2).unwrap();
         let mut snake = Snake::new(&space, params()).unwrap();
         let mut curve = snake.between(&a, &b);
-        snake.bulge(&mut curve, &mut field, 0.05, |_| false);
+        snake.bulge(&mut curve, &mut field, 0.05, |_, _, _| Some(0.5));
         let mut watched = 0;
         snake.deform(&mut curve, &mut field, |moment| {
             assert_eq!(moment.iteration, watched);
@@ -168,7 +168,7 @@ fn a_bulge_finds_a_side() {
     let mut snake = Snake::new(&space, params()).unwrap();
     let mut curve = snake.between(&Point::new(-0.8, 0.0), &Point::new(0.8, 0.0));
     let before = snake.energy(&curve, &mut field).total();
-    snake.bulge(&mut curve, &mut field, 0.05, |_| false);
+    snake.bulge(&mut curve, &mut field, 0.05, |_, _, _| Some(0.5));
     assert!(snake.energy(&curve, &mut field).total() < before);
     snake.deform(&mut curve, &mut field, |_| false);
     assert!(curve.iter().all(|q| world.distance(q).0 > 0.0 && q.y <= 1e-9));

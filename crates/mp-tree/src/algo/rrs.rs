@@ -16,9 +16,10 @@
 //!
 //! So it is [RRT](super::rrt) with the local planner [`SnakePlanner`], and an end that is in collision itself is not
 //! rescued. What differs from the paper: before a snake relaxes it is laid to the side to which the obstacle pushes it
-//! as a whole ([`Snake::bulge`](mp_snake::Snake::bulge)), and where that is free it does not relax at all; it stops as
-//! soon as it is free with some clearance; and the energies are those of [`Snake`](mp_snake::Snake), with its remarks on
-//! the formulas.
+//! as a whole ([`Snake::bulge`](mp_snake::Snake::bulge)), with a corner more where it grazes, and where that is free it
+//! does not relax at all; few do, for relaxing takes many times as long and saves little more. It stops as soon as it is
+//! free with some clearance. At most a third of all motions is tried in vain. The energies are those of
+//! [`Snake`](mp_snake::Snake), with its remarks on the formulas.
 //!
 //! **When to use it.** Where the clearance and its gradient are cheap to ask (in the plane, by a distance map, some
 //! nanoseconds) and obstacles are many and small: then much longer steps can be taken, and far fewer

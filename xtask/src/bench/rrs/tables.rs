@@ -31,6 +31,8 @@ struct Six {
     safety: f64,
     /// Processor time per iteration, microseconds.
     per_iteration: f64,
+    /// Iterations of all trials.
+    all_iterations: f64,
 }
 
 /// Name in files, title, axis and value of each measure.
@@ -75,12 +77,19 @@ impl<'a> Found<'a> {
             time: 1e3 * mean(runs.iter().map(|r| r.seconds)),
             safety: 100.0 * mean(solved().map(|r| r.safety)),
             per_iteration: 1e6 * total(&|r| r.seconds) / iterations.max(1.0),
+            all_iterations: iterations,
         })
     }
 
     /// A measure over all steps.
     fn over(&self, world: &str, planner: &str, of: impl Fn(&Six) -> f64) -> Vec<f64> {
         self.plan.steps.iter().filter_map(|&step| self.six(world, planner, step).map(|s| of(&s))).collect()
+    }
+
+    /// Microseconds of all trials at all steps together, by all their iterations.
+    fn per_iteration(&self, world: &str, planner: &str) -> f64 {
+        let sum = |of: fn(&Six) -> f64| self.over(world, planner, of).iter().sum::<f64>();
+        sum(|s| s.per_iteration * s.all_iterations) / sum(|s| s.all_iterations)
     }
 
     /// A row for each world and planner: means over all steps, with the least and greatest.
@@ -138,22 +147,19 @@ impl<'a> Found<'a> {
                 cell("rrt-connect"),
             ]);
         }
-        let mut ratios = Table::new([
-            "world",
-            "time per iteration, RRS : RRT",
-            "up to Δq",
-            "time of a trial, RRS : RRT",
-            "up to Δq ",
-        ]);
+        let heads = ["time of an iteration", "mean of those at each Δq", "time of a trial"];
+        let heads = heads.iter().flat_map(|h| [format!("{h}, RRS : RRT"), format!("{h}, up to Δq")]);
+        let mut ratios = Table::new(["world".to_owned()].into_iter().chain(heads));
         for world in WORLDS {
-            let ratio = |a: &str, b: &str, of: &dyn Fn(&Six) -> f64| {
-                let of = |p| mean(self.over(world, p, of).into_iter());
-                format!("{:.2}", of(a) / of(b))
-            };
+            let mean_of = |of: fn(&Six) -> f64| move |p: &str| mean(self.over(world, p, of).into_iter());
             let pairs = [("rrs", "rrt"), ("rrs-upto", "rrt-upto")];
             let mut row = vec![world.to_owned()];
-            row.extend(pairs.map(|(a, b)| ratio(a, b, &|s| s.per_iteration)));
-            row.extend(pairs.map(|(a, b)| ratio(a, b, &|s| s.time)));
+            let mut put = |of: &dyn Fn(&str) -> f64| {
+                row.extend(pairs.map(|(a, b)| format!("{:.2}", of(a) / of(b))));
+            };
+            put(&|p| self.per_iteration(world, p));
+            put(&mean_of(|s| s.per_iteration));
+            put(&mean_of(|s| s.time));
             ratios.rows.push(row);
         }
         format!("{}\n\n{}\n", table.markdown(), ratios.markdown())
@@ -271,6 +277,9 @@ mod tests {
         assert_eq!(found.summary().rows.len(), 4 * 5);
         assert_eq!(found.each().rows.len(), 4 * 5 * 2);
         let text = found.markdown();
+        // 2 µs by 4 ms in 3,000 iterations.
+        assert!((found.per_iteration("low", "rrt") - 8.0 / 6.0).abs() < 1e-9);
+        assert!(text.contains("| low | 1.50 | 1.00 |"), "{text}");
         assert!(text.contains("mean 67.1") && text.contains("50.0 (50.0 – 50.0)"), "{text}");
         assert_eq!(found.charts().len(), 24);
         assert!(found.charts().iter().all(|(_, chart)| chart.is_ok()));
