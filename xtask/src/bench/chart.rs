@@ -44,7 +44,7 @@ pub(crate) struct Labels<'a> {
 const WIDTH: u32 = 1100;
 const LEGEND: u32 = 250;
 
-const COLOURS: [RGBColor; 8] = [
+const COLOURS: [RGBColor; 10] = [
     RGBColor(0x1f, 0x77, 0xb4),
     RGBColor(0xd6, 0x27, 0x28),
     RGBColor(0x2c, 0xa0, 0x2c),
@@ -53,6 +53,8 @@ const COLOURS: [RGBColor; 8] = [
     RGBColor(0x55, 0x55, 0x55),
     RGBColor(0x17, 0xa2, 0xb8),
     RGBColor(0xb0, 0x59, 0x8a),
+    RGBColor(0x8c, 0x56, 0x4b),
+    RGBColor(0xbc, 0xbd, 0x22),
 ];
 
 /// Draws curves over two logarithmic axes; x has a mark at each of `marks`, or where it suits.
