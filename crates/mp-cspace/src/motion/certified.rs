@@ -48,13 +48,13 @@ where
     C: Space,
     V: Clearance<C::State> + MotionBound<C::State>,
 {
-    /// Certifies motions in `space` to `tolerance` metres, by strides of 1% of its extent.
+    /// Certifies motions in `space` to `tolerance` metres, by strides of 2% of its extent.
     ///
     /// # Errors
     /// When the tolerance is not positive and finite.
     pub fn new(space: &'c C, valid: V, tolerance: f64) -> Result<Self, ParameterError> {
         let tolerance = ParameterError::positive("the tolerance", tolerance)?;
-        Ok(Self { space, valid, tolerance, stride: 0.01 * space.extent(), open: VecDeque::new() })
+        Ok(Self { space, valid, tolerance, stride: 0.02 * space.extent(), open: VecDeque::new() })
     }
 
     /// The same with strides of `stride` metres: no clearance beyond that (and the margin) is asked
