@@ -88,7 +88,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         self.tolerance
     }
 
-    /// Pairs of balls and of triangles compared so far.
+    /// Pairs of boxes compared so far.
     #[must_use]
     pub fn comparisons(&self) -> u64 {
         self.sweep.compared()

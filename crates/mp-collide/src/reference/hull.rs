@@ -11,8 +11,8 @@ impl Hull {
         Self([a, b, c, d, e, f])
     }
 
-    /// How far the hull is ahead of a triangle in some direction, if possible by `enough`, and that direction. Tries `first`, or
-    /// the normal of the triangle when that is zero; then turns away from the points that are in the way
+    /// How far the hull is ahead of a triangle in some direction, if possible by `enough`, and that direction. Tries
+    /// `first`, or the normal of the triangle when that is zero; then turns away from the points that are in the way
     /// (Chung and Wang, *Quick collision detection of polytopes in virtual environments*, VRST 1996).
     pub(super) fn ahead_of(
         &self,

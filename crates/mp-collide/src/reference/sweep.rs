@@ -134,7 +134,7 @@ const MAX_COMPARED: u64 = 20_000_000;
 const BEND: f64 = 20.0;
 
 impl Sweep {
-    /// Pairs of balls and of triangles compared so far.
+    /// Pairs of boxes compared so far.
     #[must_use]
     pub fn compared(&self) -> u64 {
         self.compared

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// Proves straight motions of a disc, by looking at every edge: no grid, other formulas than the robot's.
 ///
 /// Free means: clearance of at least the tolerance all along, a tenth of the robot's, so that it proves whatever
-/// [`DiscRobot`] accepts. Clearances beyond the radius are reported as about that. O(edges) for each motion.
+/// [`DiscRobot`] accepts. O(edges) for each motion.
 #[derive(Clone, Debug)]
 pub struct DiscVerifier {
     plain: Arc<Plain>,
@@ -43,8 +43,11 @@ impl MotionValidity<Vector2<f64>> for DiscVerifier {
         if self.plain.inside(&way[0]) {
             return MotionCheck::Collides { at: 0.0 };
         }
+        // Most often something is near, and what is farther need not be looked at.
         let reach = 2.0 * (self.radius + self.tolerance);
-        let clearance = self.plain.nearest(&way, reach) - self.radius;
+        let near = self.plain.nearest(&way, reach);
+        let clearance =
+            if near < reach { near } else { self.plain.nearest(&way, f64::INFINITY) } - self.radius;
         if clearance >= self.tolerance {
             return MotionCheck::Free { clearance };
         }
