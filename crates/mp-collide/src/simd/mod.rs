@@ -184,7 +184,10 @@ mod tests {
                 a.abs(),
                 a.min(b),
                 a.max(b),
+                a.square(),
                 L::splat(self.0[0][3]),
+                L::twice(&std::array::from_fn(|i| self.0[0][i])),
+                L::halves(self.0[0][5], self.0[1][2]),
                 c,
             ];
             let mut out = vec![[0.0; 8]; results.len()];
@@ -230,6 +233,7 @@ mod tests {
         for _ in 0..2000 {
             let input: [[f32; 8]; 3] = std::array::from_fn(|_| std::array::from_fn(|_| next()));
             let (expected, mask) = run(Isa::Scalar, Each(input));
+            let mut one_register: Option<[[u32; 8]; 2]> = None;
             for isa in Isa::available() {
                 let (got, got_mask) = run(isa, Each(input));
                 assert_eq!(got_mask, mask, "{isa:?} {input:?}");
@@ -243,6 +247,11 @@ mod tests {
                         let both = [a * b + c, a.mul_add(b, c)];
                         assert!(both.iter().any(|x| same(*x, got)), "{isa:?}: {a} · {b} + {c} = {got}");
                     }
+                }
+                // The same lanes compiled twice: the same bits, with and without AVX-512.
+                if let Isa::Avx2 | Isa::Avx512 = isa {
+                    let bits = fused.map(|r| r.map(|x| if x.is_nan() { f32::NAN } else { x }.to_bits()));
+                    assert_eq!(bits, *one_register.get_or_insert(bits), "{isa:?} {input:?}");
                 }
             }
         }

@@ -3,6 +3,7 @@
 mod bad_input;
 mod common;
 mod filled;
+mod lanes;
 mod meshes;
 mod motions;
 mod parry;
