@@ -1,6 +1,6 @@
 //! The curve a snake begins with where the straight one is blocked.
 
-use crate::snake::norm;
+use crate::snake::{NODES, norm};
 use crate::{Field, Snake};
 use mp_cspace::{KnownFree, Space};
 use std::ops::Range;
@@ -213,6 +213,15 @@ pub(crate) struct Sight {
 }
 
 impl Sight {
+    pub(crate) fn with_room(dim: usize) -> Self {
+        Self {
+            way: Vec::with_capacity(dim),
+            clearances: Vec::with_capacity(NODES),
+            pushes: Vec::with_capacity(NODES * dim),
+            sides: Vec::with_capacity(4 * dim),
+        }
+    }
+
     fn least(&self) -> f64 {
         self.clearances.iter().copied().fold(f64::INFINITY, f64::min)
     }

@@ -15,6 +15,8 @@ pub struct Grid {
     per_metre: f64,
     width: usize,
     height: usize,
+    /// The last column and row but one.
+    last: [u32; 2],
     values: Vec<f64>,
 }
 
@@ -40,7 +42,13 @@ impl Grid {
             let expected = "a whole number of rows, at least two by two in all";
             return Err(ParameterError { name: "the number of cells", expected, value: values.len() as f64 });
         }
-        Ok(Self { origin, cell, per_metre: 1.0 / cell, width, height: values.len() / width, values })
+        let height = values.len() / width;
+        let many = |_| {
+            let (name, expected) = ("the number of columns or rows", "at most 2³²");
+            ParameterError { name, expected, value: width.max(height) as f64 }
+        };
+        let last = [u32::try_from(width - 2).map_err(many)?, u32::try_from(height - 2).map_err(many)?];
+        Ok(Self { origin, cell, per_metre: 1.0 / cell, width, height, last, values })
     }
 
     /// The map of a function of the middle of each cell.
@@ -101,17 +109,17 @@ impl Grid {
     #[inline(always)]
     #[must_use]
     pub fn at(&self, p: &Vector2<f64>) -> (f64, Vector2<f64>) {
-        let (width, height) = (self.width, self.height);
-        let axis = |x: f64, n: usize| {
+        let width = self.width;
+        let axis = |x: f64, last: u32| {
             let x = x * self.per_metre - 0.5;
-            let most = (n - 1) as f64;
+            let most = f64::from(last) + 1.0;
             let inside = f64::from(u8::from(x > 0.0 && x < most));
             let x = if x > 0.0 { x.min(most) } else { 0.0 };
-            let low = (x as usize).min(n - 2);
-            (low, x - low as f64, inside)
+            let low = (x as u32).min(last);
+            (low as usize, x - f64::from(low), inside)
         };
-        let (i, u, inside_x) = axis(p.x - self.origin.x, width);
-        let (j, v, inside_y) = axis(p.y - self.origin.y, height);
+        let (i, u, inside_x) = axis(p.x - self.origin.x, self.last[0]);
+        let (j, v, inside_y) = axis(p.y - self.origin.y, self.last[1]);
         let row = &self.values[j * width + i..][..width + 2];
         let (a, b, c, d) = (row[0], row[1], row[width], row[width + 1]);
         let (low, high) = (a + (b - a) * u, c + (d - c) * u);

@@ -1,5 +1,6 @@
 //! The local planner whose edges bend.
 
+use crate::snake::NODES;
 use crate::{Bulged, Params, Repulsion, Rest, Snake, SnakeError};
 use mp_cspace::{
     ClearanceGradient, Direction, Extension, KnownFree, LocalPlanner, Motion, MotionCheck, MotionValidity,
@@ -129,7 +130,8 @@ pub struct SnakePlanner<'c, C: Space, M, F> {
     curve: Vec<C::State>,
 }
 
-/// A snake is checked as soon as all its nodes are this part of the range away from obstacles.
+/// A snake is checked as soon as all its nodes are this part of the range away from obstacles, and given up when one
+/// is as deep in them: few of those come out.
 const WANTED: f64 = 0.5;
 
 /// A snake in collision that for this many steps does not get less deep, by this part of the range, is given up.
@@ -173,7 +175,14 @@ where
     ) -> Result<Self, SnakeError> {
         let wanted = WANTED * field.range();
         let snake = Snake::new(space, params)?;
-        Ok(Self { check, field, snake, wanted, counters: SnakeCounters::default(), curve: Vec::new() })
+        Ok(Self {
+            check,
+            field,
+            snake,
+            wanted,
+            counters: SnakeCounters::default(),
+            curve: Vec::with_capacity(NODES),
+        })
     }
 
     /// What was done so far.
@@ -202,6 +211,9 @@ where
         let (mut passed, mut iterations, mut best) = (false, 0, (0, f64::NEG_INFINITY));
         let rest = snake.deform(curve, field, |moment| {
             iterations = moment.iteration;
+            if moment.clearance < -*wanted {
+                return true;
+            }
             if moment.clearance > best.1 + gain {
                 best = (iterations, moment.clearance);
             }

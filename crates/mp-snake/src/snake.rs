@@ -124,11 +124,24 @@ pub(crate) struct Shape {
 }
 
 impl Shape {
+    fn with_room(dim: usize) -> Self {
+        Self {
+            energy: Energy::default(),
+            ways: Vec::with_capacity(NODES * dim),
+            lengths: Vec::with_capacity(NODES),
+            pushes: Vec::with_capacity(NODES * dim),
+            clearances: Vec::with_capacity(NODES),
+        }
+    }
+
     /// The least clearance of a node between the ends.
     pub(crate) fn clearance(&self) -> f64 {
         self.clearances.iter().copied().fold(f64::INFINITY, f64::min)
     }
 }
+
+/// There is room for so many nodes from the beginning: all that edges take.
+pub(crate) const NODES: usize = 32;
 
 /// Curves of more nodes are not made.
 const MOST_NODES: usize = 10_000;
@@ -145,18 +158,19 @@ impl<'c, C: Space> Snake<'c, C> {
     /// # Errors
     /// When a parameter is out of range, or the space knows no velocities.
     pub fn new(space: &'c C, params: Params) -> Result<Self, SnakeError> {
+        let dim = space.dim();
         Ok(Self {
             space,
             params: params.checked()?,
             scale: scale(space)?,
             bands: Vec::new(),
-            now: Shape::default(),
-            trial: Shape::default(),
-            step: Vec::new(),
-            velocity: Vec::new(),
-            unused: Vec::new(),
-            sight: Sight::default(),
-            next: Vec::new(),
+            now: Shape::with_room(dim),
+            trial: Shape::with_room(dim),
+            step: Vec::with_capacity(NODES * dim),
+            velocity: Vec::with_capacity(dim),
+            unused: Vec::with_capacity(dim),
+            sight: Sight::with_room(dim),
+            next: Vec::with_capacity(NODES),
             trace: Vec::new(),
         })
     }
@@ -237,7 +251,7 @@ impl<'c, C: Space> Snake<'c, C> {
             let before = now.energy.total();
             let Some(part) = self.advance(curve, field, &mut now) else { break Rest::Stagnated };
             self.trace.push(now.energy);
-            let dim = self.scale.len();
+            let dim = self.space.dim();
             let farthest = self.step.chunks_exact(dim).map(norm).fold(0.0, f64::max) * part;
             if farthest <= self.params.tolerance * self.params.spacing {
                 break Rest::Converged;
@@ -252,7 +266,7 @@ impl<'c, C: Space> Snake<'c, C> {
 
     /// Measures a curve: its energy, its ways and the forces on it.
     fn measure(&mut self, curve: &[C::State], field: &mut impl Field<C::State>, shape: &mut Shape) {
-        let (dim, h) = (self.scale.len(), self.params.spacing);
+        let (dim, h) = (self.space.dim(), self.params.spacing);
         let parts = curve.len().saturating_sub(1);
         shape.ways.resize(parts * dim, 0.0);
         shape.lengths.clear();
@@ -263,7 +277,7 @@ impl<'c, C: Space> Snake<'c, C> {
         }
         let ways = &shape.ways;
         let bends: f64 =
-            (1..parts).map(|i| (0..dim).map(|k| bend(ways, dim, i, k).powi(2)).sum::<f64>()).sum();
+            ways.iter().zip(ways.iter().skip(dim)).map(|(came, goes)| (goes - came).powi(2)).sum();
         let stretched: f64 = ways.iter().map(|x| x * x).sum();
         let length: f64 = shape.lengths.iter().sum();
         let Params { membrane, plate, straighten, .. } = self.params;
@@ -273,18 +287,19 @@ impl<'c, C: Space> Snake<'c, C> {
         let inner = parts.saturating_sub(1);
         shape.pushes.resize(inner * dim, 0.0);
         shape.clearances.clear();
-        for (i, q) in curve.iter().enumerate().take(parts).skip(1) {
-            let push = &mut shape.pushes[(i - 1) * dim..i * dim];
+        let pairs = shape.ways.chunks_exact(dim).zip(shape.ways.chunks_exact(dim).skip(1));
+        let pushes = shape.pushes.chunks_exact_mut(dim);
+        for (q, (push, (came, goes))) in curve.iter().skip(1).zip(pushes.zip(pairs)) {
             shape.energy.external += h * field.energy(q, push);
             shape.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
             push.iter_mut().zip(&self.scale).for_each(|(x, s)| *x /= s);
-            across(push, &shape.ways[(i - 1) * dim..(i + 1) * dim]);
+            across(push, came, goes);
         }
     }
 
     /// The implicit step of all nodes, from the forces on the curve.
     fn aim(&mut self, shape: &Shape) {
-        let (dim, parts) = (self.scale.len(), shape.lengths.len());
+        let (dim, parts) = (self.space.dim(), shape.lengths.len());
         let Params { membrane, plate, straighten, spacing: h, pace, .. } = self.params;
         let bent = |i: usize, k: usize| {
             if i == 0 || i >= parts { 0.0 } else { bend(&shape.ways, dim, i, k) }
@@ -340,7 +355,7 @@ impl<'c, C: Space> Snake<'c, C> {
     fn displaced(&mut self, curve: &[C::State], part: f64, out: &mut Vec<C::State>) {
         out.clear();
         out.extend_from_slice(curve);
-        let dim = self.scale.len();
+        let dim = self.space.dim();
         for (step, q) in self.step.chunks_exact(dim).zip(&mut out[1..]) {
             self.velocity.clear();
             self.velocity.extend(step.iter().zip(&self.scale).map(|(x, s)| x / s));
@@ -353,7 +368,7 @@ impl<'c, C: Space> Snake<'c, C> {
 
     /// The number of degrees of freedom.
     pub(crate) fn dim(&self) -> usize {
-        self.scale.len()
+        self.space.dim()
     }
 }
 
@@ -368,14 +383,13 @@ pub(crate) fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Takes from `push` its part along the curve: the two ways that meet at the node.
+/// Takes from `push` its part along the curve: the way that comes to the node and the one that goes on.
 #[inline]
-fn across(push: &mut [f64], ways: &[f64]) {
-    let dim = push.len();
-    let along = |k: usize| ways[k] + ways[dim + k];
-    let square: f64 = (0..dim).map(|k| along(k) * along(k)).sum();
+fn across(push: &mut [f64], came: &[f64], goes: &[f64]) {
+    let along = || came.iter().zip(goes).map(|(c, g)| c + g);
+    let square: f64 = along().map(|a| a * a).sum();
     if square > 0.0 {
-        let part: f64 = (0..dim).map(|k| push[k] * along(k)).sum::<f64>() / square;
-        (0..dim).for_each(|k| push[k] -= part * along(k));
+        let part: f64 = push.iter().zip(along()).map(|(p, a)| p * a).sum::<f64>() / square;
+        push.iter_mut().zip(along()).for_each(|(p, a)| *p -= part * a);
     }
 }

@@ -111,10 +111,10 @@ impl Cells {
             nearest
         });
         let from_center = nearest.sqrt();
-        let kind = match (from_center > reach, self.row_contains(&center, edges)) {
-            (false, _) => Kind::Mixed,
-            (true, true) => Kind::Solid,
-            (true, false) => Kind::Open,
+        let kind = match from_center > reach {
+            false => Kind::Mixed,
+            true if self.row_contains(&center, edges) => Kind::Solid,
+            true => Kind::Open,
         };
         let first = self.candidates.len();
         self.cells.push(Cell { kind, first: first as u32, from_center });

@@ -192,19 +192,18 @@ impl FlatWorld {
     /// Whether `p` is in no obstacle and farther than `distance` (m) from every one. Often one look into the grid.
     #[must_use]
     pub fn is_clear(&self, p: &Point2<f64>, distance: f64) -> bool {
-        if let Some(cells) = &self.cells
-            && let Some(at) = cells.locate(p)
-        {
-            let (cell, _) = cells.cell(at);
-            let off = (p - cells.center(at.0, at.1)).norm() + cells.slack;
-            if cell.kind == Kind::Solid || cell.from_center + off < distance {
-                return false;
-            }
-            if cell.from_center - off > distance {
-                return !self.contains(p);
-            }
+        let found = self.cells.as_ref().and_then(|cells| Some((cells, cells.locate(p)?)));
+        let Some((cells, at)) = found else {
+            return self.nearest(p).is_none_or(|near| near.distance > distance) && !self.contains(p);
+        };
+        let (cell, candidates) = cells.cell(at);
+        let off = (p - cells.center(at.0, at.1)).norm() + cells.slack;
+        if cell.kind == Kind::Solid || cell.from_center + off < distance {
+            return false;
         }
-        self.nearest(p).is_none_or(|near| near.distance > distance) && !self.contains(p)
+        let near = |i: &u32| self.edges[*i as usize].squared(p).sqrt() <= distance;
+        let far = cell.from_center - off > distance;
+        (far || !candidates.iter().any(near)) && !self.contains(p)
     }
 
     /// Where the segment from `a` to `b` and the boundary of an obstacle are nearest to each other, if that is less

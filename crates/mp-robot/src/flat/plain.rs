@@ -2,18 +2,24 @@
 
 use mp_geom::flat::{FlatWorld, Polygon};
 use nalgebra::{Point2, Vector2};
+use std::ops::Range;
 
 type Segment = [Point2<f64>; 2];
+
+/// Lower and upper corner of a box.
+type Around = [Point2<f64>; 2];
 
 /// Obstacles as lists of points.
 #[derive(Clone, Debug)]
 pub(super) struct Plain {
     /// The rings of each polygon.
     polygons: Vec<Vec<Vec<Point2<f64>>>>,
-    /// A diagonal of the box around each polygon.
-    boxes: Vec<Segment>,
+    /// The box around each polygon.
+    boxes: Vec<Around>,
     walls: Option<[Point2<f64>; 2]>,
     pub(super) edges: Vec<Segment>,
+    /// The box around each edge.
+    around: Vec<Around>,
     /// Where the edges of each polygon end; behind them those of the walls.
     ends: Vec<usize>,
 }
@@ -26,14 +32,15 @@ impl Plain {
         for rings in &polygons {
             edges.extend(rings.iter().flat_map(|ring| sides(ring)));
             ends.push(edges.len());
-            boxes.push(around(rings));
+            boxes.push(around(rings.iter().flatten()));
         }
         let walls = world.walls();
         if let Some([low, high]) = walls {
             let ring = [low, Point2::new(low.x, high.y), high, Point2::new(high.x, low.y)];
             edges.extend(sides(&ring));
         }
-        Self { polygons, boxes, walls, edges, ends }
+        let around = edges.iter().map(around).collect();
+        Self { polygons, boxes, walls, edges, around, ends }
     }
 
     /// Whether a point is in an obstacle; right for points not within rounding of a boundary.
@@ -44,25 +51,35 @@ impl Plain {
         self.walls.is_some_and(beyond) || near.any(|(_, rings)| within(rings, p))
     }
 
-    /// The distance of the nearest edge from a segment, or `reach` if that is less.
-    pub(super) fn nearest(&self, way: &Segment, reach: f64) -> f64 {
-        let look = |edges: &[Segment], least: f64| {
-            let near = |least: f64, e: &Segment| {
-                if boxes_apart(e, way) < least { least.min(apart(e, way)) } else { least }
+    /// The distance of the nearest edge from a segment; infinite where there is none.
+    pub(super) fn nearest(&self, way: &Segment) -> f64 {
+        let here = around(way);
+        let look = |edges: Range<usize>, least: f64| {
+            let near = |least: f64, i: usize| {
+                if gap(&self.around[i], &here) < least {
+                    least.min(apart(&self.edges[i], way))
+                } else {
+                    least
+                }
             };
-            edges.iter().fold(least, near)
+            edges.fold(least, near)
         };
-        let (from, to) = (way[0].inf(&way[1]), way[0].sup(&way[1]));
-        let mut least = reach;
-        let mut begin = 0;
-        for ([low, high], &end) in self.boxes.iter().zip(&self.ends) {
-            let gap = (low - to).sup(&(from - high));
-            if gap.x.max(gap.y) < least {
-                least = look(&self.edges[begin..end], least);
+        let of = |i: usize| i.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[i];
+        // The polygon whose box is nearest first: then few others are near enough to be looked at.
+        let mut nearest = (f64::INFINITY, None);
+        for (i, other) in self.boxes.iter().enumerate() {
+            let gap = gap(other, &here);
+            if gap < nearest.0 {
+                nearest = (gap, Some(i));
             }
-            begin = end;
         }
-        look(&self.edges[begin..], least)
+        let mut least = nearest.1.map_or(f64::INFINITY, |i| look(of(i), f64::INFINITY));
+        for (i, other) in self.boxes.iter().enumerate() {
+            if gap(other, &here) < least && Some(i) != nearest.1 {
+                least = look(of(i), least);
+            }
+        }
+        look(self.ends.last().copied().unwrap_or(0)..self.edges.len(), least)
     }
 
     /// The first points of all rings.
@@ -76,10 +93,16 @@ pub(super) fn sides(ring: &[Point2<f64>]) -> impl Iterator<Item = Segment> {
     ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| [*a, *b])
 }
 
-/// Lower and upper corner of rings.
-fn around(rings: &[Vec<Point2<f64>>]) -> Segment {
+/// The box around points.
+fn around<'a>(points: impl IntoIterator<Item = &'a Point2<f64>>) -> Around {
     let none = [Point2::from([f64::INFINITY; 2]), Point2::from([f64::NEG_INFINITY; 2])];
-    rings.iter().flatten().fold(none, |[low, high], p| [low.inf(p), high.sup(p)])
+    points.into_iter().fold(none, |[low, high], p| [low.inf(p), high.sup(p)])
+}
+
+/// How far boxes are apart in the greater axis; below zero where they overlap.
+fn gap([a, b]: &Around, [c, d]: &Around) -> f64 {
+    let greater = |x: f64, y: f64| if x > y { x } else { y };
+    greater(greater(c.x - b.x, a.x - d.x), greater(c.y - b.y, a.y - d.y))
 }
 
 /// Whether `p` is within `rings`, by upward rays.
@@ -121,10 +144,5 @@ pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
 
 /// A lower bound on the distance of two segments: that of the boxes around them, in the greater axis.
 pub(super) fn boxes_apart(s: &Segment, t: &Segment) -> f64 {
-    let gap = |axis: usize| {
-        let of = |s: &Segment| (s[0][axis].min(s[1][axis]), s[0][axis].max(s[1][axis]));
-        let ((a, b), (c, d)) = (of(s), of(t));
-        (c - b).max(a - d)
-    };
-    gap(0).max(gap(1))
+    gap(&around(s), &around(t))
 }

@@ -43,11 +43,7 @@ impl MotionValidity<Vector2<f64>> for DiscVerifier {
         if self.plain.inside(&way[0]) {
             return MotionCheck::Collides { at: 0.0 };
         }
-        // Most often something is near, and what is farther need not be looked at.
-        let reach = 2.0 * (self.radius + self.tolerance);
-        let near = self.plain.nearest(&way, reach);
-        let clearance =
-            if near < reach { near } else { self.plain.nearest(&way, f64::INFINITY) } - self.radius;
+        let clearance = self.plain.nearest(&way) - self.radius;
         if clearance >= self.tolerance {
             return MotionCheck::Free { clearance };
         }

@@ -81,14 +81,15 @@ impl<'a> Found<'a> {
         })
     }
 
-    /// A measure over all steps.
-    fn over(&self, world: &str, planner: &str, of: impl Fn(&Six) -> f64) -> Vec<f64> {
-        self.plan.steps.iter().filter_map(|&step| self.six(world, planner, step).map(|s| of(&s))).collect()
+    /// A measure over all steps in some worlds.
+    fn over(&self, worlds: &[&str], planner: &str, of: impl Fn(&Six) -> f64) -> Vec<f64> {
+        let at = worlds.iter().flat_map(|world| self.plan.steps.iter().map(move |step| (world, *step)));
+        at.filter_map(|(world, step)| self.six(world, planner, step).map(|s| of(&s))).collect()
     }
 
-    /// Microseconds of all trials at all steps together, by all their iterations.
-    fn per_iteration(&self, world: &str, planner: &str) -> f64 {
-        let sum = |of: fn(&Six) -> f64| self.over(world, planner, of).iter().sum::<f64>();
+    /// Microseconds of all trials at all steps in these worlds together, by all their iterations.
+    fn per_iteration(&self, worlds: &[&str], planner: &str) -> f64 {
+        let sum = |of: fn(&Six) -> f64| self.over(worlds, planner, of).iter().sum::<f64>();
         sum(|s| s.per_iteration * s.all_iterations) / sum(|s| s.all_iterations)
     }
 
@@ -101,8 +102,8 @@ impl<'a> Found<'a> {
         for world in WORLDS {
             for planner in PLANNERS {
                 let mut row = vec![world.to_owned(), planner.to_owned()];
-                row.extend(MEASURES.iter().map(|m| spread(&self.over(world, planner, m.3))));
-                row.push(spread(&self.over(world, planner, |s| s.per_iteration)));
+                row.extend(MEASURES.iter().map(|m| spread(&self.over(&[world], planner, m.3))));
+                row.push(spread(&self.over(&[world], planner, |s| s.per_iteration)));
                 table.rows.push(row);
             }
         }
@@ -134,7 +135,7 @@ impl<'a> Found<'a> {
         let mut table = Table::new(heads.into_iter().chain(["RRT-Connect"]));
         for (world, measure, rrs, rrt) in PAPER {
             let Some(m) = MEASURES.iter().find(|m| m.0 == *measure) else { continue };
-            let cell = |planner| spread(&self.over(world, planner, m.3));
+            let cell = |planner| spread(&self.over(&[*world], planner, m.3));
             table.rows.push(vec![
                 (*world).into(),
                 format!("{}, {}", m.1, m.2),
@@ -150,14 +151,15 @@ impl<'a> Found<'a> {
         let heads = ["time of an iteration", "mean of those at each Δq", "time of a trial"];
         let heads = heads.iter().flat_map(|h| [format!("{h}, RRS : RRT"), format!("{h}, up to Δq")]);
         let mut ratios = Table::new(["world".to_owned()].into_iter().chain(heads));
-        for world in WORLDS {
-            let mean_of = |of: fn(&Six) -> f64| move |p: &str| mean(self.over(world, p, of).into_iter());
+        let each = WORLDS.iter().map(|world| (*world, std::slice::from_ref(world)));
+        for (name, worlds) in each.chain([("all together", &WORLDS[..])]) {
+            let mean_of = |of: fn(&Six) -> f64| move |p: &str| mean(self.over(worlds, p, of).into_iter());
             let pairs = [("rrs", "rrt"), ("rrs-upto", "rrt-upto")];
-            let mut row = vec![world.to_owned()];
+            let mut row = vec![name.to_owned()];
             let mut put = |of: &dyn Fn(&str) -> f64| {
                 row.extend(pairs.map(|(a, b)| format!("{:.2}", of(a) / of(b))));
             };
-            put(&|p| self.per_iteration(world, p));
+            put(&|p| self.per_iteration(worlds, p));
             put(&mean_of(|s| s.per_iteration));
             put(&mean_of(|s| s.time));
             ratios.rows.push(row);
