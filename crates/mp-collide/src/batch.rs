@@ -59,7 +59,7 @@ impl Query {
         let mut course = Poses { a, b, poses, pose_wb, back, pace, parts };
         let found = self.sweep(a, b, &mut course, [first as u32, poses.len() as u32]);
         self.parts = course.parts;
-        let found = found.map(|[pose, _]| pose as usize);
+        let found = found.map(|met| met.range[0] as usize);
         self.counters.queries += found.unwrap_or(poses.len() - 1) as u64;
         found
     }

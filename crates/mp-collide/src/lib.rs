@@ -74,7 +74,7 @@ pub mod triangle;
 
 pub use filled::FillError;
 pub use mesh::CollisionMesh;
-pub use motion::Sway;
+pub use motion::{Stay, Sway};
 pub use query::{Counters, Query, Separation};
 pub use save::{TreeError, TreeFileError};
 pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};

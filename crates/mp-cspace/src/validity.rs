@@ -52,6 +52,13 @@ pub trait Clearance<S> {
         let enough = stretch.travel.max(stretch.margin) + stretch.margin;
         Room::of(self.clearance(stretch.middle, enough), stretch.margin)
     }
+
+    /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
+    /// [`room`](Clearance::room) that contact is looked for all along a motion, every two strides
+    /// of [`Certified`](crate::Certified), before anything else.
+    fn contact_first(&self) -> bool {
+        false
+    }
 }
 
 /// A stretch of a motion, about a state in its middle.
@@ -90,10 +97,16 @@ pub enum Room {
     },
     /// Nothing shown: a shorter stretch may be.
     Near,
-    /// In the middle less than twice the margin: not worth a closer look.
-    Tight,
-    /// In contact in the middle.
-    Contact,
+    /// Less than twice the margin at `at`: not worth a closer look.
+    Tight {
+        /// As a share of the way from the middle of the stretch to its end, from −1 to 1.
+        at: f64,
+    },
+    /// In contact at `at`.
+    Contact {
+        /// As a share of the way from the middle of the stretch to its end, from −1 to 1.
+        at: f64,
+    },
 }
 
 impl Room {
@@ -101,11 +114,11 @@ impl Room {
     #[must_use]
     pub fn of(clearance: f64, margin: f64) -> Self {
         if clearance <= 0.0 {
-            Self::Contact
+            Self::Contact { at: 0.0 }
         } else if clearance >= 2.0 * margin {
             Self::Clear { clearance }
         } else {
-            Self::Tight
+            Self::Tight { at: 0.0 }
         }
     }
 }
@@ -116,6 +129,9 @@ impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {
     }
     fn in_contact(&mut self, q: &S) -> bool {
         (**self).in_contact(q)
+    }
+    fn contact_first(&self) -> bool {
+        (**self).contact_first()
     }
     fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
         (**self).room(stretch)

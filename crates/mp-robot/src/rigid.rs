@@ -4,7 +4,7 @@ use crate::outlines::Outlines;
 use crate::solid::Solid;
 use crate::{Placement, Planar, Point, Shape, Spatial};
 use mp_collide::reference::RefMesh;
-use mp_collide::{BodyId, CollisionMesh, Counters, Query, Scene, SceneError, Sway};
+use mp_collide::{BodyId, CollisionMesh, Counters, Query, Scene, SceneError, Stay, Sway};
 use mp_cspace::{Clearance, MotionBound, Room, Stretch, Validity};
 use mp_geom::{Aabb, MeshError, TriMesh};
 use nalgebra::{Isometry3, Point3};
@@ -338,29 +338,30 @@ impl<P: Placement> Clearance<P::State> for RigidBody<P> {
     }
 
     /// By one sweep over the stretch, in which each part of the body moves as far as it does and as it does
-    /// toward the obstacles: a stretch found clear so may be much longer than the clearance in its middle.
+    /// toward the obstacles: a stretch found clear so may be much longer than the clearance in its middle. The sweep
+    /// ends where it comes upon contact.
     fn room(&mut self, stretch: &Stretch<'_, P::State>) -> Room {
         let Stretch { travel, margin, half, .. } = *stretch;
         let [from, to, middle] = [stretch.from, stretch.to, stretch.middle].map(P::pose);
-        // Contact is looked for first: a sweep that fails costs the most.
         let long = travel > margin;
-        if long && self.collides(&middle) {
-            return Room::Contact;
-        }
         if let Some(sway) = Sway::of_motion(&from, &to, half, travel) {
             self.counters.clearance_checks += 1;
             let shared = &*self.shared;
-            if shared.scene.keeps_clear(&mut self.query, &shared.robot, &middle, &sway, margin)
-                && !self.point_inside(&middle)
-            {
-                return Room::Clear { clearance: travel + margin };
-            }
-            if long {
-                return Room::Near;
+            match shared.scene.keeps_clear(&mut self.query, &shared.robot, &middle, &sway, margin) {
+                Stay::Clear if self.point_inside(&middle) => return Room::Contact { at: 0.0 },
+                Stay::Clear => return Room::Clear { clearance: travel + margin },
+                Stay::Contact { at } => return Room::Contact { at },
+                Stay::Tight { at } => return Room::Tight { at },
+                Stay::Near if long => return Room::Near,
+                Stay::Near => {}
             }
         }
         let clearance = self.clearance(stretch.middle, travel.max(margin) + margin);
         Room::of(clearance, margin)
+    }
+
+    fn contact_first(&self) -> bool {
+        true
     }
 }
 

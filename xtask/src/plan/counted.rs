@@ -113,6 +113,9 @@ impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
         self.asked(|robot| robot.room(stretch))
     }
+    fn contact_first(&self) -> bool {
+        self.robot.contact_first()
+    }
 }
 impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
     fn motion_bound(&self, from: &S, to: &S) -> f64 {

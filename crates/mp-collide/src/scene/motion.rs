@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Vector3};
 use super::{BodyId, Groups, Scene, View, bounds};
 use crate::broad::Bounds;
 use crate::mesh::CollisionMesh;
-use crate::motion::Sway;
+use crate::motion::{Stay, Sway};
 use crate::query::Query;
 
 impl View<'_> {
@@ -50,7 +50,7 @@ impl View<'_> {
         self.collide_body(query, mesh, at).map(|id| (before, id))
     }
 
-    /// Whether `mesh` surely stays at least `margin` (metres) from all bodies along a stretch of a motion: see
+    /// Whether `mesh` stays at least `margin` (metres) from all bodies along a stretch of a motion: see
     /// [`Query::keeps_clear`].
     pub fn keeps_clear(
         &self,
@@ -59,11 +59,12 @@ impl View<'_> {
         middle_wm: &Isometry3<f64>,
         sway: &Sway,
         margin: f64,
-    ) -> bool {
+    ) -> Stay {
         let scene = self.scene;
         for merged in scene.merged.iter().filter(|merged| merged.groups.meets(self.groups)) {
-            if !query.keeps_clear(mesh, middle_wm, sway, &merged.mesh, &Isometry3::identity(), margin) {
-                return false;
+            let stay = query.keeps_clear(mesh, middle_wm, sway, &merged.mesh, &Isometry3::identity(), margin);
+            if !stay.is_clear() {
+                return stay;
             }
         }
         // Whatever is farther than this from the box in the middle is never near; NaN is near everything.
@@ -72,20 +73,22 @@ impl View<'_> {
             min: own.min - Vector3::repeat(reach),
             max: own.max + Vector3::repeat(reach),
         });
-        let clear = self.phases(!scene.is_merged()).all(|broad| {
-            let blocked = broad.find(
+        let blocked = self.phases(!scene.is_merged()).find_map(|broad| {
+            broad.find(
                 |bounds| own.is_none_or(|own| own.overlaps(bounds)),
                 |item| {
                     let body = scene.bodies[item as usize].as_ref()?;
-                    let clear = !body.groups.meets(self.groups)
-                        || query.keeps_clear(mesh, middle_wm, sway, &body.mesh, &body.pose, margin);
-                    (!clear).then_some(())
+                    if !body.groups.meets(self.groups) {
+                        return None;
+                    }
+                    let stay = query.keeps_clear(mesh, middle_wm, sway, &body.mesh, &body.pose, margin);
+                    (!stay.is_clear()).then_some(stay)
                 },
-            );
-            blocked.is_none()
+            )
         });
         // Nothing gets inside or outside without a surface in its way.
-        clear && self.nested(query, mesh, middle_wm).is_none()
+        let nested = || self.nested(query, mesh, middle_wm).map(|_| Stay::Contact { at: 0.0 });
+        blocked.or_else(nested).unwrap_or(Stay::Clear)
     }
 }
 
@@ -101,7 +104,7 @@ impl Scene {
         self.view(Groups::ALL).first_collision(query, mesh, poses_wm)
     }
 
-    /// Whether `mesh` surely stays at least `margin` (metres) from all bodies along a stretch of a motion: see
+    /// Whether `mesh` stays at least `margin` (metres) from all bodies along a stretch of a motion: see
     /// [`Query::keeps_clear`].
     pub fn keeps_clear(
         &self,
@@ -110,7 +113,7 @@ impl Scene {
         middle_wm: &Isometry3<f64>,
         sway: &Sway,
         margin: f64,
-    ) -> bool {
+    ) -> Stay {
         self.view(Groups::ALL).keeps_clear(query, mesh, middle_wm, sway, margin)
     }
 }

@@ -39,6 +39,7 @@ pub(crate) mod revolved;
 pub(crate) mod span;
 mod split;
 pub(crate) mod sweep;
+pub(crate) mod swept;
 pub(crate) mod within;
 
 use crate::triangle::Triangle;

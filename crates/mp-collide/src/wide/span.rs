@@ -19,9 +19,16 @@ pub(crate) struct Drift {
 
 impl Drift {
     /// `shift` is that of the point `origin`.
-    fn new(turn: &Vector3<f64>, shift: &Vector3<f64>, origin: &Vector3<f64>) -> Self {
+    pub(super) fn new(turn: &Vector3<f64>, shift: &Vector3<f64>, origin: &Vector3<f64>) -> Self {
         let shift = shift - turn.cross(origin);
         Self { shift: shift.map(|x| x as f32).into(), turn: turn.map(|x| x as f32).into() }
+    }
+
+    /// At one point.
+    #[inline(always)]
+    pub(crate) fn at_point(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        let wide = |v: [f32; 3]| Vector3::from(v.map(f64::from));
+        wide(self.shift) + wide(self.turn).cross(p)
     }
 
     /// At a point in each lane.

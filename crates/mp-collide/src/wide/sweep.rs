@@ -6,14 +6,14 @@
 //! the part of the motion; so motions are cut into short parts only where and when bodies are near.
 
 use super::boxes::{cross, dot, sub, touching};
-use super::frames::{Carrier, Frames, Placed};
+use super::frames::{Carrier, Placed};
 use super::intersect::{ahead, leaf_pair};
 use super::leaves::{Corners, Near, corners};
 use super::span::{Parts, Span};
-use super::{LEAF, Node, Tree, WIDTH};
+use super::swept::{Gap, triangles};
+use super::{LEAF, Node, Tree};
 use crate::query::{Counters, Query};
 use crate::simd::{Kernel, Lanes, run};
-use crate::triangle::{closest_within, intersect};
 
 /// A pair of nodes during a part of the motion.
 #[derive(Clone, Copy, Debug)]
@@ -41,9 +41,10 @@ pub(crate) trait Course {
     fn most(&self, range: [u32; 2]) -> f64;
     /// What lies where in a range; `None` when the bodies are nowhere near each other.
     fn make(&self, range: [u32; 2]) -> Option<Span>;
-    /// For smallest ranges that are not still: how far apart (m) the bodies are to be in the middle.
-    fn keep(&self, _range: [u32; 2]) -> f64 {
-        0.0
+    /// How far apart (m) the bodies are to stay all along a range that is not still, if triangles are to be compared
+    /// over it; smallest ranges that are not still need that.
+    fn keep(&self, _range: [u32; 2]) -> Option<f64> {
+        None
     }
 
     /// Adds a part.
@@ -86,14 +87,15 @@ const LONG: f32 = 0.1;
 
 impl Query {
     /// The first range of the motion in which the trees were not shown to stay apart, of all of `range`: still ones
-    /// in which they meet, and smallest ones that are not still. `None` when they stay apart.
+    /// in which they meet, smallest ones that are not still, and those in whose middle they are nearer than is to be
+    /// kept. `None` when they stay apart.
     pub(crate) fn sweep(
         &mut self,
         a: &Tree,
         b: &Tree,
         course: &mut impl Course,
         range: [u32; 2],
-    ) -> Option<[u32; 2]> {
+    ) -> Option<Met> {
         course.parts_mut().clear();
         course.add(range);
         let (stack, counters) = (&mut self.items, &mut self.counters);
@@ -101,6 +103,14 @@ impl Query {
         stack.push(Item::new(a, b, 0));
         run(self.isa, Sweep { a, b, course, stack, counters })
     }
+}
+
+/// Where a sweep ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Met {
+    pub(crate) range: [u32; 2],
+    /// `Short` for a single pose.
+    pub(crate) gap: Gap,
 }
 
 /// Depth-first; the earlier part of the motion first.
@@ -115,7 +125,7 @@ struct Sweep<'q, C> {
 
 impl<C: Course> Kernel for Sweep<'_, C> {
     /// See `Query::sweep`.
-    type Output = Option<[u32; 2]>;
+    type Output = Option<Met>;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
@@ -140,6 +150,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                 continue;
             }
             let still = most == 0.0;
+            let keep = course.keep(part.range);
             let Some(span) = course.span(index) else { continue };
             let frames = &span.frames;
             if leaves {
@@ -155,23 +166,28 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                     if mask_b == 0 {
                         continue;
                     }
+                    if let Some(keep) = keep {
+                        let pair = ((a, x, mask_a), (b, y, mask_b));
+                        match triangles::<L>(pair, span, (most, keep), counters) {
+                            Gap::Kept => continue,
+                            Gap::Short => {}
+                            gap => {
+                                met = Some(Met { range: part.range, gap });
+                                break;
+                            }
+                        }
+                    }
                     if let Some(half) = course.halve(index) {
                         stack.push(Item { a: x, b: y, part: half + 1 });
                         stack.push(Item { a: x, b: y, part: half });
                         continue;
                     }
-                    let keep = course.keep(part.range);
-                    let Some(span) = course.span(index) else { continue };
-                    if triangles_apart((a, x, mask_a), (b, y, mask_b), &span.frames, keep, counters) {
-                        continue;
-                    }
                 }
+                met = Some(Met { range: part.range, gap: Gap::Short });
                 if !C::ORDERED {
-                    met = Some(part.range);
                     break;
                 }
                 limit = start;
-                met = Some(part.range);
                 continue;
             }
             tests += 1;
@@ -297,27 +313,6 @@ fn near_leaves<L: Lanes>(a: &Tree, x: u32, b: &Tree, y: u32, span: &Span) -> (u3
     let corners_b = near.carry(&corners::<L>(leaf_b), frames);
     let box_a = Placed::at_origin(own_a);
     (mask_a, near_box(&corners_b, leaf_b.edge, &box_a, &near, &drift, margin) & leaf_b.all())
-}
-
-/// Whether the triangles of `mask_a` are at least `keep` (metres) from those of `mask_b`.
-fn triangles_apart(
-    (a, x, mask_a): (&Tree, u32, u32),
-    (b, y, mask_b): (&Tree, u32, u32),
-    frames: &Frames,
-    keep: f64,
-    counters: &mut Counters,
-) -> bool {
-    let (first_a, first_b) = (a.leaves[(x & !LEAF) as usize].first, b.leaves[(y & !LEAF) as usize].first);
-    // Rounding of the transform is on top of what is to be kept.
-    let square = (keep + f64::from(frames.slack)).powi(2);
-    (0..WIDTH as u32).filter(|l| mask_b & (1 << l) != 0).all(|l| {
-        let single = frames.exact.triangle(&b.triangles[(first_b + l) as usize]);
-        counters.triangle_tests += 1;
-        (0..WIDTH as u32).filter(|k| mask_a & (1 << k) != 0).all(|k| {
-            let other = &a.triangles[(first_a + k) as usize];
-            closest_within(other, &single, square).is_none() && !intersect(other, &single)
-        })
-    })
 }
 
 /// The triangles (with edges up to `edge` long) that may come within `margin` of box `q` while one of the two

@@ -51,8 +51,8 @@ fn every_query_of_a_scene_knows_the_inside() {
                 assert_eq!(first, Some((if solid { 2 } else { 3 }, id)));
                 assert_eq!(scene.first_collision(&mut query, robot, &poses[..3]).is_some(), solid);
                 let sway = Sway::new(Vector3::new(0.0, 0.1, 0.0), Vector3::zeros(), robot.radius());
-                assert_eq!(scene.keeps_clear(&mut query, robot, &inside, &sway, 0.0), !solid);
-                assert!(scene.keeps_clear(&mut query, robot, &outside, &sway, 0.0));
+                assert_eq!(scene.keeps_clear(&mut query, robot, &inside, &sway, 0.0).is_clear(), !solid);
+                assert!(scene.keeps_clear(&mut query, robot, &outside, &sway, 0.0).is_clear());
                 let contacts = scene.contacts(&mut query, robot, &inside);
                 assert_eq!(contacts.len(), usize::from(solid));
                 // Out of a cube that reaches to 1 from a place at 0.1: 0.9 and the radius.

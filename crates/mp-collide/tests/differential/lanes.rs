@@ -1,7 +1,7 @@
 //! Every kind of query on every instruction set: the same answers to the last bit, and the same work wherever products
 //! are fused alike.
 
-use mp_collide::{CollisionMesh, Counters, Isa, Query, Separation, Solid, Sway};
+use mp_collide::{CollisionMesh, Counters, Isa, Query, Separation, Solid, Stay, Sway};
 use mp_geom::primitives;
 use nalgebra::{Isometry3, Translation3, Vector3};
 use rand::RngExt;
@@ -86,7 +86,7 @@ struct Answers {
     clearance: [f64; 6],
     escape: Option<Vector3<f64>>,
     first: Option<usize>,
-    keeps_clear: bool,
+    keeps_clear: Stay,
     solids: Vec<(Separation, [bool; 6], f64)>,
 }
 

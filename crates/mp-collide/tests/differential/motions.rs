@@ -1,6 +1,6 @@
 //! Batches of poses and whole motions, against single poses.
 
-use mp_collide::{CollisionMesh, Isa, Query, Sway};
+use mp_collide::{CollisionMesh, Isa, Query, Stay, Sway};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
@@ -129,7 +129,7 @@ fn along(middle: &Isometry3<f64>, sway: &Sway, t: f64) -> Isometry3<f64> {
 fn what_is_clear_stays_clear_and_wide_room_is_found_clear() {
     let mut rng = rng(43);
     let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
-    let (mut clear, mut beyond) = (0, 0);
+    let (mut clear, mut beyond, mut contact, mut tight) = (0, 0, 0, 0);
     for kind in 0..24 {
         let (a, b) = pair(&mut rng, kind);
         let (a, b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
@@ -137,15 +137,31 @@ fn what_is_clear_stays_clear_and_wide_room_is_found_clear() {
             let (middle, sway) = stretch(&mut rng, a.radius());
             let here = if kind % 2 == 0 { Isometry3::identity() } else { pose(&mut rng, 0.5) };
             let margin = 10.0_f64.powf(rng.random_range(-9.0..-1.0));
-            let answers: Vec<bool> =
+            let answers: Vec<Stay> =
                 queries.iter_mut().map(|q| q.keeps_clear(&a, &middle, &sway, &b, &here, margin)).collect();
             assert!(answers.iter().all(|x| *x == answers[0]), "{kind} {answers:?}");
             let query = &mut queries[0];
+            let mut room_at = |at: f64| {
+                assert!(at.abs() <= 1.0);
+                query.clearance(&a, &along(&middle, &sway, at), &b, &here, f64::INFINITY)
+            };
+            match answers[0] {
+                // Poses are equal to rounding.
+                Stay::Contact { at } => {
+                    assert!(room_at(at) < 1e-12, "{kind} {at}");
+                    contact += 1;
+                }
+                Stay::Tight { at } => {
+                    assert!(room_at(at) < margin + 1e-12, "{kind} {at}");
+                    tight += 1;
+                }
+                Stay::Clear | Stay::Near => {}
+            }
             let room = query.clearance(&a, &middle, &b, &here, f64::INFINITY);
             if room >= (sway.most + margin) * (1.0 + 1e-9) + 1e-12 {
-                assert!(answers[0], "{kind} {room} {margin} {sway:?}");
+                assert!(answers[0].is_clear(), "{kind} {room} {margin} {sway:?}");
             }
-            if answers[0] {
+            if answers[0].is_clear() {
                 clear += 1;
                 beyond += u32::from(room < sway.most + margin);
                 for i in -32..=32 {
@@ -157,6 +173,41 @@ fn what_is_clear_stays_clear_and_wide_room_is_found_clear() {
         }
     }
     assert!(clear > 300 && beyond > 8, "{clear} {beyond}");
+    assert!(contact > 30 && tight > 10, "{contact} {tight}");
+}
+
+/// What slides along a wall does not come nearer to it, however far it goes.
+#[test]
+fn sliding_past_is_clear_to_the_margin() {
+    let mut rng = rng(45);
+    let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
+    let (wall, here) = (CollisionMesh::new(&cuboid(Vector3::new(1.0, 9.0, 9.0))), pose(&mut rng, 1.0));
+    let shapes = [bumpy(6, 0.3, 0.2), cuboid(Vector3::new(0.4, 0.1, 0.2)), soup(&mut rng, 30, 0.3, 0.2)];
+    let mut placed = 0;
+    for round in 0..90 {
+        let a = CollisionMesh::new(&shapes[round % 3]);
+        let margin = 10.0_f64.powf(rng.random_range(-3.0..-1.0));
+        let along = Vector3::new(0.0, rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
+        let place = Vector3::new(3.0, along.y, along.z);
+        let sway = Sway::new(here.rotation * along, Vector3::zeros(), a.radius());
+        let mut at = here * Isometry3::from_parts(Translation3::from(place), rotation(&mut rng));
+        let room = queries[0].clearance(&a, &at, &wall, &here, f64::INFINITY);
+        for (part, clear) in [(1.01, true), (0.99, false)] {
+            let nearer = here.rotation * Vector3::x() * (room - part * margin);
+            let mut at = at;
+            at.translation.vector -= nearer;
+            for query in &mut queries {
+                let stay = query.keeps_clear(&a, &at, &sway, &wall, &here, margin);
+                assert_eq!(stay.is_clear(), clear, "{round} {part} {margin} {stay:?}");
+            }
+        }
+        // As far as the wall, and into it.
+        at.translation.vector -= here.rotation * Vector3::x() * (room + 1e-9);
+        let stay = queries[0].keeps_clear(&a, &at, &sway, &wall, &here, margin);
+        assert!(!stay.is_clear(), "{round}");
+        placed += u32::from(stay != Stay::Near);
+    }
+    assert!(placed > 60, "{placed}");
 }
 
 /// Walls down to 1e-12 thick, and sheets without any thickness, are never passed.
@@ -173,7 +224,7 @@ fn no_wall_is_too_thin() {
             let (mut middle, sway) = stretch(&mut rng, a.radius());
             // Somewhere in the stretch the origin is in the wall.
             middle.translation.vector.x = sway.shift.x * rng.random_range(-1.0..1.0);
-            assert!(!query.keeps_clear(&a, &middle, &sway, &b, &here, 0.0), "{exponent}");
+            assert!(!query.keeps_clear(&a, &middle, &sway, &b, &here, 0.0).is_clear(), "{exponent}");
         }
     }
 }
@@ -183,8 +234,9 @@ fn bad_stretches_are_not_clear() {
     let mesh = CollisionMesh::new(&cuboid(Vector3::new(0.1, 0.1, 0.1)));
     let (here, far) = (Isometry3::identity(), Isometry3::translation(9.0, 0.0, 0.0));
     let mut query = Query::default();
-    let mut clear =
-        |middle, sway: Sway, margin| query.keeps_clear(&mesh, &middle, &sway, &mesh, &here, margin);
+    let mut clear = |middle, sway: Sway, margin| {
+        query.keeps_clear(&mesh, &middle, &sway, &mesh, &here, margin).is_clear()
+    };
     let still = Sway::new(Vector3::zeros(), Vector3::zeros(), 1.0);
     assert!(clear(far, still, 1.0) && clear(far, still, -1.0) && !clear(here, still, 0.0));
     for x in [f64::NAN, f64::INFINITY, 1e300] {

@@ -74,7 +74,7 @@ impl<'c, C: Space, V: Validity<C::State>> Discrete<'c, C, V> {
 }
 
 /// The numbers `1..parts` ordered by their reversed bits: middle, quarters, eighths, …
-fn bit_reversed(parts: u64) -> impl Iterator<Item = u64> {
+pub(super) fn bit_reversed(parts: u64) -> impl Iterator<Item = u64> {
     let bits = u64::BITS - parts.saturating_sub(1).leading_zeros();
     let shift = (u64::BITS - bits) % u64::BITS;
     (1..1_u64 << bits).map(move |j| j.reverse_bits() >> shift).filter(move |&i| i < parts)

@@ -83,7 +83,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         let Self { robot, world, query, scratch, .. } = self;
         let kinematics = &robot.kinematics;
         if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
-            return Room::Contact;
+            return Room::Contact { at: 0.0 };
         }
         kinematics.frames_into(middle, &mut scratch.frames);
         axes_into(kinematics, &scratch.frames, &mut scratch.axes);
@@ -142,13 +142,13 @@ impl Cover {
         let enough = near.max(margin) + margin;
         let clearance = if known >= enough { known } else { clearance(enough) };
         let part = if clearance <= 0.0 {
-            return Some(Room::Contact);
+            return Some(Room::Contact { at: 0.0 });
         } else if clearance >= near + margin {
             wanted.max((clearance - margin) / far)
         } else if clearance >= 2.0 * margin {
             wanted * (clearance - margin) / near
         } else {
-            return Some(Room::Tight);
+            return Some(Room::Tight { at: 0.0 });
         };
         // 0/0 where nothing moves: clear all along.
         self.part = self.part.min(if far > 0.0 { part } else { f64::INFINITY });

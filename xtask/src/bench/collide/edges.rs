@@ -12,8 +12,8 @@ use std::path::Path;
 
 /// The pairs in whose scenes edges are checked.
 pub(crate) const CHECKED: [&str; 2] = ["cubicles", "piano"];
-/// The longest step of the tree that makes the edges, and the resolution of discrete checks, both parts of the extent.
-const STEP: f64 = 0.2;
+/// The longest steps of the trees that make the edges, and the resolution of discrete checks, all parts of the extent.
+const LONGEST: [f64; 2] = [0.2, 0.05];
 const RESOLUTION: f64 = 0.01;
 /// The greedy tree takes no more steps than this toward a sample.
 const STEPS: usize = 5;
@@ -22,6 +22,8 @@ const STEPS: usize = 5;
 #[derive(Clone, Debug)]
 pub(crate) struct Costs {
     scene: &'static str,
+    /// The longest step, as part of the extent.
+    step: f64,
     discrete: Checked,
     certified: Checked,
 }
@@ -37,22 +39,27 @@ struct Checked {
 type Edge = (Isometry3<f64>, Isometry3<f64>);
 
 impl Costs {
-    /// Checks `count` edges that a greedy RRT makes in the scene of a pair, `passes` times in turn; `None` for a pair
-    /// that is of no scene in space.
-    pub(crate) fn measure(pair: &str, count: usize, passes: usize) -> Result<Option<Self>> {
-        let Some(scene) = scene(pair) else { return Ok(None) };
-        let Ready::Space(setting) = Ready::load(&scenes::find(Path::new(scene))?)? else { return Ok(None) };
+    /// Checks `count` edges that a greedy RRT makes in the scene of a pair with steps of each length, `passes` times in
+    /// turn; nothing for a pair that is of no scene in space.
+    pub(crate) fn measure(pair: &str, count: usize, passes: usize) -> Result<Vec<Self>> {
+        let Some(scene) = scene(pair) else { return Ok(Vec::new()) };
+        let Ready::Space(setting) = Ready::load(&scenes::find(Path::new(scene))?)? else {
+            return Ok(Vec::new());
+        };
         let (space, robot) = (&setting.space, &setting.robot);
         let resolution = Resolution::Fraction(RESOLUTION);
         let mut discrete = Discrete::new(space, robot.clone(), resolution).into_diagnostic()?;
         let mut certified = Certified::new(space, robot.clone(), setting.tolerance).into_diagnostic()?;
-        let edges = edges(space, &mut discrete, [setting.start, setting.goal], count);
-        let mut costs = Self { scene, discrete: Checked::none(), certified: Checked::none() };
-        for _ in 0..passes {
-            costs.discrete.pass(&edges, &mut discrete);
-            costs.certified.pass(&edges, &mut certified);
-        }
-        Ok(Some(costs))
+        let measure = |step| {
+            let edges = edges(space, &mut discrete, [setting.start, setting.goal], step, count);
+            let mut costs = Self { scene, step, discrete: Checked::none(), certified: Checked::none() };
+            for _ in 0..passes {
+                costs.discrete.pass(&edges, &mut discrete);
+                costs.certified.pass(&edges, &mut certified);
+            }
+            costs
+        };
+        Ok(LONGEST.map(measure).into())
     }
 
     /// Whether no edge was certified in which the discrete check found a collision.
@@ -80,10 +87,11 @@ fn edges<C: Space<State = Isometry3<f64>>>(
     space: &C,
     check: &mut impl MotionValidity<Isometry3<f64>>,
     roots: [Isometry3<f64>; 2],
+    step: f64,
     count: usize,
 ) -> Vec<Edge> {
     let (mut rng, mut edges, mut nodes) = (Rng::seed(1), Vec::new(), roots.to_vec());
-    let step = STEP * space.extent();
+    let step = step * space.extent();
     while edges.len() < count {
         let to = space.sample_uniform(&mut rng);
         let away = |q: &Isometry3<f64>| space.distance(q, &to);
@@ -110,6 +118,7 @@ fn edges<C: Space<State = Isometry3<f64>>>(
 pub(crate) fn table(all: &[Costs]) -> Table {
     let mut table = Table::new([
         "scene",
+        "step",
         "edges",
         "free by discrete checks",
         "certified free",
@@ -122,6 +131,7 @@ pub(crate) fn table(all: &[Costs]) -> Table {
         let free = |checked: &Checked| checked.free.iter().filter(|free| **free).count().to_string();
         table.rows.push(vec![
             costs.scene.to_owned(),
+            format!("{:.0}%", 100.0 * costs.step),
             discrete.free.len().to_string(),
             free(discrete),
             free(certified),
@@ -139,15 +149,18 @@ mod tests {
 
     #[test]
     fn edges_are_made_and_checked_both_ways() {
-        let costs = Costs::measure("cubicles", 60, 1).unwrap().unwrap();
-        assert!(costs.consistent());
-        let row = &table(std::slice::from_ref(&costs)).rows[0];
-        assert_eq!(row[..2], ["cubicles", "60"]);
-        let free = costs.discrete.free.iter().filter(|free| **free).count();
-        assert!((1..60).contains(&free), "{free}");
-        let mut wrong = costs;
+        let all = Costs::measure("cubicles", 60, 1).unwrap();
+        for (costs, step) in all.iter().zip(["20%", "5%"]) {
+            assert!(costs.consistent());
+            let row = &table(std::slice::from_ref(costs)).rows[0];
+            assert_eq!(row[..3], ["cubicles", step, "60"]);
+            let free = costs.discrete.free.iter().filter(|free| **free).count();
+            assert!((1..60).contains(&free), "{free}");
+        }
+        assert_eq!(all.len(), 2);
+        let mut wrong = all[0].clone();
         wrong.certified.free = wrong.discrete.free.iter().map(|free| !free).collect();
         assert!(!wrong.consistent());
-        assert!(Costs::measure("large", 1, 1).unwrap().is_none());
+        assert!(Costs::measure("large", 1, 1).unwrap().is_empty());
     }
 }

@@ -1,0 +1,189 @@
+//! Do triangles stay apart while some of them move?
+
+use nalgebra::{Point3, Vector3};
+
+use super::boxes::Slab;
+use super::gaps::{Bounds, Gaps};
+use super::span::{Drift, Span};
+use super::{LEAF, Obb, Tree};
+use crate::query::Counters;
+use crate::simd::Lanes;
+use crate::triangle::{Triangle, closest_within, intersect};
+
+/// How things keep away from each other over a part of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Gap {
+    /// By what is to be kept, all along.
+    Kept,
+    /// Not shown to.
+    Short,
+    /// By less, in the middle.
+    Tight,
+    /// Not at all: they meet in the middle.
+    Contact,
+}
+
+/// How the triangles of `mask_a` keep away from those of `mask_b` over a part in which no point moves farther than
+/// `most` (metres) from the middle, when `keep` (metres) is to be kept.
+///
+/// Those that may come that near by distance are kept apart along a direction, where only what moves along it counts.
+#[inline(always)]
+pub(super) fn triangles<L: Lanes>(
+    ((a, x, mask_a), (b, y, mask_b)): ((&Tree, u32, u32), (&Tree, u32, u32)),
+    span: &Span,
+    (most, keep): (f32, f64),
+    counters: &mut Counters,
+) -> Gap {
+    let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
+    let (leaf_a, leaf_b, frames) = (&a.leaves[i], &b.leaves[j], &span.frames);
+    let swept = Swept::new(a, &a.leaf_boxes[i], span, most, keep);
+    let gaps = Gaps::<L>::new(leaf_a, &Slab::default());
+    let mut singles = mask_b;
+    while singles != 0 {
+        let l = leaf_b.first as usize + singles.trailing_zeros() as usize;
+        singles &= singles - 1;
+        let single = frames.exact.triangle(&b.triangles[l]);
+        counters.triangle_tests += 1;
+        let close = gaps.between(&single, mask_a, swept.maybe, &mut Bounds::default());
+        let mut lanes = close.near | close.crossing;
+        while lanes != 0 {
+            let lane = lanes.trailing_zeros();
+            lanes &= lanes - 1;
+            let other = &a.triangles[leaf_a.first as usize + lane as usize];
+            if close.crossing >> lane & 1 != 0 && intersect(other, &single) {
+                return Gap::Contact;
+            }
+            if close.near >> lane & 1 != 0 {
+                let gap = swept.gap(other, &single);
+                if gap != Gap::Kept {
+                    return gap;
+                }
+            }
+        }
+    }
+    Gap::Kept
+}
+
+/// How the triangles of a leaf of `a` move over a part.
+struct Swept<'s> {
+    drift: &'s Drift,
+    /// The origin of the drift, in the frame of `a`.
+    origin: &'s Point3<f64>,
+    /// The distance to keep (metres).
+    keep: f64,
+    /// How much more in any direction, and the distance to keep (metres).
+    beside: f64,
+    /// Squared: triangles farther apart than this stay apart whichever way they move,
+    squared: f64,
+    /// rounded up.
+    maybe: f32,
+}
+
+impl<'s> Swept<'s> {
+    #[inline(always)]
+    fn new(a: &'s Tree, own: &Obb, span: &'s Span, most: f32, keep: f64) -> Self {
+        let center = three!(d => f64::from(own.frame[d][0]));
+        let far = span.in_a.at_point(&center.into()).norm() + f64::from(span.slop(own));
+        // Rounding of the transform is on top of what is to be kept.
+        let rounded = keep + f64::from(span.frames.slack);
+        let squared = (far.min(f64::from(most)) + rounded).powi(2);
+        let maybe = ((squared * (1.0 + 1e-6)) as f32).next_up();
+        let beside = f64::from(span.rest) + rounded;
+        Self { drift: &span.in_a, origin: &a.center, keep, beside, squared, maybe }
+    }
+
+    /// How two triangles that do not intersect in the middle keep away: along the join of their nearest points, or
+    /// along a normal, as where that join leads to an edge within a wall.
+    fn gap(&self, a: &Triangle, b: &Triangle) -> Gap {
+        let Some(closest) = closest_within(a, b, self.squared) else { return Gap::Kept };
+        if closest.squared < self.keep * self.keep {
+            return Gap::Tight;
+        }
+        let normal = |t: &Triangle| (t[1] - t[0]).cross(&(t[2] - t[0]));
+        let kept = self.keeps(a, b, &(closest.on_b - closest.on_a))
+            || self.keeps(a, b, &normal(b))
+            || self.keeps(a, b, &normal(a));
+        if kept { Gap::Kept } else { Gap::Short }
+    }
+
+    /// Whether triangles stay apart along `way`, of any length: each corner of `a` gets as far along it as it drifts,
+    /// at one of the two ends.
+    fn keeps(&self, a: &Triangle, b: &Triangle, way: &Vector3<f64>) -> bool {
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for corner in a {
+            let along = way.dot(&(corner - b[0]));
+            let drift = way.dot(&self.drift.at_point(&(corner - self.origin))).abs();
+            low[0] = low[0].min(along - drift);
+            high[0] = high[0].max(along + drift);
+        }
+        for corner in b {
+            let along = way.dot(&(corner - b[0]));
+            low[1] = low[1].min(along);
+            high[1] = high[1].max(along);
+        }
+        // What rounding makes of these is part of the slack in `beside`.
+        let beside = self.beside * way.norm() * (1.0 + 1e-9);
+        low[1] - high[0] > beside || low[0] - high[1] > beside
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::triangle::closest;
+
+    /// Slivers, triangles without area and far from the origin among others: moved as far as they are said to,
+    /// triangles that are kept apart are as far apart as is to be kept.
+    #[test]
+    fn what_is_kept_apart_stays_apart() {
+        let mut state = 3u64;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
+        };
+        let (mut past, mut tight, mut short) = (0, 0, 0);
+        for round in 0..20_000 {
+            let mut vector = |size: f64| Vector3::new(next(), next(), next()) * size;
+            let origin = Point3::from(vector(if round % 5 == 0 { 1e3 } else { 1.0 }));
+            let mut corners = |flat: f64| {
+                let (at, u) = (origin + vector(1.0), vector(1.0));
+                [at, at + u, at + u * 0.5 + vector(flat)]
+            };
+            let (a, b) = (corners(1.0), corners([1.0, 1e-6, 0.0][round % 3]));
+            let size = [1e-3, 0.1, 1.0][round / 3 % 3];
+            let drift = Drift::new(&vector(size), &vector(size), &origin.coords);
+            let keep = 0.1 * vector(1.0).x.abs();
+            let drifts = a.map(|corner| drift.at_point(&(corner - origin)));
+            let far = drifts.iter().map(|d| d.norm()).fold(0.0, f64::max);
+            let squared = (far + keep).powi(2);
+            let swept =
+                Swept { drift: &drift, origin: &origin, keep, beside: keep, squared, maybe: squared as f32 };
+            if intersect(&a, &b) {
+                continue;
+            }
+            let distance = closest(&a, &b).distance;
+            match swept.gap(&a, &b) {
+                Gap::Kept => {
+                    past += u32::from(distance < far + keep);
+                    for i in -8..=8 {
+                        let at = |k: usize| a[k] + drifts[k] * (f64::from(i) / 8.0);
+                        let moved = [at(0), at(1), at(2)];
+                        let least = closest(&moved, &b).distance;
+                        assert!(least >= keep - 1e-12, "{round}: {least} {keep} {moved:?} {b:?}");
+                    }
+                }
+                Gap::Tight => {
+                    assert!(distance < keep + 1e-12);
+                    tight += 1;
+                }
+                Gap::Short => {
+                    assert!(distance < far + keep + 1e-12);
+                    short += 1;
+                }
+                Gap::Contact => panic!("these do not intersect"),
+            }
+        }
+        assert!(past > 1000 && tight > 200 && short > 1000, "{past} {tight} {short}");
+    }
+}
