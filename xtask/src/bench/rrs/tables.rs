@@ -280,7 +280,7 @@ mod tests {
         assert_eq!(found.each().rows.len(), 4 * 5 * 2);
         let text = found.markdown();
         // 2 µs by 4 ms in 3,000 iterations.
-        assert!((found.per_iteration("low", "rrt") - 8.0 / 6.0).abs() < 1e-9);
+        assert!((found.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);
         assert!(text.contains("| low | 1.50 | 1.00 |"), "{text}");
         assert!(text.contains("mean 67.1") && text.contains("50.0 (50.0 – 50.0)"), "{text}");
         assert_eq!(found.charts().len(), 24);
