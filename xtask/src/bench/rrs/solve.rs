@@ -19,7 +19,7 @@ pub(super) const ITERATIONS: u64 = 5000;
 /// How far obstacles push snakes, metres.
 pub(super) const RANGE: f64 = 0.15;
 /// The size of a cell of the clearance map, metres.
-const CELL: f64 = 0.04;
+const CELL: f64 = 0.06;
 /// How well the safety of a path is known, metres.
 const ACCURACY: f64 = 1e-4;
 
