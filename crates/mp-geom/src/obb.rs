@@ -72,7 +72,7 @@ const SPREAD_AXES: usize = 64;
 /// Directions (and their opposites) whose extreme points stand for a large mesh.
 const THINNING_DIRECTIONS: usize = 256;
 /// Candidates improved to the end.
-const FINALISTS: usize = 4;
+const FINALISTS: usize = 16;
 /// First tilt of the pattern search, radians, and the last one.
 const TILTS: [f64; 2] = [0.1, 1e-5];
 /// Steps of the pattern search.
@@ -405,6 +405,28 @@ mod tests {
             }
         }
         best
+    }
+
+    /// The best box here is improved from a candidate that is not among the best at first.
+    #[test]
+    fn candidates_that_begin_badly_are_improved_too() {
+        let points = [
+            [-0.4772988838639298, 0.0, 0.2648175753777196],
+            [0.30955018169472387, 0.7501206776080142, 0.7316731058649364],
+            [0.955442165889041, 0.6103144778015004, 0.0],
+            [0.9820864306446364, -0.27381076876408245, 0.8126320683234755],
+            [0.2374367427491487, -0.90218410251418, 0.5304164478732056],
+            [0.43638323498673287, 0.7800353887127692, -0.6146078509823567],
+            [0.48109048119590914, 0.0, 0.8259446422341326],
+            [0.0, 0.0, 0.9884295715951343],
+        ];
+        let [i, j, k, w] = [0.4382521850956733, 0.3054359310148973, 0.7210478853988338, 0.441286597650326];
+        let turn = UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, i, j, k));
+        let points = points.map(|p| turn * Point3::from(p));
+        let soup: Vec<_> = points.windows(3).map(|w| [w[0], w[1], w[2]]).collect();
+        let mesh = TriMesh::from_soup(&soup).unwrap();
+        let (volume, tried) = (mesh.obb().volume(), rotated_boxes(&mesh));
+        assert!(volume <= tried * 1.001, "{volume} {tried}");
     }
 
     proptest! {
