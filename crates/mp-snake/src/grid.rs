@@ -26,7 +26,7 @@ impl Grid {
     ///
     /// # Errors
     /// When the cell is not positive and finite, the origin or a value is not finite, or `values` are not some
-    /// whole number of rows, two rows and two columns at least.
+    /// whole number of rows, two rows and two columns at least and 2³² at most.
     pub fn new(
         origin: impl Into<Vector2<f64>>,
         cell: f64,

@@ -110,7 +110,7 @@ impl SnakeCounters {
 ///
 /// A motion whose end is not free is given up at once. Else it is [bulged](Snake::bulge) out of what blocks it: where a
 /// bulge is free it is the edge, with one to five states between the ends. Where it is not, but its top is clear, a snake
-/// relaxes from there, a few steps. That costs many times as much and saves few: it is done for the first motion of
+/// relaxes from there, a few steps (none where it begins deep in an obstacle). That costs many times as much and saves few: it is done for the first motion of
 /// which no bulge fits, and on while at most one in fifty bent ones was relaxed in vain. And where there is nothing
 /// to bend around snakes are tried less: so that at most a third of all motions, and sixteen, are lost.
 ///
