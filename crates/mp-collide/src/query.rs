@@ -9,6 +9,7 @@ use crate::triangle::intersect;
 use crate::wide::Tree;
 use crate::wide::frames::Frames;
 use crate::wide::intersect::Intersect;
+use crate::wide::meeting::Meeting;
 use crate::wide::nearest::Scratch;
 use crate::wide::span::Parts;
 use crate::wide::sweep::Item;
@@ -53,6 +54,7 @@ pub struct Query {
     /// What was done so far; set to `Counters::default()` to start over.
     pub counters: Counters,
     pub(crate) stack: Vec<(u32, u32)>,
+    pub(crate) meeting: Meeting,
     pub(crate) scratch: Scratch,
     pub(crate) items: Vec<Item>,
     pub(crate) parts: Parts,
@@ -73,6 +75,7 @@ impl Query {
         Self {
             counters: Counters::default(),
             stack: Vec::new(),
+            meeting: Meeting::NONE,
             scratch: Scratch::default(),
             items: Vec::new(),
             parts: Parts::default(),
@@ -133,8 +136,9 @@ impl Query {
         if !frames.fits_f32(a, b) {
             return any_of_all(a, b, &frames);
         }
-        let (frames, stack, counters) = (&frames, &mut self.stack, &mut self.counters);
-        run(self.isa, Intersect { a, b, frames, any, stack, counters })
+        let (frames, stack) = (&frames, &mut self.stack);
+        let (meeting, counters) = (&mut self.meeting, &mut self.counters);
+        run(self.isa, Intersect { a, b, frames, any, stack, meeting, counters })
     }
 }
 

@@ -1,13 +1,15 @@
 //! 128-bit registers of ARM, two at a time.
 
-use super::Lanes;
+use super::{Lanes, Mask};
 use std::arch::aarch64::*;
+use std::ops::{BitAnd, BitOr};
 
 /// NEON is part of every aarch64, so its intrinsics need no detection.
 #[derive(Clone, Copy)]
 pub(super) struct Neon(float32x4_t, float32x4_t);
 
 impl Lanes for Neon {
+    type Mask = NeonMask;
     #[inline(always)]
     fn load(a: &[f32; 8]) -> Self {
         // SAFETY: loads of floats 0..4 and 4..8 of the array.
@@ -94,12 +96,46 @@ impl Lanes for Neon {
         }
     }
     #[inline(always)]
-    fn le(self, b: Self) -> u32 {
+    fn le(self, b: Self) -> NeonMask {
+        // SAFETY: see `splat`.
+        unsafe { NeonMask(vcleq_f32(self.0, b.0), vcleq_f32(self.1, b.1)) }
+    }
+    #[inline(always)]
+    fn lt(self, b: Self) -> NeonMask {
+        // SAFETY: see `splat`.
+        unsafe { NeonMask(vcltq_f32(self.0, b.0), vcltq_f32(self.1, b.1)) }
+    }
+}
+
+/// What comparing [`Neon`]s gives: all bits of a lane or none.
+#[derive(Clone, Copy)]
+pub(super) struct NeonMask(uint32x4_t, uint32x4_t);
+
+impl BitAnd for NeonMask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, b: Self) -> Self {
+        // SAFETY: see `splat`.
+        unsafe { Self(vandq_u32(self.0, b.0), vandq_u32(self.1, b.1)) }
+    }
+}
+
+impl BitOr for NeonMask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, b: Self) -> Self {
+        // SAFETY: see `splat`.
+        unsafe { Self(vorrq_u32(self.0, b.0), vorrq_u32(self.1, b.1)) }
+    }
+}
+
+impl Mask for NeonMask {
+    #[inline(always)]
+    fn bits(self) -> u32 {
         // SAFETY: see `splat`; each lane of the mask keeps one bit of its own.
         unsafe {
             let bits = vld1q_u32([1, 2, 4, 8].as_ptr());
-            let (lo, hi) = (vcleq_f32(self.0, b.0), vcleq_f32(self.1, b.1));
-            vaddvq_u32(vandq_u32(lo, bits)) | (vaddvq_u32(vandq_u32(hi, bits)) << 4)
+            vaddvq_u32(vandq_u32(self.0, bits)) | (vaddvq_u32(vandq_u32(self.1, bits)) << 4)
         }
     }
 }

@@ -10,6 +10,8 @@ mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use std::ops::{BitAnd, BitOr};
+
 use scalar::Scalar;
 
 /// An instruction set a kernel can run on.
@@ -71,8 +73,15 @@ impl Isa {
     }
 }
 
-/// Eight lanes of `f32`. Comparisons give a bit per lane; a NaN compares false.
+/// The answers of a comparison in eight lanes.
+pub(crate) trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
+    /// Bit `i` set where lane `i` answers yes.
+    fn bits(self) -> u32;
+}
+
+/// Eight lanes of `f32`. A NaN compares false.
 pub(crate) trait Lanes: Copy {
+    type Mask: Mask;
     fn load(a: &[f32; 8]) -> Self;
     fn store(self, a: &mut [f32; 8]);
     fn splat(x: f32) -> Self;
@@ -103,8 +112,10 @@ pub(crate) trait Lanes: Copy {
     fn min(self, b: Self) -> Self;
     /// The greater; `b` where they cannot be compared.
     fn max(self, b: Self) -> Self;
-    /// Bit `i` set where lane `i` of `self` ≤ lane `i` of `b`.
-    fn le(self, b: Self) -> u32;
+    /// Where `self` ≤ `b`.
+    fn le(self, b: Self) -> Self::Mask;
+    /// Where `self` < `b`.
+    fn lt(self, b: Self) -> Self::Mask;
 }
 
 /// A computation generic over the lanes. `run` must be `#[inline(always)]`, and so must all it
@@ -172,7 +183,7 @@ mod tests {
     struct Each([[f32; 8]; 3]);
 
     impl Kernel for Each {
-        type Output = (Vec<[f32; 8]>, u32);
+        type Output = (Vec<[f32; 8]>, [u32; 4]);
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Output {
             let [a, b, c] = [L::load(&self.0[0]), L::load(&self.0[1]), L::load(&self.0[2])];
@@ -194,7 +205,7 @@ mod tests {
             for (r, o) in results.iter().zip(&mut out) {
                 r.store(o);
             }
-            (out, a.le(b))
+            (out, [a.le(b), a.lt(b), a.le(b) & b.le(a), a.lt(b) | b.lt(a)].map(|m| m.bits()))
         }
     }
 

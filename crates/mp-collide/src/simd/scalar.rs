@@ -1,6 +1,7 @@
 //! Plain arrays, on any CPU.
 
-use super::Lanes;
+use super::{Lanes, Mask};
+use std::ops::{BitAnd, BitOr};
 
 /// Plain arrays.
 #[derive(Clone, Copy)]
@@ -14,6 +15,7 @@ impl Scalar {
 }
 
 impl Lanes for Scalar {
+    type Mask = Bools;
     #[inline(always)]
     fn load(a: &[f32; 8]) -> Self {
         Self(*a)
@@ -63,7 +65,38 @@ impl Lanes for Scalar {
         self.zip(b, |x, y| if x > y { x } else { y })
     }
     #[inline(always)]
-    fn le(self, b: Self) -> u32 {
-        (0..8).fold(0, |m, i| m | (u32::from(self.0[i] <= b.0[i]) << i))
+    fn le(self, b: Self) -> Bools {
+        Bools(std::array::from_fn(|i| self.0[i] <= b.0[i]))
+    }
+    #[inline(always)]
+    fn lt(self, b: Self) -> Bools {
+        Bools(std::array::from_fn(|i| self.0[i] < b.0[i]))
+    }
+}
+
+/// What comparing [`Scalar`]s gives.
+#[derive(Clone, Copy)]
+pub(crate) struct Bools([bool; 8]);
+
+impl BitAnd for Bools {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, b: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] & b.0[i]))
+    }
+}
+
+impl BitOr for Bools {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, b: Self) -> Self {
+        Self(std::array::from_fn(|i| self.0[i] | b.0[i]))
+    }
+}
+
+impl Mask for Bools {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        (0..8).fold(0, |m, i| m | (u32::from(self.0[i]) << i))
     }
 }

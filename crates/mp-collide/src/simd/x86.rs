@@ -1,7 +1,8 @@
 //! 256-bit registers, and 128-bit ones two at a time.
 
-use super::{Kernel, Lanes};
+use super::{Kernel, Lanes, Mask};
 use std::arch::x86_64::*;
+use std::ops::{BitAnd, BitOr};
 
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
 pub(super) fn avx512<K: Kernel>(kernel: K) -> K::Output {
@@ -19,6 +20,7 @@ pub(super) fn avx2<K: Kernel>(kernel: K) -> K::Output {
 pub(super) struct Avx2(__m256);
 
 impl Lanes for Avx2 {
+    type Mask = Avx2Mask;
     #[inline(always)]
     fn load(a: &[f32; 8]) -> Self {
         // SAFETY: see `Avx2`.
@@ -90,9 +92,44 @@ impl Lanes for Avx2 {
         Self(unsafe { _mm256_max_ps(self.0, b.0) })
     }
     #[inline(always)]
-    fn le(self, b: Self) -> u32 {
+    fn le(self, b: Self) -> Avx2Mask {
         // SAFETY: see `Avx2`.
-        unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, b.0)) }.cast_unsigned()
+        Avx2Mask(unsafe { _mm256_cmp_ps::<_CMP_LE_OQ>(self.0, b.0) })
+    }
+    #[inline(always)]
+    fn lt(self, b: Self) -> Avx2Mask {
+        // SAFETY: see `Avx2`.
+        Avx2Mask(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, b.0) })
+    }
+}
+
+/// What comparing [`Avx2`]s gives: all bits of a lane or none.
+#[derive(Clone, Copy)]
+pub(super) struct Avx2Mask(__m256);
+
+impl BitAnd for Avx2Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, b: Self) -> Self {
+        // SAFETY: see `Avx2`.
+        Self(unsafe { _mm256_and_ps(self.0, b.0) })
+    }
+}
+
+impl BitOr for Avx2Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, b: Self) -> Self {
+        // SAFETY: see `Avx2`.
+        Self(unsafe { _mm256_or_ps(self.0, b.0) })
+    }
+}
+
+impl Mask for Avx2Mask {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        // SAFETY: see `Avx2`.
+        unsafe { _mm256_movemask_ps(self.0) }.cast_unsigned()
     }
 }
 
@@ -101,6 +138,7 @@ impl Lanes for Avx2 {
 pub(super) struct Sse2(__m128, __m128);
 
 impl Lanes for Sse2 {
+    type Mask = Sse2Mask;
     #[inline(always)]
     fn load(a: &[f32; 8]) -> Self {
         // SAFETY: unaligned loads of floats 0..4 and 4..8 of the array.
@@ -170,11 +208,44 @@ impl Lanes for Sse2 {
         unsafe { Self(_mm_max_ps(self.0, b.0), _mm_max_ps(self.1, b.1)) }
     }
     #[inline(always)]
-    fn le(self, b: Self) -> u32 {
+    fn le(self, b: Self) -> Sse2Mask {
         // SAFETY: see `Sse2`.
-        let (lo, hi) = unsafe {
-            (_mm_movemask_ps(_mm_cmple_ps(self.0, b.0)), _mm_movemask_ps(_mm_cmple_ps(self.1, b.1)))
-        };
+        unsafe { Sse2Mask(_mm_cmple_ps(self.0, b.0), _mm_cmple_ps(self.1, b.1)) }
+    }
+    #[inline(always)]
+    fn lt(self, b: Self) -> Sse2Mask {
+        // SAFETY: see `Sse2`.
+        unsafe { Sse2Mask(_mm_cmplt_ps(self.0, b.0), _mm_cmplt_ps(self.1, b.1)) }
+    }
+}
+
+/// What comparing [`Sse2`]s gives: all bits of a lane or none.
+#[derive(Clone, Copy)]
+pub(super) struct Sse2Mask(__m128, __m128);
+
+impl BitAnd for Sse2Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, b: Self) -> Self {
+        // SAFETY: see `Sse2`.
+        unsafe { Self(_mm_and_ps(self.0, b.0), _mm_and_ps(self.1, b.1)) }
+    }
+}
+
+impl BitOr for Sse2Mask {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, b: Self) -> Self {
+        // SAFETY: see `Sse2`.
+        unsafe { Self(_mm_or_ps(self.0, b.0), _mm_or_ps(self.1, b.1)) }
+    }
+}
+
+impl Mask for Sse2Mask {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        // SAFETY: see `Sse2`.
+        let (lo, hi) = unsafe { (_mm_movemask_ps(self.0), _mm_movemask_ps(self.1)) };
         (lo | (hi << 4)).cast_unsigned()
     }
 }

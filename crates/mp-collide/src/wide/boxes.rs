@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::Node;
 use super::frames::Placed;
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Mask};
 
 /// Bit `i` is set unless child `i` of `node` is surely farther than `margin` from `q`.
 ///
@@ -21,8 +21,7 @@ pub(crate) fn touching<L: Lanes>(node: &Node, q: &Placed<'_>, margin: f32) -> u3
     let mut m = [[zero; 3]; 3];
     let mut am = [[zero; 3]; 3];
     let mut e = [zero; 3];
-    let mut mask = !0;
-    for k in 0..3 {
+    let [x, y, z] = three!(k => {
         let u = [L::load(&node.axes[k][0]), L::load(&node.axes[k][1]), L::load(&node.axes[k][2])];
         t[k] = dot(&u, &d);
         e[k] = L::load(&node.half[k]);
@@ -32,18 +31,19 @@ pub(crate) fn touching<L: Lanes>(node: &Node, q: &Placed<'_>, margin: f32) -> u3
             am[k][j] = m[k][j].abs();
             reach = am[k][j].mul_add(h[j], reach);
         }
-        mask &= t[k].abs().le(reach);
-    }
-    if mask == 0 {
+        t[k].abs().le(reach)
+    });
+    let mut mask = x & y & z;
+    if mask.bits() == 0 {
         return 0;
     }
     for j in 0..3 {
         let p = t[0].mul_add(m[0][j], t[1].mul_add(m[1][j], t[2].mul(m[2][j])));
         let reach = e[0].mul_add(am[0][j], e[1].mul_add(am[1][j], e[2].mul_add(am[2][j], h[j].add(pad))));
-        mask &= p.abs().le(reach);
+        mask = mask & p.abs().le(reach);
     }
-    if mask == 0 {
-        return mask;
+    if mask.bits() == 0 {
+        return 0;
     }
     for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
@@ -52,10 +52,10 @@ pub(crate) fn touching<L: Lanes>(node: &Node, q: &Placed<'_>, margin: f32) -> u3
                 am[i2][j],
                 e[i2].mul_add(am[i1][j], am[i][j2].mul_add(h[j1], am[i][j1].mul_add(h[j2], pad))),
             );
-            mask &= p.abs().le(reach);
+            mask = mask & p.abs().le(reach);
         }
     }
-    mask
+    mask.bits()
 }
 
 /// A direction, shorter than a unit by a little; or none.

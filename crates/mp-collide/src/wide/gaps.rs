@@ -6,7 +6,7 @@
 use super::boxes::{Slab, cross, dot, sub};
 use super::leaves::corners;
 use super::{Lane, Leaf};
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Mask};
 use crate::triangle::Triangle;
 
 /// Keeps quotients finite where an edge or a triangle has no extent.
@@ -133,7 +133,7 @@ impl<L: Lanes> Gaps<L> {
         let gap = apart.square().max(gap);
         // Finite: nothing is farther away, and 0 · ∞ would lose triangles without area.
         let limit = L::splat((best * (1.0 + 1e-4)).min(1e30));
-        let mut mask = mask & gap.le(limit);
+        let mut mask = mask & gap.le(limit).bits();
         if mask == 0 {
             return Close::default();
         }
@@ -145,8 +145,8 @@ impl<L: Lanes> Gaps<L> {
         let error = L::splat(g * edge * (1.5e-6 * g + 2e-6 * edge));
         let h: [L; 3] = three!(k => dot(&self.n, &sub(&s[k], &self.v[0])));
         let apart = one_sided(&h).sub(error);
-        mask &= apart.max(zero).square().le(self.nn.mul(limit).add(error.square()));
-        let mut crossing = apart.le(L::splat(TINY_HEIGHT));
+        mask &= apart.max(zero).square().le(self.nn.mul(limit).add(error.square())).bits();
+        let mut crossing = apart.le(L::splat(TINY_HEIGHT)).bits();
         if mask == 0 {
             return Close::default();
         }
@@ -166,8 +166,8 @@ impl<L: Lanes> Gaps<L> {
         let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
         let w: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
         let apart = one_sided(&w).sub(error);
-        mask &= apart.max(zero).square().le(L::splat(mm).mul(limit).add(error.square()));
-        crossing &= apart.le(L::splat(TINY_HEIGHT));
+        mask &= apart.max(zero).square().le(L::splat(mm).mul(limit).add(error.square())).bits();
+        crossing &= apart.le(L::splat(TINY_HEIGHT)).bits();
         if mask == 0 {
             return Close::default();
         }
@@ -212,7 +212,7 @@ impl<L: Lanes> Gaps<L> {
         let tilt = TILT * longest * (SOUND * longest * longest + SOUND_AT_LEAST) / mm.max(SOUND_AT_LEAST);
         let above = faces.add(self.tilt).min(face.add(L::splat(tilt))).min(edges);
         above.mul_add(L::splat(1.002), rounding).store(&mut bounds.far);
-        Close { near: mask & low.le(L::splat(best)), crossing: mask & crossing }
+        Close { near: mask & low.le(L::splat(best)).bits(), crossing: mask & crossing }
     }
 
     /// Squared distance of an edge (from `p` along `d`, of squared length `dd`) and edges `j` of the eight.

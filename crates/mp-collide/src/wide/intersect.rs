@@ -17,6 +17,7 @@ pub(crate) struct Intersect<'q> {
     /// Any two triangles that meet will do, not always the same.
     pub(crate) any: bool,
     pub(crate) stack: &'q mut Vec<(u32, u32)>,
+    pub(crate) meeting: &'q mut Meeting,
     pub(crate) counters: &'q mut Counters,
 }
 
@@ -26,7 +27,7 @@ impl Kernel for Intersect<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        let Self { a, b, frames, any, stack, counters } = self;
+        let Self { a, b, frames, any, stack, meeting, counters } = self;
         let pad = frames.pad;
         let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
         let (far_a, far_b) = (a.is_large(), b.is_large());
@@ -38,7 +39,7 @@ impl Kernel for Intersect<'_> {
             if x & y & LEAF != 0 {
                 let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
                 tests += 2;
-                found = leaf_pair::<L>((a, i), (b, j), frames, &into_a, any, counters);
+                found = leaf_pair::<L>((a, i), (b, j), frames, &into_a, any, meeting, counters);
                 if found.is_some() {
                     break;
                 }
@@ -100,6 +101,7 @@ pub(super) fn leaf_pair<L: Lanes>(
     frames: &Frames,
     into_a: &Carrier<L>,
     any: bool,
+    meeting: &mut Meeting,
     counters: &mut Counters,
 ) -> Option<(usize, usize)> {
     let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
@@ -117,14 +119,14 @@ pub(super) fn leaf_pair<L: Lanes>(
     if mask_b == 0 {
         return None;
     }
-    let meeting = Meeting::new((leaf_a, &corners_a), (leaf_b, &corners_b, &own_b), (&near, frames));
+    meeting.set((leaf_a, &corners_a), (leaf_b, &corners_b, &own_b), (&near, frames));
     let (first_a, first_b) = (leaf_a.first as usize, leaf_b.first as usize);
     let mut singles = mask_b;
     while singles != 0 {
         let single = singles.trailing_zeros() as usize;
         singles &= singles - 1;
         counters.triangle_tests += 1;
-        let Verdict { mut maybe, sure } = meeting.of(single, mask_a);
+        let Verdict { mut maybe, sure } = meeting.of::<L>(single, mask_a);
         if any && sure != 0 {
             maybe = sure;
         }

@@ -4,7 +4,7 @@
 use super::boxes::{cross, dot, sub};
 use super::frames::{Carrier, Frames, Placed};
 use super::{Leaf, Obb};
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Mask};
 
 /// Added to every margin: products of lengths so small that they underflow decide nothing.
 pub(super) const TINY: f32 = 1e-34;
@@ -69,14 +69,14 @@ pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed<'_>, near
     let c = q.center::<L>();
     let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
     let margin = margin + 2.0 * near.wrong;
-    let mut mask = !0;
-    for k in 0..3 {
+    let [x, y, z] = three!(k => {
         let u = q.axis::<L>(k);
         let (x, y, z) = (dot(&u, &d[0]), dot(&u, &d[1]), dot(&u, &d[2]));
         let reach = q.half[k] + margin;
-        mask &= x.min(y).min(z).le(L::splat(reach)) & L::splat(-reach).le(x.max(y).max(z));
-    }
-    if mask == 0 {
+        x.min(y).min(z).le(L::splat(reach)) & L::splat(-reach).le(x.max(y).max(z))
+    });
+    let mask = x & y & z;
+    if mask.bits() == 0 {
         return 0;
     }
     let n = cross(&sub(&v[1], &v[0]), &sub(&v[2], &v[0]));
@@ -89,7 +89,7 @@ pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed<'_>, near
         let u = q.axis::<L>(k);
         reach = dot(&n, &u).abs().mul_add(L::splat(q.half[k] * (1.0 + 1e-6)), reach);
     }
-    mask & height.abs().le(reach)
+    (mask & height.abs().le(reach)).bits()
 }
 
 /// The triangles of each of two leaves that may come within `margin` of the box around the other; none of the

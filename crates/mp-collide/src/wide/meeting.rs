@@ -5,7 +5,7 @@ use super::boxes::{cross, dot, sub};
 use super::frames::Frames;
 use super::leaves::{Corners, Near, TINY, U};
 use super::{Lane, Leaf, WIDTH};
-use crate::simd::Lanes;
+use crate::simd::{Lanes, Mask};
 
 /// How wrong heights over the planes of the first leaf, over those of the second, and volumes may be.
 struct Bounds {
@@ -68,63 +68,51 @@ fn turn<L: Lanes>(e: &Corners<L>, frames: &Frames) -> Corners<L> {
     }))
 }
 
-/// Eight triangles with what sides and volumes are computed from.
-struct Eight<L> {
-    corner: Corners<L>,
-    edge: Corners<L>,
-    /// Corner × edge: with the edge, Plücker's coordinates of the line.
-    moment: Corners<L>,
-    normal: [L; 3],
-    /// Normal · corner.
-    height: L,
-}
-
-impl<L: Lanes> Eight<L> {
-    #[inline(always)]
-    fn new(v: &Corners<L>, edge: &Corners<L>) -> Self {
-        let normal = cross(&edge[0], &edge[1]);
-        Self {
-            corner: *v,
-            moment: three!(k => cross(&v[k], &edge[k])),
-            edge: *edge,
-            height: dot(&normal, &v[0]),
-            normal,
-        }
-    }
-
-    #[inline(always)]
-    fn store(&self) -> Singles {
-        let lanes = |v: &Corners<L>| three!(k => three!(d => lane(v[k][d])));
-        Singles {
-            corner: lanes(&self.corner),
-            edge: lanes(&self.edge),
-            moment: lanes(&self.moment),
-            normal: three!(d => lane(self.normal[d])),
-            height: lane(self.height),
-        }
-    }
-}
-
-/// The same in memory, to be taken one by one.
-struct Singles {
+/// Eight triangles in memory, to be taken all at once or one by one, with what sides and volumes are computed from.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+struct Eight {
     corner: [[Lane; 3]; 3],
     edge: [[Lane; 3]; 3],
+    /// Corner × edge: with the edge, Plücker's coordinates of the line.
     moment: [[Lane; 3]; 3],
     normal: [Lane; 3],
+    /// Normal · corner.
     height: Lane,
 }
 
-#[inline(always)]
-fn lane<L: Lanes>(v: L) -> Lane {
-    let mut a = [0.0; WIDTH];
-    v.store(&mut a);
-    a
+impl Eight {
+    const NONE: Self = Self {
+        corner: [[[0.0; WIDTH]; 3]; 3],
+        edge: [[[0.0; WIDTH]; 3]; 3],
+        moment: [[[0.0; WIDTH]; 3]; 3],
+        normal: [[0.0; WIDTH]; 3],
+        height: [0.0; WIDTH],
+    };
+
+    #[inline(always)]
+    fn set<L: Lanes>(&mut self, v: &Corners<L>, edge: &Corners<L>) {
+        for k in 0..3 {
+            let moment = cross(&v[k], &edge[k]);
+            for d in 0..3 {
+                v[k][d].store(&mut self.corner[k][d]);
+                edge[k][d].store(&mut self.edge[k][d]);
+                moment[d].store(&mut self.moment[k][d]);
+            }
+        }
+        let normal = cross(&edge[0], &edge[1]);
+        for d in 0..3 {
+            normal[d].store(&mut self.normal[d]);
+        }
+        dot(&normal, &v[0]).store(&mut self.height);
+    }
 }
 
 /// Eight triangles against others one by one.
-pub(crate) struct Meeting<L> {
-    block: Eight<L>,
-    singles: Singles,
+#[derive(Clone, Debug)]
+pub(crate) struct Meeting {
+    block: Eight,
+    singles: Eight,
     /// How wrong heights over the planes of the eight, over that of the one, and volumes may be.
     wrong_block: f32,
     wrong_single: f32,
@@ -143,73 +131,83 @@ impl Verdict {
     const NONE: Self = Self { maybe: 0, sure: 0 };
 }
 
-impl<L: Lanes> Meeting<L> {
+impl Meeting {
+    /// Of no triangles.
+    pub(crate) const NONE: Self = Self {
+        block: Eight::NONE,
+        singles: Eight::NONE,
+        wrong_block: 0.0,
+        wrong_single: 0.0,
+        wrong_volume: 0.0,
+    };
+
     /// Leaf `a` with its corners, and leaf `b` with its corners here and in its own frame: the latter's triangles one
     /// by one. Always the latter's: taking those of the leaf with fewer that matter is slower, as the choice is
     /// hard to predict and what it chooses is copied.
     #[inline(always)]
-    pub(crate) fn new(
+    pub(crate) fn set<L: Lanes>(
+        &mut self,
         (leaf_a, corners_a): (&Leaf, &Corners<L>),
         (leaf_b, corners_b, own_b): (&Leaf, &Corners<L>, &Corners<L>),
         (near, frames): (&Near, &Frames),
-    ) -> Self {
+    ) {
         let Bounds { height_a, height_b, volume } = Bounds::new(leaf_a, leaf_b, near);
-        let a = Eight::new(corners_a, &edges(corners_a));
-        let b = Eight::new(corners_b, &turn(&edges(own_b), frames));
-        Self {
-            block: a,
-            singles: b.store(),
-            wrong_block: height_a,
-            wrong_single: height_b,
-            wrong_volume: volume,
-        }
+        (self.wrong_block, self.wrong_single, self.wrong_volume) = (height_a, height_b, volume);
+        self.singles.set(corners_b, &turn(&edges(own_b), frames));
+        self.block.set(corners_a, &edges(corners_a));
     }
 
     /// Compares single `l` with the lanes in `mask`: sides of planes first, then the signed volumes of the nine
     /// pairs of edges. An edge passes through a triangle when it crosses its plane and runs past all three of its
     /// edges on the same side.
     #[inline(always)]
-    pub(crate) fn of(&self, l: usize, mask: u32) -> Verdict {
+    pub(crate) fn of<L: Lanes>(&self, l: usize, mask: u32) -> Verdict {
         let (block, singles, l) = (&self.block, &self.singles, l & (WIDTH - 1));
         // Corners of the one against the planes of the eight.
         let corner: Corners<L> = three!(k => splat3(&singles.corner[k], l));
-        let mut sides = Sides::NONE;
-        for k in 0..3 {
-            sides.set::<L>(k, dot(&corner[k], &block.normal).sub(block.height), self.wrong_block);
-        }
-        if mask & sides.both() == 0 {
-            return Verdict::NONE;
-        }
-        // Corners of the eight against the plane of the one.
-        let normal = splat3(&singles.normal, l);
-        let height = L::splat(singles.height[l]);
-        let mut others = Sides::NONE;
-        for k in 0..3 {
-            others.set::<L>(k, dot(&block.corner[k], &normal).sub(height), self.wrong_single);
-        }
-        let mask = mask & sides.both() & others.both();
+        let (normal, height) = (load3(&block.normal), L::load(&block.height));
+        let sides = three!(k => dot(&corner[k], &normal).sub(height));
+        let sides = Signs { x: sides, wrong: self.wrong_block };
+        let mask = mask & sides.differ().bits();
         if mask == 0 {
             return Verdict::NONE;
         }
-        let mut volumes = [Sides::NONE; 3];
-        for i in 0..3 {
+        // Corners of the eight against the plane of the one.
+        let normal: [L; 3] = splat3(&singles.normal, l);
+        let height = L::splat(singles.height[l]);
+        let others = three!(k => dot(&load3(&block.corner[k]), &normal).sub(height));
+        let others = Signs { x: others, wrong: self.wrong_single };
+        let mask = mask & others.differ().bits();
+        if mask == 0 {
+            return Verdict::NONE;
+        }
+        let volumes: Corners<L> = three!(i => {
             let (e, m): ([L; 3], [L; 3]) = (splat3(&singles.edge[i], l), splat3(&singles.moment[i], l));
-            for j in 0..3 {
-                let (f, n) = (&block.edge[j], &block.moment[j]);
+            three!(j => {
+                let (f, n): ([L; 3], [L; 3]) = (load3(&block.edge[j]), load3(&block.moment[j]));
                 let past = e[0].mul_add(n[0], e[1].mul_add(n[1], e[2].mul(n[2])));
-                let volume = m[0].mul_add(f[0], m[1].mul_add(f[1], m[2].mul_add(f[2], past)));
-                volumes[i].set::<L>(j, volume, self.wrong_volume);
-            }
+                m[0].mul_add(f[0], m[1].mul_add(f[1], m[2].mul_add(f[2], past)))
+            })
+        });
+        let wrong = self.wrong_volume;
+        let one = three!(i => Signs { x: volumes[i], wrong });
+        let eight = three!(j => Signs { x: [volumes[0][j], volumes[1][j], volumes[2][j]], wrong });
+        let [x, y, z] =
+            three!(i => sides.crossed(i) & one[i].agree() | others.crossed(i) & eight[i].agree());
+        let maybe = mask & (x | y | z).bits();
+        if maybe == 0 {
+            return Verdict::NONE;
         }
-        let (mut maybe, mut sure) = (0, 0);
-        for i in 0..3 {
-            let across = Sides { up: three!(j => volumes[j].up[i]), down: three!(j => volumes[j].down[i]) };
-            maybe |= sides.crossed(i) & volumes[i].agree() | others.crossed(i) & across.agree();
-            sure |= sides.surely_crossed(i) & volumes[i].surely_agree()
-                | others.surely_crossed(i) & across.surely_agree();
-        }
-        Verdict { maybe: mask & maybe, sure: mask & maybe & sure }
+        let [x, y, z] = three!(i => {
+            sides.surely_crossed(i) & one[i].surely_agree() | others.surely_crossed(i) & eight[i].surely_agree()
+        });
+        Verdict { maybe, sure: maybe & (x | y | z).bits() }
     }
+}
+
+#[inline(always)]
+fn load3<L: Lanes>(v: &[Lane; 3]) -> [L; 3] {
+    [L::load(&v[0]), L::load(&v[1]), L::load(&v[2])]
 }
 
 #[inline(always)]
@@ -217,52 +215,63 @@ fn splat3<L: Lanes>(v: &[Lane; 3], l: usize) -> [L; 3] {
     [L::splat(v[0][l]), L::splat(v[1][l]), L::splat(v[2][l])]
 }
 
-/// The signs of three numbers, eight times: those that may be at least zero, those that may be at most zero.
-#[derive(Clone, Copy)]
-struct Sides {
-    up: [u32; 3],
-    down: [u32; 3],
+/// Three numbers, eight times, each wrong by up to `wrong`, and what can be said of their signs.
+struct Signs<L> {
+    x: [L; 3],
+    wrong: f32,
 }
 
-impl Sides {
-    const NONE: Self = Self { up: [0; 3], down: [0; 3] };
+impl<L: Lanes> Signs<L> {
+    /// The least and the greatest of some of the numbers: one may be at least zero, one at most.
+    #[inline(always)]
+    fn either(&self, (low, high): (L, L)) -> L::Mask {
+        low.le(L::splat(self.wrong)) & L::splat(-self.wrong).le(high)
+    }
 
     #[inline(always)]
-    fn set<L: Lanes>(&mut self, k: usize, x: L, wrong: f32) {
-        self.up[k] = L::splat(-wrong).le(x);
-        self.down[k] = x.le(L::splat(wrong));
+    fn all(&self) -> (L, L) {
+        let [x, y, z] = self.x;
+        (x.min(y).min(z), x.max(y).max(z))
+    }
+
+    /// Number `i` and its successor.
+    #[inline(always)]
+    fn two(&self, i: usize) -> (L, L) {
+        let (x, y) = (self.x[i], self.x[(i + 1) % 3]);
+        (x.min(y), x.max(y))
     }
 
     /// Some of the three may be at least zero, some at most.
     #[inline(always)]
-    fn both(&self) -> u32 {
-        (self.up[0] | self.up[1] | self.up[2]) & (self.down[0] | self.down[1] | self.down[2])
+    fn differ(&self) -> L::Mask {
+        self.either(self.all())
     }
 
     /// Numbers `i` and its successor may have different signs.
     #[inline(always)]
-    fn crossed(&self, i: usize) -> u32 {
-        let j = (i + 1) % 3;
-        self.up[i] & self.down[j] | self.down[i] & self.up[j]
+    fn crossed(&self, i: usize) -> L::Mask {
+        self.either(self.two(i))
     }
 
     /// They have.
     #[inline(always)]
-    fn surely_crossed(&self, i: usize) -> u32 {
-        let j = (i + 1) % 3;
-        !(self.down[i] | self.up[j]) | !(self.up[i] | self.down[j])
+    fn surely_crossed(&self, i: usize) -> L::Mask {
+        let (low, high) = self.two(i);
+        low.lt(L::splat(-self.wrong)) & L::splat(self.wrong).lt(high)
     }
 
     /// All three may have the same sign.
     #[inline(always)]
-    fn agree(&self) -> u32 {
-        self.up[0] & self.up[1] & self.up[2] | self.down[0] & self.down[1] & self.down[2]
+    fn agree(&self) -> L::Mask {
+        let (low, high) = self.all();
+        L::splat(-self.wrong).le(low) | high.le(L::splat(self.wrong))
     }
 
     /// They have.
     #[inline(always)]
-    fn surely_agree(&self) -> u32 {
-        !(self.down[0] | self.down[1] | self.down[2]) | !(self.up[0] | self.up[1] | self.up[2])
+    fn surely_agree(&self) -> L::Mask {
+        let (low, high) = self.all();
+        L::splat(self.wrong).lt(low) | high.lt(L::splat(-self.wrong))
     }
 }
 

@@ -33,7 +33,7 @@ pub(crate) mod gaps;
 pub(crate) mod inside;
 pub(crate) mod intersect;
 pub(crate) mod leaves;
-mod meeting;
+pub(crate) mod meeting;
 pub(crate) mod nearest;
 pub(crate) mod revolved;
 pub(crate) mod span;

@@ -9,7 +9,7 @@ use super::gaps::{Bounds, Gaps};
 use super::leaves::near_each_other;
 use super::{LEAF, Tree, WIDTH};
 use crate::query::Counters;
-use crate::simd::{Kernel, Lanes};
+use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{Closest, closest_within, is_farther, is_nearest};
 
 /// Two nodes whose boxes are at least the root of `bound` apart; the greatest of several is the nearest.
@@ -102,7 +102,7 @@ impl Kernel for Nearest<'_> {
                 (&b.nodes[y as usize], into_b.place(a.own(x)), &best.slab_in_b)
             };
             let bounds = distances::<L>(node, &place, frames.pad, slab);
-            let mut mask = bounds.le(L::splat(best.squared)) & L::splat(0.0).le(L::load(&node.half[0]));
+            let mut mask = (bounds.le(L::splat(best.squared)) & L::splat(0.0).le(L::load(&node.half[0]))).bits();
             let mut bound = [0.0; WIDTH];
             bounds.store(&mut bound);
             let pairs = &mut self.scratch.pairs;

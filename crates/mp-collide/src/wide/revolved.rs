@@ -7,7 +7,7 @@ use super::frames::{Carrier, Frames};
 use super::{LEAF, Tree, WIDTH};
 use crate::pose::Relative;
 use crate::query::Counters;
-use crate::simd::{Kernel, Lanes};
+use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::Triangle;
 
 /// A solid about Z between two discs: of radius `low` at z = −`half` and `high` at z = `half` (metres), not both 0.
@@ -196,7 +196,7 @@ impl Kernel for Revolved<'_> {
             }
             let node = &a.nodes[x as usize];
             let bounds = distances::<L>(node, &place, frames.pad, &Slab::default());
-            let mut mask = bounds.le(L::splat(limit)) & L::splat(0.0).le(L::load(&node.half[0]));
+            let mut mask = (bounds.le(L::splat(limit)) & L::splat(0.0).le(L::load(&node.half[0]))).bits();
             let mut bound = [0.0_f32; WIDTH];
             bounds.store(&mut bound);
             let from = stack.len();

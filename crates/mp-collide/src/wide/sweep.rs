@@ -8,12 +8,13 @@
 use super::boxes::{cross, dot, sub, touching};
 use super::frames::{Carrier, Placed};
 use super::intersect::{ahead, leaf_pair};
+use super::meeting::Meeting;
 use super::leaves::{Corners, Near, corners};
 use super::span::{Parts, Span};
 use super::swept::{Gap, triangles};
 use super::{LEAF, Node, Tree};
 use crate::query::{Counters, Query};
-use crate::simd::{Kernel, Lanes, run};
+use crate::simd::{Kernel, Lanes, Mask, run};
 
 /// A pair of nodes during a part of the motion.
 #[derive(Clone, Copy, Debug)]
@@ -98,10 +99,10 @@ impl Query {
     ) -> Option<Met> {
         course.parts_mut().clear();
         course.add(range);
-        let (stack, counters) = (&mut self.items, &mut self.counters);
+        let (stack, meeting, counters) = (&mut self.items, &mut self.meeting, &mut self.counters);
         stack.clear();
         stack.push(Item::new(a, b, 0));
-        run(self.isa, Sweep { a, b, course, stack, counters })
+        run(self.isa, Sweep { a, b, course, stack, meeting, counters })
     }
 }
 
@@ -120,6 +121,7 @@ struct Sweep<'q, C> {
     course: &'q mut C,
     /// What to look at, the first last.
     stack: &'q mut Vec<Item>,
+    meeting: &'q mut Meeting,
     counters: &'q mut Counters,
 }
 
@@ -129,7 +131,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
-        let Self { a, b, course, stack, counters } = self;
+        let Self { a, b, course, stack, meeting, counters } = self;
         let mut tests = 0;
         let mut met = None;
         let mut limit = u32::MAX;
@@ -158,7 +160,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                 if still {
                     let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
                     let into_a = Carrier::<L>::new(&frames.into_a);
-                    if leaf_pair((a, i), (b, j), frames, &into_a, true, counters).is_none() {
+                    if leaf_pair((a, i), (b, j), frames, &into_a, true, meeting, counters).is_none() {
                         continue;
                     }
                 } else {
@@ -251,8 +253,7 @@ fn apart<L: Lanes>(node: &Node, q: &Placed<'_>, drift: &[L; 3], slop: L, span: &
     let mut m = [[zero; 3]; 3];
     let mut am = [[zero; 3]; 3];
     let mut e = [zero; 3];
-    let mut mask = !0;
-    for k in 0..3 {
+    let [x, y, z] = three!(k => {
         let u = [L::load(&node.axes[k][0]), L::load(&node.axes[k][1]), L::load(&node.axes[k][2])];
         t[k] = dot(&u, &d);
         w[k] = dot(&u, drift);
@@ -263,9 +264,10 @@ fn apart<L: Lanes>(node: &Node, q: &Placed<'_>, drift: &[L; 3], slop: L, span: &
             am[k][j] = m[k][j].abs();
             reach = am[k][j].mul_add(h[j], reach);
         }
-        mask &= t[k].abs().le(reach);
-    }
-    if mask == 0 {
+        t[k].abs().le(reach)
+    });
+    let mut mask = x & y & z;
+    if mask.bits() == 0 {
         return 0;
     }
     for j in 0..3 {
@@ -273,10 +275,10 @@ fn apart<L: Lanes>(node: &Node, q: &Placed<'_>, drift: &[L; 3], slop: L, span: &
         let v = w[0].mul_add(m[0][j], w[1].mul_add(m[1][j], w[2].mul(m[2][j])));
         let reach = e[0]
             .mul_add(am[0][j], e[1].mul_add(am[1][j], e[2].mul_add(am[2][j], h[j].add(pad).add(v.abs()))));
-        mask &= p.abs().le(reach);
+        mask = mask & p.abs().le(reach);
     }
-    if mask == 0 {
-        return mask;
+    if mask.bits() == 0 {
+        return 0;
     }
     for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
@@ -287,10 +289,10 @@ fn apart<L: Lanes>(node: &Node, q: &Placed<'_>, drift: &[L; 3], slop: L, span: &
                 am[i2][j],
                 e[i2].mul_add(am[i1][j], am[i][j2].mul_add(h[j1], am[i][j1].mul_add(h[j2], travel))),
             );
-            mask &= p.abs().le(reach);
+            mask = mask & p.abs().le(reach);
         }
     }
-    mask
+    mask.bits()
 }
 
 /// The triangles of each of two leaves that may come within the margin of the box around the other; none of
@@ -330,14 +332,14 @@ fn near_box<L: Lanes>(
     let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
     let margin = margin + 2.0 * near.wrong;
     let zero = L::splat(0.0);
-    let mut mask = !0;
-    for k in 0..3 {
+    let [x, y, z] = three!(k => {
         let u = q.axis::<L>(k);
         let (x, y, z) = (dot(&u, &d[0]), dot(&u, &d[1]), dot(&u, &d[2]));
         let reach = dot(&u, drift).abs().add(L::splat(q.half[k] + margin));
-        mask &= x.min(y).min(z).le(reach) & zero.sub(reach).le(x.max(y).max(z));
-    }
-    if mask == 0 {
+        x.min(y).min(z).le(reach) & zero.sub(reach).le(x.max(y).max(z))
+    });
+    let mask = x & y & z;
+    if mask.bits() == 0 {
         return 0;
     }
     let n = cross(&sub(&v[1], &v[0]), &sub(&v[2], &v[0]));
@@ -353,5 +355,5 @@ fn near_box<L: Lanes>(
         let u = q.axis::<L>(k);
         reach = dot(&n, &u).abs().mul_add(L::splat(q.half[k] * (1.0 + 1e-6)), reach);
     }
-    mask & height.abs().le(reach)
+    (mask & height.abs().le(reach)).bits()
 }

@@ -7,7 +7,7 @@ use super::intersect::push;
 use super::leaves::near_each_other;
 use super::{LEAF, Tree};
 use crate::query::Counters;
-use crate::simd::{Kernel, Lanes};
+use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{closest_within, intersect};
 
 /// Depth-first over pairs of nodes whose boxes come within the tolerance; ends at the first pair of
@@ -104,7 +104,7 @@ impl Within<'_> {
             self.counters.triangle_tests += 1;
             let mut bounds = Bounds::default();
             let close = gaps.between(&single, mask_a, limit.maybe, &mut bounds);
-            if L::load(&bounds.far).le(L::splat(limit.surely)) & close.near != 0 {
+            if L::load(&bounds.far).le(L::splat(limit.surely)).bits() & close.near != 0 {
                 return true;
             }
             let mut lanes = close.near | close.crossing;
