@@ -76,6 +76,11 @@ impl Lanes for Neon {
         unsafe { Self(vabsq_f32(self.0), vabsq_f32(self.1)) }
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see `splat`.
+        unsafe { Self(vsqrtq_f32(self.0), vsqrtq_f32(self.1)) }
+    }
+    #[inline(always)]
     fn min(self, b: Self) -> Self {
         // SAFETY: see `splat`.
         unsafe {

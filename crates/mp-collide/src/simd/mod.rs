@@ -104,6 +104,7 @@ pub(crate) trait Lanes: Copy {
         self.mul(b).sub(c)
     }
     fn abs(self) -> Self;
+    fn sqrt(self) -> Self;
     #[inline(always)]
     fn square(self) -> Self {
         self.mul(self)
@@ -193,6 +194,7 @@ mod tests {
                 a.mul(b),
                 a.div(b),
                 a.abs(),
+                a.sqrt(),
                 a.min(b),
                 a.max(b),
                 a.square(),

@@ -57,6 +57,10 @@ impl Lanes for Scalar {
         Self(self.0.map(f32::abs))
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f32::sqrt))
+    }
+    #[inline(always)]
     fn min(self, b: Self) -> Self {
         self.zip(b, |x, y| if x < y { x } else { y })
     }

@@ -82,6 +82,11 @@ impl Lanes for Avx2 {
         Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
     }
     #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see `Avx2`.
+        Self(unsafe { _mm256_sqrt_ps(self.0) })
+    }
+    #[inline(always)]
     fn min(self, b: Self) -> Self {
         // SAFETY: see `Avx2`.
         Self(unsafe { _mm256_min_ps(self.0, b.0) })
@@ -196,6 +201,11 @@ impl Lanes for Sse2 {
             let sign = _mm_set1_ps(-0.0);
             Self(_mm_andnot_ps(sign, self.0), _mm_andnot_ps(sign, self.1))
         }
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see `Sse2`.
+        unsafe { Self(_mm_sqrt_ps(self.0), _mm_sqrt_ps(self.1)) }
     }
     #[inline(always)]
     fn min(self, b: Self) -> Self {

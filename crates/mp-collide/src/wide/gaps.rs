@@ -18,9 +18,9 @@ const TINY: f32 = 1e-37;
 const SOUND: f32 = 2.6e-5;
 const SOUND_AT_LEAST: f32 = 1e-30;
 
-/// A normal wrong by the angle δ makes a height wrong by ε = δ·e, and (h + ε)² ≤ 1.002 h² + 501 ε²; δ² is
-/// 1e-8 of what `SOUND` asks for over |n|².
-const TILT: f32 = 5.1e-6;
+/// A normal wrong by the angle δ makes the height of a point over the triangle wrong by δ·e; δ² is so much of what
+/// `SOUND` asks for over |n|².
+const TILT: f32 = 1e-8;
 
 /// Below this size (metres) products of four lengths are lost to underflow.
 const SMALL: f32 = 1e-7;
@@ -55,7 +55,7 @@ pub(crate) struct Gaps<L> {
     nn: L,
     /// Infinite for triangles whose normal is lost in rounding, 0 for the others.
     flat: L,
-    /// How wrong a squared height may be beyond 0.1%, for the normal's error in direction.
+    /// How wrong a height may be for the normal's error in direction.
     tilt: L,
     /// In the plane, across each edge, inward.
     inward: [[L; 3]; 3],
@@ -86,7 +86,7 @@ impl<L: Lanes> Gaps<L> {
         let along = slab.0.map(L::splat);
         Self {
             flat: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
-            tilt: L::splat(TILT).mul(longest).mul(least.div(nn.max(L::splat(SOUND_AT_LEAST)))),
+            tilt: L::splat(TILT).mul(longest).mul(least.div(nn.max(L::splat(SOUND_AT_LEAST)))).sqrt(),
             ff,
             inverse: [one.div(ff[0].max(tiny)), one.div(ff[1].max(tiny)), one.div(ff[2].max(tiny))],
             nn,
@@ -198,20 +198,23 @@ impl<L: Lanes> Gaps<L> {
             let outside = inside[0].min(inside[1]).min(inside[2]).min(zero).mul(penalty);
             face = w[k].mul(inverse).mul_add(w[k], outside.add(flat)).min(face);
         }
-        // Points of edges are points of the triangles, so only their rounding can make the result too small;
-        // that nearly parallel edges are not met at the best place makes it too large, by no more than some
-        // 1e-6 of the squared edges. A height is wrong by at most 1e-4 of the edges either way. Where a face
+        // Points of edges are points of the triangles, so only their rounding, 16u·g, can make the result too small.
+        // Too large it is also where edges are not met at the best place: an edge e is met elsewhere by at most
+        // δ = (14u·r/e + 8u)/sin², which costs (e·δ·sin)² and never more than (e·sin)²: 4e-6·g·e and 1e-6·e² where the
+        // two are the same. A height is wrong by the tilt of the normal either way, and by as much rounding;
+        // a foot is on the wrong side of an edge by 1e-4 of the height, which is 1e-8 of its square. Where a face
         // was left out, the gap of the boxes is all that is known from below.
         let size = own.max(edge);
-        let rounding = L::splat(1e-9 * g * g);
         let squared = faces.min(face).min(edges);
-        let below = squared.mul_sub(L::splat(0.998), rounding.add(L::splat(1e-5 * size * size)));
-        let below = below.sub(self.flat.add(flat));
+        let tilt =
+            (TILT * longest * (SOUND * longest * longest + SOUND_AT_LEAST) / mm.max(SOUND_AT_LEAST)).sqrt();
+        let error = self.tilt.max(L::splat(tilt)).add(L::splat(2e-6 * g));
+        let parallel = L::splat(size * (4e-6 * g + 1e-5 * size));
+        let below = squared.sub(parallel).max(zero).sqrt().sub(error).max(zero).square();
+        let below = below.mul(L::splat(1.0 - 2e-6)).sub(self.flat.add(flat));
         let low = below.max(gap.mul(L::splat(1.0 - 1e-5)));
         low.store(&mut bounds.near);
-        let tilt = TILT * longest * (SOUND * longest * longest + SOUND_AT_LEAST) / mm.max(SOUND_AT_LEAST);
-        let above = faces.add(self.tilt).min(face.add(L::splat(tilt))).min(edges);
-        above.mul_add(L::splat(1.002), rounding).store(&mut bounds.far);
+        squared.sqrt().add(error).square().mul(L::splat(1.0 + 2e-6)).store(&mut bounds.far);
         Close { near: mask & low.le(L::splat(best)).bits(), crossing: mask & crossing }
     }
 
@@ -246,4 +249,77 @@ fn one_sided<L: Lanes>(h: &[L; 3]) -> L {
 #[inline(always)]
 fn cross_scalar(a: &[f32; 3], b: &[f32; 3]) -> [f32; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{Isa, Kernel, run};
+    use crate::triangle::closest_within;
+    use crate::wide::{Obb, build::leaf};
+    use nalgebra::{Point3, UnitQuaternion, Vector3};
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64;
+
+    struct Between<'t>(&'t Leaf, &'t Triangle);
+
+    impl Kernel for Between<'_> {
+        type Output = (Bounds, Close);
+        #[inline(always)]
+        fn run<L: Lanes>(self) -> Self::Output {
+            let mut bounds = Bounds::default();
+            let gaps = Gaps::<L>::new(self.0, &Slab::default());
+            let close = gaps.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
+            (bounds, close)
+        }
+    }
+
+    /// Squared distances lie between the bounds, whatever the shapes, from almost touching to far away, parallel
+    /// edges and faces among them; and where shapes are sound the bounds are tight.
+    #[test]
+    fn distances_lie_between_the_bounds() {
+        let mut rng = Pcg64::seed_from_u64(8);
+        let mut power = |low: f64, high: f64| 10f64.powf(rng.random_range(low..high));
+        let mut other = Pcg64::seed_from_u64(9);
+        let mut any = || Vector3::from_fn(|_, _| other.random_range(-1.0..1.0));
+        let obb = Obb::new([[0.0; 4]; 3], [0.0; 3]);
+        let (mut tight, mut far) = (0, 0);
+        for round in 0..20_000 {
+            let size = power(-6.0, 4.0);
+            let sliver = if round % 3 == 0 { power(-6.0, 0.0) } else { 1.0 };
+            let mut triangles: Vec<Triangle> = (0..8)
+                .map(|_| {
+                    let (p, e) = (Point3::from(any() * size), any() * size);
+                    [p, p + e, p + e * (any().x + 1.0) + any() * (size * sliver)]
+                })
+                .collect();
+            // One of them again, turned a little or not at all, and carried away.
+            let turn = UnitQuaternion::from_scaled_axis(any() * power(-8.0, 1.0));
+            let away = any() * (size * power(-5.0, 5.0));
+            if round % 5 == 0 {
+                triangles[3] = triangles[3].map(|p| p + any() * (size * 1e-3));
+            }
+            let single = triangles[3].map(|p| turn * p + away);
+            let leaf = leaf(&triangles, &Point3::origin(), &(0..8), &obb);
+            for isa in Isa::available() {
+                let (bounds, close) = run(isa, Between(&leaf, &single));
+                assert_eq!(close.near, 0xff);
+                for (lane, triangle) in triangles.iter().enumerate() {
+                    let squared = closest_within(triangle, &single, f64::INFINITY).unwrap().squared;
+                    let (near, beyond) = (f64::from(bounds.near[lane]), f64::from(bounds.far[lane]));
+                    if squared == 0.0 {
+                        assert!(close.crossing >> lane & 1 != 0, "{isa:?} {triangle:?} {single:?}");
+                        continue;
+                    }
+                    assert!(near <= squared, "{isa:?}: {near} > {squared}: {triangle:?} {single:?}");
+                    assert!(beyond >= squared, "{isa:?}: {beyond} < {squared}: {triangle:?} {single:?}");
+                    if sliver == 1.0 && squared > size * size {
+                        far += 1;
+                        tight += usize::from(near > squared * 0.9999 && beyond < squared * 1.0001);
+                    }
+                }
+            }
+        }
+        assert!(far > 100_000 && tight * 10 > far * 9, "{tight} of {far}");
+    }
 }

@@ -192,8 +192,7 @@ impl Meeting {
         let wrong = self.wrong_volume;
         let one = three!(i => Signs { x: volumes[i], wrong });
         let eight = three!(j => Signs { x: [volumes[0][j], volumes[1][j], volumes[2][j]], wrong });
-        let [x, y, z] =
-            three!(i => sides.crossed(i) & one[i].agree() | others.crossed(i) & eight[i].agree());
+        let [x, y, z] = three!(i => sides.crossed(i) & one[i].agree() | others.crossed(i) & eight[i].agree());
         let maybe = mask & (x | y | z).bits();
         if maybe == 0 {
             return Verdict::NONE;

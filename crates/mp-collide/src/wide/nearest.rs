@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 use super::boxes::{Slab, distances};
 use super::frames::{Carrier, Frames};
 use super::gaps::{Bounds, Gaps};
+use super::intersect::ahead;
 use super::leaves::near_each_other;
 use super::{LEAF, Tree, WIDTH};
 use crate::query::Counters;
@@ -83,6 +84,7 @@ impl Kernel for Nearest<'_> {
             slab: Slab::default(),
             slab_in_b: Slab::default(),
         };
+        let far = a.is_large() || b.is_large();
         let mut next = Some(Pair { bound: 0.0, a: a.root, b: b.root });
         while let Some(pair) = next.take().or_else(|| self.scratch.pairs.pop()) {
             if pair.bound > best.squared {
@@ -90,6 +92,10 @@ impl Kernel for Nearest<'_> {
             }
             self.counters.box_tests += 1;
             let (x, y) = (pair.a, pair.b);
+            if far && let Some(then) = self.scratch.pairs.peek() {
+                ahead(a, then.a);
+                ahead(b, then.b);
+            }
             if x & y & LEAF != 0 {
                 let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
                 self.leaf_pair::<L>(i, j, &into_a, &mut best);
@@ -102,7 +108,8 @@ impl Kernel for Nearest<'_> {
                 (&b.nodes[y as usize], into_b.place(a.own(x)), &best.slab_in_b)
             };
             let bounds = distances::<L>(node, &place, frames.pad, slab);
-            let mut mask = (bounds.le(L::splat(best.squared)) & L::splat(0.0).le(L::load(&node.half[0]))).bits();
+            let mut mask =
+                (bounds.le(L::splat(best.squared)) & L::splat(0.0).le(L::load(&node.half[0]))).bits();
             let mut bound = [0.0; WIDTH];
             bounds.store(&mut bound);
             let pairs = &mut self.scratch.pairs;
@@ -180,7 +187,7 @@ impl Nearest<'_> {
         if let Some((k, single)) = nearest
             && let Some(closest) = closest_within(&a.triangles[k as usize], &single, f64::INFINITY)
         {
-            // What lanes say is up to 0.2% too much, and the larger the meshes, the more pairs are so near the least.
+            // What lanes say is a little too much, and the larger the meshes, the more pairs are so near the least.
             best.squared = best.squared.min(up(closest.squared));
             if closest.squared < best.closest.squared {
                 best.closest = closest;

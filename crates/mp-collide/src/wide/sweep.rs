@@ -8,8 +8,8 @@
 use super::boxes::{cross, dot, sub, touching};
 use super::frames::{Carrier, Placed};
 use super::intersect::{ahead, leaf_pair};
-use super::meeting::Meeting;
 use super::leaves::{Corners, Near, corners};
+use super::meeting::Meeting;
 use super::span::{Parts, Span};
 use super::swept::{Gap, triangles};
 use super::{LEAF, Node, Tree};
