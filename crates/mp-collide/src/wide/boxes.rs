@@ -75,61 +75,53 @@ impl Slab {
 }
 
 /// Squared lower bounds on the distances of `q` from the children of `node`, `pad` (metres) taken off each
-/// gap: the largest of the two distances from each box to the box around the other that is aligned with it,
-/// and of the gaps along the nine products of edges and along `slab`. Infinite in lanes not used.
+/// gap: the larger of two, the distance to the box around `q` that is aligned with the child, and the gap along the
+/// join of two points: that of the child nearest to the centre of `q`, and that of `q` nearest to it.
+/// Infinite in lanes not used.
+///
+/// The second is seldom less than the distance by much: with distances instead, a search opens 3% fewer pairs of boxes.
+/// Its direction is the sum of three axes, so rounding can make it wrong by √3 times as much, and a little more for
+/// sums: by no more than 2·`pad`.
 #[inline(always)]
-pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32, slab: &Slab) -> L {
+pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
     let center = q.center::<L>();
     let d: [L; 3] = three!(k => center[k].sub(L::load(&node.center[k])));
     let zero = L::splat(0.0);
     let pad = L::splat(pad);
     let h: [L; 3] = [L::splat(q.half[0]), L::splat(q.half[1]), L::splat(q.half[2])];
-    let n = slab.0.map(L::splat);
-    let mut along = dot(&n, &d).sub(pad);
-    for j in 0..3 {
-        along = along.sub(dot(&n, &q.axis(j)).abs().mul(h[j]));
-    }
+    // All in the frames of the children.
     let mut t = [zero; 3];
     let mut m = [[zero; 3]; 3];
-    let mut am = [[zero; 3]; 3];
     let mut e = [zero; 3];
-    let mut from_node = zero;
+    let mut aligned = zero;
     for k in 0..3 {
         let u = [L::load(&node.axes[k][0]), L::load(&node.axes[k][1]), L::load(&node.axes[k][2])];
         t[k] = dot(&u, &d);
         e[k] = L::load(&node.half[k]);
-        along = along.sub(dot(&n, &u).abs().mul(e[k]));
         let mut reach = e[k].add(pad);
         for j in 0..3 {
-            m[k][j] = dot(&u, &q.axis(j));
-            am[k][j] = m[k][j].abs();
-            reach = am[k][j].mul_add(h[j], reach);
+            m[j][k] = dot(&u, &q.axis(j));
+            reach = m[j][k].abs().mul_add(h[j], reach);
         }
         let gap = t[k].abs().sub(reach).max(zero);
-        from_node = gap.mul_add(gap, from_node);
+        aligned = gap.mul_add(gap, aligned);
     }
-    let mut from_q = zero;
+    // From the centre of `q` to the nearest point of the child, and on to the nearest point of `q`.
+    let back: [L; 3] = three!(k => t[k].min(e[k]).max(zero.sub(e[k])).sub(t[k]));
+    let mut join = [zero.sub(back[0]), zero.sub(back[1]), zero.sub(back[2])];
     for j in 0..3 {
-        let p = t[0].mul_add(m[0][j], t[1].mul_add(m[1][j], t[2].mul(m[2][j])));
-        let reach = e[0].mul_add(am[0][j], e[1].mul_add(am[1][j], e[2].mul_add(am[2][j], h[j].add(pad))));
-        let gap = p.abs().sub(reach).max(zero);
-        from_q = gap.mul_add(gap, from_q);
-    }
-    let mut bound = from_node.max(from_q).max(along.max(zero).square());
-    // The squared length of a product is 1 − m², here rounded up.
-    let one = L::splat(1.0001);
-    for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-        for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-            let p = t[i2].mul_sub(m[i1][j], t[i1].mul(m[i2][j]));
-            let reach = e[i1].mul_add(
-                am[i2][j],
-                e[i2].mul_add(am[i1][j], am[i][j2].mul_add(h[j1], am[i][j1].mul_add(h[j2], pad))),
-            );
-            let gap = p.abs().sub(reach).max(zero);
-            bound = gap.square().div(one.sub(m[i][j].square())).max(bound);
+        let along = dot(&m[j], &back).min(h[j]).max(zero.sub(h[j]));
+        for k in 0..3 {
+            join[k] = m[j][k].mul_add(along, join[k]);
         }
     }
-    bound.mul(L::splat(1.0 - 1e-5))
+    let mut gap = dot(&join, &t).abs();
+    for k in 0..3 {
+        gap = gap.sub(join[k].abs().mul(e[k])).sub(dot(&join, &m[k]).abs().mul(h[k]));
+    }
+    let length = dot(&join, &join).sqrt().max(L::splat(1e-18));
+    let gap = gap.div(length).sub(pad.add(pad)).max(zero);
+    gap.square().max(aligned).mul(L::splat(1.0 - 1e-5))
 }
 
 #[inline(always)]

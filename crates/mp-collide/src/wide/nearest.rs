@@ -78,12 +78,7 @@ impl Kernel for Nearest<'_> {
         let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
         self.scratch.pairs.clear();
         self.scratch.candidates.clear();
-        let mut best = Best {
-            squared: up(enough * enough),
-            closest: Closest::NONE,
-            slab: Slab::default(),
-            slab_in_b: Slab::default(),
-        };
+        let mut best = Best { squared: up(enough * enough), closest: Closest::NONE, slab: Slab::default() };
         let far = a.is_large() || b.is_large();
         let mut next = Some(Pair { bound: 0.0, a: a.root, b: b.root });
         while let Some(pair) = next.take().or_else(|| self.scratch.pairs.pop()) {
@@ -102,12 +97,12 @@ impl Kernel for Nearest<'_> {
                 continue;
             }
             let open_a = x & LEAF == 0 && (y & LEAF != 0 || a.own(x).size >= b.own(y).size);
-            let (node, place, slab) = if open_a {
-                (&a.nodes[x as usize], into_a.place(b.own(y)), &best.slab)
+            let (node, place) = if open_a {
+                (&a.nodes[x as usize], into_a.place(b.own(y)))
             } else {
-                (&b.nodes[y as usize], into_b.place(a.own(x)), &best.slab_in_b)
+                (&b.nodes[y as usize], into_b.place(a.own(x)))
             };
-            let bounds = distances::<L>(node, &place, frames.pad, slab);
+            let bounds = distances::<L>(node, &place, frames.pad);
             let mut mask =
                 (bounds.le(L::splat(best.squared)) & L::splat(0.0).le(L::load(&node.half[0]))).bits();
             let mut bound = [0.0; WIDTH];
@@ -144,9 +139,8 @@ struct Best {
     squared: f32,
     /// The nearest found.
     closest: Closest,
-    /// Across the join of the nearest found, in the frame of `a` and in that of `b`.
+    /// Across the join of the nearest found, in the frame of `a`.
     slab: Slab,
-    slab_in_b: Slab,
 }
 
 impl Nearest<'_> {
@@ -194,7 +188,6 @@ impl Nearest<'_> {
             }
             let join = closest.on_b - closest.on_a;
             best.slab = Slab::across(&join);
-            best.slab_in_b = Slab::across(&-frames.exact.rotation.tr_mul(&join));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::boxes::{Slab, distances};
+use super::boxes::distances;
 use super::frames::{Carrier, Frames};
 use super::{LEAF, Tree, WIDTH};
 use crate::pose::Relative;
@@ -195,7 +195,7 @@ impl Kernel for Revolved<'_> {
                 continue;
             }
             let node = &a.nodes[x as usize];
-            let bounds = distances::<L>(node, &place, frames.pad, &Slab::default());
+            let bounds = distances::<L>(node, &place, frames.pad);
             let mut mask = (bounds.le(L::splat(limit)) & L::splat(0.0).le(L::load(&node.half[0]))).bits();
             let mut bound = [0.0_f32; WIDTH];
             bounds.store(&mut bound);
