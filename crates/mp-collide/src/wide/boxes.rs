@@ -75,13 +75,13 @@ impl Slab {
 }
 
 /// Squared lower bounds on the distances of `q` from the children of `node`, `pad` (metres) taken off each
-/// gap: the larger of two, the distance to the box around `q` that is aligned with the child, and the gap along the
-/// join of two points: that of the child nearest to the centre of `q`, and that of `q` nearest to it.
-/// Infinite in lanes not used.
+/// gap: the largest of the distance to the box around `q` that is aligned with the child, of the gaps along the nine
+/// products of edges (which matter near contact; a product is no longer than 1), and of the gap along the join of two
+/// points: that of the child nearest to the centre of `q`, and that of `q` nearest to it. Infinite in lanes not used.
 ///
-/// The second is seldom less than the distance by much: with distances instead, a search opens 3% fewer pairs of boxes.
-/// Its direction is the sum of three axes, so rounding can make it wrong by √3 times as much, and a little more for
-/// sums: by no more than 2·`pad`.
+/// The last is seldom less than the distance by much: with distances instead, a search opens 3% fewer pairs of boxes that
+/// are well apart. Its direction is the sum of three axes, so rounding can make it wrong by √3 times as much as along one,
+/// and a little more for sums: by no more than 2·`pad`.
 #[inline(always)]
 pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
     let center = q.center::<L>();
@@ -106,6 +106,20 @@ pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
         let gap = t[k].abs().sub(reach).max(zero);
         aligned = gap.mul_add(gap, aligned);
     }
+    let mut across = zero;
+    for (i, i1, i2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+        for (j, j1, j2) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            let p = t[i2].mul_sub(m[j][i1], t[i1].mul(m[j][i2]));
+            let reach = e[i1].mul_add(
+                m[j][i2].abs(),
+                e[i2].mul_add(
+                    m[j][i1].abs(),
+                    m[j2][i].abs().mul_add(h[j1], m[j1][i].abs().mul_add(h[j2], pad)),
+                ),
+            );
+            across = p.abs().sub(reach).max(across);
+        }
+    }
     // From the centre of `q` to the nearest point of the child, and on to the nearest point of `q`.
     let back: [L; 3] = three!(k => t[k].min(e[k]).max(zero.sub(e[k])).sub(t[k]));
     let mut join = [zero.sub(back[0]), zero.sub(back[1]), zero.sub(back[2])];
@@ -121,7 +135,7 @@ pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
     }
     let length = dot(&join, &join).sqrt().max(L::splat(1e-18));
     let gap = gap.div(length).sub(pad.add(pad)).max(zero);
-    gap.square().max(aligned).mul(L::splat(1.0 - 1e-5))
+    gap.max(across).square().max(aligned).mul(L::splat(1.0 - 1e-5))
 }
 
 #[inline(always)]
