@@ -1,7 +1,5 @@
 //! One box against eight: the separating-axis test (Gottschalk, Lin, Manocha 1996) in lanes.
 
-use nalgebra::Vector3;
-
 use super::Node;
 use super::frames::Placed;
 use crate::simd::{Lanes, Mask};
@@ -56,22 +54,6 @@ pub(crate) fn touching<L: Lanes>(node: &Node, q: &Placed<'_>, margin: f32) -> u3
         }
     }
     mask.bits()
-}
-
-/// A direction, shorter than a unit by a little; or none.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Slab(pub(crate) [f32; 3]);
-
-impl Slab {
-    /// Along `join`, if it has a length.
-    pub(crate) fn across(join: &Vector3<f64>) -> Self {
-        let scale = (1.0 - 1e-6) / join.norm();
-        if scale.is_finite() {
-            Self(std::array::from_fn(|d| (join[d] * scale) as f32))
-        } else {
-            Self::default()
-        }
-    }
 }
 
 /// Squared lower bounds on the distances of `q` from the children of `node`, `pad` (metres) taken off each

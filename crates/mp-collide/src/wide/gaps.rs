@@ -3,7 +3,9 @@
 //! Nine pairs of edges (Ericson 2005, *Real-Time Collision Detection*, §5.1.9) and six corners against
 //! faces. Triangles that intersect are only told from those that surely do not.
 
-use super::boxes::{Slab, cross, dot, sub};
+use nalgebra::Vector3;
+
+use super::boxes::{cross, dot, sub};
 use super::leaves::corners;
 use super::{Lane, Leaf};
 use crate::simd::{Lanes, Mask};
@@ -33,6 +35,22 @@ const TINY_HEIGHT: f32 = 1e-34;
 pub(crate) struct Bounds {
     pub(crate) near: Lane,
     pub(crate) far: Lane,
+}
+
+/// A direction, shorter than a unit by a little; or none.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Slab(pub(crate) [f32; 3]);
+
+impl Slab {
+    /// Along `join`, if it has a length.
+    pub(crate) fn across(join: &Vector3<f64>) -> Self {
+        let scale = (1.0 - 1e-6) / join.norm();
+        if scale.is_finite() {
+            Self(std::array::from_fn(|d| (join[d] * scale) as f32))
+        } else {
+            Self::default()
+        }
+    }
 }
 
 /// Which triangles are close.
@@ -257,7 +275,7 @@ mod tests {
     use crate::simd::{Isa, Kernel, run};
     use crate::triangle::closest_within;
     use crate::wide::{Obb, build::leaf};
-    use nalgebra::{Point3, UnitQuaternion, Vector3};
+    use nalgebra::{Point3, UnitQuaternion};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
 

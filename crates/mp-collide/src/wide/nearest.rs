@@ -3,9 +3,9 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::boxes::{Slab, distances};
+use super::boxes::distances;
 use super::frames::{Carrier, Frames};
-use super::gaps::{Bounds, Gaps};
+use super::gaps::{Bounds, Gaps, Slab};
 use super::intersect::ahead;
 use super::leaves::near_each_other;
 use super::{LEAF, Tree, WIDTH};

@@ -2,8 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::boxes::Slab;
-use super::gaps::{Bounds, Gaps};
+use super::gaps::{Bounds, Gaps, Slab};
 use super::span::{Drift, Span};
 use super::{LEAF, Obb, Tree};
 use crate::query::Counters;

@@ -1,8 +1,7 @@
 //! Do two trees come within a tolerance?
 
-use super::boxes::Slab;
 use super::frames::{Carrier, Frames};
-use super::gaps::{Bounds, Gaps};
+use super::gaps::{Bounds, Gaps, Slab};
 use super::intersect::push;
 use super::leaves::near_each_other;
 use super::{LEAF, Tree};
