@@ -15,7 +15,7 @@ impl Scalar {
 }
 
 impl Lanes for Scalar {
-    type Mask = Bools;
+    type Mask = Bits;
     #[inline(always)]
     fn load(a: &[f32; 8]) -> Self {
         Self(*a)
@@ -69,38 +69,38 @@ impl Lanes for Scalar {
         self.zip(b, |x, y| if x > y { x } else { y })
     }
     #[inline(always)]
-    fn le(self, b: Self) -> Bools {
-        Bools(std::array::from_fn(|i| self.0[i] <= b.0[i]))
+    fn le(self, b: Self) -> Bits {
+        Bits((0..8).fold(0, |m, i| m | (u32::from(self.0[i] <= b.0[i]) << i)))
     }
     #[inline(always)]
-    fn lt(self, b: Self) -> Bools {
-        Bools(std::array::from_fn(|i| self.0[i] < b.0[i]))
+    fn lt(self, b: Self) -> Bits {
+        Bits((0..8).fold(0, |m, i| m | (u32::from(self.0[i] < b.0[i]) << i)))
     }
 }
 
-/// What comparing [`Scalar`]s gives.
+/// What comparing [`Scalar`]s gives: a bit per lane.
 #[derive(Clone, Copy)]
-pub(crate) struct Bools([bool; 8]);
+pub(crate) struct Bits(u32);
 
-impl BitAnd for Bools {
+impl BitAnd for Bits {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] & b.0[i]))
+        Self(self.0 & b.0)
     }
 }
 
-impl BitOr for Bools {
+impl BitOr for Bits {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, b: Self) -> Self {
-        Self(std::array::from_fn(|i| self.0[i] | b.0[i]))
+        Self(self.0 | b.0)
     }
 }
 
-impl Mask for Bools {
+impl Mask for Bits {
     #[inline(always)]
     fn bits(self) -> u32 {
-        (0..8).fold(0, |m, i| m | (u32::from(self.0[i]) << i))
+        self.0
     }
 }
