@@ -68,7 +68,7 @@ impl Lanes for Neon {
     #[inline(always)]
     fn mul_sub(self, b: Self, c: Self) -> Self {
         // SAFETY: see `splat`.
-        unsafe { Self(vnegq_f32(vfmsq_f32(c.0, self.0, b.0)), vnegq_f32(vfmsq_f32(c.1, self.1, b.1))) }
+        unsafe { Self(vfmaq_f32(vnegq_f32(c.0), self.0, b.0), vfmaq_f32(vnegq_f32(c.1), self.1, b.1)) }
     }
     #[inline(always)]
     fn abs(self) -> Self {
