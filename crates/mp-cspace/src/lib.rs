@@ -16,8 +16,10 @@
 //! | what to plan | [`Problem`], with [`Goals`] and a [verifier](Verify); by names: [`PlannerInfo`], [`Settings`] |
 //! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
 //! | what to do with a path | [`Path`], [`verify_path`], [`least_clearance`], [`shorten`] |
+//! | planners compiled once for many spaces | [`erased`] |
 //! | whether your own implementation is right | [`testkit`] |
 
+pub mod erased;
 mod error;
 mod goal;
 mod gradient;
@@ -61,8 +63,8 @@ pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
-    BoxedHints, BoxedVerify, BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem,
-    ProblemParts, Settings, Step, Verify, Workers, closest,
+    BoxedHints, BoxedVerify, BuildError, Demand, Endpoint, Goals, ObstacleKnowledge, Parameter, PlannerInfo,
+    Problem, ProblemParts, Settings, Step, Verify, Workers, closest,
 };
 pub use rng::Rng;
 pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};

@@ -14,6 +14,7 @@ pub use step::Step;
 pub use verify::Verify;
 pub use workers::Workers;
 
+use crate::erased::{AnyGeometry, AnyGradient};
 use crate::{LocalPlanner, ObstacleHints, Space};
 use std::fmt;
 
@@ -25,7 +26,35 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
     verify: BoxedVerify<'c, C, L>,
     start: C::State,
     goals: Goals<'c, C::State>,
-    hints: Option<BoxedHints<'c, C::State>>,
+    obstacles: ObstacleKnowledge<'c, C::State>,
+}
+
+/// What planners by name may want to know of obstacles, beside whether a motion is free. Each is optional; a planner
+/// that cannot do without says so.
+pub struct ObstacleKnowledge<'c, S> {
+    /// Where obstacles lead along: for obstacle-based RRT.
+    pub hints: Option<BoxedHints<'c, S>>,
+    /// Which way clearance grows: for edges that are bent by snakes, and for costs of being near obstacles.
+    pub gradient: Option<AnyGradient<'c, S>>,
+    /// What obstacles look like: for OBPRM, and PRM by obstacle geometry.
+    pub geometry: Option<AnyGeometry<'c, S>>,
+}
+
+/// Nothing is known.
+impl<S> Default for ObstacleKnowledge<'_, S> {
+    fn default() -> Self {
+        Self { hints: None, gradient: None, geometry: None }
+    }
+}
+
+impl<S> fmt::Debug for ObstacleKnowledge<'_, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ObstacleKnowledge")
+            .field("hints", &self.hints.is_some())
+            .field("gradient", &self.gradient.is_some())
+            .field("geometry", &self.geometry)
+            .finish()
+    }
 }
 
 /// What obstacles suggest.
@@ -100,7 +129,14 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         });
         match bad {
             Some(error) if goals.is_empty() => Err(error),
-            _ => Ok(Self { space, local, verify: Box::new(verifier), start, goals, hints: None }),
+            _ => Ok(Self {
+                space,
+                local,
+                verify: Box::new(verifier),
+                start,
+                goals,
+                obstacles: ObstacleKnowledge::default(),
+            }),
         }
     }
 }
@@ -144,14 +180,26 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
 
     /// The same problem with what its obstacles suggest, for planners by name that grow along them.
     #[must_use]
-    pub fn with_hints(self, hints: impl ObstacleHints<C::State> + Send + 'c) -> Self {
-        Self { hints: Some(Box::new(hints)), ..self }
+    pub fn with_hints(mut self, hints: impl ObstacleHints<C::State> + Send + 'c) -> Self {
+        self.obstacles.hints = Some(Box::new(hints));
+        self
+    }
+
+    /// The same problem with what is known of its obstacles, for planners by name that ask for it.
+    #[must_use]
+    pub fn with_obstacles(self, obstacles: ObstacleKnowledge<'c, C::State>) -> Self {
+        Self { obstacles, ..self }
+    }
+
+    /// Takes what is known of obstacles out of the problem.
+    pub fn take_obstacles(&mut self) -> ObstacleKnowledge<'c, C::State> {
+        std::mem::take(&mut self.obstacles)
     }
 
     /// The problem and what its obstacles suggest, if that was given.
     #[must_use]
     pub fn take_hints(mut self) -> (Self, Option<BoxedHints<'c, C::State>>) {
-        let hints = self.hints.take();
+        let hints = self.obstacles.hints.take();
         (self, hints)
     }
 
@@ -164,8 +212,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         self,
         make: impl FnOnce(L) -> Result<M, E>,
     ) -> Result<Problem<'c, C, M>, E> {
-        let Self { space, local, verify, start, goals, hints } = self;
-        Ok(Problem { space, local: make(local)?, verify, start, goals, hints })
+        let Self { space, local, verify, start, goals, obstacles } = self;
+        Ok(Problem { space, local: make(local)?, verify, start, goals, obstacles })
     }
 }
 

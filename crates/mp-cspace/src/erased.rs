@@ -1,0 +1,35 @@
+//! Type erasure: spaces, indexes and checks behind pointers, so that a planner is compiled once for each kind of
+//! *state* and not once for each robot, metric and motion check.
+//!
+//! | generic | erased |
+//! |---|---|
+//! | a [`Space`](crate::Space) | [`AnySpace`] |
+//! | [`NearestNeighbors`](crate::NearestNeighbors) of that space | [`AnyIndex`], which keeps the space it was made for: the search inside is not erased |
+//! | a [`MotionValidity`](crate::MotionValidity) | [`AnyCheck`] |
+//! | [`ObstacleGeometry`](crate::ObstacleGeometry) | [`AnyGeometry`] |
+//! | [`ClearanceGradient`](crate::ClearanceGradient) | [`AnyGradient`] |
+//!
+//! One call through a pointer stands before each question to a space or an index, a few nanoseconds. Constructors of
+//! planners by type stay generic.
+
+mod geometry;
+mod index;
+mod space;
+
+pub use geometry::AnyGeometry;
+pub use index::AnyIndex;
+pub use space::AnySpace;
+
+use crate::{MotionValidity, Problem, Straight};
+
+/// A motion check behind a pointer.
+pub type AnyCheck<'c, S> = Box<dyn MotionValidity<S> + Send + 'c>;
+
+/// A clearance gradient behind a pointer: a closure, as closures are clearance gradients.
+pub type AnyGradient<'c, S> = Box<dyn FnMut(&S, f64, &mut [f64]) -> f64 + Send + 'c>;
+
+/// The straight local planner of an erased space.
+pub type AnyStraight<'c, S> = Straight<'c, AnySpace<'c, S>, AnyCheck<'c, S>>;
+
+/// A problem of an erased space, with straight edges.
+pub type AnyProblem<'c, S> = Problem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;

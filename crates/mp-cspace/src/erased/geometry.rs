@@ -1,0 +1,83 @@
+//! The geometry of obstacles behind a pointer.
+
+use crate::{ObstacleGeometry, ObstacleHints, Outline, PointOf, Rng};
+use nalgebra::Vector3;
+use std::fmt;
+
+/// Geometry that can be copied behind its pointer.
+trait Erased<'c, S>: ObstacleGeometry<S> + Send + Sync {
+    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c>;
+}
+
+impl<'c, S, G: ObstacleGeometry<S> + Clone + Send + Sync + 'c> Erased<'c, S> for G {
+    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c> {
+        Box::new(self.clone())
+    }
+}
+
+/// Any [`ObstacleGeometry`], behind a pointer.
+pub struct AnyGeometry<'c, S>(Box<dyn Erased<'c, S> + 'c>);
+
+impl<'c, S> AnyGeometry<'c, S> {
+    /// `geometry`, erased.
+    pub fn new(geometry: impl ObstacleGeometry<S> + Clone + Send + Sync + 'c) -> Self {
+        Self(Box::new(geometry))
+    }
+}
+
+impl<S> Clone for AnyGeometry<'_, S> {
+    fn clone(&self) -> Self {
+        Self((*self.0).boxed())
+    }
+}
+
+impl<S> fmt::Debug for AnyGeometry<'_, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AnyGeometry").field("obstacles", &self.0.obstacles().len()).finish_non_exhaustive()
+    }
+}
+
+impl<S> ObstacleHints<S> for AnyGeometry<'_, S> {
+    fn touches(&mut self, q: &S) -> bool {
+        self.0.touches(q)
+    }
+    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        self.0.along(from, toward, hit, rng)
+    }
+    fn turned(&self, position: &S, rotation: &S) -> S {
+        self.0.turned(position, rotation)
+    }
+    fn carried(&self, q: &S, from: &S, to: &S) -> S {
+        self.0.carried(q, from, to)
+    }
+}
+
+impl<S> ObstacleGeometry<S> for AnyGeometry<'_, S> {
+    fn obstacles(&self) -> &[Outline] {
+        self.0.obstacles()
+    }
+    fn robot(&self) -> Outline {
+        self.0.robot()
+    }
+    fn touched(&mut self, q: &S) -> Option<usize> {
+        self.0.touched(q)
+    }
+    fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
+        self.0.obstacle_point(obstacle, of, rng)
+    }
+    fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
+        self.0.robot_point(of, rng)
+    }
+    fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
+        self.0.place_of(q, point)
+    }
+    fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
+        self.0.brought(q, point, place)
+    }
+    fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
+        self.0.aligned(place, direction, angle)
+    }
+    fn is_far(&self, q: &S) -> bool {
+        self.0.is_far(q)
+    }
+}

@@ -1,0 +1,98 @@
+//! Nearest neighbours behind a pointer.
+
+use super::AnySpace;
+use crate::{DefaultNn, Hit, NearestNeighbors, NodeId, Space};
+use std::fmt::{self, Debug};
+
+/// What of an index goes behind the pointer: all of [`NearestNeighbors`], with the space inside.
+trait Erased<'c, S>: Send + Sync {
+    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c>;
+    fn inserted(&mut self, points: &[S], id: NodeId);
+    fn clear(&mut self);
+    fn nearest(&self, points: &[S], q: &S) -> Option<Hit>;
+    fn k_nearest(&self, points: &[S], q: &S, k: usize, out: &mut Vec<Hit>);
+    fn within(&self, points: &[S], q: &S, radius: f64, out: &mut Vec<Hit>);
+}
+
+/// An index with the space it searches.
+struct Searching<'c, C, N> {
+    space: &'c C,
+    index: N,
+}
+
+impl<'c, S, C, N> Erased<'c, S> for Searching<'c, C, N>
+where
+    C: Space<State = S>,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
+{
+    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c> {
+        Box::new(Self { space: self.space, index: self.index.clone() })
+    }
+    fn inserted(&mut self, points: &[S], id: NodeId) {
+        self.index.inserted(self.space, points, id);
+    }
+    fn clear(&mut self) {
+        self.index.clear();
+    }
+    fn nearest(&self, points: &[S], q: &S) -> Option<Hit> {
+        self.index.nearest(self.space, points, q)
+    }
+    fn k_nearest(&self, points: &[S], q: &S, k: usize, out: &mut Vec<Hit>) {
+        self.index.k_nearest(self.space, points, q, k, out);
+    }
+    fn within(&self, points: &[S], q: &S, radius: f64, out: &mut Vec<Hit>) {
+        self.index.within(self.space, points, q, radius, out);
+    }
+}
+
+/// Any index of an [erased space](AnySpace): it keeps the space it was made for, so that the search inside runs on the
+/// space itself and answers are the same, to the bit. Give it the erasure of that space.
+pub struct AnyIndex<'c, S>(Box<dyn Erased<'c, S> + 'c>);
+
+impl<'c, S> AnyIndex<'c, S> {
+    /// `index` for `space`, erased.
+    pub fn new<C, N>(space: &'c C, index: N) -> Self
+    where
+        C: Space<State = S>,
+        N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
+    {
+        Self(Box::new(Searching { space, index }))
+    }
+
+    /// The [index that suits](DefaultNn) `space`, empty and erased.
+    pub fn of<C: DefaultNn<State = S, Nn: 'c>>(space: &'c C) -> Self {
+        Self::new(space, C::Nn::default())
+    }
+}
+
+impl<S> Clone for AnyIndex<'_, S> {
+    fn clone(&self) -> Self {
+        Self(self.0.boxed())
+    }
+}
+
+impl<S> Debug for AnyIndex<'_, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AnyIndex").finish_non_exhaustive()
+    }
+}
+
+impl<S: Clone + Debug + PartialEq + Send + Sync> NearestNeighbors<AnySpace<'_, S>> for AnyIndex<'_, S> {
+    #[inline]
+    fn inserted(&mut self, _: &AnySpace<'_, S>, points: &[S], id: NodeId) {
+        self.0.inserted(points, id);
+    }
+    fn clear(&mut self) {
+        self.0.clear();
+    }
+    #[inline]
+    fn nearest(&self, _: &AnySpace<'_, S>, points: &[S], q: &S) -> Option<Hit> {
+        self.0.nearest(points, q)
+    }
+    fn k_nearest(&self, _: &AnySpace<'_, S>, points: &[S], q: &S, k: usize, out: &mut Vec<Hit>) {
+        self.0.k_nearest(points, q, k, out);
+    }
+    fn within(&self, _: &AnySpace<'_, S>, points: &[S], q: &S, radius: f64, out: &mut Vec<Hit>) {
+        self.0.within(points, q, radius, out);
+    }
+}
