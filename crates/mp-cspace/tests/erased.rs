@@ -6,7 +6,7 @@ use mp_cspace::{
 };
 use nalgebra::Point2;
 
-fn same<C: DefaultNn>(space: &C) {
+fn same<C: DefaultNn<Nn: 'static> + Clone + Send + 'static>(space: &C) {
     let (erased, mut index) = (AnySpace::new(space), C::Nn::default());
     let mut any = AnyIndex::of(space);
     let mut rng = Rng::seed(1);

@@ -3,6 +3,7 @@
 use super::AnySpace;
 use crate::{DefaultNn, Hit, NearestNeighbors, NodeId, Space};
 use std::fmt::{self, Debug};
+use std::sync::Arc;
 
 /// What of an index goes behind the pointer: all of [`NearestNeighbors`], with the space inside.
 trait Erased<'c, S>: Send + Sync {
@@ -15,33 +16,33 @@ trait Erased<'c, S>: Send + Sync {
 }
 
 /// An index with the space it searches.
-struct Searching<'c, C, N> {
-    space: &'c C,
+struct Searching<C, N> {
+    space: Arc<C>,
     index: N,
 }
 
-impl<'c, S, C, N> Erased<'c, S> for Searching<'c, C, N>
+impl<'c, S, C, N> Erased<'c, S> for Searching<C, N>
 where
-    C: Space<State = S>,
+    C: Space<State = S> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
     fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c> {
-        Box::new(Self { space: self.space, index: self.index.clone() })
+        Box::new(Self { space: Arc::clone(&self.space), index: self.index.clone() })
     }
     fn inserted(&mut self, points: &[S], id: NodeId) {
-        self.index.inserted(self.space, points, id);
+        self.index.inserted(&self.space, points, id);
     }
     fn clear(&mut self) {
         self.index.clear();
     }
     fn nearest(&self, points: &[S], q: &S) -> Option<Hit> {
-        self.index.nearest(self.space, points, q)
+        self.index.nearest(&self.space, points, q)
     }
     fn k_nearest(&self, points: &[S], q: &S, k: usize, out: &mut Vec<Hit>) {
-        self.index.k_nearest(self.space, points, q, k, out);
+        self.index.k_nearest(&self.space, points, q, k, out);
     }
     fn within(&self, points: &[S], q: &S, radius: f64, out: &mut Vec<Hit>) {
-        self.index.within(self.space, points, q, radius, out);
+        self.index.within(&self.space, points, q, radius, out);
     }
 }
 
@@ -50,17 +51,17 @@ where
 pub struct AnyIndex<'c, S>(Box<dyn Erased<'c, S> + 'c>);
 
 impl<'c, S> AnyIndex<'c, S> {
-    /// `index` for `space`, erased.
-    pub fn new<C, N>(space: &'c C, index: N) -> Self
+    /// `index` for a copy of `space`, erased.
+    pub fn new<C, N>(space: &C, index: N) -> Self
     where
-        C: Space<State = S>,
+        C: Space<State = S> + Clone + Send + 'c,
         N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
     {
-        Self(Box::new(Searching { space, index }))
+        Self(Box::new(Searching { space: Arc::new(space.clone()), index }))
     }
 
     /// The [index that suits](DefaultNn) `space`, empty and erased.
-    pub fn of<C: DefaultNn<State = S, Nn: 'c>>(space: &'c C) -> Self {
+    pub fn of<C: DefaultNn<State = S, Nn: 'c> + Clone + Send + 'c>(space: &C) -> Self {
         Self::new(space, C::Nn::default())
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::{Metric, Rng, Space, TrueMetric};
 use std::fmt::{self, Debug};
+use std::sync::Arc;
 
 /// What of a space goes behind the pointer: all of [`Space`].
-trait Erased<S>: Sync {
+trait Erased<S>: Send + Sync {
     fn dim(&self) -> usize;
     fn distance(&self, from: &S, to: &S) -> f64;
     fn interpolate_into(&self, from: &S, to: &S, t: f64, out: &mut S);
@@ -17,7 +18,7 @@ trait Erased<S>: Sync {
     fn velocity_into(&self, from: &S, to: &S, out: &mut [f64]) -> bool;
 }
 
-impl<S, C: Space<State = S>> Erased<S> for C {
+impl<S, C: Space<State = S> + Send> Erased<S> for C {
     fn dim(&self) -> usize {
         Space::dim(self)
     }
@@ -63,25 +64,24 @@ impl<S, C: Space<State = S>> Erased<S> for C {
 /// # Ok::<(), mp_cspace::SpaceError>(())
 /// ```
 pub struct AnySpace<'c, S> {
-    space: &'c dyn Erased<S>,
+    space: Arc<dyn Erased<S> + 'c>,
     /// Asked often, and always the same.
     extent: f64,
 }
 
 impl<'c, S> AnySpace<'c, S> {
-    /// `space`, erased.
-    pub fn new<C: Space<State = S>>(space: &'c C) -> Self {
-        Self { space, extent: space.extent() }
+    /// A copy of `space`, erased. Copies of this one share it.
+    pub fn new<C: Space<State = S> + Clone + Send + 'c>(space: &C) -> Self {
+        Self { space: Arc::new(space.clone()), extent: space.extent() }
     }
 }
 
-// Derived, these would ask for `S: Copy`.
+// Derived, it would ask for `S: Clone`.
 impl<S> Clone for AnySpace<'_, S> {
     fn clone(&self) -> Self {
-        *self
+        Self { space: Arc::clone(&self.space), extent: self.extent }
     }
 }
-impl<S> Copy for AnySpace<'_, S> {}
 
 impl<S> Debug for AnySpace<'_, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
