@@ -343,13 +343,7 @@ fn planners() -> Vec<PossibleValue> {
         };
         PossibleValue::new(p.name).aliases(p.aliases).help(format!("{}{also}", p.summary))
     };
-    mp::tree::planners()
-        .iter()
-        .chain(mp::tree::snake_planners())
-        .chain(mp::roadmap::planners())
-        .chain(mp::roadmap::planners_among())
-        .map(value)
-        .collect()
+    mp::tree::planners().iter().chain(mp::roadmap::planners()).map(value).collect()
 }
 
 /// A finite number above zero.

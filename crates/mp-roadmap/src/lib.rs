@@ -12,8 +12,8 @@
 //! | [`ObstacleGeometryPrm`] | [`algo::obstacle_geometry_prm`] | far from obstacles, by spheres; near them, by their direction and volume | as PRM; then by turns in place far from obstacles |
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
-//! [`build`] makes planners of the second kind by name; [`build_among`] those too that must know what obstacles look
-//! like ([`ObstacleGeometry`](mp_cspace::ObstacleGeometry)): the last two.
+//! [`build`] makes planners of the second kind by name. The last two must know what obstacles look like
+//! ([`ObstacleGeometry`](mp_cspace::ObstacleGeometry)).
 //!
 //! ```
 //! use mp_cspace::{
@@ -75,6 +75,7 @@ mod roadmap;
 mod search;
 mod settings;
 mod stages;
+mod state;
 mod steer;
 
 pub use ahead::Foreseeing;
@@ -92,10 +93,13 @@ pub use connect::{Connector, Growing, Nearest, Reachable};
 pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Came, Candidate, Free, NodeGenerator};
 pub use mixed::{Mixing, PairRule, Pairs};
+pub use mp_cspace::erased::AnyIndex;
+pub use mp_cspace::{BuildError, Settings};
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
-pub use registry::{AnyPlanner, Team, build, build_among, build_with, planner, planners, planners_among};
+pub use registry::{AnyPlanner, AnyTeam, Team, build, build_with, planner, planners};
 pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};
 pub use search::{AStar, Entry, Query};
 pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
 pub use stages::{Among, Stages, Turns};
+pub use state::RoadmapState;
 pub use steer::Steer;

@@ -8,41 +8,41 @@ use crate::{
     BetweenObstacles, Connector, HasRoadmap, NearObstacles, NodeGenerator, Pairs, Query, Recipe,
     RoadmapPlanner, Steer,
 };
+use mp_cspace::erased::{AnySpace, AnyStraight};
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, PlannerInfo, Problem,
-    Reversible, Settings, Space, Workers, closest,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, PlannerInfo, Problem, Reversible, Settings, Space,
+    Workers, closest,
 };
 
 /// A planner chosen at run time.
 pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;
 
-/// All planners of the crate that [`build`] makes.
+/// All planners of the crate.
 #[must_use]
 pub fn planners() -> &'static [PlannerInfo] {
-    &[prm::INFO, prm_star::INFO, lazy_prm::INFO, visibility_prm::INFO, gaussian_prm::INFO, bridge_prm::INFO]
+    &[
+        prm::INFO,
+        prm_star::INFO,
+        lazy_prm::INFO,
+        visibility_prm::INFO,
+        gaussian_prm::INFO,
+        bridge_prm::INFO,
+        obprm::INFO,
+        obstacle_geometry_prm::INFO,
+    ]
 }
 
-/// The planners that must know what obstacles look like: [`build_among`] makes them.
-#[must_use]
-pub fn planners_among() -> &'static [PlannerInfo] {
-    &[obprm::INFO, obstacle_geometry_prm::INFO]
-}
-
-/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases), of either kind.
+/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
 ///
 /// # Errors
 /// When there is none, with the names there are.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    all().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
-}
-
-fn all() -> impl Iterator<Item = &'static PlannerInfo> {
-    planners().iter().chain(planners_among())
+    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
 }
 
 fn unknown(name: &str) -> BuildError {
-    let known: Vec<_> = all().map(|info| info.name).collect();
-    let aliases = all().flat_map(|info| info.aliases).copied();
+    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
+    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
     let suggestion = closest(name, known.iter().copied().chain(aliases));
     BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
 }
@@ -54,6 +54,9 @@ pub struct Team<'c, C: Space, L: LocalPlanner<C::State>> {
     workers: Workers,
     hands: Vec<Steer<'c, C, L>>,
 }
+
+/// A team for an erased problem.
+pub type AnyTeam<'c, S> = Team<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
 impl<'c, C, L> Team<'c, C, L>
 where
@@ -101,11 +104,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for Team<'
     }
 }
 
-/// Makes the planner called `name`, with the nearest neighbours that suit the space.
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
+/// from the [problem](Problem::with_obstacles).
 ///
 /// # Errors
-/// When there is no such planner, it has no such parameters, or refuses their values; when it is one of
-/// [`planners_among`].
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem does not know
+/// of obstacles what the planner asks.
 pub fn build<'c, C, L>(
     name: &str,
     problem: Problem<'c, C, L>,
@@ -138,8 +142,10 @@ where
 {
     let info = planner(name)?;
     settings.check(info)?;
-    let team = team.into();
+    let mut team = team.into();
     let space = team.problem.space();
+    let known = team.problem.take_obstacles();
+    let geometry = || known.geometry.ok_or(BuildError::NoGeometry { planner: info.name });
     Ok(match info.name {
         "prm" => team.made(index, prm::read(space, settings)?),
         "prm-star" => team.made(index, prm_star::read(space, settings)?),
@@ -151,38 +157,10 @@ where
         "bridge-prm" => {
             team.made(index, Pairs::<BetweenObstacles>::read(space, settings, bridge_prm::MIXING)?)
         }
-        name => {
-            let reason = format!("{name} must know what obstacles look like, and nothing here tells it");
-            return Err(BuildError::Unmade { reason });
+        "obprm" => team.made(index, obprm::read(space, geometry()?, settings)?),
+        "obstacle-geometry-prm" => {
+            team.made(index, obstacle_geometry_prm::read(space, geometry()?, settings)?)
         }
-    })
-}
-
-/// As [`build_with`], also making the planners of [`planners_among`], by what `geometry` knows of robot and obstacles.
-///
-/// # Errors
-/// As [`build`].
-pub fn build_among<'c, C, L, N, H>(
-    name: &str,
-    team: impl Into<Team<'c, C, L>>,
-    index: N,
-    geometry: H,
-    settings: &Settings,
-) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
-where
-    C: Space + Clone + 'c,
-    C::State: 'c,
-    L: LocalPlanner<C::State, Edge: Reversible> + Send + 'c,
-    N: NearestNeighbors<C> + Send + Sync + 'c,
-    H: ObstacleGeometry<C::State> + Clone + Send + Sync + 'c,
-{
-    let info = planner(name)?;
-    settings.check(info)?;
-    let team = team.into();
-    let space = team.problem.space();
-    Ok(match info.name {
-        "obprm" => team.made(index, obprm::read(space, geometry, settings)?),
-        "obstacle-geometry-prm" => team.made(index, obstacle_geometry_prm::read(space, geometry, settings)?),
-        _ => return build_with(name, team, index, settings),
+        _ => return Err(unknown(name)),
     })
 }

@@ -90,6 +90,7 @@ mod select;
 mod settings;
 mod single;
 mod snakes;
+mod state;
 mod tree;
 mod two;
 mod uniform;
@@ -123,6 +124,7 @@ pub use attach::{Append, AppendDistinct, Attach, Attached};
 pub use branch::{Branch, Growing, Steer};
 pub use grow::{Connect, Extend, Grown, Growth};
 pub use improve::{Improving, improve};
+pub use mp_cspace::erased::{AnyIndex, AnyProblem};
 pub use mp_cspace::{
     BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step, Verify, Workers,
     closest,
@@ -134,7 +136,7 @@ pub use rewire::{Near, Rewire};
 pub use select::{Nearest, Purpose, Selector};
 pub use settings::{GOAL_BIAS, INPUTS, LEVELS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 pub use single::SingleTree;
-pub use snakes::{build_snake, snake_planners};
+pub use state::{ProblemFactory, TreeState};
 pub use tree::Tree;
 pub use two::TwoTrees;
 pub use untried::Untried;

@@ -1,8 +1,9 @@
 //! Planners by name, for programs that choose at run time.
 
 use crate::algo::*;
+use crate::snakes::{Plain, bent};
 use crate::*;
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Planner, Space};
+use mp_cspace::{DefaultNn, MotionValidity, NearestNeighbors, Planner, Space, Straight};
 
 /// A planner chosen at run time.
 pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + Send + 'c>;
@@ -29,39 +30,40 @@ pub fn planners() -> &'static [PlannerInfo] {
         utility_rrt::INFO,
         obrrt::INFO,
         cyclic_rrt::INFO,
+        rrs::INFO,
+        rrs_connect::INFO,
     ]
 }
 
-/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases); those whose edges bend
-/// ([`snake_planners`]) among them.
+/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
 ///
 /// # Errors
 /// When there is none, with the names there are.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().chain(snake_planners()).find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
+    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
 }
 
 fn unknown(name: &str) -> BuildError {
-    let known: Vec<_> = planners().iter().chain(snake_planners()).map(|info| info.name).collect();
+    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
     let aliases = planners().iter().flat_map(|info| info.aliases).copied();
     let suggestion = closest(name, known.iter().copied().chain(aliases));
     BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
 }
 
-/// Makes the planner called `name`, with the nearest neighbours that suit the space.
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
+/// from the [problem](Problem::with_obstacles).
 ///
 /// # Errors
-/// When there is no such planner, it has no such parameters, or refuses their values.
-pub fn build<'c, C, L>(
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem does not know
+/// of obstacles what the planner asks.
+pub fn build<'c, C, M>(
     name: &str,
-    problem: Problem<'c, C, L>,
+    problem: Problem<'c, C, Straight<'c, C, M>>,
     settings: &Settings,
-) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
+) -> Result<AnyPlanner<'c, C::State, ()>, BuildError>
 where
-    C: DefaultNn,
-    C::Nn: 'c,
-    C::State: 'c,
-    L: LocalPlanner<C::State> + Send + 'c,
+    C: DefaultNn<State: 'c, Nn: 'c>,
+    M: MotionValidity<C::State> + Send + 'c,
 {
     build_with(name, problem, C::Nn::default(), settings)
 }
@@ -70,16 +72,15 @@ where
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_with<'c, C, L, N>(
+pub fn build_with<'c, C, M, N>(
     name: &str,
-    problem: Problem<'c, C, L>,
+    mut problem: Problem<'c, C, Straight<'c, C, M>>,
     index: N,
     settings: &Settings,
-) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
+) -> Result<AnyPlanner<'c, C::State, ()>, BuildError>
 where
-    C: Space,
-    C::State: 'c,
-    L: LocalPlanner<C::State> + Send + 'c,
+    C: Space<State: 'c>,
+    M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + 'c,
 {
     let info = planner(name)?;
@@ -113,8 +114,8 @@ where
             Box::new(RcRrt::with_index(problem, index, apart, tuning)?)
         }
         "obrrt" => {
-            let (problem, hints) = problem.take_hints();
-            let hints = hints.ok_or(BuildError::NoHints { planner: obrrt::INFO.name })?;
+            let hints =
+                problem.take_obstacles().hints.ok_or(BuildError::NoHints { planner: obrrt::INFO.name })?;
             Box::new(Obrrt::with_index(problem, index, hints, tuning, GrowthWeights::default())?)
         }
         "cyclic-rrt" => {
@@ -131,10 +132,11 @@ where
             let candidates = settings.count("candidates")?.unwrap_or(4);
             Box::new(UtilityRrt::with_index(problem, index, tuning, candidates)?)
         }
-        _ => {
-            let reason = format!("{name} bends its edges by a clearance gradient, so `build_snake` makes it");
-            return Err(BuildError::Unmade { reason });
+        "rrs" => Box::new(Plain(Rrs::with_index(bent(info, problem, settings)?, index, tuning)?)),
+        "rrs-connect" => {
+            Box::new(Plain(RrsConnect::with_index(bent(info, problem, settings)?, index, tuning)?))
         }
+        _ => return Err(unknown(name)),
     })
 }
 

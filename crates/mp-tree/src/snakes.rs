@@ -1,44 +1,25 @@
-//! Planners with edges that bend, by name.
+//! What planners by name whose edges bend have in common.
 
 use crate::algo::rrs::{RANGE, SNAKE_STEPS};
-use crate::algo::{rrs, rrs_connect};
-use crate::{AnyPlanner, BuildError, PlannerInfo, Problem, Rrs, RrsConnect, Settings, Step, Tuning, Verify};
-use mp_cspace::{
-    ClearanceGradient, MotionCheck, MotionValidity, NearestNeighbors, Observer, Path, Planner, Progress, Rng,
-    Space, Straight,
-};
+use crate::{BuildError, PlannerInfo, Problem, Settings, Step, Verify};
+use mp_cspace::erased::AnyGradient;
+use mp_cspace::{MotionCheck, MotionValidity, Observer, Path, Planner, Progress, Rng, Space, Straight};
 use mp_snake::{Curve, Params, Pieces, Repulsion, SnakePlanner, unbent};
 
-/// The planners whose edges bend. They ask for a clearance gradient beside what the
-/// [others](crate::planners) need, so [`build_snake`] makes them.
-#[must_use]
-pub fn snake_planners() -> &'static [PlannerInfo] {
-    &[rrs::INFO, rrs_connect::INFO]
-}
+/// A problem whose blocked edges are bent.
+type Bent<'c, C, M> = Problem<'c, C, SnakePlanner<'c, C, M, AnyGradient<'c, <C as Space>::State>>>;
 
-/// Makes the planner called `name`, one of [`snake_planners`], with an empty index of your choice. Edges of `problem`
-/// that are blocked are bent by `field`. The paths are plain: straight between the nodes of the snakes, and verified
-/// piece by piece.
-///
-/// # Errors
-/// When there is no such planner, it has no such parameters or refuses their values, or the space knows no
-/// velocities.
-pub fn build_snake<'c, C, M, F, N>(
-    name: &str,
-    problem: Problem<'c, C, Straight<'c, C, M>>,
-    field: F,
-    index: N,
+/// `problem` for the planner `info`: edges that are blocked are bent by its clearance gradient.
+pub(crate) fn bent<'c, C, M>(
+    info: &PlannerInfo,
+    mut problem: Problem<'c, C, Straight<'c, C, M>>,
     settings: &Settings,
-) -> Result<AnyPlanner<'c, C::State, ()>, BuildError>
+) -> Result<Bent<'c, C, M>, BuildError>
 where
-    C: Space,
-    C::State: 'c,
+    C: Space<State: 'c>,
     M: MotionValidity<C::State> + Send + 'c,
-    F: ClearanceGradient<C::State> + Send + 'c,
-    N: NearestNeighbors<C> + Clone + Send + 'c,
 {
-    let info = crate::planner(name)?;
-    let tuning = Tuning::read(settings, info)?;
+    let field = problem.take_obstacles().gradient.ok_or(BuildError::NoGradient { planner: info.name })?;
     let parts = problem.into_parts();
     let space = parts.space;
     let range = range(settings, space)?;
@@ -50,15 +31,7 @@ where
     let local =
         SnakePlanner::with_params(space, parts.local.check, repulsion, Params { iterations, ..params })
             .map_err(|e| unmade(e.to_string()))?;
-    let problem = Problem::new(space, local, Pieces(Boxed(parts.verify)), parts.start, parts.goals)?;
-    Ok(match info.name {
-        "rrs" => Box::new(Plain(Rrs::with_index(problem, index, tuning)?)),
-        "rrs-connect" => Box::new(Plain(RrsConnect::with_index(problem, index, tuning)?)),
-        _ => {
-            let known = snake_planners().iter().map(|p| p.name).collect();
-            return Err(BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion: None });
-        }
-    })
+    Problem::new(space, local, Pieces(Boxed(parts.verify)), parts.start, parts.goals)
 }
 
 fn range<C: Space>(settings: &Settings, space: &C) -> Result<f64, BuildError> {
@@ -80,8 +53,8 @@ impl<S> MotionValidity<S> for Boxed<'_, S> {
     }
 }
 
-/// A planner whose paths are made plain.
-struct Plain<P>(P);
+/// A planner whose paths are made plain: straight between the nodes of the snakes.
+pub(crate) struct Plain<P>(pub(crate) P);
 
 impl<S: Clone, P: Planner<S, Edge = Curve<S>>> Planner<S> for Plain<P> {
     type Edge = ();

@@ -3,11 +3,13 @@
 use crate::algo::or_parallel::{RUNS, SLICE};
 use crate::algo::restarts::{SCHEDULE, UNIT};
 use crate::algo::shared_tree::BATCH;
+use crate::algo::{rrs, rrt};
+use crate::snakes::{Plain, bent};
 use crate::{
     AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
     SharedTree, Tuning, Workers, build_with, planner,
 };
-use mp_cspace::{LocalPlanner, NearestNeighbors, Space};
+use mp_cspace::{MotionValidity, NearestNeighbors, Space, Straight};
 use std::fmt;
 use std::sync::Arc;
 
@@ -39,7 +41,7 @@ const SHARED: Wrapper = Wrapper {
     summary: "one tree grown by all threads, many samples at a time",
     citation: "Carpin and Pagello 2002",
     parameters: &[BATCH],
-    around: Some(&["rrt"]),
+    around: Some(&[rrt::INFO.name, rrs::INFO.name]),
 };
 
 const RESTART: Wrapper = Wrapper {
@@ -134,24 +136,21 @@ impl fmt::Display for Named {
     }
 }
 
-/// Makes the planner called `name`, wrapped or not, with the nearest neighbours `index`. `make` makes
-/// the problem, as often as there are runs; they use `workers`.
+/// As [`build_with`](crate::build_with), also of planners that run others. `make` makes the problem, as often as there
+/// are runs; they use `workers`.
 ///
 /// # Errors
-/// When there is no such planner, it has no such parameters or refuses their values, or `make`
-/// fails.
-pub fn build_from<'c, C, L, N>(
+/// As [`build`](crate::build), and when `make` fails.
+pub fn build_from<'c, C, M, N>(
     name: &str,
-    make: impl Fn() -> Result<Problem<'c, C, L>, BuildError> + Send + Sync + 'c,
+    make: impl Fn() -> Result<Problem<'c, C, Straight<'c, C, M>>, BuildError> + Send + Sync + 'c,
     index: N,
     settings: &Settings,
     workers: &Workers,
-) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
+) -> Result<AnyPlanner<'c, C::State, ()>, BuildError>
 where
-    C: Space + 'c,
-    C::State: 'c,
-    L: LocalPlanner<C::State> + Send + 'c,
-    L::Edge: 'c,
+    C: Space<State: 'c> + 'c,
+    M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
     let named = Named::new(name)?;
@@ -161,18 +160,18 @@ where
     factory.planner(0)
 }
 
-type Make<'c, C, L> = dyn Fn() -> Result<Problem<'c, C, L>, BuildError> + Send + Sync + 'c;
+type Make<'c, C, M> = dyn Fn() -> Result<Problem<'c, C, Straight<'c, C, M>>, BuildError> + Send + Sync + 'c;
 
 /// All that is needed to make a planner any number of times.
-struct Factory<'c, C: Space, L: LocalPlanner<C::State>, N> {
-    make: Arc<Make<'c, C, L>>,
+struct Factory<'c, C: Space, M: MotionValidity<C::State>, N> {
+    make: Arc<Make<'c, C, M>>,
     index: N,
     settings: Settings,
     workers: Workers,
     named: Named,
 }
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: Clone> Clone for Factory<'c, C, L, N> {
+impl<'c, C: Space, M: MotionValidity<C::State>, N: Clone> Clone for Factory<'c, C, M, N> {
     fn clone(&self) -> Self {
         let Self { make, index, settings, workers, named } = self;
         Self {
@@ -185,16 +184,14 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: Clone> Clone for Factory<'c, C,
     }
 }
 
-impl<'c, C, L, N> Factory<'c, C, L, N>
+impl<'c, C, M, N> Factory<'c, C, M, N>
 where
-    C: Space + 'c,
-    C::State: 'c,
-    L: LocalPlanner<C::State> + Send + 'c,
-    L::Edge: 'c,
+    C: Space<State: 'c> + 'c,
+    M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
     /// The planner inside the wrappers before `depth`.
-    fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError> {
+    fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, ()>, BuildError> {
         let count = |parameter: Parameter| self.settings.count_of(&parameter);
         match self.named.wrappers.get(depth) {
             None => {
@@ -208,11 +205,15 @@ where
                 })?))
             }
             Some(wrapper) if **wrapper == SHARED => {
-                let tuning = Tuning::read(&self.named.planner_settings(&self.settings), self.named.planner)?;
-                let (workers, index) = (self.workers.clone(), self.index.clone());
-                let shared =
-                    SharedTree::with_index(count(BATCH)?, workers, index, tuning, |_| (self.make)())?;
-                Ok(Box::new(shared))
+                let (info, settings) = (self.named.planner, self.named.planner_settings(&self.settings));
+                let tuning = Tuning::read(&settings, info)?;
+                let (batch, workers, index) = (count(BATCH)?, self.workers.clone(), self.index.clone());
+                Ok(if info.name == rrs::INFO.name {
+                    let make = |_| bent(info, (self.make)()?, &settings);
+                    Box::new(Plain(SharedTree::with_index(batch, workers, index, tuning, make)?))
+                } else {
+                    Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| (self.make)())?)
+                })
             }
             Some(_) => {
                 let inner = self.clone();

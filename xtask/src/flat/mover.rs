@@ -1,6 +1,6 @@
 //! The two robots of the plane, as the commands see them.
 
-use crate::plan::counted::{Queries, Roadmaps};
+use crate::plan::counted::{Knows, Queries};
 use miette::{IntoDiagnostic, Result, miette};
 use mp::cspace::{
     Clearance, ClearanceGradient, DefaultNn, Factored, MotionBound, MotionValidity, Numbers, ObstacleHints,
@@ -20,7 +20,7 @@ pub(crate) trait FlatMover:
     + MotionBound<Self::State>
     + ObstacleHints<Self::State>
     + ClearanceGradient<Self::State>
-    + Roadmaps<Self::State>
+    + Knows<Self::State>
     + Clone
     + Debug
     + Send
@@ -70,8 +70,8 @@ impl Queries for PolygonRobot {
     }
 }
 
-impl Roadmaps<Vector2<f64>> for DiscRobot {}
-impl Roadmaps<Se2State> for PolygonRobot {}
+impl Knows<Vector2<f64>> for DiscRobot {}
+impl Knows<Se2State> for PolygonRobot {}
 
 impl FlatMover for DiscRobot {
     type State = Vector2<f64>;

@@ -2,12 +2,11 @@
 
 use super::mover::Mover;
 use crate::arm::State;
+use mp::cspace::erased::AnyGeometry;
 use mp::cspace::{
-    BuildError, Clearance, ClearanceGradient, LocalPlanner, MotionBound, NearestNeighbors, ObstacleGeometry,
-    ObstacleHints, Outline, PointOf, Progress, Rng, Room, Settings, Space, Stop, StopReason, Stretch,
-    Validity,
+    Clearance, ClearanceGradient, MotionBound, ObstacleGeometry, ObstacleHints, ObstacleKnowledge, Outline,
+    PointOf, Progress, Rng, Room, Stop, StopReason, Stretch, Validity,
 };
-use mp::roadmap::{Team, build_among, build_with};
 use mp::robot::{Arm, RigidBody};
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -174,47 +173,38 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
     }
 }
 
-/// A robot that roadmaps are made for by name, with what is known of its obstacles; of robots other than rigid bodies
-/// that is nothing.
-pub(crate) trait Roadmaps<S>: Queries + Sized {
-    /// The planner called `name`; the robot's queries go into `queries`.
-    fn roadmap<'c, C, L, N>(
-        self,
-        name: &str,
-        team: Team<'c, C, L>,
-        index: N,
-        settings: &Settings,
-        _queries: &'c AtomicU64,
-    ) -> Result<AnyRoadmap<'c, S>, BuildError>
+/// A robot that planners are made for by name, with what is known of its obstacles.
+pub(crate) trait Knows<S>:
+    Queries + ObstacleHints<S> + ClearanceGradient<S> + Clone + Send + Sync
+{
+    /// What planners may ask; the robot's queries go into `queries`.
+    fn knowledge<'c>(&self, queries: &'c AtomicU64) -> ObstacleKnowledge<'c, S>
     where
         Self: 'c,
-        S: 'c,
-        C: Space<State = S> + Clone + 'c,
-        L: LocalPlanner<S, Edge = ()> + Send + 'c,
-        N: NearestNeighbors<C> + Send + Sync + 'c,
     {
-        build_with(name, team, index, settings)
+        let counted = Counted::new(self.clone(), queries);
+        let mut field = counted.clone();
+        ObstacleKnowledge {
+            hints: Some(Box::new(counted)),
+            gradient: Some(Box::new(move |q, reach, gradient| field.clearance_gradient(q, reach, gradient))),
+            geometry: None,
+        }
     }
 }
 
-impl Roadmaps<State> for Arm {}
+impl Knows<State> for Arm {}
 
-impl<M: Mover> Roadmaps<M::State> for RigidBody<M> {
-    fn roadmap<'c, C, L, N>(
-        self,
-        name: &str,
-        team: Team<'c, C, L>,
-        index: N,
-        settings: &Settings,
-        queries: &'c AtomicU64,
-    ) -> Result<AnyRoadmap<'c, M::State>, BuildError>
+impl<M: Mover> Knows<M::State> for RigidBody<M> {
+    fn knowledge<'c>(&self, queries: &'c AtomicU64) -> ObstacleKnowledge<'c, M::State>
     where
         Self: 'c,
-        M::State: 'c,
-        C: Space<State = M::State> + Clone + 'c,
-        L: LocalPlanner<M::State, Edge = ()> + Send + 'c,
-        N: NearestNeighbors<C> + Send + Sync + 'c,
     {
-        build_among(name, team, index, Counted::new(self, queries), settings)
+        let counted = Counted::new(self.clone(), queries);
+        let mut field = counted.clone();
+        ObstacleKnowledge {
+            hints: Some(Box::new(counted.clone())),
+            gradient: Some(Box::new(move |q, reach, gradient| field.clearance_gradient(q, reach, gradient))),
+            geometry: Some(AnyGeometry::new(counted)),
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! One run of a planner.
 
 use super::chosen::Chosen;
-use super::counted::{AnyRoadmap, Asked, Counted, Queries, Roadmaps};
+use super::counted::{AnyRoadmap, Asked, Counted, Knows, Queries};
 use super::options::Options;
 use super::progress::Line;
 use crate::bench::{Processor, nanoseconds};
@@ -13,9 +13,9 @@ use mp::cspace::{
     Rng, Space, Stop, StopReason, Straight, Validity, WithMetric,
 };
 use mp::cspace::{ClearanceGradient, shorten::reduce, verify_path};
-use mp::roadmap::{HasRoadmap, Roadmap, Team};
+use mp::roadmap::{HasRoadmap, Roadmap, Team, build_with};
 use mp::snake::{Params, Repulsion, relax};
-use mp::tree::{AnyPlanner, BuildError, Goals, Problem, build_from, build_snake, improve, snake_planners};
+use mp::tree::{AnyPlanner, BuildError, Goals, Problem, build_from, improve};
 use std::sync::atomic::AtomicU64;
 use std::time::{Duration, Instant};
 
@@ -89,7 +89,7 @@ impl<'a, B, R, V> Run<'a, B, R, V>
 where
     B: Space<State: Numbers>,
     R: Validity<B::State> + Clearance<B::State> + MotionBound<B::State> + ObstacleHints<B::State>,
-    R: ClearanceGradient<B::State> + Queries + Roadmaps<B::State> + Clone + Send + Sync,
+    R: ClearanceGradient<B::State> + Queries + Knows<B::State> + Clone + Send + Sync,
     V: MotionValidity<B::State> + Clone + Send + Sync,
 {
     /// The motion check that the options ask for.
@@ -174,24 +174,18 @@ where
                 let goal = Goals::states(self.goals.iter().cloned());
                 let (local, verifier) = (Straight::new(space, check), self.verifier.clone());
                 let problem = Problem::new(space, local, verifier, self.start.clone(), goal)?;
-                Ok(problem.with_hints(Counted::new(self.robot.clone(), &queries)))
+                Ok(problem.with_obstacles(self.robot.knowledge(&queries)))
             };
             let mut planner = match &options.planner {
                 Chosen::Tree(named) => {
                     let (name, settings) = (named.to_string(), &options.settings);
-                    let tree = if snake_planners().iter().any(|info| info.name == name) {
-                        let field = Counted::new(self.robot.clone(), &queries);
-                        problem().and_then(|problem| build_snake(&name, problem, field, index, settings))
-                    } else {
-                        build_from(&name, problem, index, settings, &options.workers)
-                    };
+                    let tree = build_from(&name, problem, index, settings, &options.workers);
                     Grower::Tree(tree.into_diagnostic()?)
                 }
                 Chosen::Roadmap(info) => {
                     let team =
                         Team::new(options.workers.clone(), options.threads, problem).into_diagnostic()?;
-                    let robot = self.robot.clone();
-                    let made = robot.roadmap(info.name, team, index, &options.settings, &queries);
+                    let made = build_with(info.name, team, index, &options.settings);
                     Grower::Roadmap(self.resumed(made.into_diagnostic()?)?)
                 }
             };

@@ -76,6 +76,22 @@ pub enum BuildError {
         /// Which planner.
         planner: &'static str,
     },
+    /// The planner asks for the clearance gradient and is told none.
+    #[error(
+        "{planner} asks how far obstacles are and which way from them leads: give the problem a clearance gradient; robots that have none need another planner"
+    )]
+    NoGradient {
+        /// Which planner.
+        planner: &'static str,
+    },
+    /// The planner asks what obstacles look like and is not told.
+    #[error(
+        "{planner} asks what obstacles look like: give the problem their geometry; robots that have none need another planner"
+    )]
+    NoGeometry {
+        /// Which planner.
+        planner: &'static str,
+    },
     /// A parameter is out of its range.
     #[error("parameter {name} is {value}, but must be {range}")]
     OutOfRange {

@@ -218,7 +218,7 @@ impl OnSurfaces {
     }
 }
 
-/// The entry of [`planners_among`](crate::planners_among).
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "obprm",
     summary: "a roadmap of samples on and near the surfaces of obstacles",

@@ -109,7 +109,7 @@ const BANDS: Parameter = Parameter {
     doc: "steps of the elastic band (CTE)",
 };
 
-/// The entry of [`planners_among`](crate::planners_among).
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "obstacle-geometry-prm",
     summary: "a roadmap of samples far from obstacles, by spheres, and near them, by their direction and volume",

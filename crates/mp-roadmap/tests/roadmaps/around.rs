@@ -37,13 +37,22 @@ fn problem<'c>(space: &'c Se2, robot: &PlanarFlyer) -> Problem<'c, Se2, Local<'c
     let check = Certified::new(space, robot.clone(), TOLERANCE).unwrap();
     let verifier = Verifier::with_tolerance(space, robot, 0.2 * TOLERANCE).unwrap();
     let [start, goal] = ends;
-    Problem::new(space, Straight::new(space, check), verifier, start, goal).unwrap()
+    knowing(Problem::new(space, Straight::new(space, check), verifier, start, goal).unwrap(), robot)
+}
+
+/// A problem that knows what obstacles look like.
+fn knowing<'c, C: Space, L: LocalPlanner<C::State>>(
+    problem: Problem<'c, C, L>,
+    robot: &(impl ObstacleGeometry<C::State> + Clone + Send + Sync + 'c),
+) -> Problem<'c, C, L> {
+    let geometry = Some(AnyGeometry::new(robot.clone()));
+    problem.with_obstacles(ObstacleKnowledge { geometry, ..ObstacleKnowledge::default() })
 }
 
 fn made<'c>(name: &str, settings: &str, space: &'c Se2, robot: &PlanarFlyer) -> AnyPlanner<'c, Se2State, ()> {
     let settings = Settings::parse(settings.split_whitespace()).unwrap();
     let index = <Se2 as DefaultNn>::Nn::default();
-    build_among(name, problem(space, robot), index, robot.clone(), &settings).unwrap()
+    build_with(name, problem(space, robot), index, &settings).unwrap()
 }
 
 /// Every strategy, and planners that need no geometry as well.
@@ -94,7 +103,7 @@ fn a_team_finds_what_one_finds() {
             let workers = Workers::new(hands).unwrap();
             let team = Team::new(workers, hands, || Ok(problem(&space, &robot))).unwrap();
             let index = <Se2 as DefaultNn>::Nn::default();
-            let mut planner = build_among(name, team, index, robot.clone(), &Settings::default()).unwrap();
+            let mut planner = build_with(name, team, index, &Settings::default()).unwrap();
             let outcome = planner.solve(&mut Rng::seed(5), &mut Iterations(20_000), &mut ());
             (outcome, planner.map().states().to_vec(), planner.map().edges())
         };
@@ -132,7 +141,7 @@ fn a_bar_goes_through_a_window() {
         let verifier = Verifier::new(&space, &robot).unwrap();
         let problem = Problem::new(&space, Straight::new(&space, check), verifier, start, goal).unwrap();
         let index = <Se3 as DefaultNn>::Nn::default();
-        let mut planner = build_among(name, problem, index, robot.clone(), &Settings::default()).unwrap();
+        let mut planner = build_with(name, knowing(problem, &robot), index, &Settings::default()).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("{name}: {:?}", planner.progress()) };
         assert!(verify_path(&space, &path, &mut Verifier::new(&space, &robot).unwrap()).is_free());
@@ -253,13 +262,14 @@ fn out_of(
 fn what_cannot_be_made_says_why() {
     let (space, robot) = (plane(), corridor(0.25));
     for name in ["obprm", "geometry-prm"] {
-        let error = build(name, problem(&space, &robot), &Settings::default()).err().unwrap();
+        let blind = problem(&space, &robot).with_obstacles(ObstacleKnowledge::default());
+        let error = build(name, blind, &Settings::default()).err().unwrap();
         assert!(error.to_string().contains("what obstacles look like"), "{error}");
     }
     let refused = |name: &str, setting: &str| {
         let settings = Settings::parse([setting]).unwrap();
         let index = <Se2 as DefaultNn>::Nn::default();
-        build_among(name, problem(&space, &robot), index, robot.clone(), &settings).err()
+        build_with(name, problem(&space, &robot), index, &settings).err()
     };
     for setting in [
         "nodes=many",

@@ -62,7 +62,7 @@ pub(super) fn draw(folder: &Path) -> Result<()> {
     }
     let (_, ready) = CORRIDORS[0].ready()?.swap_remove(CORRIDOR);
     let Ready::Plane(corridor) = ready else { return Err(miette!("the corridor is not in the plane")) };
-    for info in mp::roadmap::planners().iter().chain(mp::roadmap::planners_among()) {
+    for info in mp::roadmap::planners().iter() {
         passed(&corridor, info.name, folder)?;
     }
     let Ready::Space(pillar) = Ready::of(pillar()?)? else {

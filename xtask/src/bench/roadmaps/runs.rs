@@ -68,7 +68,7 @@ const OBPRM: [&str; 4] = ["obprm prototype", "obprm contact", "obprm free", "obp
 /// The planners, some with how they make nodes: those that build roadmaps, and one that does not. PRM* is after short
 /// paths, not narrow passages; and LazyPRM spends its time in searching, of which a budget of queries tells nothing.
 pub(super) fn planners() -> Vec<&'static str> {
-    let roadmaps = mp::roadmap::planners().iter().chain(mp::roadmap::planners_among());
+    let roadmaps = mp::roadmap::planners().iter();
     let other = ["obprm", "prm-star", "lazy-prm"];
     let names = roadmaps.map(|info| info.name).filter(|name| !other.contains(name));
     names.chain(OBPRM).chain([BESIDE]).collect()
