@@ -13,6 +13,7 @@
 //! angles radians. The formats are documented in `docs/formats/`.
 
 mod collada;
+mod csv;
 mod error;
 mod flat;
 pub mod fuzz;
@@ -31,6 +32,7 @@ mod tables;
 mod text;
 
 pub use collada::parse_collada;
+pub use csv::{csv_text, parse_csv};
 pub use error::{Error, ErrorKind};
 pub use flat::{FlatBody, FlatFile, FlatMap, FlatObstacle, FlatPart, FlatProblem, GridMap, RosMap};
 pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
@@ -40,5 +42,5 @@ pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
 pub use robot::{JointPath, ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
-pub use source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, write_atomic};
+pub use source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use stl::{parse_stl, stl_text, write_stl};

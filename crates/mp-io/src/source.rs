@@ -51,6 +51,14 @@ pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
+/// Reads a text file of at most [`MAX_TEXT_BYTES`]: what errors call it, and its bytes.
+///
+/// # Errors
+/// [`Error`] when it cannot be read, or is no regular file.
+pub fn read_text(path: &Path) -> Result<(String, Vec<u8>), Error> {
+    Ok((path.display().to_string(), read_file(path, MAX_TEXT_BYTES)?))
+}
+
 fn missing_help(path: &Path) -> String {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {

@@ -118,6 +118,14 @@ impl<'a> Token<'a> {
         })
     }
 
+    /// The parts between commas, without blanks around them.
+    pub(crate) fn cells(self) -> impl Iterator<Item = Token<'a>> + Clone {
+        self.text.split(',').map(move |cell| {
+            Token { text: cell, at: self.at + (cell.as_ptr() as usize - self.text.as_ptr() as usize) }
+                .trimmed()
+        })
+    }
+
     /// Without blanks around it.
     pub(crate) fn trimmed(self) -> Token<'a> {
         let start = self.text.trim_start();

@@ -3,11 +3,12 @@
 use super::AnySpace;
 use crate::{DefaultNn, Hit, NearestNeighbors, NodeId, Space};
 use std::fmt::{self, Debug};
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// What of an index goes behind the pointer: all of [`NearestNeighbors`], with the space inside.
-trait Erased<'c, S>: Send + Sync {
-    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c>;
+trait Erased<S>: Send + Sync {
+    fn boxed(&self) -> Box<dyn Erased<S>>;
     fn inserted(&mut self, points: &[S], id: NodeId);
     fn clear(&mut self);
     fn nearest(&self, points: &[S], q: &S) -> Option<Hit>;
@@ -21,12 +22,12 @@ struct Searching<C, N> {
     index: N,
 }
 
-impl<'c, S, C, N> Erased<'c, S> for Searching<C, N>
+impl<S, C, N> Erased<S> for Searching<C, N>
 where
-    C: Space<State = S> + Send + 'c,
-    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
+    C: Space<State = S> + Send + 'static,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
 {
-    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c> {
+    fn boxed(&self) -> Box<dyn Erased<S>> {
         Box::new(Self { space: Arc::clone(&self.space), index: self.index.clone() })
     }
     fn inserted(&mut self, points: &[S], id: NodeId) {
@@ -48,27 +49,27 @@ where
 
 /// Any index of an [erased space](AnySpace): it keeps the space it was made for, so that the search inside runs on the
 /// space itself and answers are the same, to the bit. Give it the erasure of that space.
-pub struct AnyIndex<'c, S>(Box<dyn Erased<'c, S> + 'c>);
+pub struct AnyIndex<'c, S>(Box<dyn Erased<S>>, PhantomData<&'c ()>);
 
-impl<'c, S> AnyIndex<'c, S> {
+impl<S> AnyIndex<'_, S> {
     /// `index` for a copy of `space`, erased.
     pub fn new<C, N>(space: &C, index: N) -> Self
     where
-        C: Space<State = S> + Clone + Send + 'c,
-        N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
+        C: Space<State = S> + Clone + Send + 'static,
+        N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
     {
-        Self(Box::new(Searching { space: Arc::new(space.clone()), index }))
+        Self(Box::new(Searching { space: Arc::new(space.clone()), index }), PhantomData)
     }
 
     /// The [index that suits](DefaultNn) `space`, empty and erased.
-    pub fn of<C: DefaultNn<State = S, Nn: 'c> + Clone + Send + 'c>(space: &C) -> Self {
+    pub fn of<C: DefaultNn<State = S, Nn: 'static> + Clone + Send + 'static>(space: &C) -> Self {
         Self::new(space, C::Nn::default())
     }
 }
 
 impl<S> Clone for AnyIndex<'_, S> {
     fn clone(&self) -> Self {
-        Self(self.0.boxed())
+        Self(self.0.boxed(), PhantomData)
     }
 }
 

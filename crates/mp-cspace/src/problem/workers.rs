@@ -24,16 +24,28 @@ impl Workers {
     /// # Errors
     /// When that is none or more than [`MOST`](Self::MOST), or the system refuses them.
     pub fn new(threads: usize) -> Result<Self, BuildError> {
-        let refused =
-            |range: String| BuildError::OutOfRange { name: "threads", value: threads as f64, range };
-        match threads {
+        match Self::checked(threads)? {
             1 => Ok(Self::alone()),
-            2..=Self::MOST => match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            _ => match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => Ok(Self(Some(Arc::new(pool)))),
-                Err(error) => Err(refused(format!("fewer: {error}"))),
+                Err(error) => Err(Self::refused(threads, format!("fewer: {error}"))),
             },
-            _ => Err(refused(format!("from 1 to {}", Self::MOST))),
         }
+    }
+
+    /// `threads` if there may be as many.
+    ///
+    /// # Errors
+    /// When that is none or more than [`MOST`](Self::MOST).
+    pub fn checked(threads: usize) -> Result<usize, BuildError> {
+        match threads {
+            1..=Self::MOST => Ok(threads),
+            _ => Err(Self::refused(threads, format!("from 1 to {}", Self::MOST))),
+        }
+    }
+
+    fn refused(threads: usize, range: String) -> BuildError {
+        BuildError::OutOfRange { name: "threads", value: threads as f64, range }
     }
 
     /// Calls `work` on each item, at the same time on several where there are threads.

@@ -1,0 +1,163 @@
+//! Checkers whose queries go into one sum, for reports and budgets.
+
+use crate::Checker;
+use mp_cspace::{
+    Clearance, ClearanceGradient, MotionBound, ObstacleGeometry, ObstacleHints, Outline, PointOf, Progress,
+    Rng, Room, Stop, StopReason, Stretch, Validity,
+};
+use nalgebra::Vector3;
+use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Queries that a checker may have been asked and not told yet: the sum is for budgets, and telling it takes time too.
+const UNTOLD: u64 = 64;
+
+/// A checker whose queries go into a common sum: once in a while, and when it is dropped.
+pub struct Counted<'a, R> {
+    checker: R,
+    asked: fn(&R) -> u64,
+    /// What the checker had counted when it last told.
+    before: u64,
+    queries: &'a AtomicU64,
+}
+
+impl<'a, R> Counted<'a, R> {
+    /// `checker`, whose queries from now on are added to `queries`.
+    pub fn new<S>(checker: R, queries: &'a AtomicU64) -> Self
+    where
+        R: Checker<S>,
+    {
+        Self { before: checker.queries(), checker, asked: R::queries, queries }
+    }
+
+    fn tell(&mut self) {
+        let now = (self.asked)(&self.checker);
+        self.queries.fetch_add(now - self.before, Ordering::Relaxed);
+        self.before = now;
+    }
+
+    /// What the checker answers.
+    fn asked<T>(&mut self, ask: impl FnOnce(&mut R) -> T) -> T {
+        let answer = ask(&mut self.checker);
+        if (self.asked)(&self.checker) - self.before >= UNTOLD {
+            self.tell();
+        }
+        answer
+    }
+}
+
+/// Stops when so many queries were asked. What is done until then depends on no clock.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct QueryBudget<'a> {
+    pub(crate) queries: &'a AtomicU64,
+    pub(crate) most: u64,
+}
+
+impl Stop for QueryBudget<'_> {
+    fn check(&mut self, _: &Progress) -> Option<StopReason> {
+        (self.queries.load(Ordering::Relaxed) >= self.most).then_some(StopReason::Motions)
+    }
+}
+
+impl<R: Clone> Clone for Counted<'_, R> {
+    fn clone(&self) -> Self {
+        let checker = self.checker.clone();
+        Self { before: (self.asked)(&checker), checker, asked: self.asked, queries: self.queries }
+    }
+}
+
+impl<R> Drop for Counted<'_, R> {
+    fn drop(&mut self) {
+        self.tell();
+    }
+}
+
+impl<R: fmt::Debug> fmt::Debug for Counted<'_, R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Counted").field("checker", &self.checker).finish_non_exhaustive()
+    }
+}
+
+impl<S, R: Validity<S>> Validity<S> for Counted<'_, R> {
+    fn is_valid(&mut self, q: &S) -> bool {
+        self.asked(|checker| checker.is_valid(q))
+    }
+    fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
+        self.asked(|checker| checker.first_invalid(states))
+    }
+    fn batch_size(&self) -> usize {
+        self.checker.batch_size()
+    }
+}
+
+impl<S, R: Clearance<S>> Clearance<S> for Counted<'_, R> {
+    fn clearance(&mut self, q: &S, enough: f64) -> f64 {
+        self.asked(|checker| checker.clearance(q, enough))
+    }
+    fn in_contact(&mut self, q: &S) -> bool {
+        self.asked(|checker| checker.in_contact(q))
+    }
+    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
+        self.asked(|checker| checker.room(stretch))
+    }
+    fn contact_first(&self) -> bool {
+        self.checker.contact_first()
+    }
+}
+
+impl<S, R: MotionBound<S>> MotionBound<S> for Counted<'_, R> {
+    fn motion_bound(&self, from: &S, to: &S) -> f64 {
+        self.checker.motion_bound(from, to)
+    }
+}
+
+impl<S, R: ObstacleHints<S>> ObstacleHints<S> for Counted<'_, R> {
+    fn touches(&mut self, q: &S) -> bool {
+        self.asked(|checker| checker.touches(q))
+    }
+    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        self.asked(|checker| checker.along(from, toward, hit, rng))
+    }
+    fn turned(&self, position: &S, rotation: &S) -> S {
+        self.checker.turned(position, rotation)
+    }
+    fn carried(&self, q: &S, from: &S, to: &S) -> S {
+        self.checker.carried(q, from, to)
+    }
+}
+
+impl<S, R: ClearanceGradient<S>> ClearanceGradient<S> for Counted<'_, R> {
+    fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
+        self.asked(|checker| checker.clearance_gradient(q, reach, gradient))
+    }
+}
+
+impl<S, R: ObstacleGeometry<S>> ObstacleGeometry<S> for Counted<'_, R> {
+    fn obstacles(&self) -> &[Outline] {
+        self.checker.obstacles()
+    }
+    fn robot(&self) -> Outline {
+        self.checker.robot()
+    }
+    fn touched(&mut self, q: &S) -> Option<usize> {
+        self.asked(|checker| checker.touched(q))
+    }
+    fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
+        self.checker.obstacle_point(obstacle, of, rng)
+    }
+    fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
+        self.checker.robot_point(of, rng)
+    }
+    fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
+        self.checker.place_of(q, point)
+    }
+    fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
+        self.checker.brought(q, point, place)
+    }
+    fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
+        self.checker.aligned(place, direction, angle)
+    }
+    fn is_far(&self, q: &S) -> bool {
+        self.checker.is_far(q)
+    }
+}

@@ -1,0 +1,93 @@
+//! From a path of states to one that is written down: shortened, verified as it reads back.
+
+use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage};
+use mp_cspace::shorten::{Effort, simplify};
+use mp_cspace::{
+    Cancel, Certified, KnownFree, MotionCheck, MotionValidity, Path, Rng, least_clearance, verify_path,
+};
+use std::sync::atomic::Ordering;
+
+/// Which stream of random numbers shortening draws from: planning draws from another.
+const STREAM: u64 = 1;
+
+/// A path that the verifier passed as it will be read.
+#[derive(Clone, Debug)]
+pub(crate) struct Finished {
+    pub(crate) path: PathRows,
+    /// In the metric of the space.
+    pub(crate) length: f64,
+    /// A lower bound all along, metres.
+    pub(crate) clearance: f64,
+    pub(crate) shortened: bool,
+}
+
+/// A check that finds nothing free any more once the flag is raised: whatever shortens with it comes to an end.
+struct Until<'a, V>(V, &'a Cancel);
+
+impl<S, V: MotionValidity<S>> MotionValidity<S> for Until<'_, V> {
+    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+        self.check_extension(from, to, KnownFree::Neither)
+    }
+    fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
+        if self.1.0.load(Ordering::Relaxed) {
+            return MotionCheck::Undecided { at: 0.0 };
+        }
+        self.0.check_extension(from, to, known)
+    }
+}
+
+/// The path, shortened: every edge keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or was there
+/// before. The same seed gives the same path. Raising `cancel` ends it early.
+///
+/// # Errors
+/// When the tolerance of the robot makes no sense.
+pub fn shorten<K: RobotKind>(
+    kind: &K,
+    path: &Path<K::State>,
+    seed: u64,
+    cancel: &Cancel,
+) -> Result<Path<K::State>, Error> {
+    let _span = tracing::info_span!("shorten").entered();
+    let certified = Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?;
+    let mut rng = Rng::stream(seed, STREAM);
+    Ok(simplify(kind.space(), &mut Until(certified, cancel), path, Effort::default(), &mut rng))
+}
+
+/// Shortens `found` if asked to, and verifies what will be written. Falls back to `found` itself; `None` when
+/// not even that is free after it has been through its text.
+pub(crate) fn finish<K: RobotKind>(
+    kind: &K,
+    found: &Path<K::State>,
+    request: &Request,
+    control: &mut Control<'_>,
+) -> Result<Option<Finished>, Error> {
+    control.stage(Stage::Finishing);
+    if request.finish == Finish::Shorten {
+        let short = shorten(kind, found, request.seed, &control.cancel)?;
+        if let Some(finished) = written(kind, &short, true)? {
+            return Ok(Some(finished));
+        }
+        tracing::info!("the shortened path does not pass the verifier: the path as found is written");
+    }
+    written(kind, found, false)
+}
+
+/// `path` as it reads back from its text, if the verifier passes that.
+fn written<K: RobotKind>(
+    kind: &K,
+    path: &Path<K::State>,
+    shortened: bool,
+) -> Result<Option<Finished>, Error> {
+    let _span = tracing::info_span!("verify").entered();
+    let rows = PathRows { format: kind.path_format(), columns: kind.columns(), rows: kind.rows(path) };
+    let rows = rows.read_back()?;
+    let read = Path::straight(rows.rows.iter().map(|row| kind.state(row)).collect());
+    let report = verify_path(kind.space(), &read, &mut kind.verifier()?);
+    if let Some(fault) = report.fault {
+        tracing::info!("{fault}");
+        return Ok(None);
+    }
+    let tightest = least_clearance(kind.space(), &mut kind.checker().clone(), &read, kind.accuracy());
+    let clearance = tightest.map_or(report.clearance, |t| t.clearance.max(report.clearance));
+    Ok(Some(Finished { path: rows, length: path.length(kind.space()), clearance, shortened }))
+}

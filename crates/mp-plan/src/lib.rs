@@ -1,0 +1,80 @@
+//! A scene in, a verified path out.
+//!
+//! This crate is what a program with a window, a script or a cluster builds on: it knows scenes and names of planners,
+//! and hands out plain data.
+//!
+//! ```
+//! use mp_geom::primitives::cuboid;
+//! use mp_io::{Body, PlacedBody, Problem, SpaceKind};
+//! use mp_plan::{Request, Scene};
+//! use nalgebra::Isometry3;
+//!
+//! // A stick goes around a post.
+//! let robot = Body { name: "stick".into(), file: "".into(), mesh: cuboid(0.5, 0.1, 0.1)? };
+//! let post = cuboid(0.2, 1.0, 4.0)?;
+//! let post = PlacedBody { name: "post".into(), file: "".into(), mesh: post, pose: Isometry3::identity() };
+//! let scene = Scene::from_problem(Problem {
+//!     name: "post".into(),
+//!     space: SpaceKind::Se3,
+//!     robot,
+//!     obstacles: vec![post],
+//!     start: Isometry3::translation(-1.0, 0.0, 0.0),
+//!     goal: Isometry3::translation(1.0, 0.0, 0.0),
+//!     bounds: None,
+//! })?;
+//!
+//! let report = scene.plan(&Request::new("rrt-connect").seed(7).iterations(10_000))?;
+//! assert!(report.solved && report.clearance > Some(0.0));
+//! for row in report.path.iter().flatten() {
+//!     assert_eq!(row.len(), 6); // x y z α β γ: see report.columns
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! | to | use |
+//! |---|---|
+//! | load a scene, or make one in code | [`Scene::load`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
+//! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what becomes of the path |
+//! | plan | [`Scene::plan`]; watched and stopped from outside: [`Scene::plan_with`], [`Control`], [`Watch`] |
+//! | read what came of it | [`Report`], with a documented JSON form |
+//! | prove a path free | [`Scene::check`], [`Verdict`] |
+//! | know why a configuration is not free | [`Scene::explain`] |
+//! | know what is odd about a scene | [`Scene::lint`] |
+//! | draw | [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
+//! | bring a kind of robot of your own | [`RobotKind`] |
+//! | have states in your hands instead of rows | [`search`], [`shorten`] with a [`RobotKind`] |
+//!
+//! Units are metres, radians and seconds. Nothing is printed; what happens is told by `tracing`: spans `load`, `build`,
+//! `plan`, `relax`, `shorten`, `verify` and `check`.
+
+mod check;
+mod counted;
+mod error;
+mod finish;
+mod numbers;
+mod path;
+mod planners;
+mod report;
+mod request;
+mod robot;
+mod scene;
+mod search;
+mod watch;
+
+pub use check::{Explanation, Verdict};
+pub use error::Error;
+pub use finish::shorten;
+pub use numbers::{brief, count};
+pub use path::{PathFileKind, PathRows};
+pub use planners::{planners, wrappers};
+pub use report::{Medians, REPORT_VERSION, Report, Runs, StoppedBy, median, medians};
+pub use request::{Budget, Finish, Length, Metric, MotionCheck, Request};
+pub use robot::{
+    ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
+    PlanarScene, RigidMotion, RigidScene, RobotKind, Touch,
+};
+pub use scene::{Scene, Sweep};
+pub use search::{Search, search};
+pub use watch::{Control, SearchEvent, Stage, Watch};
+
+pub use mp_cspace::{Cancel, Parameter, PlannerInfo, Progress};

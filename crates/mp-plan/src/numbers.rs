@@ -1,0 +1,47 @@
+//! Numbers for people.
+
+/// A number with four digits or so.
+#[must_use]
+pub fn brief(v: f64) -> String {
+    let magnitude = v.abs();
+    let text = if magnitude != 0.0 && !(1e-3..1e6).contains(&magnitude) {
+        return format!("{v:.3e}");
+    } else if magnitude >= 100.0 {
+        format!("{v:.1}")
+    } else {
+        format!("{v:.3}")
+    };
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
+/// `1 triangle`, `2 triangles`.
+#[must_use]
+pub fn count(n: usize, what: &str) -> String {
+    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
+}
+
+/// A number as a scene file has it: nine decimals, none that are zero, no negative zero.
+pub(crate) fn plain(v: f64) -> String {
+    ((v * 1e9).round() / 1e9 + 0.0).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_brief() {
+        for (v, text) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-0.00001, "-1.000e-5"),
+            (12.3456, "12.346"),
+            (1234.56, "1234.6"),
+            (2e7, "2.000e7"),
+        ] {
+            assert_eq!(brief(v), text);
+        }
+        assert_eq!(plain(-1e-12), "0");
+    }
+}

@@ -1,0 +1,131 @@
+//! Paths as rows of named numbers.
+
+use crate::{Column, Error, PathFormat};
+use mp_io::{JointPath, PathFile};
+use serde::Serialize;
+use std::path::Path;
+
+/// A path as rows of numbers, one configuration a row, start first: what is written, read and shown.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PathRows {
+    /// How it is written as text.
+    #[serde(skip)]
+    pub format: PathFormat,
+    /// What the numbers are; empty when it was read from a file that does not say.
+    pub columns: Vec<Column>,
+    /// The configurations.
+    pub rows: Vec<Vec<f64>>,
+}
+
+/// A kind of file that paths are written to and read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PathFileKind {
+    /// `.txt`, `.path`: the text form of the robot.
+    Text,
+    /// `.json`.
+    Json,
+    /// `.csv`: a line of names with units, then one configuration on each line.
+    Csv,
+}
+
+impl PathFileKind {
+    /// The kind of file that a name says by its ending.
+    ///
+    /// # Errors
+    /// When it has another ending, or none.
+    pub fn of(file: &Path) -> Result<Self, Error> {
+        let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        match ending.as_str() {
+            "txt" | "path" => Ok(Self::Text),
+            "json" => Ok(Self::Json),
+            "csv" => Ok(Self::Csv),
+            "" => {
+                Err(Error::new(format!("{} has no ending, which says how to write a path", file.display()))
+                    .help("end its name in .txt, .json or .csv"))
+            }
+            _ => Err(Error::new(format!("cannot write a path as .{ending}: {}", file.display()))
+                .help("end its name in .txt, .json or .csv")),
+        }
+    }
+}
+
+impl PathRows {
+    /// The path as the text of its format.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        match self.poses() {
+            Some(path) => path.to_text(),
+            None => JointPath { configurations: self.rows.clone() }.to_text(),
+        }
+    }
+
+    /// The path as JSON: an object with the member `path`.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        match self.poses() {
+            Some(path) => path.to_json(),
+            None => JointPath { configurations: self.rows.clone() }.to_json(),
+        }
+    }
+
+    /// The path as comma-separated values.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        let name =
+            |column: &Column| format!("{} [{}]", column.name.replace([',', '"', '\n'], "_"), column.unit);
+        mp_io::csv_text(&self.columns.iter().map(name).collect::<Vec<_>>(), &self.rows)
+    }
+
+    /// The path as a file of this kind holds it.
+    #[must_use]
+    pub fn to_file(&self, kind: PathFileKind) -> String {
+        match kind {
+            PathFileKind::Text => self.to_text(),
+            PathFileKind::Json => self.to_json(),
+            PathFileKind::Csv => self.to_csv(),
+        }
+    }
+
+    /// Reads the path of a robot whose text has this format from a file: `.json`, `.csv`, all else as text.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or holds no path: with file, line and column.
+    pub fn read(file: impl AsRef<Path>, format: PathFormat) -> Result<Self, Error> {
+        let (name, bytes) = mp_io::read_text(file.as_ref())?;
+        let kind = PathFileKind::of(file.as_ref()).unwrap_or(PathFileKind::Text);
+        Self::parse(&name, &bytes, kind, format)
+    }
+
+    /// Reads a path from the content of a file that errors call `name`.
+    ///
+    /// # Errors
+    /// When it holds no path: with line and column.
+    pub fn parse(name: &str, bytes: &[u8], kind: PathFileKind, format: PathFormat) -> Result<Self, Error> {
+        let sixes = |path: PathFile| path.configurations.iter().map(|six| six.to_vec()).collect();
+        let rows = match (kind, format) {
+            (PathFileKind::Csv, _) => mp_io::parse_csv(name, bytes)?,
+            (PathFileKind::Text, PathFormat::Poses) => sixes(PathFile::parse(name, bytes)?),
+            (PathFileKind::Json, PathFormat::Poses) => sixes(PathFile::parse_json(name, bytes)?),
+            (PathFileKind::Text, PathFormat::Joints) => JointPath::parse(name, bytes)?.configurations,
+            (PathFileKind::Json, PathFormat::Joints) => JointPath::parse_json(name, bytes)?.configurations,
+        };
+        Ok(Self { format, columns: Vec::new(), rows })
+    }
+
+    /// What reads back from the text.
+    pub(crate) fn read_back(&self) -> Result<Self, Error> {
+        let read = Self::parse("the path", self.to_text().as_bytes(), PathFileKind::Text, self.format)?;
+        Ok(Self { columns: self.columns.clone(), ..read })
+    }
+
+    /// The path as six-tuples, if that is its format.
+    fn poses(&self) -> Option<PathFile> {
+        let six = |row: &Vec<f64>| <[f64; 6]>::try_from(row.as_slice()).ok();
+        match self.format {
+            PathFormat::Joints => None,
+            PathFormat::Poses => {
+                Some(PathFile { configurations: self.rows.iter().map(six).collect::<Option<_>>()? })
+            }
+        }
+    }
+}

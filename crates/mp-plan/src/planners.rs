@@ -1,0 +1,71 @@
+//! Planners by name: trees, wrapped or not, and roadmaps.
+
+use crate::Error;
+use mp_cspace::{PlannerInfo, Settings};
+use std::fmt;
+
+/// All planners by name, trees first. Before the name of a tree may stand `or-`, `restart-` and, before `rrt`,
+/// `shared-`: see [`wrappers`].
+pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
+    mp_tree::planners().iter().chain(mp_roadmap::planners())
+}
+
+/// What may stand before the name of a planner.
+#[must_use]
+pub fn wrappers() -> &'static [mp_tree::Wrapper] {
+    mp_tree::wrappers()
+}
+
+/// A planner by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Named {
+    /// Grows trees.
+    Tree(mp_tree::Named),
+    /// Builds a roadmap.
+    Roadmap(&'static PlannerInfo),
+}
+
+impl Named {
+    /// The planner called `name`.
+    pub(crate) fn new(name: &str) -> Result<Self, Error> {
+        if let Ok(info) = mp_roadmap::planner(name) {
+            return Ok(Self::Roadmap(info));
+        }
+        mp_tree::Named::new(name).map(Self::Tree).map_err(|error| {
+            // The trees know only trees.
+            let names = planners().flat_map(|p| [p.name].into_iter().chain(p.aliases.iter().copied()));
+            let known = planners().map(|p| p.name).collect::<Vec<_>>().join(", ");
+            match (error, mp_cspace::closest(name, names)) {
+                (mp_cspace::BuildError::UnknownPlanner { .. }, Some(near)) => {
+                    Error::new(format!("there is no planner `{name}`"))
+                        .help(format!("did you mean `{near}`? There are: {known}"))
+                }
+                (mp_cspace::BuildError::UnknownPlanner { .. }, None) => {
+                    Error::new(format!("there is no planner `{name}`")).help(format!("there are: {known}"))
+                }
+                (error, _) => error.into(),
+            }
+        })
+    }
+
+    /// Refuses settings that it does not have.
+    pub(crate) fn check(&self, settings: &Settings) -> Result<(), Error> {
+        Ok(match self {
+            Self::Tree(named) => named.check(settings)?,
+            Self::Roadmap(info) => settings.check(info)?,
+        })
+    }
+
+    pub(crate) fn is_roadmap(&self) -> bool {
+        matches!(self, Self::Roadmap(_))
+    }
+}
+
+impl fmt::Display for Named {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tree(named) => named.fmt(f),
+            Self::Roadmap(info) => f.write_str(info.name),
+        }
+    }
+}

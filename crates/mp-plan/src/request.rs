@@ -1,0 +1,379 @@
+//! How to plan: plain data.
+
+use crate::Error;
+use mp_cspace::Settings;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// How to plan in a scene. Plain data: make one by [`Request::new`] and the methods below, or read it from JSON, where
+/// every member may be left out.
+///
+/// ```
+/// use mp_plan::{Finish, Request};
+/// let request = Request::new("rrt-connect").seed(7).iterations(10_000).set("step", "10%");
+/// let read: Request = serde_json::from_str(
+///     r#"{"planner": "rrt-connect", "seed": 7, "settings": {"step": "10%"}, "budget": {"iterations": 10000}}"#,
+/// )?;
+/// assert_eq!(request, read);
+/// assert_eq!(request.finish, Finish::Shorten);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Request {
+    /// The name of the planner: [`planners`](crate::planners) lists them. With `or-` before it independent runs of it
+    /// race on all threads; with `restart-` it begins anew when it takes too long.
+    pub planner: String,
+    /// Parameters of the planner, by name.
+    pub settings: BTreeMap<String, String>,
+    /// How far apart two configurations are.
+    pub metric: Metric,
+    /// How motions are checked while planning. What is returned is verified by other means in any case.
+    pub motion: MotionCheck,
+    /// When to give up.
+    pub budget: Budget,
+    /// All randomness flows from this number.
+    pub seed: u64,
+    /// Threads that the planner may use, 1 to 1024. Results do not depend on it.
+    pub threads: usize,
+    /// What becomes of the path that the planner found.
+    pub finish: Finish,
+    /// Stop at the first path, also with a planner that keeps improving.
+    pub first_only: bool,
+    /// The file of a roadmap: read when it is there, grown, and written in the end. For planners that build roadmaps.
+    pub roadmap: Option<PathBuf>,
+}
+
+/// When to give up. Iterations and queries are the same on every machine; time is not, but it only ends a run and
+/// changes nothing that was computed before.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Budget {
+    /// Seconds of wall-clock time; `None` for no limit.
+    pub time_s: Option<f64>,
+    /// Iterations of the planner's loop.
+    pub iterations: Option<u64>,
+    /// Collision and clearance queries.
+    pub queries: Option<u64>,
+}
+
+/// What becomes of the path that a planner found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Finish {
+    /// It stays as it is.
+    AsFound,
+    /// It is shortened and its corners are rounded, at some distance from obstacles.
+    #[default]
+    Shorten,
+    /// What it does not need is left out, and a snake relaxes it away from obstacles.
+    Relax,
+}
+
+/// What a distance between configurations means. Of arms `θ` and `Δp` are the changes of joints.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Metric {
+    /// ‖Δp‖ + 0.5·θ: the metric of the space itself.
+    #[default]
+    Default,
+    /// √(‖Δp‖² + θ²).
+    Euclidean,
+    /// √(‖Δp‖² + (r·θ)²), r the radius of the robot.
+    Scaled,
+    /// |Δx| + |Δy| + |Δz| + θ.
+    Manhattan,
+    /// The farthest that any point of the robot moves.
+    MaxDisplacement,
+    /// About how much volume the robot sweeps, m³.
+    SweptVolume,
+}
+
+impl Metric {
+    /// All metrics, each with its name and its formula (metres; θ in radians).
+    pub const ALL: [(Metric, &'static str, &'static str); 6] = [
+        (Metric::Default, "default", "‖Δp‖ + 0.5·θ"),
+        (Metric::Euclidean, "euclidean", "√(‖Δp‖² + θ²)"),
+        (Metric::Scaled, "scaled", "√(‖Δp‖² + (r·θ)²), r the radius of the robot about its origin"),
+        (Metric::Manhattan, "manhattan", "|Δx| + |Δy| + |Δz| + θ"),
+        (
+            Metric::MaxDisplacement,
+            "max-displacement",
+            "how far the point of the robot moves that moves farthest",
+        ),
+        (
+            Metric::SweptVolume,
+            "swept-volume",
+            "about how much volume the robot sweeps, m³; slow for robots of many triangles",
+        ),
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(metric, ..)| *metric == self).map_or("default", |(_, name, _)| name)
+    }
+}
+
+impl fmt::Display for Metric {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Metric {
+    type Err = Error;
+    fn from_str(name: &str) -> Result<Self, Error> {
+        let found = Self::ALL.iter().find(|(_, n, _)| *n == name).map(|(metric, ..)| *metric);
+        found.ok_or_else(|| {
+            let names: Vec<_> = Self::ALL.iter().map(|(_, name, _)| *name).collect();
+            Error::new(format!("there is no metric `{name}`"))
+                .help(format!("there are: {}", names.join(", ")))
+        })
+    }
+}
+
+/// A distance of the metric, or a share of the extent of the space. As text `0.5` and `20%`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum Length {
+    /// In the unit of the metric.
+    Absolute(f64),
+    /// Of the extent, 1 being all of it.
+    Fraction(f64),
+}
+
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Absolute(length) => write!(f, "{length}"),
+            Self::Fraction(fraction) => write!(f, "{}%", 100.0 * fraction),
+        }
+    }
+}
+
+impl FromStr for Length {
+    type Err = Error;
+    fn from_str(s: &str) -> Result<Self, Error> {
+        match s.strip_suffix('%') {
+            Some(percent) => match positive(percent)? {
+                p if p <= 100.0 => Ok(Self::Fraction(p / 100.0)),
+                _ => Err(Error::new("more than 100% of the extent")),
+            },
+            None => positive(s).map(Self::Absolute),
+        }
+    }
+}
+
+/// A finite number above zero.
+fn positive(s: &str) -> Result<f64, Error> {
+    match s.trim().parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(_) => Err(Error::new("must be a finite number above zero")),
+        Err(_) => Err(Error::new("not a number")),
+    }
+}
+
+/// How motions are checked while planning. As text `certified`, `discrete:1%` and `discrete:0.05`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum MotionCheck {
+    /// Clearance against bounds of the motion: no wall is missed, however thin.
+    #[default]
+    Certified,
+    /// At configurations this far apart.
+    Discrete(Length),
+}
+
+impl fmt::Display for MotionCheck {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Certified => f.write_str("certified"),
+            Self::Discrete(length) => write!(f, "discrete:{length}"),
+        }
+    }
+}
+
+impl FromStr for MotionCheck {
+    type Err = Error;
+    fn from_str(s: &str) -> Result<Self, Error> {
+        match (s, s.strip_prefix("discrete:")) {
+            ("certified", _) => Ok(Self::Certified),
+            (_, Some(resolution)) => resolution.parse().map(Self::Discrete),
+            ("discrete", _) => Err(Error::new("give the resolution, such as discrete:1% or discrete:0.05")),
+            _ => Err(Error::new("expected `certified` or `discrete:R`, such as discrete:1%")),
+        }
+    }
+}
+
+macro_rules! as_text {
+    ($($type:ty),*) => {
+        $(impl TryFrom<String> for $type {
+            type Error = Error;
+            fn try_from(text: String) -> Result<Self, Error> {
+                text.parse()
+            }
+        }
+        impl From<$type> for String {
+            fn from(value: $type) -> Self {
+                value.to_string()
+            }
+        })*
+    };
+}
+as_text!(Length, MotionCheck);
+
+/// A minute.
+impl Default for Budget {
+    fn default() -> Self {
+        Self { time_s: Some(60.0), iterations: None, queries: None }
+    }
+}
+
+/// RRT-Connect with its defaults, seed 1, one thread, a minute; the path is shortened.
+impl Default for Request {
+    fn default() -> Self {
+        Self {
+            planner: "rrt-connect".to_owned(),
+            settings: BTreeMap::new(),
+            metric: Metric::Default,
+            motion: MotionCheck::Certified,
+            budget: Budget::default(),
+            seed: 1,
+            threads: 1,
+            finish: Finish::Shorten,
+            first_only: false,
+            roadmap: None,
+        }
+    }
+}
+
+impl Request {
+    /// The planner called `planner`, all else by default.
+    #[must_use]
+    pub fn new(planner: impl Into<String>) -> Self {
+        Self { planner: planner.into(), ..Self::default() }
+    }
+
+    /// The same with a parameter of the planner.
+    #[must_use]
+    pub fn set(mut self, name: impl Into<String>, value: impl ToString) -> Self {
+        self.settings.insert(name.into(), value.to_string());
+        self
+    }
+
+    /// The same with another seed.
+    #[must_use]
+    pub fn seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// The same with another metric.
+    #[must_use]
+    pub fn metric(self, metric: Metric) -> Self {
+        Self { metric, ..self }
+    }
+
+    /// The same with another motion check.
+    #[must_use]
+    pub fn motion(self, motion: MotionCheck) -> Self {
+        Self { motion, ..self }
+    }
+
+    /// The same for at most so many seconds.
+    #[must_use]
+    pub fn time(mut self, seconds: f64) -> Self {
+        self.budget.time_s = Some(seconds);
+        self
+    }
+
+    /// The same for at most so many iterations.
+    #[must_use]
+    pub fn iterations(mut self, iterations: u64) -> Self {
+        self.budget.iterations = Some(iterations);
+        self
+    }
+
+    /// The same on so many threads.
+    #[must_use]
+    pub fn threads(self, threads: usize) -> Self {
+        Self { threads, ..self }
+    }
+
+    /// The same with another end of the path's way.
+    #[must_use]
+    pub fn finish(self, finish: Finish) -> Self {
+        Self { finish, ..self }
+    }
+
+    /// What is wrong with it whatever the scene, if anything: a planner or a setting there is none of, a budget that
+    /// is no number.
+    ///
+    /// # Errors
+    /// The first thing wrong.
+    pub fn check(&self) -> Result<(), Error> {
+        let planner = crate::planners::Named::new(&self.planner)?;
+        planner.check(&self.settings())?;
+        if let Some(time) = self.budget.time_s
+            && !(time > 0.0)
+        {
+            return Err(
+                Error::new(format!("the budget of time is {time} s")).help("give a number above zero")
+            );
+        }
+        if self.roadmap.is_some() && !planner.is_roadmap() {
+            let help = "take a planner that builds a roadmap, such as prm";
+            return Err(Error::new(format!("{planner} has no roadmap to keep")).help(help));
+        }
+        mp_cspace::Workers::checked(self.threads)?;
+        Ok(())
+    }
+
+    /// The parameters as planners read them.
+    pub(crate) fn settings(&self) -> Settings {
+        let mut settings = Settings::default();
+        self.settings.iter().for_each(|(name, value)| settings.set(name, value));
+        settings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_and_motions() {
+        assert_eq!("20%".parse::<Length>().unwrap(), Length::Fraction(0.2));
+        assert_eq!("0.5".parse::<Length>().unwrap(), Length::Absolute(0.5));
+        let one = MotionCheck::Discrete(Length::Fraction(0.01));
+        assert_eq!("discrete:1%".parse::<MotionCheck>().unwrap(), one);
+        assert_eq!(one.to_string(), "discrete:1%");
+        for bad in ["", "0", "-1", "nan", "inf", "101%", "0%", "%", "x"] {
+            assert!(bad.parse::<Length>().is_err(), "{bad}");
+            assert!(format!("discrete:{bad}").parse::<MotionCheck>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn requests_are_read_back_and_checked() {
+        let request =
+            Request::new("prm").metric(Metric::MaxDisplacement).motion("discrete:2%".parse().unwrap());
+        let text = serde_json::to_string(&request).unwrap();
+        assert_eq!(serde_json::from_str::<Request>(&text).unwrap(), request);
+        assert_eq!(serde_json::from_str::<Request>("{}").unwrap(), Request::default());
+        assert!(serde_json::from_str::<Request>(r#"{"planer": "prm"}"#).is_err());
+        assert!(request.check().is_ok());
+        for bad in [
+            Request::new("rrt-conect"),
+            Request::default().set("stepp", 1),
+            Request::default().time(f64::NAN),
+            Request::default().threads(0),
+            Request { roadmap: Some("x".into()), ..Request::default() },
+        ] {
+            assert!(bad.check().is_err(), "{bad:?}");
+        }
+    }
+}

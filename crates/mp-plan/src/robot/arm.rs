@@ -1,0 +1,280 @@
+//! Arms, and other trees of links, among meshes.
+
+use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, RobotKind, Touch, no_metric};
+use crate::{Error, Metric, brief};
+use mp_cspace::{ClearanceGradient, JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
+use mp_geom::TriMesh;
+use mp_io::{PlacedBody, RobotPart, RobotProblem};
+use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};
+use nalgebra::{DVector, Isometry3};
+
+/// Between two copies of the arm in a picture no point moves farther than this share of its reach.
+const PICTURE_SPACING: f64 = 0.12;
+
+/// The joint values of an arm.
+type Configuration = DVector<f64>;
+
+/// An arm among meshes, with a start and goals.
+#[derive(Clone, Debug)]
+pub struct ArmScene {
+    name: String,
+    arm: Arm,
+    obstacles: Vec<PlacedBody>,
+    space: Joints<Configuration>,
+    start: Configuration,
+    goals: Vec<Configuration>,
+    /// The file it came from, for the place of errors.
+    source: Option<Box<RobotProblem>>,
+}
+
+impl ArmScene {
+    /// The arm of `model` among obstacles. Configurations have one number for each joint that moves: radians, or metres
+    /// where it slides.
+    ///
+    /// # Errors
+    /// When the model makes no sense, an obstacle cannot be placed, there is no goal, or a configuration has another
+    /// number of joints than the arm.
+    pub fn new(
+        name: impl Into<String>,
+        model: &ArmModel,
+        obstacles: Vec<PlacedBody>,
+        start: &[f64],
+        goals: &[Vec<f64>],
+    ) -> Result<Self, Error> {
+        let bodies = obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
+        let arm = Arm::new(model, bodies)?;
+        let space: Joints<Configuration> = arm.space()?;
+        let state = |what: &str, values: &[f64]| -> Result<Configuration, Error> {
+            if values.len() == arm.dof() {
+                return Ok(space.wrapped(&DVector::from_column_slice(values)));
+            }
+            let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.as_str()).collect();
+            Err(Error::new(format!(
+                "{what} has {} numbers; the robot has {} joints",
+                values.len(),
+                arm.dof()
+            ))
+            .help(format!("in order: {}", names.join(", "))))
+        };
+        if goals.is_empty() {
+            return Err(Error::new("there is no goal"));
+        }
+        let start = state("the start", start)?;
+        let goals = goals.iter().map(|goal| state("the goal", goal)).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { name: name.into(), arm, obstacles, space, start, goals, source: None })
+    }
+
+    /// Makes the problem of a file ready.
+    ///
+    /// # Errors
+    /// When the URDF, the SRDF or the limits make no sense, or a configuration has another number of joints than the
+    /// robot: with the place in the file.
+    pub fn from_problem(problem: RobotProblem) -> Result<Self, Error> {
+        let what = format!("cannot make a robot of {}", problem.urdf_file.display());
+        let of = |e: Error| e.context(what.clone());
+        let mut model = ArmModel::from_urdf(&problem.urdf, |name| problem.mesh(name))
+            .map_err(|e| of(Error::new(e.to_string())))?;
+        model.base = problem.base();
+        if let Some(srdf) = &problem.srdf {
+            model = model.with_srdf(srdf).map_err(|e| {
+                problem.file.fault(RobotPart::Srdf, &e.to_string(), "name an SRDF of this robot, or none")
+            })?;
+        }
+        for (i, (joint, [low, high])) in problem.file.limits.iter().enumerate() {
+            model = model.with_limits(joint, *low, *high).map_err(|e| {
+                problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
+            })?;
+        }
+        // The number of joints first, as that is told with its place.
+        let moving = |kind: JointKind| !matches!(kind, JointKind::Fixed);
+        let names: Vec<_> = model
+            .joints
+            .iter()
+            .filter(|joint| moving(joint.kind) && joint.mimic.is_none())
+            .map(|joint| joint.name.as_str())
+            .collect();
+        let start = std::iter::once((RobotPart::Start, "the start", &problem.file.start));
+        let goals = problem.file.goals.iter().enumerate().map(|(i, q)| (RobotPart::Goal(i), "the goal", q));
+        for (part, what, values) in start.chain(goals) {
+            if values.len() != names.len() {
+                let message =
+                    format!("{what} has {} numbers; the robot has {} joints", values.len(), names.len());
+                let help = format!("in order: {}", names.join(", "));
+                return Err(problem.file.fault(part, &message, &help).into());
+            }
+        }
+        let (start, goals) = (problem.file.start.clone(), problem.file.goals.clone());
+        let scene = Self::new(problem.name.clone(), &model, problem.obstacles.clone(), &start, &goals);
+        Ok(Self { source: Some(Box::new(problem)), ..scene.map_err(of)? })
+    }
+
+    /// The arm among its obstacles.
+    #[must_use]
+    pub fn arm(&self) -> &Arm {
+        &self.arm
+    }
+
+    /// The obstacles.
+    #[must_use]
+    pub fn obstacle_bodies(&self) -> &[PlacedBody] {
+        &self.obstacles
+    }
+
+    /// The problem of the file it came from.
+    #[must_use]
+    pub fn problem(&self) -> Option<&RobotProblem> {
+        self.source.as_deref()
+    }
+
+    /// The links that have a shape, by index in the model.
+    fn solid_links(&self) -> impl Iterator<Item = (usize, TriMesh)> {
+        let links = self.arm.model().links.iter().enumerate();
+        links.filter_map(|(i, link)| Some((i, TriMesh::merged(link.shapes.iter())?)))
+    }
+}
+
+impl Checker<Configuration> for Arm {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
+impl RobotKind for ArmScene {
+    type State = Configuration;
+    type Space = Joints<Configuration>;
+    type Checker = Arm;
+    type Verifier<'c> = ArmVerifier<'c, Joints<Configuration>>;
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+    fn space_name(&self) -> String {
+        format!("{} joints", self.arm.dof())
+    }
+    fn space(&self) -> &Joints<Configuration> {
+        &self.space
+    }
+    fn start(&self) -> &Configuration {
+        &self.start
+    }
+    fn goals(&self) -> &[Configuration] {
+        &self.goals
+    }
+
+    fn checker(&self) -> &Arm {
+        &self.arm
+    }
+    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
+        Ok(ArmVerifier::new(&self.space, &self.arm)?)
+    }
+    fn tolerance(&self) -> f64 {
+        self.arm.tolerance()
+    }
+    fn obstacles<'c>(
+        &'c self,
+        counted: &dyn Fn() -> Counted<'c, Arm>,
+    ) -> ObstacleKnowledge<'c, Configuration> {
+        let mut field = counted();
+        let gradient = move |q: &Configuration, reach: f64, gradient: &mut [f64]| {
+            field.clearance_gradient(q, reach, gradient)
+        };
+        ObstacleKnowledge {
+            hints: Some(Box::new(counted())),
+            gradient: Some(Box::new(gradient)),
+            ..ObstacleKnowledge::default()
+        }
+    }
+    fn measured(&self, metric: Metric) -> Result<Measured<'_, Configuration>, Error> {
+        match metric {
+            // The metric of the space is the Euclidean one.
+            Metric::Default | Metric::Euclidean => Ok(Measured::new(&self.space)),
+            Metric::Manhattan => Ok(Measured::new(&WithMetric::new(self.space.clone(), Manhattan))),
+            _ => Err(no_metric(metric, "an arm", &[Metric::Default, Metric::Euclidean, Metric::Manhattan])),
+        }
+    }
+
+    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+        let contacts = self.arm.clone().explain(q.as_slice());
+        let touch = |c: mp_robot::ArmContact| Touch {
+            part: Some(c.link),
+            other: c.other,
+            with_itself: c.with_itself,
+            depth: Some(c.depth),
+        };
+        contacts.into_iter().map(touch).collect()
+    }
+    fn nearest_free(&self, q: &Configuration) -> Option<Configuration> {
+        self.arm.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
+    }
+    fn out_of_bounds(&self, q: &Configuration) -> String {
+        for (coordinate, x) in self.arm.coordinates().iter().zip(q.iter()) {
+            if let JointRange::Interval { low, high } = coordinate.range
+                && !(low..=high).contains(x)
+            {
+                let limits = format!("{} may be from {} to {}", coordinate.name, brief(low), brief(high));
+                return format!("out of the limits: {x}, but {limits}");
+            }
+        }
+        format!("out of the limits: {}", self.written(q))
+    }
+    fn fault(&self, end: End, message: String, help: String) -> Error {
+        let error = match &self.source {
+            Some(problem) => {
+                let part = match end {
+                    End::Start => RobotPart::Start,
+                    End::Goal(i) => RobotPart::Goal(i),
+                };
+                problem.file.fault(part, &message, &help).into()
+            }
+            None => Error::new(message).help(help),
+        };
+        error.context(format!("cannot plan in {}", self.name))
+    }
+    fn lint(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        if self.solid_links().next().is_none() {
+            found.push("no link has a collision shape: nothing can be hit".to_owned());
+        }
+        found
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let slides = |name: &str| {
+            let joint = self.arm.model().joints.iter().find(|joint| joint.name == name);
+            joint.is_some_and(|joint| matches!(joint.kind, JointKind::Prismatic { .. }))
+        };
+        let names = self.arm.coordinates().iter().map(|c| c.name.as_str());
+        names.map(|name| Column::new(name, if slides(name) { "m" } else { "rad" })).collect()
+    }
+    fn row(&self, q: &Configuration) -> Vec<f64> {
+        q.as_slice().to_vec()
+    }
+    fn state(&self, row: &[f64]) -> Configuration {
+        self.space.wrapped(&DVector::from_column_slice(row))
+    }
+
+    fn bodies(&self) -> Vec<Body> {
+        let name = |i: usize| self.arm.model().links[i].name.clone();
+        let links = self.solid_links();
+        let links = links.map(|(i, mesh)| Body { name: name(i), shape: BodyShape::Mesh(mesh), pose: None });
+        let still = self.obstacles.iter().map(|o| Body {
+            name: o.name.clone(),
+            shape: BodyShape::Mesh(o.mesh.clone()),
+            pose: Some(o.pose),
+        });
+        links.chain(still).collect()
+    }
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
+        let all = self.arm.kinematics().link_poses(q.as_slice()).unwrap_or_default();
+        self.solid_links().filter_map(|(i, _)| all.get(i).copied()).collect()
+    }
+    fn traced(&self, q: &Configuration) -> nalgebra::Point3<f64> {
+        // Of links the last is the farthest down the tree, in most files.
+        let all = self.arm.kinematics().link_poses(q.as_slice()).unwrap_or_default();
+        all.last().map_or(nalgebra::Point3::origin(), |pose| pose.translation.vector.into())
+    }
+    fn picture_spacing(&self) -> f64 {
+        PICTURE_SPACING * self.arm.reach()
+    }
+}

@@ -1,0 +1,371 @@
+//! Robots of the plane among polygons: a disc, or a polygon that turns.
+
+use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, RobotKind, Touch, no_metric};
+use crate::{Error, Metric};
+use mp_cspace::{
+    ClearanceGradient, DefaultNn, Factored, MotionValidity, Numbers, ObstacleHints, ObstacleKnowledge, Rn,
+    Se2, Se2State, Space,
+};
+use mp_geom::flat::FlatWorld;
+use mp_io::{FlatBody, FlatPart, FlatProblem};
+use mp_roadmap::RoadmapState;
+use mp_robot::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
+use mp_tree::TreeState;
+use nalgebra::{Isometry2, Isometry3, Point2, Point3, Translation3, UnitQuaternion, Vector2, Vector3};
+use std::f64::consts::TAU;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+/// Shortcuts keep this share of the robot's radius away from obstacles.
+const ROOM: f64 = 0.002;
+/// Between two copies of the robot in a picture its origin moves about this many radii.
+const PICTURE_SPACING: f64 = 1.5;
+/// Corners of the ring that a disc is drawn as.
+const CORNERS: u32 = 48;
+
+/// A robot of the plane: [`DiscRobot`] or [`PolygonRobot`].
+pub trait PlanarBody:
+    Checker<Self::State> + ObstacleHints<Self::State> + ClearanceGradient<Self::State> + Debug + 'static
+{
+    /// A configuration.
+    type State: TreeState + RoadmapState + Numbers + 'static;
+    /// The space of configurations.
+    type Space: Factored<State = Self::State> + DefaultNn<Nn: 'static> + Clone + Send + Debug + 'static;
+    /// The independent checker.
+    type Verifier<'c>: MotionValidity<Self::State> + Clone + Send + Sync
+    where
+        Self: 'c;
+    /// What reports call the space.
+    const SPACE: &'static str;
+    /// What the numbers of a configuration are.
+    const COLUMNS: &'static [(&'static str, &'static str)];
+
+    /// The robot of a file in a world.
+    ///
+    /// # Errors
+    /// When it is the other kind of robot, or has no size.
+    fn among(world: Arc<FlatWorld>, body: &FlatBody) -> Result<Self, Error>;
+    /// The space between two corners, metres.
+    ///
+    /// # Errors
+    /// When there is nothing between them.
+    fn space(bounds: [[f64; 2]; 2]) -> Result<Self::Space, Error>;
+    /// A verifier.
+    fn verifier<'c>(&self, space: &'c Self::Space) -> Self::Verifier<'c>;
+    /// The world around it.
+    fn world(&self) -> &Arc<FlatWorld>;
+    /// The clearance that certified checks resolve, metres.
+    fn tolerance(&self) -> f64;
+    /// The largest distance of a point of the robot from its origin, metres.
+    fn radius(&self) -> f64;
+    /// The configuration of a row.
+    fn state(row: &[f64]) -> Self::State;
+    /// The row of a configuration.
+    fn row(q: &Self::State) -> Vec<f64>;
+    /// The rings around it, in its own frame, metres.
+    fn rings(&self) -> Vec<Vec<Point2<f64>>>;
+    /// Where it is.
+    fn pose(q: &Self::State) -> Isometry2<f64>;
+    /// The same turn elsewhere.
+    fn moved(q: &Self::State, by: Vector2<f64>) -> Self::State;
+}
+
+impl Checker<Vector2<f64>> for DiscRobot {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
+impl Checker<Se2State> for PolygonRobot {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
+impl PlanarBody for DiscRobot {
+    type State = Vector2<f64>;
+    type Space = Rn<2>;
+    type Verifier<'c> = DiscVerifier;
+    const SPACE: &'static str = "R2";
+    const COLUMNS: &'static [(&'static str, &'static str)] = &[("x", "m"), ("y", "m")];
+
+    fn among(world: Arc<FlatWorld>, body: &FlatBody) -> Result<Self, Error> {
+        match body {
+            FlatBody::Disc(radius) => Ok(Self::new(world, *radius)?),
+            FlatBody::Polygon(_) => Err(Error::new("the robot is a polygon, not a disc")),
+        }
+    }
+    fn space([low, high]: [[f64; 2]; 2]) -> Result<Rn<2>, Error> {
+        Ok(Rn::new(low, high)?)
+    }
+    fn verifier(&self, _: &Rn<2>) -> DiscVerifier {
+        DiscVerifier::new(self)
+    }
+    fn world(&self) -> &Arc<FlatWorld> {
+        self.world()
+    }
+    fn tolerance(&self) -> f64 {
+        self.tolerance()
+    }
+    fn radius(&self) -> f64 {
+        self.radius()
+    }
+    fn state(row: &[f64]) -> Vector2<f64> {
+        Vector2::new(row[0], row[1])
+    }
+    fn row(q: &Vector2<f64>) -> Vec<f64> {
+        vec![q.x, q.y]
+    }
+    fn rings(&self) -> Vec<Vec<Point2<f64>>> {
+        let corner = |i: u32| {
+            let (s, c) = (f64::from(i) * TAU / f64::from(CORNERS)).sin_cos();
+            Point2::new(c, s) * self.radius()
+        };
+        vec![(0..CORNERS).map(corner).collect()]
+    }
+    fn pose(q: &Vector2<f64>) -> Isometry2<f64> {
+        Isometry2::new(*q, 0.0)
+    }
+    fn moved(q: &Vector2<f64>, by: Vector2<f64>) -> Vector2<f64> {
+        q + by
+    }
+}
+
+impl PlanarBody for PolygonRobot {
+    type State = Se2State;
+    type Space = Se2;
+    type Verifier<'c> = PolygonVerifier<'c, Se2>;
+    const SPACE: &'static str = "SE2";
+    const COLUMNS: &'static [(&'static str, &'static str)] = &[("x", "m"), ("y", "m"), ("yaw", "rad")];
+
+    fn among(world: Arc<FlatWorld>, body: &FlatBody) -> Result<Self, Error> {
+        match body {
+            FlatBody::Polygon(polygon) => Ok(Self::new(world, polygon.clone())),
+            FlatBody::Disc(_) => Err(Error::new("the robot is a disc, not a polygon")),
+        }
+    }
+    fn space([low, high]: [[f64; 2]; 2]) -> Result<Se2, Error> {
+        Ok(Se2::new(low, high)?)
+    }
+    fn verifier<'c>(&self, space: &'c Se2) -> PolygonVerifier<'c, Se2> {
+        PolygonVerifier::new(space, self)
+    }
+    fn world(&self) -> &Arc<FlatWorld> {
+        self.world()
+    }
+    fn tolerance(&self) -> f64 {
+        self.tolerance()
+    }
+    fn radius(&self) -> f64 {
+        self.radius()
+    }
+    fn state(row: &[f64]) -> Se2State {
+        Se2State::new(row[0], row[1], row[2])
+    }
+    fn row(q: &Se2State) -> Vec<f64> {
+        vec![q.translation.x, q.translation.y, q.angle]
+    }
+    fn rings(&self) -> Vec<Vec<Point2<f64>>> {
+        self.body().rings().to_vec()
+    }
+    fn pose(q: &Se2State) -> Isometry2<f64> {
+        Isometry2::new(q.translation, q.angle)
+    }
+    fn moved(q: &Se2State, by: Vector2<f64>) -> Se2State {
+        Se2State { translation: q.translation + by, ..*q }
+    }
+}
+
+/// A robot of the plane among polygons, with a start and goals.
+#[derive(Clone, Debug)]
+pub struct PlanarScene<B: PlanarBody> {
+    problem: FlatProblem,
+    robot: B,
+    space: B::Space,
+    start: B::State,
+    goals: Vec<B::State>,
+}
+
+impl<B: PlanarBody> PlanarScene<B> {
+    /// Makes `problem` ready.
+    ///
+    /// # Errors
+    /// When the robot is of the other kind, or world, robot or bounds make no sense.
+    pub fn new(problem: FlatProblem) -> Result<Self, Error> {
+        let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
+        let world = FlatWorld::new(polygons, problem.file.walls).map_err(|e| Error::new(e.to_string()))?;
+        let robot = B::among(Arc::new(world), &problem.file.robot)?;
+        let space = B::space(problem.bounds)?;
+        let start = B::state(&problem.file.start);
+        let goals = problem.file.goals.iter().map(|row| B::state(row)).collect();
+        Ok(Self { problem, robot, space, start, goals })
+    }
+
+    /// What it was made of.
+    #[must_use]
+    pub fn problem(&self) -> &FlatProblem {
+        &self.problem
+    }
+
+    /// The robot in its world.
+    #[must_use]
+    pub fn robot(&self) -> &B {
+        &self.robot
+    }
+
+    /// The rings around the robot at `q`, in the world, metres.
+    fn rings_at(&self, q: &B::State) -> Vec<Vec<Point2<f64>>> {
+        let pose = B::pose(q);
+        self.robot.rings().into_iter().map(|ring| ring.iter().map(|p| pose * p).collect()).collect()
+    }
+}
+
+impl<B: PlanarBody> RobotKind for PlanarScene<B> {
+    type State = B::State;
+    type Space = B::Space;
+    type Checker = B;
+    type Verifier<'c> = B::Verifier<'c>;
+
+    fn name(&self) -> &str {
+        &self.problem.name
+    }
+    fn space_name(&self) -> String {
+        B::SPACE.to_owned()
+    }
+    fn space(&self) -> &B::Space {
+        &self.space
+    }
+    fn start(&self) -> &B::State {
+        &self.start
+    }
+    fn goals(&self) -> &[B::State] {
+        &self.goals
+    }
+
+    fn checker(&self) -> &B {
+        &self.robot
+    }
+    fn verifier(&self) -> Result<B::Verifier<'_>, Error> {
+        Ok(self.robot.verifier(&self.space))
+    }
+    fn tolerance(&self) -> f64 {
+        self.robot.tolerance()
+    }
+    fn accuracy(&self) -> f64 {
+        self.tolerance().max(1e-4 * self.robot.radius())
+    }
+    fn shortcut_clearance(&self) -> f64 {
+        (ROOM * self.robot.radius()).max(self.tolerance())
+    }
+    fn obstacles<'c>(&'c self, counted: &dyn Fn() -> Counted<'c, B>) -> ObstacleKnowledge<'c, B::State> {
+        let mut field = counted();
+        let gradient = move |q: &B::State, reach: f64, gradient: &mut [f64]| {
+            field.clearance_gradient(q, reach, gradient)
+        };
+        ObstacleKnowledge {
+            hints: Some(Box::new(counted())),
+            gradient: Some(Box::new(gradient)),
+            ..ObstacleKnowledge::default()
+        }
+    }
+    fn measured(&self, metric: Metric) -> Result<Measured<'_, B::State>, Error> {
+        match metric {
+            Metric::Default => Ok(Measured::new(&self.space)),
+            _ => Err(no_metric(metric, "a robot of the plane", &[Metric::Default])),
+        }
+    }
+
+    fn touching(&self, q: &B::State) -> Vec<Touch> {
+        let rings = self.rings_at(q);
+        let mut touches: Vec<Touch> = Vec::new();
+        let mut note = |obstacle: Option<usize>| {
+            let other = match obstacle {
+                Some(i) => self.problem.obstacles.get(i).map_or("?", |o| o.name.as_str()),
+                None => "the walls",
+            };
+            if !touches.iter().any(|touch| touch.other == other) {
+                touches.push(Touch { part: None, other: other.to_owned(), with_itself: false, depth: None });
+            }
+        };
+        if self.robot.clone().clearance(q, f64::MIN_POSITIVE) > 0.0 {
+            return Vec::new();
+        }
+        for ring in &rings {
+            for (a, b) in ring.iter().zip(ring.iter().skip(1).chain(ring.first())) {
+                if let Some(near) = self.robot.world().nearest_to_segment(a, b, self.tolerance()) {
+                    note(near.obstacle);
+                }
+            }
+        }
+        let inside = |p: &Point2<f64>| self.problem.obstacles.iter().position(|o| o.polygon.contains(p));
+        for obstacle in rings.iter().flatten().filter_map(inside) {
+            note(Some(obstacle));
+        }
+        touches
+    }
+    /// A free place with the same turn: the nearest on circles about it.
+    fn nearest_free(&self, q: &B::State) -> Option<B::State> {
+        let mut robot = self.robot.clone();
+        let mut reach = 0.01 * self.robot.radius().max(1e-3 * self.space.extent());
+        while reach < self.space.extent() {
+            let around = (0..64).map(|i| {
+                let (s, c) = (TAU * f64::from(i) / 64.0).sin_cos();
+                B::moved(q, Vector2::new(c, s) * reach)
+            });
+            let mut free = around.filter(|p| {
+                self.space.contains(p) && robot.clearance(p, f64::INFINITY) > 2.0 * self.tolerance()
+            });
+            if let Some(found) = free.next() {
+                return Some(found);
+            }
+            reach *= 1.2;
+        }
+        None
+    }
+    fn fault(&self, end: End, message: String, help: String) -> Error {
+        let part = match end {
+            End::Start => FlatPart::Start,
+            End::Goal(i) => FlatPart::Goal(i),
+        };
+        Error::from(self.problem.file.fault(part, &message, &help))
+            .context(format!("cannot plan in {}", self.problem.name))
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        B::COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit)).collect()
+    }
+    fn row(&self, q: &B::State) -> Vec<f64> {
+        B::row(q)
+    }
+    fn state(&self, row: &[f64]) -> B::State {
+        B::state(row)
+    }
+
+    fn bodies(&self) -> Vec<Body> {
+        let robot = Body { name: "robot".to_owned(), shape: BodyShape::Area(self.robot.rings()), pose: None };
+        let still = self.problem.obstacles.iter().map(|o| Body {
+            name: o.name.clone(),
+            shape: BodyShape::Area(o.polygon.rings().to_vec()),
+            pose: Some(Isometry3::identity()),
+        });
+        std::iter::once(robot).chain(still).collect()
+    }
+    fn poses(&self, q: &B::State) -> Vec<Isometry3<f64>> {
+        let pose = B::pose(q);
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), pose.rotation.angle());
+        let place = pose.translation.vector;
+        vec![Isometry3::from_parts(Translation3::new(place.x, place.y, 0.0), turn)]
+    }
+    fn picture_spacing(&self) -> f64 {
+        PICTURE_SPACING * self.robot.radius().max(1e-3 * self.space.extent())
+    }
+    fn picture_bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
+        let corner = |[x, y]: [f64; 2]| Point3::new(x, y, 0.0);
+        Some((corner(self.problem.bounds[0]), corner(self.problem.bounds[1])))
+    }
+    fn is_planar(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,355 @@
+//! Rigid bodies among meshes, in space or in the plane.
+
+use super::{
+    Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, RobotKind, Touch, tuples,
+};
+use crate::numbers::plain;
+use crate::{Error, Metric};
+use mp_collide::Query;
+use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace};
+use mp_cspace::{
+    ClearanceGradient, DefaultNn, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn,
+    MetricTree, NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume,
+    TrueMetricOn, WithMetric,
+};
+use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
+use mp_io::{Problem, SpaceKind};
+use mp_roadmap::RoadmapState;
+use mp_robot::{Placement, Planar, RigidBody, Spatial, Verifier};
+use mp_tree::TreeState;
+use nalgebra::{Isometry3, Point2, Point3};
+use std::fmt::Debug;
+
+/// A path begins at the start and ends at the goal if no point of the robot is farther off than this, in radii of the
+/// robot.
+const MATCH: f64 = 1e-3;
+/// A number of a planar path that must be zero may be this far from it.
+const PLANAR: f64 = 1e-9;
+/// Between two copies of the robot in a picture its points move about this many radii.
+const PICTURE_SPACING: f64 = 0.55;
+
+/// How a rigid body moves: [`Spatial`], in SE(3), or [`Planar`], in SE(2).
+pub trait RigidMotion: Placement<State: TreeState + RoadmapState + Numbers + PartialEq + 'static> {
+    /// The space of its configurations.
+    type Space: EmbedFactors + DefaultNn<State = Self::State, Nn: 'static> + Clone + Debug + Send + 'static;
+    /// The metric of the farthest moving point.
+    type Displacement: TrueMetricOn<Self::Space> + NnOn<Self::Space> + Clone + Send + 'static;
+    /// The metric of the swept volume.
+    type Swept: MetricOn<Self::Space> + Clone + Send + 'static;
+
+    /// The space of configurations with the origin within `bounds`.
+    ///
+    /// # Errors
+    /// When the bounds are empty.
+    fn space(bounds: &Aabb) -> Result<Self::Space, Error>;
+    /// The Euclidean metric with radians times `radius`.
+    ///
+    /// # Errors
+    /// When the radius is zero.
+    fn scaled(space: &Self::Space, radius: f64) -> Result<ScaledEuclidean, Error>;
+    /// How far the point of the robot moves that moves farthest.
+    ///
+    /// # Errors
+    /// When the robot has no points.
+    fn displacement(robot: &TriMesh) -> Result<Self::Displacement, Error>;
+    /// About how much volume the robot sweeps.
+    ///
+    /// # Errors
+    /// When the robot has no triangles.
+    fn swept(robot: &TriMesh) -> Result<Self::Swept, Error>;
+}
+
+impl RigidMotion for Spatial {
+    type Space = Se3;
+    type Displacement = MaxDisplacement<Point3<f64>>;
+    type Swept = SweptVolume;
+
+    fn space(bounds: &Aabb) -> Result<Se3, Error> {
+        Ok(Se3::new(bounds.min.coords, bounds.max.coords)?)
+    }
+    fn scaled(space: &Se3, radius: f64) -> Result<ScaledEuclidean, Error> {
+        Ok(ScaledEuclidean::new(space, [1.0, 1.0, 1.0, radius])?)
+    }
+    fn displacement(robot: &TriMesh) -> Result<Self::Displacement, Error> {
+        Ok(MaxDisplacement::new(robot.vertices().to_vec())?)
+    }
+    fn swept(robot: &TriMesh) -> Result<SweptVolume, Error> {
+        swept(robot)
+    }
+}
+
+impl RigidMotion for Planar {
+    type Space = Se2;
+    type Displacement = MaxDisplacement<Point2<f64>>;
+    type Swept = SweptVolume;
+
+    fn space(bounds: &Aabb) -> Result<Se2, Error> {
+        Ok(Se2::new(bounds.min.coords.xy(), bounds.max.coords.xy())?)
+    }
+    fn scaled(space: &Se2, radius: f64) -> Result<ScaledEuclidean, Error> {
+        Ok(ScaledEuclidean::new(space, [1.0, 1.0, radius])?)
+    }
+    fn displacement(robot: &TriMesh) -> Result<Self::Displacement, Error> {
+        let points: Vec<_> = robot.vertices().iter().map(Point3::xy).collect();
+        Ok(MaxDisplacement::planar(points)?)
+    }
+    fn swept(robot: &TriMesh) -> Result<SweptVolume, Error> {
+        swept(robot)
+    }
+}
+
+fn swept(robot: &TriMesh) -> Result<SweptVolume, Error> {
+    Ok(SweptVolume::new((0..robot.triangles().len()).map(|i| robot.triangle(i)))?)
+}
+
+/// A rigid body among meshes, with a start and a goal.
+#[derive(Clone, Debug)]
+pub struct RigidScene<M: RigidMotion> {
+    problem: Problem,
+    space: M::Space,
+    robot: RigidBody<M>,
+    start: M::State,
+    goals: [M::State; 1],
+    radius: f64,
+}
+
+impl<M: RigidMotion> RigidScene<M> {
+    /// Makes `problem` ready.
+    ///
+    /// # Errors
+    /// When the bounds of the position are empty, or a mesh or pose makes no sense.
+    pub fn new(problem: Problem) -> Result<Self, Error> {
+        let space = M::space(&problem.position_bounds())?;
+        let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
+        let robot = RigidBody::<M>::among(&problem.robot.mesh, obstacles)?;
+        let (start, goal) = (M::configuration(&problem.start), M::configuration(&problem.goal));
+        let radius = if robot.radius() > 0.0 { robot.radius() } else { 1e-3 * space.extent() };
+        Ok(Self { problem, space, robot, start, goals: [goal], radius })
+    }
+
+    /// What it was made of.
+    #[must_use]
+    pub fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    /// The robot among its obstacles.
+    #[must_use]
+    pub fn robot(&self) -> &RigidBody<M> {
+        &self.robot
+    }
+
+    /// Distance of the robot's farthest point from its origin, metres; above zero.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl<P: Placement> Checker<P::State> for RigidBody<P> {
+    fn queries(&self) -> u64 {
+        let counters = self.counters();
+        counters.collision_checks + counters.clearance_checks
+    }
+}
+
+impl<M: RigidMotion> RobotKind for RigidScene<M> {
+    type State = M::State;
+    type Space = M::Space;
+    type Checker = RigidBody<M>;
+    type Verifier<'c> = Verifier<'c, M::Space, M>;
+
+    fn name(&self) -> &str {
+        &self.problem.name
+    }
+    fn space_name(&self) -> String {
+        self.problem.space.to_string()
+    }
+    fn space(&self) -> &M::Space {
+        &self.space
+    }
+    fn start(&self) -> &M::State {
+        &self.start
+    }
+    fn goals(&self) -> &[M::State] {
+        &self.goals
+    }
+
+    fn checker(&self) -> &RigidBody<M> {
+        &self.robot
+    }
+    fn verifier(&self) -> Result<Self::Verifier<'_>, Error> {
+        Ok(Verifier::new(&self.space, &self.robot)?)
+    }
+    fn tolerance(&self) -> f64 {
+        self.robot.tolerance()
+    }
+    fn obstacles<'c>(
+        &'c self,
+        counted: &dyn Fn() -> Counted<'c, RigidBody<M>>,
+    ) -> ObstacleKnowledge<'c, M::State> {
+        let mut field = counted();
+        let gradient = move |q: &M::State, reach: f64, gradient: &mut [f64]| {
+            field.clearance_gradient(q, reach, gradient)
+        };
+        ObstacleKnowledge {
+            hints: Some(Box::new(counted())),
+            gradient: Some(Box::new(gradient)),
+            geometry: Some(AnyGeometry::new(counted())),
+        }
+    }
+    fn measured(&self, metric: Metric) -> Result<Measured<'_, M::State>, Error> {
+        let space = self.space.clone();
+        let robot = &self.problem.robot.mesh;
+        Ok(match metric {
+            Metric::Default => Measured::new(&space),
+            Metric::Euclidean => Measured::new(&WithMetric::new(space, Euclidean)),
+            Metric::Manhattan => Measured::new(&WithMetric::new(space, Manhattan)),
+            Metric::Scaled => {
+                let metric = M::scaled(&space, self.radius)?;
+                Measured::new(&WithMetric::new(space, metric))
+            }
+            Metric::MaxDisplacement => {
+                let space = WithMetric::new(space, M::displacement(robot)?);
+                Measured { index: AnyIndex::new(&space, MetricTree::default()), space: AnySpace::new(&space) }
+            }
+            // No true metric: every state is looked at.
+            Metric::SweptVolume => {
+                let space = WithMetric::new(space, M::swept(robot)?);
+                Measured { index: AnyIndex::new(&space, Linear::default()), space: AnySpace::new(&space) }
+            }
+        })
+    }
+
+    fn touching(&self, q: &M::State) -> Vec<Touch> {
+        let contacts = self.robot.clone().explain(q);
+        let touch = |c: mp_collide::Contact| Touch {
+            part: None,
+            other: c.name,
+            with_itself: false,
+            depth: Some(c.depth),
+        };
+        contacts.into_iter().map(touch).collect()
+    }
+    fn nearest_free(&self, q: &M::State) -> Option<M::State> {
+        self.robot.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
+    }
+    fn lint(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        for (end, q) in [("start", &self.start), ("goal", &self.goals[0])] {
+            let around = self.robot.enclosing(q);
+            if !around.is_empty() && self.touching(q).is_empty() {
+                found.push(format!("the {end} is inside of {}", around.join(", ")));
+            }
+        }
+        let scene = self.robot.scene();
+        let name = |id| scene.body(id).map_or("?", |body| body.name());
+        let pairs = scene.colliding_pairs(&mut Query::default());
+        let named: Vec<String> =
+            pairs.iter().take(5).map(|(a, b)| format!("{} and {}", name(*a), name(*b))).collect();
+        if !named.is_empty() {
+            let more = match pairs.len() {
+                n if n > 5 => format!(" and {} more pairs", n - 5),
+                _ => String::new(),
+            };
+            found.push(format!("obstacles touch each other: {}{more}", named.join(", ")));
+        }
+        found
+    }
+    fn odd_ends(&self) -> Option<String> {
+        let inside = [&self.start, &self.goals[0]].map(|q| self.robot.enclosing(q));
+        if inside[0] == inside[1] {
+            return None;
+        }
+        let [start, goal] = inside.map(|names| match names.is_empty() {
+            true => "outside of all solids".to_owned(),
+            false => format!("inside of {}", names.join(", ")),
+        });
+        Some(format!("the start is {start}, the goal {goal}: there may be no way"))
+    }
+    fn fault(&self, _: End, message: String, help: String) -> Error {
+        Error::new(message).help(help).context(format!("cannot plan in {}", self.problem.name))
+    }
+
+    fn columns(&self) -> Vec<Column> {
+        let column = |(name, unit)| Column::new(name, unit);
+        [("x", "m"), ("y", "m"), ("z", "m"), ("alpha", "rad"), ("beta", "rad"), ("gamma", "rad")]
+            .map(column)
+            .to_vec()
+    }
+    fn path_format(&self) -> PathFormat {
+        PathFormat::Poses
+    }
+    fn row(&self, q: &M::State) -> Vec<f64> {
+        six_from_pose(&M::pose(q)).map(|v| v + 0.0).to_vec()
+    }
+    fn state(&self, row: &[f64]) -> M::State {
+        M::configuration(&pose_from_six(std::array::from_fn(|i| row[i])))
+    }
+    fn rows(&self, path: &Path<M::State>) -> Vec<Vec<f64>> {
+        let states = &path.states;
+        if states.is_empty() {
+            return Vec::new();
+        }
+        let at = |i: usize, t: f64| match states.get(i + 1) {
+            Some(next) => M::pose(&self.space.interpolate(&states[i], next, t)),
+            None => M::pose(&states[i]),
+        };
+        tuples::along(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
+    }
+    fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
+        if self.problem.space != SpaceKind::Se2 {
+            return None;
+        }
+        let off = |row: &Vec<f64>| [row[2], row[4], row[5]].iter().any(|v| v.abs() > PLANAR);
+        let i = rows.iter().position(off)?;
+        Some(format!("configuration {} leaves the plane: z, β and γ must be 0", i + 1))
+    }
+    fn mismatch(&self, q: &M::State, wanted: &M::State) -> Mismatch {
+        let off = tuples::travel(&M::pose(q), &M::pose(wanted), self.radius);
+        Mismatch { off, allowed: MATCH * self.radius, unit: " m" }
+    }
+    fn written(&self, q: &M::State) -> String {
+        self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(" ")
+    }
+
+    fn bodies(&self) -> Vec<Body> {
+        let robot = &self.problem.robot;
+        let shape = |mesh: &TriMesh| BodyShape::Mesh(mesh.clone());
+        let moving = Body { name: robot.name.clone(), shape: shape(&robot.mesh), pose: None };
+        let still = self.problem.obstacles.iter().map(|o| Body {
+            name: o.name.clone(),
+            shape: shape(&o.mesh),
+            pose: Some(o.pose),
+        });
+        std::iter::once(moving).chain(still).collect()
+    }
+    fn poses(&self, q: &M::State) -> Vec<Isometry3<f64>> {
+        vec![M::pose(q)]
+    }
+    fn picture_spacing(&self) -> f64 {
+        PICTURE_SPACING * self.radius
+    }
+    fn picture_bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
+        self.problem.bounds.map(|b| (b.min, b.max))
+    }
+    fn is_planar(&self) -> bool {
+        self.problem.space == SpaceKind::Se2
+    }
+    fn fingerprint(&self, metric: Metric) -> Option<u64> {
+        let problem = &self.problem;
+        let bounds = problem.position_bounds();
+        let mut numbers: Vec<f64> = [bounds.min, bounds.max].iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        numbers.push(f64::from(u8::from(problem.space == SpaceKind::Se2)));
+        numbers.extend(metric.name().bytes().map(f64::from));
+        let mut mesh = |mesh: &TriMesh, pose: &Isometry3<f64>| {
+            numbers.push(mesh.vertices().len() as f64);
+            numbers.extend(mesh.vertices().iter().flat_map(|p| [p.x, p.y, p.z]));
+            numbers.extend(mesh.triangles().iter().flatten().map(|&i| f64::from(i)));
+            numbers.extend(pose.to_homogeneous().iter());
+        };
+        mesh(&problem.robot.mesh, &Isometry3::identity());
+        problem.obstacles.iter().for_each(|o| mesh(&o.mesh, &o.pose));
+        Some(mp_roadmap::fingerprint(numbers))
+    }
+}

@@ -1,0 +1,425 @@
+//! A scene of any kind, and everything one does with it.
+
+use crate::check::{check, check_ends, explain, lint, states};
+use crate::finish::finish;
+use crate::robot::{ArmScene, PlanarScene, RigidScene};
+use crate::search::search;
+use crate::{
+    Body, Column, Control, Error, Explanation, PathFormat, PathRows, REPORT_VERSION, Report, Request,
+    RobotKind, Verdict,
+};
+use mp_cspace::{MotionBound, Outcome, Space};
+use mp_io::{FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
+use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
+use nalgebra::{Isometry3, Point3};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A scene made ready to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share it.
+///
+/// ```no_run
+/// use mp_plan::{Request, Scene};
+/// let scene = Scene::load("office.env")?;
+/// let report = scene.plan(&Request::new("rrt-connect").seed(7))?;
+/// if let Some(path) = &report.path {
+///     println!("{} configurations, clearance {:?} m", path.len(), report.clearance);
+/// }
+/// # Ok::<(), mp_plan::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Scene {
+    robot: Arc<dyn AnyRobot>,
+    file: Option<PathBuf>,
+}
+
+impl fmt::Debug for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Scene").field("name", &self.name()).field("file", &self.file).finish_non_exhaustive()
+    }
+}
+
+/// What a path came to as pictures need it: poses of the moving bodies along it.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// Poses of the robot's bodies at the start of the path, or of the scene.
+    pub start: Vec<Isometry3<f64>>,
+    /// The same at its end, or at the first goal.
+    pub goal: Vec<Isometry3<f64>>,
+    /// Poses between, spread evenly by how far the robot moves.
+    pub between: Vec<Vec<Isometry3<f64>>>,
+    /// The way of one point of the robot.
+    pub trace: Vec<Point3<f64>>,
+}
+
+impl Scene {
+    /// A scene of a robot of your own kind, or of one of this crate's: [`RigidScene`], [`ArmScene`], [`PlanarScene`].
+    pub fn new(robot: impl RobotKind + 'static) -> Self {
+        Self { robot: Arc::new(robot), file: None }
+    }
+
+    /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem or a world
+    /// in the plane (`.toml`).
+    ///
+    /// # Errors
+    /// When a file cannot be read or makes no sense: with file, line, column and remedy.
+    pub fn load(file: impl AsRef<Path>) -> Result<Self, Error> {
+        let file = file.as_ref();
+        let _span = tracing::info_span!("load", file = %file.display()).entered();
+        let of = |e: Error| match e.file() {
+            Some(_) => e,
+            None => e.context(format!("cannot plan in {}", file.display())),
+        };
+        let scene = match RobotProblem::is_named(file) {
+            true if FlatProblem::is_one(file) => Self::from_world(FlatProblem::load(file)?).map_err(of)?,
+            true => Self::new(ArmScene::from_problem(RobotProblem::load(file)?)?),
+            false => Self::from_problem(Problem::load(file)?).map_err(of)?,
+        };
+        tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
+        Ok(Self { file: Some(file.to_owned()), ..scene })
+    }
+
+    /// A rigid body among meshes.
+    ///
+    /// # Errors
+    /// When the bounds of the position are empty, or a mesh or pose makes no sense.
+    pub fn from_problem(problem: Problem) -> Result<Self, Error> {
+        let _span = tracing::info_span!("build", scene = %problem.name).entered();
+        Ok(match problem.space {
+            SpaceKind::Se3 => Self::new(RigidScene::<Spatial>::new(problem)?),
+            SpaceKind::Se2 => Self::new(RigidScene::<Planar>::new(problem)?),
+        })
+    }
+
+    /// A robot of the plane among polygons.
+    ///
+    /// # Errors
+    /// When world, robot or bounds make no sense.
+    pub fn from_world(problem: FlatProblem) -> Result<Self, Error> {
+        let _span = tracing::info_span!("build", scene = %problem.name).entered();
+        Ok(match problem.file.robot {
+            FlatBody::Disc(_) => Self::new(PlanarScene::<DiscRobot>::new(problem)?),
+            FlatBody::Polygon(_) => Self::new(PlanarScene::<PolygonRobot>::new(problem)?),
+        })
+    }
+
+    /// The same, said by reports to come from this file.
+    #[must_use]
+    pub fn with_file(self, file: impl Into<PathBuf>) -> Self {
+        Self { file: Some(file.into()), ..self }
+    }
+
+    /// The name of the scene.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.robot.name()
+    }
+
+    /// The file it came from.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// The space: `SE3`, `SE2`, `R2`, `6 joints`.
+    #[must_use]
+    pub fn space(&self) -> String {
+        self.robot.space_name()
+    }
+
+    /// What the numbers of a configuration are.
+    #[must_use]
+    pub fn columns(&self) -> Vec<Column> {
+        self.robot.columns()
+    }
+
+    /// How its paths are written as text.
+    #[must_use]
+    pub fn path_format(&self) -> PathFormat {
+        self.robot.path_format()
+    }
+
+    /// Where paths begin.
+    #[must_use]
+    pub fn start(&self) -> Vec<f64> {
+        self.robot.start()
+    }
+
+    /// Where they may end.
+    #[must_use]
+    pub fn goals(&self) -> Vec<Vec<f64>> {
+        self.robot.goals()
+    }
+
+    /// Plans: looks for a path, shortens it, verifies it as it will be written. The same scene and request give the
+    /// same report but for its times, on any number of threads.
+    ///
+    /// # Errors
+    /// When start or goal is not free (with what is in the way, how deep, and the nearest free configuration), or the
+    /// request makes no sense. Not finding a path is no error: see [`Report::stopped_by`].
+    pub fn plan(&self, request: &Request) -> Result<Report, Error> {
+        self.plan_with(request, &mut Control::default())
+    }
+
+    /// The same, watched and stopped from outside.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn plan_with(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
+        self.check_ends()?;
+        let mut report = self.robot.plan(request, control)?;
+        report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
+        Ok(report)
+    }
+
+    /// Verifies a path from the start to a goal, by a checker that shares no code with the planners'.
+    ///
+    /// # Errors
+    /// When the path is one of another robot. Not being free is no error: see [`Verdict::free`].
+    pub fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
+        self.robot.check(path)
+    }
+
+    /// Says what is to be said about a configuration: free or not, how near to contact, what touches, and where it
+    /// would be free.
+    ///
+    /// # Errors
+    /// When it has another number of numbers than the robot.
+    pub fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
+        self.robot.explain(row)
+    }
+
+    /// Refuses a scene whose start or goal is not free. Otherwise says what is odd about them.
+    ///
+    /// # Errors
+    /// When one is not free: what is in the way, how deep, and the nearest free configuration.
+    pub fn check_ends(&self) -> Result<Vec<String>, Error> {
+        self.robot.check_ends()
+    }
+
+    /// What is wrong or odd about the scene, in sentences; nothing when all is well.
+    #[must_use]
+    pub fn lint(&self) -> Vec<String> {
+        self.robot.lint()
+    }
+
+    /// The bodies: those of the robot first, then what stands still.
+    #[must_use]
+    pub fn bodies(&self) -> Vec<Body> {
+        self.robot.bodies()
+    }
+
+    /// Where the bodies of the robot are at a configuration, in the order of [`bodies`](Self::bodies).
+    ///
+    /// # Errors
+    /// When it has another number of numbers than the robot.
+    pub fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
+        self.robot.poses(row)
+    }
+
+    /// Poses of the robot along a path, or at start and goal alone without one.
+    ///
+    /// # Errors
+    /// When the path is one of another robot.
+    pub fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
+        self.robot.sweep(path)
+    }
+
+    /// Whether the scene is best seen from above, and where the origin of the robot may be.
+    #[must_use]
+    pub fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>) {
+        self.robot.view()
+    }
+}
+
+/// A [`RobotKind`] behind a pointer.
+trait AnyRobot: Send + Sync {
+    fn name(&self) -> &str;
+    fn space_name(&self) -> String;
+    fn columns(&self) -> Vec<Column>;
+    fn path_format(&self) -> PathFormat;
+    fn start(&self) -> Vec<f64>;
+    fn goals(&self) -> Vec<Vec<f64>>;
+    fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error>;
+    fn check(&self, path: &PathRows) -> Result<Verdict, Error>;
+    fn explain(&self, row: &[f64]) -> Result<Explanation, Error>;
+    fn check_ends(&self) -> Result<Vec<String>, Error>;
+    fn lint(&self) -> Vec<String>;
+    fn bodies(&self) -> Vec<Body>;
+    fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error>;
+    fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
+    fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>);
+}
+
+impl<K: RobotKind> AnyRobot for K {
+    fn name(&self) -> &str {
+        RobotKind::name(self)
+    }
+    fn space_name(&self) -> String {
+        RobotKind::space_name(self)
+    }
+    fn columns(&self) -> Vec<Column> {
+        RobotKind::columns(self)
+    }
+    fn path_format(&self) -> PathFormat {
+        RobotKind::path_format(self)
+    }
+    fn start(&self) -> Vec<f64> {
+        self.row(RobotKind::start(self))
+    }
+    fn goals(&self) -> Vec<Vec<f64>> {
+        RobotKind::goals(self).iter().map(|goal| self.row(goal)).collect()
+    }
+    fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
+        plan(self, request, control)
+    }
+    fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
+        check(self, path)
+    }
+    fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
+        Ok(explain(self, &state(self, row)?))
+    }
+    fn check_ends(&self) -> Result<Vec<String>, Error> {
+        check_ends(self)
+    }
+    fn lint(&self) -> Vec<String> {
+        lint(self)
+    }
+    fn bodies(&self) -> Vec<Body> {
+        RobotKind::bodies(self)
+    }
+    fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
+        Ok(RobotKind::poses(self, &state(self, row)?))
+    }
+    fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
+        sweep(self, path)
+    }
+    fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>) {
+        (self.is_planar(), self.picture_bounds())
+    }
+}
+
+/// The configuration of one row.
+fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
+    let columns = RobotKind::columns(kind);
+    if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {
+        return Ok(kind.state(row));
+    }
+    let names: Vec<_> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+    Err(Error::new(format!(
+        "a configuration of {} has {} finite numbers",
+        RobotKind::name(kind),
+        columns.len()
+    ))
+    .help(format!("give in order: {}", names.join(", "))))
+}
+
+/// Plans, finishes, reports.
+fn plan<K: RobotKind>(kind: &K, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
+    let found = search(kind, request, control)?;
+    let mut report = Report {
+        version: REPORT_VERSION,
+        scene: RobotKind::name(kind).to_owned(),
+        scene_file: None,
+        space: RobotKind::space_name(kind),
+        solved: false,
+        verified: false,
+        stopped_by: None,
+        why: None,
+        planner: crate::planners::Named::new(&request.planner)?.to_string(),
+        metric: request.metric.to_string(),
+        motion: request.motion.to_string(),
+        seed: request.seed,
+        iterations: found.progress.iterations,
+        nodes: found.progress.nodes,
+        edges: found.map.map(|[edges, _]| edges),
+        components: found.map.map(|[_, components]| components),
+        motion_checks: found.progress.motions,
+        collision_checks: found.queries,
+        rejected: found.progress.rejected,
+        time_s: found.time.as_secs_f64(),
+        finish_s: 0.0,
+        first_s: found.first.as_ref().map(|(time, ..)| time.as_secs_f64()),
+        first_length: found.first.as_ref().map(|(_, length, _)| *length),
+        first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
+        path_length_found: None,
+        path_length: None,
+        clearance: None,
+        shortened: false,
+        fingerprint: None,
+        path_file: None,
+        picture_file: None,
+        columns: RobotKind::columns(kind),
+        path: None,
+    };
+    let stopped = |report: &mut Report, by: crate::StoppedBy| {
+        report.stopped_by = Some(by);
+        report.why = Some(by.to_string());
+    };
+    let path = match found.outcome {
+        Outcome::Stopped(reason) => {
+            stopped(&mut report, reason.into());
+            return Ok(report);
+        }
+        Outcome::Solved(path) => path,
+    };
+    report.path_length_found = Some(path.length(kind.space()));
+    let began = Instant::now();
+    let finished = finish(kind, &path, request, control)?;
+    report.finish_s = began.elapsed().as_secs_f64();
+    let Some(finished) = finished else {
+        stopped(&mut report, crate::StoppedBy::Verification);
+        return Ok(report);
+    };
+    (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
+    report.path_length = Some(finished.length);
+    report.clearance = Some(finished.clearance);
+    let numbers = finished.path.rows.iter().flatten().copied();
+    report.fingerprint = Some(format!("{:016x}", mp_roadmap::fingerprint(numbers)));
+    report.path = Some(finished.path.rows);
+    Ok(report)
+}
+
+/// Poses along a path.
+fn sweep<K: RobotKind>(kind: &K, path: Option<&PathRows>) -> Result<Sweep, Error> {
+    let states = path.map(|path| states(kind, path)).transpose()?.unwrap_or_default();
+    let robot = kind.checker();
+    let lengths: Vec<f64> = states.windows(2).map(|w| robot.motion_bound(&w[0], &w[1])).collect();
+    let at = |edge: usize, t: f64| kind.space().interpolate(&states[edge], &states[edge + 1], t);
+    let places = evenly(&lengths, kind.picture_spacing());
+    let fine = |edge: usize| (0..=16).map(move |k| (edge, f64::from(k) / 16.0));
+    let trace = (0..lengths.len()).flat_map(fine);
+    let (start, goal) = (states.first().unwrap_or(kind.start()), states.last().unwrap_or(&kind.goals()[0]));
+    Ok(Sweep {
+        start: kind.poses(start),
+        goal: kind.poses(goal),
+        between: places.into_iter().map(|(edge, t)| kind.poses(&at(edge, t))).collect(),
+        trace: trace.map(|(edge, t)| kind.traced(&at(edge, t))).collect(),
+    })
+}
+
+/// Places spread evenly along edges of these lengths, about `spacing` apart, from 12 to 70 of them: the index of an
+/// edge and a fraction of it. None on a path that stays put.
+fn evenly(lengths: &[f64], spacing: f64) -> Vec<(usize, f64)> {
+    let mut at = vec![0.0];
+    for length in lengths {
+        at.push(at[at.len() - 1] + length);
+    }
+    let total = at[at.len() - 1];
+    if lengths.is_empty() || total.is_nan() || total <= 0.0 {
+        return Vec::new();
+    }
+    let n = (total / spacing.max(1e-9)).clamp(12.0, 70.0) as usize;
+    let mut segment = 0;
+    let place = |i: usize| {
+        let s = total * i as f64 / n as f64;
+        while segment + 2 < at.len() && at[segment + 1] < s {
+            segment += 1;
+        }
+        let length = at[segment + 1] - at[segment];
+        let t = if length > 0.0 { ((s - at[segment]) / length).clamp(0.0, 1.0) } else { 0.0 };
+        (segment, t)
+    };
+    (1..n).map(place).collect()
+}

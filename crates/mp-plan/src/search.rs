@@ -1,0 +1,229 @@
+//! One run of a planner by name, for robots of all kinds.
+
+use crate::counted::{Counted, QueryBudget};
+use crate::planners::Named;
+use crate::watch::{Events, Telling};
+use crate::{Control, Error, Finish, Length, Measured, MotionCheck, Request, RobotKind, Stage, StoppedBy};
+use mp_cspace::erased::AnyCheck;
+use mp_cspace::shorten::reduce;
+use mp_cspace::{
+    BuildError, Certified, ClearanceGradient, Deadline, Discrete, Goals, Iterations, Outcome, ParameterError,
+    Path, Planner, Problem, Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Workers,
+    verify_path,
+};
+use mp_roadmap::{Roadmap, RoadmapState, Team};
+use mp_snake::{Params, Repulsion, relax};
+use mp_tree::{TreeState, improve};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// From how far obstacles push a path that is relaxed, as a part of the extent.
+const RELAX_RANGE: f64 = 0.03;
+/// How much longer relaxing may make what is left after needless states.
+const MOST_STRETCH: f64 = 1.15;
+
+/// What a planner came back with.
+#[derive(Clone, Debug)]
+pub struct Search<S> {
+    /// The path, verified by the planner, or why there is none.
+    pub outcome: Outcome<Path<S>>,
+    /// What was done.
+    pub progress: Progress,
+    /// Collision and clearance queries asked.
+    pub queries: u64,
+    /// How long it took.
+    pub time: Duration,
+    /// Of a planner that keeps improving: when it found its first path, how long that was in the metric, and the path.
+    pub first: Option<(Duration, f64, Path<S>)>,
+    /// Edges and connected components, of a planner that builds a roadmap.
+    pub map: Option<[usize; 2]>,
+    /// The roadmap itself, if [asked for](Control::keep_roadmap).
+    pub roadmap: Option<Roadmap<S>>,
+}
+
+/// A planner made by name.
+enum Made<'p, S> {
+    Tree(mp_tree::AnyPlanner<'p, S, ()>),
+    Roadmap(mp_roadmap::AnyPlanner<'p, S, ()>),
+}
+
+impl<'p, S: 'p> Made<'p, S> {
+    fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
+        match self {
+            Self::Tree(planner) => &mut **planner,
+            Self::Roadmap(planner) => &mut **planner,
+        }
+    }
+}
+
+/// Runs the planner of a request, and relaxes the path if that is asked for; neither shortens it nor writes it down.
+///
+/// # Errors
+/// When the request makes no sense for this robot, or a roadmap cannot be read or written.
+pub fn search<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    control: &mut Control<'_>,
+) -> Result<Search<K::State>, Error> {
+    let _span =
+        tracing::info_span!("plan", scene = kind.name(), planner = %request.planner, seed = request.seed)
+            .entered();
+    request.check()?;
+    let planner = Named::new(&request.planner)?;
+    let (settings, workers) = (request.settings(), Workers::new(request.threads)?);
+    let fingerprint = match &request.roadmap {
+        None => None,
+        Some(_) => Some(kind.fingerprint(request.metric).ok_or_else(|| {
+            Error::new("roadmaps are kept of rigid bodies only").help("leave the file of the roadmap out")
+        })?),
+    };
+    let queries = AtomicU64::new(0);
+    let Measured { space, index } = kind.measured(request.metric)?;
+    let verifier = kind.verifier()?;
+    let began = Instant::now();
+    control.stage(Stage::Planning);
+
+    let counted = || Counted::new(kind.checker().clone(), &queries);
+    let problem = || {
+        let check: AnyCheck<'_, K::State> = match request.motion {
+            MotionCheck::Certified => {
+                Box::new(unmade(Certified::new(kind.space(), counted(), kind.tolerance()))?)
+            }
+            MotionCheck::Discrete(length) => {
+                Box::new(unmade(Discrete::new(&space, counted(), resolution(length)))?)
+            }
+        };
+        let goals = Goals::states(kind.goals().iter().cloned());
+        let local = Straight::new(&space, check);
+        let problem = Problem::new(&space, local, verifier.clone(), kind.start().clone(), goals)?;
+        Ok(problem.with_obstacles(kind.obstacles(&counted)))
+    };
+    let mut made = match &planner {
+        Named::Tree(named) => {
+            let name = named.to_string();
+            Made::Tree(TreeState::tree_planner(&name, Arc::new(&problem), index, &settings, &workers)?)
+        }
+        Named::Roadmap(info) => {
+            let team = Team::new(workers, request.threads, &problem)?;
+            let mut made = RoadmapState::roadmap_planner(info.name, team, index, &settings)?;
+            if let (Some(file), Some(fingerprint)) = (&request.roadmap, fingerprint)
+                && file.exists()
+            {
+                let map = Roadmap::load(file, fingerprint).map_err(|e| {
+                    Error::new(e.to_string()).help("name another file, or delete it to begin anew")
+                })?;
+                made.resume(map)?;
+            }
+            Made::Roadmap(made)
+        }
+    };
+
+    let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
+    let telling = Telling::new(control.watch.as_deref_mut());
+    let deadline = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
+    let mut stop = control
+        .cancel
+        .clone()
+        .or(request.budget.iterations.map(Iterations))
+        .or(deadline.and_then(|time| began.checked_add(time)).map(Deadline::at))
+        .or(request.budget.queries.map(|most| QueryBudget { queries: &queries, most }))
+        .or(control.stop.as_deref_mut())
+        .or(&telling);
+    let mut observer = Events { kind, telling: &telling, wanted };
+    let mut rng = Rng::seed(request.seed);
+    let mut first = None;
+    let improves = made.planner().improves();
+    let (best, reason) = match request.first_only {
+        true => match made.planner().solve(&mut rng, &mut stop, &mut observer) {
+            Outcome::Solved(path) => (Some(path), None),
+            Outcome::Stopped(reason) => (None, Some(reason)),
+        },
+        false => improve(made.planner(), &mut rng, &mut stop, &mut observer, |path, _| {
+            let length = path.length(&space);
+            if let Some(watch) = &mut *telling.watch.borrow_mut() {
+                watch.found(length);
+            }
+            if improves && first.is_none() {
+                first = Some((began.elapsed(), length, path.clone()));
+            }
+        }),
+    };
+    drop(stop);
+    let outcome = match (best, reason) {
+        (Some(path), _) if request.finish == Finish::Relax => {
+            if let Some(watch) = &mut *telling.watch.borrow_mut() {
+                watch.stage(Stage::Relaxing);
+            }
+            Outcome::Solved(relaxed(kind, path)?)
+        }
+        (Some(path), _) => Outcome::Solved(path),
+        (None, reason) => Outcome::Stopped(reason.unwrap_or(StopReason::Cancelled)),
+    };
+    let time = began.elapsed();
+    let progress = made.planner().progress();
+    let (map, roadmap) = match &mut made {
+        Made::Tree(_) => (None, None),
+        Made::Roadmap(planner) => {
+            if let (Some(file), Some(fingerprint)) = (&request.roadmap, fingerprint) {
+                mp_io::write_atomic(file, &planner.map().to_bytes(fingerprint))?;
+            }
+            let map = [planner.map().edges(), planner.map_mut().components()];
+            (Some(map), control.keep_roadmap.then(|| planner.map().clone()))
+        }
+    };
+    // What the checkers have counted and not told yet.
+    drop(made);
+    let outcome_word = match &outcome {
+        Outcome::Solved(_) => "solved",
+        Outcome::Stopped(reason) => StoppedBy::from(*reason).word(),
+    };
+    tracing::info!(
+        outcome = outcome_word,
+        iterations = progress.iterations,
+        nodes = progress.nodes,
+        "planned"
+    );
+    Ok(Search { outcome, progress, queries: queries.load(Ordering::Relaxed), time, first, map, roadmap })
+}
+
+fn unmade<T>(made: Result<T, ParameterError>) -> Result<T, BuildError> {
+    made.map_err(|e| BuildError::Unmade { reason: e.to_string() })
+}
+
+fn resolution(length: Length) -> Resolution {
+    match length {
+        Length::Absolute(v) => Resolution::Length(v),
+        Length::Fraction(f) => Resolution::Fraction(f),
+    }
+}
+
+/// The path without the states it does not need, relaxed by a snake: where that is not free by the verifier, the path
+/// itself. In the own metric of the space it is no longer than the path.
+fn relaxed<K: RobotKind>(kind: &K, path: Path<K::State>) -> Result<Path<K::State>, Error> {
+    let _span = tracing::info_span!("relax").entered();
+    let space = kind.space();
+    let range = RELAX_RANGE * space.extent();
+    let unused = AtomicU64::new(0);
+    let knowledge = kind.obstacles(&|| Counted::new(kind.checker().clone(), &unused));
+    let Some(mut gradient) = knowledge.gradient else {
+        return Err(Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
+            .help("leave relaxing out: shortening needs none"));
+    };
+    let mut check = Certified::new(space, kind.checker().clone(), kind.tolerance())?;
+    let field = |q: &K::State, reach: f64, out: &mut [f64]| gradient.clearance_gradient(q, reach, out);
+    let mut field = Repulsion::new(field, range)?;
+    let short = reduce(space, &mut check, &path);
+    let [found, least] = [&path, &short].map(|path| path.length(space));
+    let params = Params { straighten: 0.5, iterations: 200, ..Params::for_range(range)? };
+    // Safety may cost some length, of what was saved.
+    let stretch = if least > 0.0 { (found / least).clamp(1.0, MOST_STRETCH) } else { 1.0 };
+    let relaxed = relax(space, &mut check, &mut field, &short, params, stretch)?.path;
+    let verified = verify_path(space, &relaxed, &mut kind.verifier()?);
+    if let Some(fault) = verified.fault {
+        tracing::info!("the relaxed path does not pass the verifier: {fault}");
+        return Ok(path);
+    }
+    tracing::info!("relaxed: length {found} to {}", relaxed.length(space));
+    Ok(relaxed)
+}

@@ -1,0 +1,188 @@
+//! Watching a run and stopping it.
+
+use crate::RobotKind;
+use mp_cspace::{Cancel, Event, NodeId, Observer, Progress, Stop, StopReason};
+use std::time::{Duration, Instant};
+
+/// What a run is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Stage {
+    /// Looking for a path.
+    Planning,
+    /// Relaxing the path found, by a snake.
+    Relaxing,
+    /// Shortening the path and verifying what will be written.
+    Finishing,
+}
+
+/// Told of a run while it goes on, in the thread that plans. The defaults do nothing.
+pub trait Watch {
+    /// A stage begins.
+    fn stage(&mut self, _stage: Stage) {}
+    /// What was done so far; ten times a second at most.
+    fn progress(&mut self, _progress: &Progress) {}
+    /// A path was found, of this length in the metric. A planner that keeps improving finds several.
+    fn found(&mut self, _length: f64) {}
+    /// Whether [`event`](Self::event) is to be called. Looked at once, when planning begins: that costs time.
+    fn wants_events(&self) -> bool {
+        false
+    }
+    /// Something happened in the search.
+    fn event(&mut self, _event: SearchEvent<'_>) {}
+}
+
+/// Watches nothing.
+impl Watch for () {}
+
+/// What happens in a search, with configurations as rows of numbers: for viewers and logs.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum SearchEvent<'a> {
+    /// A root was added to a tree, or a node to a roadmap.
+    Rooted {
+        /// Which tree: 0 from the start, 1 from the goal.
+        tree: usize,
+        /// The new node.
+        id: NodeId,
+        /// Its configuration.
+        row: Vec<f64>,
+    },
+    /// A node was added under another.
+    Added {
+        /// Which tree.
+        tree: usize,
+        /// The new node.
+        id: NodeId,
+        /// Its parent.
+        parent: NodeId,
+        /// Its configuration.
+        row: Vec<f64>,
+    },
+    /// A node hangs on another parent now.
+    Rewired {
+        /// Which tree.
+        tree: usize,
+        /// The node.
+        id: NodeId,
+        /// Its new parent.
+        parent: NodeId,
+    },
+    /// An edge was added to a roadmap.
+    Linked {
+        /// One end.
+        from: NodeId,
+        /// The other.
+        to: NodeId,
+    },
+    /// A state was sampled.
+    Sampled {
+        /// Its configuration.
+        row: Vec<f64>,
+    },
+    /// A candidate path failed verification.
+    Rejected,
+    /// Nodes were removed and the others renumbered, in unchanged order.
+    Pruned {
+        /// Which tree.
+        tree: usize,
+        /// The former ids of the nodes that remain.
+        survivors: &'a [NodeId],
+    },
+}
+
+/// How a run is watched and stopped. The default watches nothing and stops by the budget of the request alone.
+///
+/// A clone of `cancel` stops it from another thread: what was found until then is kept.
+#[derive(Default)]
+pub struct Control<'a> {
+    /// Stops the run when it is raised.
+    pub cancel: Cancel,
+    /// Told of the run.
+    pub watch: Option<&'a mut dyn Watch>,
+    /// A stop of your own, beside the budget of the request.
+    pub stop: Option<&'a mut dyn Stop>,
+    /// Whether [`search`](crate::search) hands out the roadmap.
+    pub keep_roadmap: bool,
+}
+
+impl std::fmt::Debug for Control<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Control").field("cancel", &self.cancel).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Control<'a> {
+    /// Watched by `watch`, stopped by `cancel`.
+    pub fn new(cancel: Cancel, watch: &'a mut dyn Watch) -> Self {
+        Self { cancel, watch: Some(watch), ..Self::default() }
+    }
+
+    pub(crate) fn stage(&mut self, stage: Stage) {
+        if let Some(watch) = &mut self.watch {
+            watch.stage(stage);
+        }
+    }
+}
+
+/// Iterations between two looks at the clock.
+const EVERY: u64 = 64;
+/// The least time between two reports of progress.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Tells a watch of progress, as a [`Stop`] that never stops anything; and of events, as an [`Observer`]: planners are
+/// given one after the other, never both at a time.
+pub(crate) struct Telling<'w, 'a> {
+    pub(crate) watch: std::cell::RefCell<Option<&'w mut (dyn Watch + 'a)>>,
+    told: std::cell::Cell<Instant>,
+}
+
+impl<'w, 'a> Telling<'w, 'a> {
+    pub(crate) fn new(watch: Option<&'w mut (dyn Watch + 'a)>) -> Self {
+        Self { watch: watch.into(), told: Instant::now().into() }
+    }
+}
+
+impl Stop for &Telling<'_, '_> {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        if progress.iterations.is_multiple_of(EVERY)
+            && self.told.get().elapsed() > PAUSE
+            && let Some(watch) = &mut *self.watch.borrow_mut()
+        {
+            self.told.set(Instant::now());
+            watch.progress(progress);
+        }
+        None
+    }
+}
+
+/// Translates the states of events to rows.
+pub(crate) struct Events<'t, 'w, 'a, K> {
+    pub(crate) kind: &'t K,
+    pub(crate) telling: &'t Telling<'w, 'a>,
+    pub(crate) wanted: bool,
+}
+
+impl<K: RobotKind> Observer<K::State> for Events<'_, '_, '_, K> {
+    fn on(&mut self, event: Event<'_, K::State>) {
+        if !self.wanted {
+            return;
+        }
+        let row = |state| self.kind.row(state);
+        let event = match event {
+            Event::Sampled(state) => SearchEvent::Sampled { row: row(state) },
+            Event::Rooted { tree, id, state } => SearchEvent::Rooted { tree, id, row: row(state) },
+            Event::Added { tree, id, parent, state } => {
+                SearchEvent::Added { tree, id, parent, row: row(state) }
+            }
+            Event::Rewired { tree, id, parent } => SearchEvent::Rewired { tree, id, parent },
+            Event::Linked { from, to } => SearchEvent::Linked { from, to },
+            Event::Rejected => SearchEvent::Rejected,
+            Event::Pruned { tree, survivors } => SearchEvent::Pruned { tree, survivors },
+            _ => return,
+        };
+        if let Some(watch) = &mut *self.telling.watch.borrow_mut() {
+            watch.event(event);
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Every planner by name on every shipped scene comes to the same, bit for bit, as when `fingerprints.txt` was made.
+//!
+//! A line is a case and what came of it: scene, planner, seed, iterations, options of the command line; then how it
+//! ended, its counters, the bits of lengths and clearance, and a hash of the numbers of the path. A deliberate change
+//! of behaviour is a change of the table, with its reason in the commit:
+//!
+//! ```text
+//! cargo test --release -p mp-plan --test fingerprints
+//! MP_WRITE_FINGERPRINTS=1 cargo test --release -p mp-plan --test fingerprints   # writes it anew
+//! ```
+
+use mp_plan::{Finish, Report, Request, Scene};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn table() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fingerprints.txt")
+}
+
+/// The request of a case: planner, seed, iterations, options.
+fn request(words: &[&str]) -> Request {
+    let mut request =
+        Request::new(words[0]).seed(words[1].parse().unwrap()).iterations(words[2].parse().unwrap());
+    request.budget.time_s = None;
+    let mut options = words[3..].iter();
+    while let Some(option) = options.next() {
+        let mut value = || *options.next().unwrap();
+        match *option {
+            "--metric" => request.metric = value().parse().unwrap(),
+            "--motion" => request.motion = value().parse().unwrap(),
+            "--step" => request = request.set("step", value()),
+            "--relax" => request.finish = Finish::Relax,
+            "--no-shorten" => request.finish = Finish::AsFound,
+            other => panic!("{other}"),
+        }
+    }
+    request
+}
+
+/// What came of a case.
+fn line(case: &str, report: &Report) -> String {
+    let bits = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), |v| format!("{:016x}", v.to_bits()));
+    let ended = report.stopped_by.map_or("solved", |by| by.word());
+    format!(
+        "{case} = {ended} iterations {} nodes {} edges {} motions {} queries {} rejected {} found {} length {} clearance {} path {}",
+        report.iterations,
+        report.nodes,
+        report.edges.map_or_else(|| "-".to_owned(), |n| n.to_string()),
+        report.motion_checks,
+        report.collision_checks,
+        report.rejected,
+        bits(report.path_length_found),
+        bits(report.path_length),
+        bits(report.clearance),
+        report.fingerprint.as_deref().unwrap_or("-"),
+    )
+}
+
+/// Runs the cases and compares them with the table.
+fn compare() {
+    let text = std::fs::read_to_string(table()).unwrap();
+    let mut scenes: BTreeMap<&str, Scene> = BTreeMap::new();
+    let (mut wrong, mut lines) = (Vec::new(), Vec::new());
+    for expected in text.lines() {
+        let (case, _) = expected.split_once(" = ").unwrap();
+        let words: Vec<&str> = case.split(' ').collect();
+        let scene = scenes.entry(words[0]).or_insert_with(|| {
+            let file = |ending| root().join("assets/scenes").join(format!("{}.{ending}", words[0]));
+            let file = if file("env").exists() { file("env") } else { file("toml") };
+            Scene::load(file).unwrap()
+        });
+        let found = match scene.plan(&request(&words[1..])) {
+            Ok(report) => line(case, &report),
+            Err(_) => format!("{case} = error"),
+        };
+        if found != expected {
+            wrong.push(format!("was {expected}\nis  {found}"));
+        }
+        lines.push(found);
+    }
+    if std::env::var_os("MP_WRITE_FINGERPRINTS").is_some() {
+        std::fs::write(table(), lines.join("\n") + "\n").unwrap();
+    }
+    assert!(wrong.is_empty(), "{} of {} differ:\n{}", wrong.len(), lines.len(), wrong.join("\n"));
+}
+
+#[test]
+fn all_is_as_it_was() {
+    compare();
+}
