@@ -1,5 +1,5 @@
 //! Plans for a six-joint arm, with certified motions and a verified path:
-//! `cargo run --release -p mp --example arm -- assets/scenes/arm.toml`
+//! `cargo run --release -p mp --example arm -- crates/mp-scenes/assets/scenes/arm.toml`
 #![allow(clippy::print_stdout)] // an example talks
 
 use mp::io::RobotProblem;
@@ -9,7 +9,7 @@ use nalgebra::SVector;
 type Q = SVector<f64, 6>;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let file = std::env::args().nth(1).unwrap_or_else(|| "assets/scenes/arm.toml".into());
+    let file = std::env::args().nth(1).unwrap_or_else(|| "crates/mp-scenes/assets/scenes/arm.toml".into());
     let task = RobotProblem::load(&file)?;
     let mut model = ArmModel::from_urdf(&task.urdf, |name| task.mesh(name))?;
     model.base = task.base();

@@ -1,4 +1,4 @@
-//! Plans on a scene file: `cargo run --release -p mp --example scene -- assets/scenes/gempa-1.env`
+//! Plans on a scene file: `cargo run --release -p mp --example scene -- crates/mp-scenes/assets/scenes/gempa-1.env`
 #![allow(clippy::print_stdout)] // an example talks
 
 use mp::geom::six_from_pose;
@@ -6,7 +6,7 @@ use mp::io::{self, SpaceKind};
 use mp::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let file = std::env::args().nth(1).unwrap_or_else(|| "assets/scenes/gempa-1.env".into());
+    let file = std::env::args().nth(1).unwrap_or_else(|| "crates/mp-scenes/assets/scenes/gempa-1.env".into());
     let scene = io::Problem::load(&file)?;
     if scene.space != SpaceKind::Se3 {
         return Err(format!("{file} moves in the plane; this example flies").into());

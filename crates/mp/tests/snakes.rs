@@ -6,7 +6,7 @@ use mp::prelude::*;
 use mp::snake::{Params, Pieces, Repulsion, SnakePlanner, relax};
 
 fn scene(name: &str) -> (Se3, FreeFlyer, io::Problem) {
-    let file = format!("{}/../../assets/scenes/{name}.env", env!("CARGO_MANIFEST_DIR"));
+    let file = format!("{}/../mp-scenes/assets/scenes/{name}.env", env!("CARGO_MANIFEST_DIR"));
     let scene = io::Problem::load(&file).unwrap();
     let bounds = scene.position_bounds();
     let space = Se3::new(bounds.min.coords, bounds.max.coords).unwrap();
