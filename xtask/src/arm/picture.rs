@@ -39,5 +39,6 @@ pub(crate) fn scene(task: &Task, states: &[State], subtitle: String) -> Scene {
 fn body(task: &Task, q: &State) -> Body {
     let meshes = task.arm.meshes_at(q.as_slice());
     let pose = Isometry3::identity();
-    TriMesh::merged(meshes.iter().map(|(_, mesh)| mesh)).map_or(Body::point(pose), |mesh| Body::new(&mesh, pose))
+    TriMesh::merged(meshes.iter().map(|(_, mesh)| mesh))
+        .map_or(Body::point(pose), |mesh| Body::new(&mesh, pose))
 }

@@ -99,6 +99,11 @@ fn read_png(file: &str, bytes: &[u8]) -> Result<GridMap, Error> {
     // Palettes become colours, and less than 8 bits become 8.
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(failed)?;
+    // The decoder panics on these: https://github.com/image-rs/image-png/issues/694.
+    if let Some(palette) = reader.info().palette.as_ref().filter(|p| !p.len().is_multiple_of(3)) {
+        let message = format!("the palette of the image has {} bytes", palette.len());
+        return Err(fault(file, message).expected("three for each colour"));
+    }
     let too_large = || failed(png::DecodingError::LimitsExceeded);
     let mut samples = vec![0; reader.output_buffer_size().ok_or_else(too_large)?];
     let frame = reader.next_frame(&mut samples).map_err(failed)?;

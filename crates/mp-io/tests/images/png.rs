@@ -224,6 +224,15 @@ fn what_is_wrong_is_said() {
     for end in [4, 12, 30, 40, 50] {
         refused(&good[..end], ErrorKind::Format, "cannot be read");
     }
+    for length in [4, 5, 767_u32] {
+        let mut bytes = b"\x89PNG\r\n\x1a\n".to_vec();
+        chunk(&mut bytes, b"IHDR", &[0, 0, 0, 1, 0, 0, 0, 1, 8, PALETTE, 0, 0, 0]);
+        chunk(&mut bytes, b"PLTE", &vec![0; length as usize]);
+        chunk(&mut bytes, b"IDAT", &stored(&[0, 0]));
+        chunk(&mut bytes, b"IEND", &[]);
+        let words = format!("the palette of the image has {length} bytes; expected three for each colour");
+        refused(&bytes, ErrorKind::Format, &words);
+    }
     let mut bad = good.clone();
     bad[45] ^= 1;
     refused(&bad, ErrorKind::Format, "cannot be read");
