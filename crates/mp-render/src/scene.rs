@@ -244,7 +244,8 @@ mod tests {
     fn what_cannot_be_drawn_is_said() {
         let nan = Isometry3::translation(f64::NAN, 0.0, 0.0);
         let far = Point3::new(0.0, 1e61, 0.0);
-        let changes: [(&str, &dyn Fn(&mut Scene)); 6] = [
+        type Change<'a> = &'a dyn Fn(&mut Scene);
+        let changes: [(&str, Change<'_>); 6] = [
             ("obstacle 1:", &|s| s.obstacles[0] = s.obstacles[0].at(nan)),
             ("the robot at its start:", &|s| s.start = s.start.as_ref().map(|b| b.at(nan))),
             ("the robot at its goal:", &|s| s.goal = s.goal.as_ref().map(|b| b.at(nan))),
