@@ -1,11 +1,14 @@
 //! Worlds in the plane: polygons, images and maps, a robot, a start and goals, in TOML.
 
+mod grid;
 mod load;
 mod map;
+mod pnm;
 #[cfg(test)]
 mod tests;
 
-pub use map::{GridMap, RosMap};
+pub use grid::GridMap;
+pub use map::RosMap;
 
 use crate::error::Error;
 use crate::source::decode;

@@ -73,6 +73,18 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         other => panic!("no seeds for {other}"),
     };
     let mut all: Vec<Vec<u8>> = texts.iter().map(|t| t.as_bytes().to_vec()).collect();
+    if target == "map-image" {
+        all.push(b"P5 3 2 255\n\x00\xff\xff\xff\x90\x00".to_vec());
+        all.push(b"P6 1 2 # a\n1000\n\x00\xff\x03\xe8\x00\x00\x00\xff\x01\x00\x00\x09".to_vec());
+        all.push(b"P4 9 2\n\x80\x00\x7f\xff".to_vec());
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, 3, 2);
+        encoder.set_color(png::ColorType::Rgb);
+        let mut writer = encoder.write_header().unwrap();
+        writer.write_image_data(&[7; 18]).unwrap();
+        writer.finish().unwrap();
+        all.push(bytes);
+    }
     if target == "stl" {
         let mut binary = vec![b' '; 84];
         binary[80..].copy_from_slice(&2_u32.to_le_bytes());

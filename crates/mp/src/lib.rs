@@ -10,6 +10,7 @@
 //! | [`tree`] | the RRT family |
 //! | [`roadmap`] | the PRM family |
 //! | [`io`] | meshes, scenes, problems and paths in files |
+//! | [`render`] | pictures of scenes and of the plane |
 //!
 //! # A tour
 //! A body that must pass a window, from nothing to a verified path:
@@ -60,6 +61,7 @@ pub use mp_collide as collide;
 pub use mp_cspace as cspace;
 pub use mp_geom as geom;
 pub use mp_io as io;
+pub use mp_render as render;
 pub use mp_roadmap as roadmap;
 pub use mp_robot as robot;
 pub use mp_snake as snake;

@@ -8,5 +8,5 @@ mod task;
 
 pub(crate) use check::check;
 pub(crate) use info::Facts;
-pub(crate) use picture::draw_task;
+pub(crate) use picture::scene;
 pub(crate) use task::{State, Task};

@@ -1,17 +1,16 @@
 //! Pictures of arms.
 
 use super::task::{State, Task};
-use crate::render::{Shown, Subject, draw, evenly};
-use image::RgbImage;
 use mp::cspace::{MotionBound, Space};
 use mp::geom::TriMesh;
+use mp::render::{Body, Scene, evenly};
 use nalgebra::{Isometry3, Point3};
 
 /// Between two copies of the arm no point moves farther than this share of its reach.
 const SPACING: f64 = 0.12;
 
-/// The picture of `task` with the path `states` in it; without one when that is empty.
-pub(crate) fn subject<'a>(task: &'a Task, states: &[State], subtitle: String) -> Subject<'a> {
+/// What is drawn of `task` with the path `states` in it; without one when that is empty.
+pub(crate) fn scene(task: &Task, states: &[State], subtitle: String) -> Scene {
     let lengths: Vec<f64> = states.windows(2).map(|w| task.arm.motion_bound(&w[0], &w[1])).collect();
     let at = |edge: usize, t: f64| task.space.interpolate(&states[edge], &states[edge + 1], t);
     let copies = evenly(&lengths, SPACING * task.arm.reach()).into_iter();
@@ -23,26 +22,23 @@ pub(crate) fn subject<'a>(task: &'a Task, states: &[State], subtitle: String) ->
     let fine = |edge: usize| (0..=16).map(move |k| (edge, f64::from(k) / 16.0));
     let trace = (0..lengths.len()).flat_map(fine).map(|(edge, t)| tip(&at(edge, t)));
     let goal = states.last().unwrap_or(&task.goals[0]);
-    Subject {
+    Scene {
         title: task.name().to_owned(),
         subtitle,
         planar: false,
-        obstacles: task.problem.obstacles.iter().map(|o| (&o.mesh, o.pose)).collect(),
-        start: shown(task, &task.start),
-        goal: shown(task, goal),
-        copies: copies.map(|(edge, t)| shown(task, &at(edge, t))).collect(),
+        obstacles: task.problem.obstacles.iter().map(|o| Body::new(&o.mesh, o.pose)).collect(),
+        start: Some(body(task, &task.start)),
+        goal: Some(body(task, goal)),
+        copies: copies.map(|(edge, t)| body(task, &at(edge, t))).collect(),
         trace: trace.collect(),
         bounds: None,
     }
 }
 
-/// Draws `task`.
-pub(crate) fn draw_task(task: &Task, states: &[State], subtitle: String, size: (usize, usize)) -> RgbImage {
-    draw(&subject(task, states, subtitle), size)
-}
-
 /// The arm at `q`.
-fn shown(task: &Task, q: &State) -> Shown {
+fn body(task: &Task, q: &State) -> Body {
     let meshes = task.arm.meshes_at(q.as_slice());
-    Shown::new(TriMesh::merged(meshes.iter().map(|(_, mesh)| mesh)).as_ref(), Isometry3::identity())
+    let pose = Isometry3::identity();
+    TriMesh::merged(meshes.iter().map(|(_, mesh)| mesh))
+        .map_or(Body::point(pose), |mesh| Body::new(&mesh, pose))
 }

@@ -1,6 +1,6 @@
 //! Arms: what is their own in `plan`.
 
-use super::picture::subject;
+use super::picture::scene;
 use super::task::{State, Task};
 use crate::plan::Options;
 use crate::plan::metrics::Kind;
@@ -8,7 +8,7 @@ use crate::plan::progress::Line;
 use crate::plan::search::{Run, Search, with};
 use crate::plan::task::{self, ROOM};
 use crate::render;
-use miette::{Result, miette};
+use miette::{IntoDiagnostic, Result, miette};
 use mp::cspace::{Cancel, Clearance, Joints, KdTree, Manhattan, MotionBound, MotionValidity, Path};
 use mp::io::JointPath;
 
@@ -78,7 +78,7 @@ impl task::Task for Task {
         Ok(self.states(file))
     }
     fn draw(&self, to: &std::path::Path, file: &JointPath, caption: String) -> Result<()> {
-        let subject = subject(self, &self.states(file), caption);
-        render::write(to, &render::draw(&subject, render::SIZE))
+        let scene = scene(self, &self.states(file), caption);
+        render::write(to, &scene.draw(render::SIZE).into_diagnostic()?)
     }
 }

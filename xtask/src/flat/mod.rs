@@ -10,5 +10,5 @@ mod task;
 pub(crate) use check::check;
 pub(crate) use info::Facts;
 pub(crate) use mover::FlatMover;
-pub(crate) use picture::{draw, world};
+pub(crate) use picture::draw;
 pub(crate) use task::{AnyTask, Task, either};

@@ -10,7 +10,7 @@ use super::setting::Setting;
 use super::task::{ROOM, Task};
 use super::tuples;
 use crate::render;
-use miette::Result;
+use miette::{IntoDiagnostic, Result};
 use mp::cspace::{Cancel, Clearance, DefaultNn, MotionBound, MotionValidity, Path, Space};
 use mp::io::PathFile;
 
@@ -80,7 +80,7 @@ impl<M: Mover> Task for Setting<M> {
         Ok(file.poses().iter().map(M::configuration).collect())
     }
     fn draw(&self, to: &std::path::Path, file: &PathFile, caption: String) -> Result<()> {
-        let subject = render::subject(&self.problem, &file.poses(), caption);
-        render::write(to, &render::draw(&subject, render::SIZE))
+        let scene = render::rigid(&self.problem, &file.poses(), caption);
+        render::write(to, &scene.draw(render::SIZE).into_diagnostic()?)
     }
 }

@@ -1,78 +1,14 @@
-//! Images as worlds, and maps of ROS's map_server.
+//! Maps of ROS's map_server.
 
+use super::GridMap;
 use crate::error::{Error, ErrorKind};
 use crate::problem::MAX_COORDINATE;
 use crate::source::decode;
-use image::{ImageFormat, ImageReader, Limits};
-use mp_geom::flat::{Polygon, outline};
+use mp_geom::flat::Polygon;
 use nalgebra::Isometry2;
-use std::io::Cursor;
 
 /// The page that describes the format.
 const GUIDE: &str = "the format is described in docs/formats/flat-world.md";
-
-/// The widest and highest image, pixels.
-const MAX_SIDE: u32 = 8192;
-
-/// The brightness of the pixels of an image, rows from the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GridMap {
-    /// Pixels in a row, and rows.
-    pub size: [usize; 2],
-    /// The mean of red, green and blue, 0 to 255.
-    pub brightness: Vec<f32>,
-}
-
-impl GridMap {
-    /// Reads `bytes`, the content of a PNG or PNM (PGM, PPM, PBM) image that errors call `file`.
-    ///
-    /// # Errors
-    /// [`Error`] when it is none, or larger than 8192 × 8192 pixels.
-    pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let failed = |message: String| {
-            Error::new(ErrorKind::Format, file, message).help("save the image as PNG, or as PGM, of 8 bits")
-        };
-        let mut reader = ImageReader::new(Cursor::new(bytes));
-        let format =
-            image::guess_format(bytes).map_err(|_| failed("this is no image that is known".into()))?;
-        if !matches!(format, ImageFormat::Png | ImageFormat::Pnm) {
-            return Err(failed("this image is neither PNG nor PGM".into()));
-        }
-        reader.set_format(format);
-        let mut limits = Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(MAX_SIDE), Some(MAX_SIDE));
-        reader.limits(limits);
-        let picture =
-            reader.decode().map_err(|e| failed(format!("the image cannot be read: {e}")))?.into_rgb8();
-        if picture.width() > MAX_SIDE || picture.height() > MAX_SIDE || picture.is_empty() {
-            let message = format!("the image has {} × {} pixels", picture.width(), picture.height());
-            return Err(Error::new(ErrorKind::TooLarge, file, message)
-                .expected(format!("1 to {MAX_SIDE} pixels each way"))
-                .help("scale the image down"));
-        }
-        let mean = |p: &image::Rgb<u8>| p.0.iter().map(|v| f32::from(*v)).sum::<f32>() / 3.0;
-        let size = [picture.width() as usize, picture.height() as usize];
-        Ok(Self { size, brightness: picture.pixels().map(mean).collect() })
-    }
-
-    /// The polygon of the pixels for which `occupied(brightness)` is true, `scale` metres wide each, the lower
-    /// left corner of the image at `origin`; `None` when there is none.
-    ///
-    /// # Errors
-    /// When coordinates are not finite or beyond 10⁶⁰.
-    pub fn outline(
-        &self,
-        scale: f64,
-        origin: [f64; 2],
-        occupied: impl Fn(f32) -> bool,
-    ) -> Result<Option<Polygon>, mp_geom::flat::PolygonError> {
-        let [width, height] = self.size;
-        // The first row of an image is its highest.
-        outline([width, height], scale, origin, |x, y| {
-            occupied(self.brightness[(height - 1 - y) * width + x])
-        })
-    }
-}
 
 /// What the YAML file of a map says.
 #[derive(Clone, Debug, PartialEq)]

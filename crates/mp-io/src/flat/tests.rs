@@ -85,7 +85,7 @@ fn faults_have_their_place() {
         (&image, "scale = 0.5", "scale = 0.5\nmap = \"map.yaml\"", 4, "an image and a map"),
         (&image, "scale = 0.5", "scale = 9e8", 2, "beyond"),
         (&image, "map.pgm", "nap.pgm", 2, "no such file"),
-        (&image, "map.pgm", "map.yaml", 2, "no image"),
+        (&image, "map.pgm", "map.yaml", 2, "neither a PNG nor a PGM image"),
         (GOOD, "walls = ", "unknown = \"no\"\nwalls = ", 2, "neither"),
     ] {
         assert!(good.contains(from), "{from}");

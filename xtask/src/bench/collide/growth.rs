@@ -10,9 +10,10 @@ use super::tables::Measured;
 use crate::bench::{Table, report};
 use crate::cli;
 use crate::output::note;
-use crate::render::{self, Series};
+use crate::render;
 use miette::{IntoDiagnostic, Result};
 use mp::collide::Query;
+use mp::render::{Series, plot};
 use nalgebra::Isometry3;
 use std::path::PathBuf;
 
@@ -50,7 +51,7 @@ pub(crate) fn run(args: &cli::Bench) -> Result<bool> {
     let picture = args.out.join("collide-growth.png");
     let title = "Cost against the number of triangles of each mesh";
     let axes = ["triangles", "times the cost of the smallest"];
-    render::write(&picture, &render::plot(title, axes, &curves(&all), (960, 600)))?;
+    render::write(&picture, &plot(title, axes, &curves(&all), (960, 600)).into_diagnostic()?)?;
     note(&format!("written: {}", picture.display()));
     Ok(complete)
 }

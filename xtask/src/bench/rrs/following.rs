@@ -4,11 +4,12 @@ use super::follow::{Followed, KINDS, planned_and_followed};
 use crate::assets::courses::{Course, RADIUS, follow};
 use crate::bench::{Table, report};
 use crate::cli;
-use crate::flat;
 use crate::output::{note, write};
 use crate::plan::progress;
-use crate::render::{self, Item};
+use crate::render;
 use miette::{IntoDiagnostic, Result};
+use mp::render::{Drawing, Item};
+use nalgebra::Point2;
 use rayon::prelude::*;
 
 /// Trials, and those of a short run.
@@ -66,8 +67,8 @@ pub(super) fn run(args: &cli::Bench) -> Result<bool> {
             let Some(followed) = &of(k)[trial] else { continue };
             let drawing = picture(&course, kind, followed, COLOURS[k])?;
             let stem = args.out.join(format!("{name}-{}", kind.replace(' ', "-")));
-            write(&stem.with_extension("svg"), drawing.svg((1100, 520)).as_bytes())?;
-            render::write(&stem.with_extension("png"), &drawing.pixels((1100, 520)))?;
+            write(&stem.with_extension("svg"), drawing.svg((1100, 520)).into_diagnostic()?.as_bytes())?;
+            render::write(&stem.with_extension("png"), &drawing.pixels((1100, 520)).into_diagnostic()?)?;
             note(&format!("written: {}.svg and .png", stem.display()));
         }
     }
@@ -89,7 +90,7 @@ fn row(kind: &str, all: &[&Followed]) -> Vec<String> {
 }
 
 /// The path, dark, and where the robot went, with the robot at places.
-fn picture(course: &Course, kind: &str, followed: &Followed, colour: u32) -> Result<render::Drawing> {
+fn picture(course: &Course, kind: &str, followed: &Followed, colour: u32) -> Result<Drawing> {
     let robot = course.robot()?;
     let subtitle = format!(
         "least distance from an obstacle: {:.1} cm planned, {:.1} cm driven",
@@ -97,7 +98,8 @@ fn picture(course: &Course, kind: &str, followed: &Followed, colour: u32) -> Res
         100.0 * followed.executed.max(0.0)
     );
     let title = format!("A robot follows a path of {}", kind.to_uppercase());
-    let mut drawing = flat::world(robot.world(), [[0.0; 2], course.size], &title, subtitle);
+    let corners = [[0.0; 2], course.size].map(Point2::from);
+    let mut drawing = Drawing::of_world(robot.world(), corners, title, subtitle);
     for place in followed.driven.iter().step_by(15) {
         let corner = |i: u32| {
             let (s, c) = (f64::from(i) * std::f64::consts::TAU / 40.0).sin_cos();

@@ -3,11 +3,11 @@
 use super::solve::{ITERATIONS, Place, RANGE, rrs};
 use crate::assets::courses::course;
 use crate::cli;
-use crate::flat;
 use crate::output::{note, write};
-use crate::render::{self, Drawing, Item};
+use crate::render;
 use miette::{IntoDiagnostic, Result};
 use mp::cspace::{Iterations, Outcome, Planner, Rn, Rng};
+use mp::render::{Drawing, Item};
 use mp::snake::unbent;
 use nalgebra::{Point2, Vector2};
 
@@ -27,15 +27,15 @@ pub(super) fn run(args: &cli::Bench) -> Result<bool> {
     let place = Place::new(course(WORLD, 0)?)?;
     for (name, drawing) in [("field", field(&place)), ("tree", tree(&place)?)] {
         let stem = args.out.join(format!("rrs-{WORLD}-{name}"));
-        write(&stem.with_extension("svg"), drawing.svg(SIZE).as_bytes())?;
-        render::write(&stem.with_extension("png"), &drawing.pixels(SIZE))?;
+        write(&stem.with_extension("svg"), drawing.svg(SIZE).into_diagnostic()?.as_bytes())?;
+        render::write(&stem.with_extension("png"), &drawing.pixels(SIZE).into_diagnostic()?)?;
         note(&format!("written: {}.svg and .png", stem.display()));
     }
     Ok(true)
 }
 
 fn world(place: &Place, title: &str, subtitle: String) -> Drawing {
-    flat::world(place.robot.world(), [[0.0; 2], place.course.size], title, subtitle)
+    Drawing::of_world(place.robot.world(), [[0.0; 2], place.course.size].map(Point2::from), title, subtitle)
 }
 
 /// The energy of repulsion `½·(1 − c/range)²` under the obstacles, in shades: one item for each, of runs of cells.

@@ -1,11 +1,12 @@
 //! The path: copies of the robot along it, and the line its origin traces.
 
-use super::camera::Camera;
-use super::canvas::{Layer, Veil, mix, scaled, srgb};
-use super::decorate::nearer;
-use super::model::{Lights, Model};
-use super::raster::line;
-use super::{INK, Shown, gradient};
+use crate::body::Body;
+use crate::camera::Camera;
+use crate::canvas::{Layer, Veil, mix, scaled, srgb};
+use crate::decorate::nearer;
+use crate::model::{Lights, Model};
+use crate::palette::{INK, gradient};
+use crate::raster::line;
 use nalgebra::{Isometry3, Point3};
 
 /// Opacity of one copy.
@@ -16,9 +17,10 @@ fn travel(robot: &Model, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     (a.translation.vector - b.translation.vector).norm() + robot.radius * a.rotation.angle_to(&b.rotation)
 }
 
-/// Places spread evenly along edges of these lengths, about `spacing` apart: the index of an edge and a fraction
-/// of it. None on a path that stays put.
-pub(crate) fn evenly(lengths: &[f64], spacing: f64) -> Vec<(usize, f64)> {
+/// Places spread evenly along edges of these lengths, about `spacing` apart, 11 to 69 of them: the index of an edge
+/// and a fraction of it. None on a path that stays put.
+#[must_use]
+pub fn evenly(lengths: &[f64], spacing: f64) -> Vec<(usize, f64)> {
     let mut at = vec![0.0];
     for length in lengths {
         at.push(at[at.len() - 1] + length);
@@ -41,34 +43,38 @@ pub(crate) fn evenly(lengths: &[f64], spacing: f64) -> Vec<(usize, f64)> {
     (1..n).map(place).collect()
 }
 
-/// A rigid robot on its way along `path`, spread evenly by how far it moves.
-pub(super) fn copies(robot: &Shown, path: &[Isometry3<f64>]) -> Vec<Shown> {
-    let lengths: Vec<f64> = path.windows(2).map(|w| travel(&robot.model, &w[0], &w[1])).collect();
-    let places = evenly(&lengths, 0.55 * robot.model.radius).into_iter();
-    places
-        .map(|(segment, t)| {
-            let (a, b) = (&path[segment], &path[segment + 1]);
-            robot.at(a.try_lerp_slerp(b, t, 1e-12).unwrap_or(if t < 0.5 { *a } else { *b }))
-        })
-        .collect()
+impl Body {
+    /// The body on its way along `path`, poses in the world, spread evenly by how far it moves; its own pose does not
+    /// matter. None on a path that stays put.
+    #[must_use]
+    pub fn along(&self, path: &[Isometry3<f64>]) -> Vec<Body> {
+        let lengths: Vec<f64> = path.windows(2).map(|w| travel(&self.model, &w[0], &w[1])).collect();
+        let places = evenly(&lengths, 0.55 * self.radius()).into_iter();
+        places
+            .map(|(segment, t)| {
+                let (a, b) = (&path[segment], &path[segment + 1]);
+                self.at(a.try_lerp_slerp(b, t, 1e-12).unwrap_or(if t < 0.5 { *a } else { *b }))
+            })
+            .collect()
+    }
 }
 
 /// Draws the copies as a veil over `layer`.
-pub(crate) fn draw(layer: &mut Layer, camera: &Camera, lights: &Lights, copies: &[Shown]) {
+pub(crate) fn draw(layer: &mut Layer, camera: &Camera, lights: &Lights, copies: &[Body]) {
     let samples = layer.key.len();
     let mut veil = Veil::new(samples);
     // One copy at a time, so that of each only the surface seen counts.
     let mut one = Layer::new(samples);
     let mut touched: Vec<u32> = Vec::new();
-    for (n, Shown { model: robot, pose }) in copies.iter().enumerate() {
+    for (n, Body { model: robot, pose_wb }) in copies.iter().enumerate() {
         let colour = gradient((n + 1) as f32 / (copies.len() + 1) as f32);
-        robot.faces(camera, pose, lights, |i, key, light| {
+        robot.faces(camera, pose_wb, lights, |i, key, light| {
             if one.key[i] == f32::INFINITY {
                 touched.push(i as u32);
             }
             one.put(i, key, scaled(colour, light));
         });
-        robot.edges(camera, pose, 0.7, |i, key, coverage| {
+        robot.edges(camera, pose_wb, 0.7, |i, key, coverage| {
             if one.key[i] < f32::INFINITY && nearer(key, one.key[i]) {
                 one.colour[i] = mix(one.colour[i], scaled(colour, 0.15), 0.9 * coverage);
             }
@@ -103,21 +109,21 @@ pub(crate) fn trace(layer: &mut Layer, camera: &Camera, path: &[Point3<f64>]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mp::geom::TriMesh;
+    use mp_geom::TriMesh;
 
     #[test]
     fn copies_are_evenly_spread() {
         let corners = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Point3::from).to_vec();
         let mesh = TriMesh::new(corners, vec![[0, 1, 2]]).unwrap();
-        let robot = Shown::new(Some(&mesh), Isometry3::identity());
+        let robot = Body::new(&mesh, Isometry3::identity());
         let at = |x: f64| Isometry3::translation(x, 0.0, 0.0);
-        let copies = copies(&robot, &[at(0.0), at(1.0), at(1.0), at(10.0)]);
+        let copies = robot.along(&[at(0.0), at(1.0), at(1.0), at(10.0)]);
         assert_eq!(copies.len(), 17);
-        let first = copies[0].pose.translation.x;
+        let first = copies[0].pose().translation.x;
         for (i, c) in copies.iter().enumerate() {
-            assert!((c.pose.translation.x - (i + 1) as f64 * first).abs() < 1e-9);
+            assert!((c.pose().translation.x - (i + 1) as f64 * first).abs() < 1e-9);
         }
-        assert!(super::copies(&robot, &[at(1.0), at(1.0)]).is_empty());
-        assert!(super::copies(&robot, &[]).is_empty());
+        assert!(robot.along(&[at(1.0), at(1.0)]).is_empty());
+        assert!(robot.along(&[]).is_empty());
     }
 }

@@ -1,5 +1,7 @@
 //! Layers of samples, in linear light, and how they become pixels.
 
+use crate::picture::Picture;
+
 /// Linear red, green and blue, 0 to 1.
 pub(crate) type Colour = [f32; 3];
 
@@ -79,7 +81,7 @@ impl Veil {
 }
 
 /// Averages `factor` × `factor` samples per pixel, in linear light, into 8-bit sRGB.
-pub(crate) fn resolve(samples: &[Colour], (width, height): (usize, usize), factor: usize) -> image::RgbImage {
+pub(crate) fn resolve(samples: &[Colour], (width, height): (usize, usize), factor: usize) -> Picture {
     let (w, h) = (width / factor, height / factor);
     // The inverse of the sRGB curve on a grid: exact to well under one step of 8 bits.
     const GRID: usize = 4096;
@@ -91,17 +93,17 @@ pub(crate) fn resolve(samples: &[Colour], (width, height): (usize, usize), facto
         })
         .collect();
     let share = 1.0 / (factor * factor) as f32;
-    image::RgbImage::from_fn(w as u32, h as u32, |x, y| {
+    Picture::from_fn((w, h), |x, y| {
         let mut sum = [0.0; 3];
         for dy in 0..factor {
-            let row = (y as usize * factor + dy) * width + x as usize * factor;
+            let row = (y * factor + dy) * width + x * factor;
             for c in &samples[row..row + factor] {
                 for (s, c) in sum.iter_mut().zip(c) {
                     *s += c.clamp(0.0, 1.0);
                 }
             }
         }
-        image::Rgb(sum.map(|s| curve[(s * share * GRID as f32 + 0.5) as usize]))
+        sum.map(|s| curve[(s * share * GRID as f32 + 0.5) as usize])
     })
 }
 
@@ -113,7 +115,7 @@ mod tests {
     fn srgb_round_trips() {
         for hex in [0x00_00_00, 0xff_ff_ff, 0x12_34_56, 0xc0_ff_ee] {
             let pixel = resolve(&[srgb(hex); 4], (2, 2), 2);
-            let [r, g, b] = pixel.get_pixel(0, 0).0.map(u32::from);
+            let [r, g, b] = pixel.pixel(0, 0).unwrap().map(u32::from);
             let wanted = [(hex >> 16) & 255, (hex >> 8) & 255, hex & 255];
             for (got, want) in [r, g, b].into_iter().zip(wanted) {
                 assert!(got.abs_diff(want) <= 1, "{hex:06x}: {got} {want}");

@@ -1,8 +1,8 @@
 //! A mesh made ready to be drawn: smooth normals and the edges worth a line.
 
-use super::camera::Camera;
-use super::raster::{Corner, line, triangle};
-use mp::geom::TriMesh;
+use crate::camera::Camera;
+use crate::raster::{Corner, line, triangle};
+use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::collections::HashMap;
 
@@ -50,6 +50,11 @@ impl Model {
         let edges = feature_edges(&triangles, &faces);
         let radius = points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
         Self { points, triangles, normals, edges, radius }
+    }
+
+    /// Of a point: nothing to be seen.
+    pub(crate) fn point() -> Self {
+        Self { points: vec![Point3::origin()], ..Self::default() }
     }
 
     /// Its points.

@@ -1,7 +1,11 @@
 //! Drawings in the plane: areas and lines, as SVG or as pixels.
 
-use super::canvas::{Colour, mix, resolve, srgb};
-use super::text;
+use crate::canvas::{Colour, mix, resolve, srgb};
+use crate::error::{RenderError, check_range, check_size};
+use crate::palette::{INK, OBSTACLE};
+use crate::picture::Picture;
+use crate::text;
+use mp_geom::flat::FlatWorld;
 use nalgebra::Point2;
 use std::fmt::Write as _;
 
@@ -9,11 +13,10 @@ use std::fmt::Write as _;
 const SUPERSAMPLING: usize = 3;
 /// What the margins leave free on the left, top, right and bottom, pixels.
 const MARGINS: [f64; 4] = [24.0, 72.0, 24.0, 24.0];
-const INK: u32 = 0x2b3440;
 
 /// Something drawn, over what was drawn before.
 #[derive(Clone, Debug)]
-pub(crate) struct Item {
+pub struct Item {
     /// Lines, or rings of which what an odd number goes around is filled; metres.
     points: Vec<Vec<Point2<f64>>>,
     colour: u32,
@@ -23,30 +26,38 @@ pub(crate) struct Item {
 }
 
 impl Item {
-    /// A filled area.
-    pub(crate) fn area(rings: Vec<Vec<Point2<f64>>>, colour: u32) -> Self {
+    /// An area filled with `colour` (`0xRRGGBB`): what an odd number of `rings` goes around, metres.
+    #[must_use]
+    pub fn area(rings: Vec<Vec<Point2<f64>>>, colour: u32) -> Self {
         Self { points: rings, colour, width: None, opacity: 1.0 }
     }
 
-    /// Lines of `width` pixels.
-    pub(crate) fn lines(points: Vec<Vec<Point2<f64>>>, colour: u32, width: f64) -> Self {
+    /// Lines through `points`, metres, of `colour` (`0xRRGGBB`) and `width` pixels.
+    #[must_use]
+    pub fn lines(points: Vec<Vec<Point2<f64>>>, colour: u32, width: f64) -> Self {
         Self { points, colour, width: Some(width), opacity: 1.0 }
     }
 
-    /// Of which something is seen through, 1 being nothing.
-    pub(crate) fn faint(self, opacity: f64) -> Self {
+    /// The same, of which something is seen through; at an opacity of 1 nothing is.
+    #[must_use]
+    pub fn faint(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 }
 
 /// What is drawn between two corners of the world.
 #[derive(Clone, Debug)]
-pub(crate) struct Drawing {
-    pub(crate) title: String,
-    pub(crate) subtitle: String,
-    pub(crate) low: Point2<f64>,
-    pub(crate) high: Point2<f64>,
-    pub(crate) items: Vec<Item>,
+pub struct Drawing {
+    /// Written large.
+    pub title: String,
+    /// Written small below it.
+    pub subtitle: String,
+    /// The lower left corner of what is shown, metres.
+    pub low: Point2<f64>,
+    /// The upper right corner of what is shown, metres.
+    pub high: Point2<f64>,
+    /// What is drawn, the last on top.
+    pub items: Vec<Item>,
 }
 
 /// World to pixels.
@@ -64,6 +75,40 @@ impl View {
 }
 
 impl Drawing {
+    /// The obstacles and walls of `world`, shown from `low` to `high` (metres) and as far as the walls.
+    #[must_use]
+    pub fn of_world(
+        world: &FlatWorld,
+        [low, high]: [Point2<f64>; 2],
+        title: impl Into<String>,
+        subtitle: impl Into<String>,
+    ) -> Self {
+        let [low, high] = world.walls().map_or([low, high], |[l, h]| [l.inf(&low), h.sup(&high)]);
+        let mut items: Vec<Item> =
+            world.polygons().iter().map(|p| Item::area(p.rings().to_vec(), OBSTACLE)).collect();
+        let corners = |[l, h]: [Point2<f64>; 2]| vec![l, Point2::new(h.x, l.y), h, Point2::new(l.x, h.y), l];
+        items.push(match world.walls() {
+            Some(walls) => Item::lines(vec![corners(walls)], INK, 4.0),
+            None => Item::lines(vec![corners([low, high])], OBSTACLE, 1.0),
+        });
+        Self { title: title.into(), subtitle: subtitle.into(), low, high, items }
+    }
+
+    /// Refuses what cannot be drawn.
+    fn check(&self, size: (usize, usize)) -> Result<(), RenderError> {
+        check_size(size)?;
+        check_range([self.low, self.high].iter().flat_map(|p| [p.x, p.y]), || "the corners".into())?;
+        let extent = self.high - self.low;
+        if extent.min() < 0.0 || extent.max() <= 0.0 {
+            return Err(RenderError::Corners { low: self.low, high: self.high });
+        }
+        for (n, item) in self.items.iter().enumerate() {
+            let points = item.points.iter().flatten().flat_map(|p| [p.x, p.y]);
+            check_range(points, || format!("item {}", n + 1))?;
+        }
+        Ok(())
+    }
+
     fn view(&self, (width, height): (usize, usize)) -> View {
         let [left, top, right, bottom] = MARGINS;
         let (w, h) = (width as f64 - left - right, height as f64 - top - bottom);
@@ -74,7 +119,12 @@ impl Drawing {
     }
 
     /// As SVG, `size` pixels wide and high at its natural size.
-    pub(crate) fn svg(&self, size: (usize, usize)) -> String {
+    ///
+    /// # Errors
+    /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, the corners have nothing between them, or a
+    /// coordinate is not finite or beyond 10⁶⁰ m.
+    pub fn svg(&self, size: (usize, usize)) -> Result<String, RenderError> {
+        self.check(size)?;
         let view = self.view(size);
         let (w, h) = size;
         let mut out = format!(
@@ -112,11 +162,15 @@ impl Drawing {
                 "<text x=\"24\" y=\"{y}\" font-family=\"sans-serif\" font-size=\"{height}\" fill=\"#{INK:06x}\">{words}</text>"
             );
         }
-        out + "</svg>\n"
+        Ok(out + "</svg>\n")
     }
 
-    /// As pixels.
-    pub(crate) fn pixels(&self, size: (usize, usize)) -> image::RgbImage {
+    /// As a picture of `size` pixels.
+    ///
+    /// # Errors
+    /// As [`svg`](Self::svg).
+    pub fn pixels(&self, size: (usize, usize)) -> Result<Picture, RenderError> {
+        self.check(size)?;
         let fine = (size.0 * SUPERSAMPLING, size.1 * SUPERSAMPLING);
         let factor = SUPERSAMPLING as f64;
         let view = self.view(size);
@@ -151,7 +205,7 @@ impl Drawing {
                 samples[i] = mix(samples[i], ink, coverage.clamp(0.0, 1.0));
             });
         }
-        resolve(&samples, fine, SUPERSAMPLING)
+        Ok(resolve(&samples, fine, SUPERSAMPLING))
     }
 }
 
@@ -210,20 +264,58 @@ mod tests {
             high: p(4.0, 4.0),
             items: vec![frame, line],
         };
-        let svg = drawing.svg((400, 400));
+        let svg = drawing.svg((400, 400)).unwrap();
         assert!(
             svg.contains("evenodd") && svg.contains("A &lt; B") && svg.contains("stroke-opacity=\"0.5\"")
         );
-        let picture = drawing.pixels((400, 400));
+        let picture = drawing.pixels((400, 400)).unwrap();
         let view = drawing.view((400, 400));
         let at = |x: f64, y: f64| {
             let [x, y] = view.put(&p(x, y));
-            picture.get_pixel(x as u32, y as u32).0
+            picture.pixel(x as usize, y as usize).unwrap()
         };
         assert_eq!(at(0.0, 1.5), [0, 0, 255], "the frame");
         assert_eq!(at(0.5, 0.5), [255, 255, 255], "its hole");
         assert_eq!(at(3.0, 3.0), [255, 255, 255], "outside");
         let [r, g, b] = at(-0.5, 0.0);
         assert!(r == 255 && g == b && (150..220).contains(&g), "half of the line is seen: {r} {g} {b}");
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_said() {
+        let p = |x: f64, y: f64| Point2::new(x, y);
+        let drawing = |low, high, points| Drawing {
+            title: String::new(),
+            subtitle: String::new(),
+            low,
+            high,
+            items: vec![Item::lines(vec![points], 0, 1.0)],
+        };
+        for (low, high, x, words) in [
+            (p(0.0, 0.0), p(0.0, 0.0), 0.0, "lower left"),
+            (p(1.0, 0.0), p(0.0, 1.0), 0.0, "lower left"),
+            (p(0.0, f64::NAN), p(1.0, 1.0), 0.0, "the corners"),
+            (p(0.0, 0.0), p(1.0, 1.0), f64::INFINITY, "item 1"),
+        ] {
+            let drawing = drawing(low, high, vec![p(0.0, 0.0), p(x, 0.0)]);
+            let error = drawing.svg((64, 64)).unwrap_err();
+            assert!(error.to_string().contains(words), "{error}");
+            assert_eq!(drawing.pixels((64, 64)), Err(error));
+        }
+        let flat = drawing(p(0.0, 0.0), p(1.0, 0.0), vec![p(0.0, 0.0), p(1e60, -1e60)]);
+        for size in [(1, 1), (64, 3), (3, 64), (64, 64)] {
+            assert!(flat.svg(size).is_ok() && flat.pixels(size).is_ok());
+        }
+        assert!(flat.pixels((0, 1)).is_err() && flat.svg((9000, 1)).is_err());
+    }
+
+    #[test]
+    fn a_world_has_its_obstacles_and_walls() {
+        use mp_geom::flat::Polygon;
+        let obstacle = Polygon::rectangle([0.5, 0.5], [1.0, 1.0]).unwrap();
+        let world = FlatWorld::new(vec![obstacle], Some([[0.0; 2], [2.0; 2]])).unwrap();
+        let drawing = Drawing::of_world(&world, [Point2::new(0.5, 0.5), Point2::new(3.0, 1.5)], "a", "b");
+        assert_eq!((drawing.low, drawing.high), (Point2::new(0.0, 0.0), Point2::new(3.0, 2.0)));
+        assert_eq!(drawing.items.len(), 2);
     }
 }

@@ -1,7 +1,7 @@
 //! Lettering: a stroke font of our own, so that pictures need no font file.
 
-use super::camera::Projected;
-use super::raster::stroke;
+use crate::camera::Projected;
+use crate::raster::stroke;
 
 /// Glyphs on a grid four units wide: capitals from y = 0 to the baseline at 6, small letters from 2, tails
 /// down to 8. Each word is a polyline of `xy` digit pairs; `~` rounds its corners.

@@ -1,14 +1,13 @@
 //! `render`, and writing pictures.
 
-use super::{Shown, Subject, draw, sweep};
-use crate::arm::{Task, draw_task};
+use crate::arm::{self, Task};
 use crate::cli::Render;
 use crate::flat::{self, AnyTask, either};
 use crate::{output, scenes};
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, miette};
 use mp::io::{FlatProblem, JointPath, PathFile, Problem, RobotProblem, SpaceKind};
+use mp::render::{Body, Picture, Scene};
 use nalgebra::{Isometry3, Point3};
-use std::io::Cursor;
 use std::path::Path;
 
 /// The size of pictures when none is given, pixels.
@@ -32,20 +31,20 @@ pub(crate) fn run(args: &Render) -> Result<bool> {
         output::note(&format!("wrote {}", args.picture.display()));
         return Ok(true);
     }
-    let picture = if RobotProblem::is_named(&scene) {
+    let drawn = if RobotProblem::is_named(&scene) {
         let task = Task::load(&scene)?;
         let states = match &args.path {
             Some(path) => task.path(&JointPath::read(path)?)?,
             None => Vec::new(),
         };
-        draw_task(&task, &states, subtitle(states.len()), args.size)
+        arm::scene(&task, &states, subtitle(states.len()))
     } else {
         let problem = Problem::load(scene)?;
         let path = args.path.as_ref().map(PathFile::read).transpose()?.map(|p| p.poses()).unwrap_or_default();
         let subtitle = subtitle(path.len());
-        draw(&subject(&problem, &path, subtitle), args.size)
+        rigid(&problem, &path, subtitle)
     };
-    write(&args.picture, &picture)?;
+    write(&args.picture, &drawn.draw(args.size).into_diagnostic()?)?;
     output::note(&format!("wrote {}", args.picture.display()));
     Ok(true)
 }
@@ -70,28 +69,23 @@ pub(crate) fn wanted(file: &Path, flat: bool) -> Result<()> {
     }
 }
 
-/// The picture of `problem` with `path` in it.
-pub(crate) fn subject<'a>(problem: &'a Problem, path: &[Isometry3<f64>], subtitle: String) -> Subject<'a> {
-    let start = Shown::new(Some(&problem.robot.mesh), problem.start);
-    Subject {
+/// What is drawn of `problem` with `path` in it.
+pub(crate) fn rigid(problem: &Problem, path: &[Isometry3<f64>], subtitle: String) -> Scene {
+    let start = Body::new(&problem.robot.mesh, problem.start);
+    Scene {
         title: problem.name.clone(),
         subtitle,
         planar: problem.space == SpaceKind::Se2,
-        obstacles: problem.obstacles.iter().map(|o| (&o.mesh, o.pose)).collect(),
-        goal: start.at(problem.goal),
-        copies: sweep::copies(&start, path),
+        obstacles: problem.obstacles.iter().map(|o| Body::new(&o.mesh, o.pose)).collect(),
+        goal: Some(start.at(problem.goal)),
+        copies: start.along(path),
         trace: path.iter().map(|pose| Point3::from(pose.translation.vector)).collect(),
-        start,
-        bounds: problem.bounds.map(|b| (b.min, b.max)),
+        start: Some(start),
+        bounds: problem.bounds,
     }
 }
 
 /// Writes `picture` to `file` as PNG.
-pub(crate) fn write(file: &Path, picture: &image::RgbImage) -> Result<()> {
-    let mut bytes = Vec::new();
-    picture
-        .write_to(&mut Cursor::new(&mut bytes), image::ImageFormat::Png)
-        .into_diagnostic()
-        .wrap_err("cannot encode the picture")?;
-    output::write(file, &bytes)
+pub(crate) fn write(file: &Path, picture: &Picture) -> Result<()> {
+    output::write(file, &picture.to_png())
 }

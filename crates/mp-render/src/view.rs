@@ -1,8 +1,8 @@
 //! From where a scene shows its path best.
 
-use super::camera::Camera;
-use super::model::Lights;
-use super::{Placed, Shown};
+use crate::body::Body;
+use crate::camera::Camera;
+use crate::model::Lights;
 use nalgebra::Point3;
 
 /// A coarse picture is enough to judge a view.
@@ -17,12 +17,12 @@ pub(crate) struct View {
 
 /// Tries views all around and takes the one with the most of `path` in sight and the widest on the picture;
 /// the customary one, from the front right, when others are hardly better.
-pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Placed<'_>], path: &[&Shown]) -> View {
+pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) -> View {
     let marks: Vec<Point3<f64>> = path
         .iter()
         .flat_map(|robot| {
             let points = robot.model.points();
-            points.iter().step_by(points.len().div_ceil(12).max(1)).map(|p| robot.pose * p)
+            points.iter().step_by(points.len().div_ceil(12).max(1)).map(|p| robot.pose_wb * p)
         })
         .collect();
     let mut best: Option<(f64, View)> = None;
@@ -43,11 +43,11 @@ pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Placed<'_>], path: &[&S
 }
 
 /// The share of `marks` in sight, and the share of the picture's diagonal that they span.
-fn judge(camera: &Camera, obstacles: &[Placed<'_>], marks: &[Point3<f64>]) -> (f64, f64) {
+fn judge(camera: &Camera, obstacles: &[Body], marks: &[Point3<f64>]) -> (f64, f64) {
     let mut nearest = vec![f32::INFINITY; camera.width * camera.height];
     let lights = Lights::of(camera);
     for o in obstacles {
-        o.model.faces(camera, &o.pose, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
+        o.model.faces(camera, &o.pose_wb, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
     }
     let (mut seen, mut lo, mut hi) = (0usize, [f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
     for p in marks {

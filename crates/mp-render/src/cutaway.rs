@@ -3,7 +3,7 @@
 //! Around each visible point of the path a cone toward the viewer is cleared (adaptive cutaways, Burns and
 //! Finkelstein 2008): the depth of the path, less a slope times the distance on the picture.
 
-use super::camera::Camera;
+use crate::camera::Camera;
 
 /// For every sample, the key before which obstacles are opened. `path` holds the keys of the path's nearest
 /// surface, infinite where it is not; `slope` is metres of depth per metre across; what is within `slack`

@@ -1,16 +1,21 @@
 //! Curves over a logarithmic axis.
 
-use super::camera::Projected;
-use super::canvas::{Colour, resolve, srgb};
-use super::raster::stroke;
-use super::{INK, SUPERSAMPLING, text};
+use crate::camera::Projected;
+use crate::canvas::{Colour, mix, resolve, srgb};
+use crate::error::{RenderError, check_size};
+use crate::palette::INK;
+use crate::picture::Picture;
+use crate::raster::stroke;
+use crate::scene::SUPERSAMPLING;
+use crate::text;
 
 /// A named curve.
 #[derive(Clone, Debug)]
-pub(crate) struct Series {
-    pub(crate) name: String,
-    /// Both positive.
-    pub(crate) points: Vec<(f64, f64)>,
+pub struct Series {
+    /// What it is called.
+    pub name: String,
+    /// Its points from left to right: x above 0, y not below.
+    pub points: Vec<(f64, f64)>,
 }
 
 const COLOURS: [u32; 6] = [0x1f77b4, 0xd62728, 0x2ca02c, 0x9467bd, 0xe08214, 0x555555];
@@ -18,20 +23,30 @@ const GRID: u32 = 0xdde1e6;
 const GREY: u32 = 0x66717f;
 
 /// Draws `series` with x on a logarithmic and y on a linear axis from 0, so that what grows logarithmically is
-/// straight. Nothing of it when there is not a point.
-pub(crate) fn plot(
+/// straight; `axes` are the names of both. Blank when there is not a point.
+///
+/// # Errors
+/// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, or a point is not on the axes.
+pub fn plot(
     title: &str,
     axes: [&str; 2],
     series: &[Series],
     (width, height): (usize, usize),
-) -> image::RgbImage {
+) -> Result<Picture, RenderError> {
+    check_size((width, height))?;
+    for s in series {
+        let bad = |p: &&(f64, f64)| !(p.0 > 0.0 && p.0.is_finite() && p.1 >= 0.0 && p.1.is_finite());
+        if let Some(&(x, y)) = s.points.iter().find(bad) {
+            return Err(RenderError::Point { name: s.name.clone(), x, y });
+        }
+    }
     let size = (width * SUPERSAMPLING, height * SUPERSAMPLING);
     let mut sheet = Sheet { size, colour: vec![[1.0; 3]; size.0 * size.1], unit: size.1 as f32 / 600.0 };
     let points = || series.iter().flat_map(|s| &s.points);
     let decades = |edge: fn(f64, f64) -> f64, start: f64| points().map(|p| p.0.log10()).fold(start, edge);
     let (low, high) = (decades(f64::min, f64::INFINITY), decades(f64::max, f64::NEG_INFINITY));
     if low > high {
-        return resolve(&sheet.colour, size, SUPERSAMPLING);
+        return Ok(resolve(&sheet.colour, size, SUPERSAMPLING));
     }
     // What is a little beyond a decade needs no other.
     let low = (low + 0.05).floor();
@@ -69,7 +84,7 @@ pub(crate) fn plot(
         }
         sheet.write(&s.name, (left + 16.0 * u, up + (16.0 + 20.0 * i as f32) * u), 10.0, 1.2, colour);
     }
-    resolve(&sheet.colour, size, SUPERSAMPLING)
+    Ok(resolve(&sheet.colour, size, SUPERSAMPLING))
 }
 
 /// What is drawn on.
@@ -84,14 +99,14 @@ impl Sheet {
     fn line(&mut self, [from, to]: [Projected; 2], half: f32, colour: u32) {
         let colour = srgb(colour);
         stroke(self.size, from, to, half * self.unit, |i, _, coverage| {
-            self.colour[i] = super::canvas::mix(self.colour[i], colour, coverage);
+            self.colour[i] = mix(self.colour[i], colour, coverage);
         });
     }
 
     fn write(&mut self, words: &str, at: (f32, f32), height: f32, bold: f32, colour: u32) {
         let colour = srgb(colour);
         text::write(self.size, words, at, height * self.unit, bold, |i, coverage| {
-            self.colour[i] = super::canvas::mix(self.colour[i], colour, coverage);
+            self.colour[i] = mix(self.colour[i], colour, coverage);
         });
     }
 
@@ -135,11 +150,29 @@ mod tests {
     fn curves_leave_ink_and_nothing_leaves_none() {
         let series = Series { name: "a".into(), points: vec![(1e3, 1.0), (1e4, 2.0), (1e6, 3.0)] };
         let ink = |series: &[Series]| {
-            let picture = plot("title", ["x", "y"], series, (320, 240));
-            assert_eq!(picture.dimensions(), (320, 240));
-            picture.pixels().filter(|p| p.0 != [255; 3]).count()
+            let picture = plot("title", ["x", "y"], series, (320, 240)).unwrap();
+            assert_eq!((picture.width(), picture.height()), (320, 240));
+            picture.rgb().chunks(3).filter(|p| *p != [255; 3]).count()
         };
         assert_eq!(ink(&[]), 0);
         assert!(ink(&[series]) > 1_000);
+    }
+
+    #[test]
+    fn what_is_on_no_axis_is_refused() {
+        let of = |points: &[(f64, f64)]| {
+            let series = [Series { name: "a".into(), points: points.to_vec() }];
+            plot("title", ["x", "y"], &series, (64, 64)).map(|_| ())
+        };
+        for point in [(0.0, 1.0), (-1.0, 1.0), (1.0, f64::NAN), (f64::INFINITY, 1.0), (1.0, -1.0)] {
+            let error = of(&[(1.0, 1.0), point]).unwrap_err().to_string();
+            assert!(error.contains("curve `a`") && error.contains("expected"), "{error}");
+        }
+        // Far apart, or all in one place.
+        for points in [[(1e-300, 0.0), (1e300, 1e300)], [(1.0, 0.0), (1.0, 0.0)], [(1.0, 1e-300), (2.0, 0.0)]]
+        {
+            assert_eq!(of(&points), Ok(()));
+        }
+        assert!(plot("title", ["x", "y"], &[], (0, 64)).is_err());
     }
 }

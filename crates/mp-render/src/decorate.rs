@@ -1,11 +1,14 @@
 //! Background, floor grid, outlines, shading of corners, and lettering.
 
-use super::camera::Camera;
-use super::canvas::{Layer, Veil, mix, scaled, srgb};
-use super::model::Model;
-use super::raster::line;
-use super::{GOAL, INK, OBSTACLES, Placed, START, Subject, corners, gradient, text};
-use nalgebra::{Isometry3, Point3};
+use crate::body::Body;
+use crate::camera::Camera;
+use crate::canvas::{Layer, Veil, mix, scaled, srgb};
+use crate::palette::{GOAL, INK, OBSTACLES, START, gradient};
+use crate::raster::line;
+use crate::scene::{Scene, corners};
+use crate::text;
+use mp_geom::Aabb;
+use nalgebra::Point3;
 
 /// Whether a line at `key` lies on or before a surface at `surface`: lines get a little head start.
 pub(crate) fn nearer(key: f32, surface: f32) -> bool {
@@ -42,7 +45,8 @@ pub(crate) fn shade_corners(layer: &mut Layer, camera: &Camera, extent: f64) {
                 continue;
             }
             let z = depth[i];
-            let radius = reach / camera.sample_size(z);
+            // Whatever is too far away is off the picture.
+            let radius = (reach / camera.sample_size(z)).min(1e6);
             // Opposite taps together: on a slanted plane they cancel.
             let lift = |tx: isize, ty: isize| {
                 if tx < 0
@@ -68,15 +72,9 @@ pub(crate) fn shade_corners(layer: &mut Layer, camera: &Camera, extent: f64) {
 }
 
 /// Dark lines along the edges of what is in `layer`.
-pub(crate) fn outline(
-    layer: &mut Layer,
-    camera: &Camera,
-    model: &Model,
-    pose: &Isometry3<f64>,
-    strength: f32,
-) {
+pub(crate) fn outline(layer: &mut Layer, camera: &Camera, body: &Body, strength: f32) {
     let ink = srgb(INK);
-    model.edges(camera, pose, 0.6, |i, key, coverage| {
+    body.model.edges(camera, &body.pose_wb, 0.6, |i, key, coverage| {
         if nearer(key, layer.key[i]) {
             layer.colour[i] = mix(layer.colour[i], ink, strength * coverage);
         }
@@ -88,7 +86,7 @@ pub(crate) fn outlines(
     layer: &mut Layer,
     ghosts: &mut Veil,
     camera: &Camera,
-    obstacles: &[Placed<'_>],
+    obstacles: &[Body],
     cut: &[f32],
 ) {
     let ink = srgb(INK);
@@ -96,7 +94,7 @@ pub(crate) fn outlines(
         // Fine meshes have more lines than there is room for.
         let strength = 0.5 * (4000.0 / o.model.edge_count().max(1) as f32).clamp(0.25, 1.0);
         let faint = scaled(srgb(OBSTACLES[n % OBSTACLES.len()]), 0.4);
-        o.model.edges(camera, &o.pose, 0.6, |i, key, coverage| {
+        o.model.edges(camera, &o.pose_wb, 0.6, |i, key, coverage| {
             if key < cut[i] {
                 ghosts.add(i, faint, 0.9 * strength * coverage, 3.0);
             } else if nearer(key, layer.key[i]) {
@@ -116,7 +114,8 @@ fn round_length(length: f64) -> f64 {
 pub(crate) fn floor(layer: &mut Layer, camera: &Camera, frame: &[Point3<f64>]) {
     let (lo, hi) = corners(frame);
     let size = (hi.x - lo.x).max(hi.y - lo.y);
-    if size <= 0.0 {
+    // There are no round lengths next to nothing.
+    if size < 1e-200 {
         return;
     }
     let cell = round_length(size / 6.0);
@@ -138,7 +137,8 @@ pub(crate) fn floor(layer: &mut Layer, camera: &Camera, frame: &[Point3<f64>]) {
 }
 
 /// The bounds of a planar scene.
-pub(crate) fn border(layer: &mut Layer, camera: &Camera, lo: &Point3<f64>, hi: &Point3<f64>) {
+pub(crate) fn border(layer: &mut Layer, camera: &Camera, bounds: &Aabb) {
+    let (lo, hi) = (&bounds.min, &bounds.max);
     let rim = [(lo.x, lo.y), (hi.x, lo.y), (hi.x, hi.y), (lo.x, hi.y)];
     let ink = srgb(0x9aa5b3);
     for k in 0..4 {
@@ -152,7 +152,7 @@ pub(crate) fn border(layer: &mut Layer, camera: &Camera, lo: &Point3<f64>, hi: &
 }
 
 /// Title at the top, what the colours mean at the bottom.
-pub(crate) fn labels(layer: &mut Layer, size: (usize, usize), subject: &Subject<'_>) {
+pub(crate) fn labels(layer: &mut Layer, size: (usize, usize), scene: &Scene) {
     let (w, h) = (size.0 as f32, size.1 as f32);
     let unit = h / 960.0;
     let mut write = |words: &str, x: f32, y: f32, height: f32, bold: f32, colour| {
@@ -161,11 +161,14 @@ pub(crate) fn labels(layer: &mut Layer, size: (usize, usize), subject: &Subject<
         });
     };
     let (ink, grey) = (srgb(INK), srgb(0x66717f));
-    write(&subject.title, 28.0 * unit, 44.0 * unit, 19.0 * unit, 1.25, ink);
-    write(&subject.subtitle, 28.0 * unit, 70.0 * unit, 11.5 * unit, 1.0, grey);
+    write(&scene.title, 28.0 * unit, 44.0 * unit, 19.0 * unit, 1.25, ink);
+    write(&scene.subtitle, 28.0 * unit, 70.0 * unit, 11.5 * unit, 1.0, grey);
+    if scene.start.is_none() && scene.goal.is_none() {
+        return;
+    }
     let (y, cap) = (h - 26.0 * unit, 11.5 * unit);
     let bar = 120.0 * unit;
-    let has_path = !subject.trace.is_empty();
+    let has_path = !scene.trace.is_empty();
     let words = [text::width("start", cap), text::width("goal", cap)];
     let gap = 10.0 * unit;
     let total = words[0] + words[1] + 2.0 * gap + bar;

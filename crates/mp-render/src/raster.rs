@@ -1,6 +1,6 @@
 //! Triangles and lines to samples.
 
-use super::camera::{Camera, Projected};
+use crate::camera::{Camera, Projected};
 use nalgebra::Point3;
 
 /// A corner of a triangle in the camera frame, and how brightly it is lit.

@@ -1,0 +1,69 @@
+//! What cannot be drawn.
+
+use nalgebra::Point2;
+use thiserror::Error;
+
+/// The widest and highest picture, pixels.
+pub const MAX_SIDE: usize = 8192;
+
+/// What is farther from the origin is not drawn, metres.
+pub(crate) const MAX_COORDINATE: f64 = 1e60;
+
+/// Why a picture could not be drawn.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The picture has no pixels, or too many.
+    #[error("cannot draw {width} × {height} pixels: expected 1 to {MAX_SIDE} each way")]
+    Size {
+        /// Its width, pixels.
+        width: usize,
+        /// Its height, pixels.
+        height: usize,
+    },
+    /// A coordinate is NaN, infinite, or beyond 10⁶⁰ m.
+    #[error("cannot draw {what}: expected finite coordinates, none beyond {MAX_COORDINATE:e} m")]
+    OutOfRange {
+        /// What has the coordinate, such as "obstacle 3".
+        what: String,
+    },
+    /// The corners of a drawing have nothing between them.
+    #[error(
+        "cannot draw between ({}, {}) and ({}, {}): expected the lower left corner, then the upper right one",
+        low.x, low.y, high.x, high.y
+    )]
+    Corners {
+        /// The lower left one, metres.
+        low: Point2<f64>,
+        /// The upper right one, metres.
+        high: Point2<f64>,
+    },
+    /// A point of a curve is not on the axes.
+    #[error(
+        "cannot draw ({x}, {y}) of the curve `{name}`: expected finite numbers, x above 0 and y not below 0"
+    )]
+    Point {
+        /// The curve.
+        name: String,
+        /// x of the point.
+        x: f64,
+        /// y of the point.
+        y: f64,
+    },
+}
+
+/// Refuses pictures without pixels, and with too many.
+pub(crate) fn check_size((width, height): (usize, usize)) -> Result<(), RenderError> {
+    let fits = |side: usize| (1..=MAX_SIDE).contains(&side);
+    if fits(width) && fits(height) { Ok(()) } else { Err(RenderError::Size { width, height }) }
+}
+
+/// Refuses coordinates out of range; `what` has them.
+pub(crate) fn check_range(
+    coordinates: impl IntoIterator<Item = f64>,
+    what: impl FnOnce() -> String,
+) -> Result<(), RenderError> {
+    // NaN is not within either.
+    let fits = coordinates.into_iter().all(|c| c.abs() <= MAX_COORDINATE);
+    if fits { Ok(()) } else { Err(RenderError::OutOfRange { what: what() }) }
+}
