@@ -42,5 +42,5 @@ pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
 pub use robot::{JointPath, ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
-pub use source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
+pub use source::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use stl::{parse_stl, stl_text, write_stl};

@@ -5,7 +5,7 @@ use crate::error::{Error, ErrorKind};
 use crate::gempa::parse_gempa_mesh;
 use crate::obj::parse_obj;
 use crate::off::OffDocument;
-use crate::source::{MAX_MESH_BYTES, read_file};
+use crate::source::{Disk, Files, MAX_MESH_BYTES};
 use crate::stl::parse_stl;
 use mp_geom::{MeshError, TriMesh};
 use nalgebra::Point3;
@@ -23,8 +23,13 @@ const MAX_CUTTING: usize = 1_000_000_000;
 /// # Errors
 /// [`Error`] when it cannot be read, is of no known format, or has no triangles.
 pub fn read_mesh(path: impl AsRef<Path>) -> Result<TriMesh, Error> {
+    read_mesh_of(&Disk, path.as_ref())
+}
+
+/// The same of files from elsewhere.
+pub(crate) fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
     let path = path.as_ref();
-    let bytes = read_file(path, MAX_MESH_BYTES)?;
+    let bytes = files.read(path, MAX_MESH_BYTES)?;
     let file = path.display().to_string();
     match MeshFormat::of(path, &bytes) {
         Some(MeshFormat::Off) => OffDocument::parse(&file, &bytes)?.to_mesh(&file),

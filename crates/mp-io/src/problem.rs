@@ -2,9 +2,9 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::gempa::environment::{self, Environment};
-use crate::mesh::read_mesh;
+use crate::mesh::read_mesh_of;
 use crate::ompl;
-use crate::source::{MAX_TEXT_BYTES, decode, read_file};
+use crate::source::{Disk, Files, MAX_TEXT_BYTES, decode};
 use crate::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::{Isometry3, Point3};
@@ -105,14 +105,23 @@ impl Problem {
     /// # Errors
     /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref();
-        let (file, bytes) = (path.display().to_string(), read_file(path, MAX_TEXT_BYTES)?);
+        Self::load_from(&Disk, path.as_ref())
+    }
+
+    /// The same of files from elsewhere.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
+        let (file, bytes) = (path.display().to_string(), files.read(path, MAX_TEXT_BYTES)?);
         let text = decode(&file, &bytes)?;
         match ProblemFormat::of(path, text) {
             Some(ProblemFormat::Gempa) => {
-                Self::from_environment(path, &Text { file: &file, text, guide: environment::GUIDE })
+                Self::from_environment(files, path, &Text { file: &file, text, guide: environment::GUIDE })
             }
-            Some(ProblemFormat::OmplApp) => ompl::load(path, &Text { file: &file, text, guide: ompl::GUIDE }),
+            Some(ProblemFormat::OmplApp) => {
+                ompl::load(files, path, &Text { file: &file, text, guide: ompl::GUIDE })
+            }
             None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
                 .expected("a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)")
                 .help(
@@ -139,7 +148,7 @@ impl Problem {
         })
     }
 
-    fn from_environment(path: &Path, text: &Text<'_>) -> Result<Self, Error> {
+    fn from_environment(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Self, Error> {
         let (env, places) = environment::parse(text)?;
         let Environment { start, goal, .. } = env;
         let space = env.space.unwrap_or_default();
@@ -160,7 +169,7 @@ impl Problem {
             _ => None,
         };
         let folder = path.parent().unwrap_or(Path::new(""));
-        let (file, mesh) = body_mesh(text, folder, places.robot, "the robot")?;
+        let (file, mesh) = body_mesh(files, text, folder, places.robot, "the robot")?;
         let robot = Body { name: "robot".to_owned(), file, mesh };
         let mut obstacles: Vec<PlacedBody> = Vec::new();
         for (i, o) in env.obstacles.iter().enumerate() {
@@ -170,7 +179,7 @@ impl Problem {
             let seen = (0..i).find(|&k| env.obstacles[k].mesh == o.mesh);
             let (file, mesh) = match seen {
                 Some(k) => (obstacles[k].file.clone(), obstacles[k].mesh.clone()),
-                None => body_mesh(text, folder, places.meshes[i], &name)?,
+                None => body_mesh(files, text, folder, places.meshes[i], &name)?,
             };
             obstacles.push(PlacedBody { name, file, mesh, pose: pose_from_six(o.pose) });
         }
@@ -182,12 +191,13 @@ impl Problem {
 
 /// Reads the mesh named at `place`.
 fn body_mesh(
+    files: &dyn Files,
     text: &Text<'_>,
     folder: &Path,
     place: Token<'_>,
     what: &str,
 ) -> Result<(PathBuf, TriMesh), Error> {
-    let (file, mesh) = cited(text, folder, place, what, |f| read_mesh(f))?;
+    let (file, mesh) = cited(text, folder, place, what, |f| read_mesh_of(files, f))?;
     check_mesh(text, place, &file, &mesh)?;
     Ok((file, mesh))
 }

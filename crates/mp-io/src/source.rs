@@ -1,6 +1,7 @@
 //! Files in and out: bounded reading, decoding, atomic writing.
 
 use crate::error::{Error, ErrorKind};
+use std::fmt::{self, Debug};
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -9,6 +10,53 @@ use std::path::Path;
 pub const MAX_MESH_BYTES: u64 = 512 << 20;
 /// The largest scene, problem or path file that is read, bytes (64 MiB).
 pub const MAX_TEXT_BYTES: u64 = 64 << 20;
+
+/// Where files come from: the [`Disk`], or files in memory.
+pub trait Files: Debug + Send + Sync {
+    /// The content of the file at `path`, which has at most `limit` bytes.
+    ///
+    /// # Errors
+    /// [`Error`] of kind [`ErrorKind::Io`] when there is none, of kind [`ErrorKind::TooLarge`] when it is larger.
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error>;
+}
+
+/// The file system.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Disk;
+
+impl Files for Disk {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+        read_file(path, limit)
+    }
+}
+
+/// Files in memory: what `find` returns for a path whose parts are separated by `/`; `..` has to be resolved there.
+#[derive(Clone, Copy)]
+pub struct InMemory<F>(pub F);
+
+impl<F> Debug for InMemory<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("InMemory")
+    }
+}
+
+impl<F: Fn(&str) -> Option<&'static [u8]> + Send + Sync> Files for InMemory<F> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+        let name = path.to_string_lossy().replace('\\', "/");
+        match (self.0)(&name) {
+            Some(bytes) if bytes.len() as u64 <= limit => Ok(bytes.to_vec()),
+            Some(bytes) => {
+                let message = format!("the file has {} bytes, more than the {limit} accepted", bytes.len());
+                Err(Error::new(ErrorKind::TooLarge, name, message)
+                    .help("simplify the mesh or split the file"))
+            }
+            None => {
+                Err(Error::new(ErrorKind::Io, name, "cannot read the file: there is no such file in memory")
+                    .help("check the spelling"))
+            }
+        }
+    }
+}
 
 /// Reads a regular file of at most `limit` bytes.
 pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {

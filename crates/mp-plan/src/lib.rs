@@ -33,14 +33,14 @@
 //!
 //! | to | use |
 //! |---|---|
-//! | load a scene, or make one in code | [`Scene::load`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
+//! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
 //! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what becomes of the path |
 //! | plan | [`Scene::plan`]; watched and stopped from outside: [`Scene::plan_with`], [`Control`], [`Watch`] |
 //! | read what came of it | [`Report`], with a documented JSON form |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
 //! | know why a configuration is not free | [`Scene::explain`] |
 //! | know what is odd about a scene | [`Scene::lint`] |
-//! | draw | [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
+//! | draw | `Scene::picture` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
 //! | bring a kind of robot of your own | [`RobotKind`] |
 //! | have states in your hands instead of rows | [`search`], [`shorten`] with a [`RobotKind`] |
 //!
@@ -50,9 +50,12 @@
 mod check;
 mod counted;
 mod error;
+mod find;
 mod finish;
 mod numbers;
 mod path;
+#[cfg(feature = "pictures")]
+mod picture;
 mod planners;
 mod report;
 mod request;
@@ -66,6 +69,8 @@ pub use error::Error;
 pub use finish::shorten;
 pub use numbers::{brief, count};
 pub use path::{PathFileKind, PathRows};
+#[cfg(feature = "pictures")]
+pub use picture::{PICTURE_SIZE, PictureKind};
 pub use planners::{planners, wrappers};
 pub use report::{Medians, REPORT_VERSION, Report, Runs, StoppedBy, median, medians};
 pub use request::{Budget, Finish, Length, Metric, MotionCheck, Request};

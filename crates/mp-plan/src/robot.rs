@@ -68,6 +68,8 @@ pub enum BodyShape {
     Mesh(TriMesh),
     /// Rings around an area of the plane z = 0, the outer one first; the last point of a ring is joined to its first.
     Area(Vec<Vec<Point2<f64>>>),
+    /// Lines in the plane z = 0, such as walls.
+    Lines(Vec<Vec<Point2<f64>>>),
 }
 
 /// Something that touches something else.

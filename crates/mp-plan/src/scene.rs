@@ -9,7 +9,7 @@ use crate::{
     RobotKind, Verdict,
 };
 use mp_cspace::{MotionBound, Outcome, Space};
-use mp_io::{FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
+use mp_io::{Disk, Files, FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -65,16 +65,25 @@ impl Scene {
     /// # Errors
     /// When a file cannot be read or makes no sense: with file, line, column and remedy.
     pub fn load(file: impl AsRef<Path>) -> Result<Self, Error> {
-        let file = file.as_ref();
+        Self::load_from(&Disk, file.as_ref())
+    }
+
+    /// The same of files from elsewhere, such as from memory.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, file: &Path) -> Result<Self, Error> {
         let _span = tracing::info_span!("load", file = %file.display()).entered();
         let of = |e: Error| match e.file() {
             Some(_) => e,
             None => e.context(format!("cannot plan in {}", file.display())),
         };
         let scene = match RobotProblem::is_named(file) {
-            true if FlatProblem::is_one(file) => Self::from_world(FlatProblem::load(file)?).map_err(of)?,
-            true => Self::new(ArmScene::from_problem(RobotProblem::load(file)?)?),
-            false => Self::from_problem(Problem::load(file)?).map_err(of)?,
+            true if FlatProblem::is_one_of(files, file) => {
+                Self::from_world(FlatProblem::load_from(files, file)?).map_err(of)?
+            }
+            true => Self::new(ArmScene::from_problem(RobotProblem::load_from(files, file)?)?),
+            false => Self::from_problem(Problem::load_from(files, file)?).map_err(of)?,
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
         Ok(Self { file: Some(file.to_owned()), ..scene })

@@ -69,7 +69,8 @@ fn compare() {
         let (case, _) = expected.split_once(" = ").unwrap();
         let words: Vec<&str> = case.split(' ').collect();
         let scene = scenes.entry(words[0]).or_insert_with(|| {
-            let file = |ending| root().join("crates/mp-scenes/assets/scenes").join(format!("{}.{ending}", words[0]));
+            let file =
+                |ending| root().join("crates/mp-scenes/assets/scenes").join(format!("{}.{ending}", words[0]));
             let file = if file("env").exists() { file("env") } else { file("toml") };
             Scene::load(file).unwrap()
         });

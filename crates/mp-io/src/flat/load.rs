@@ -3,7 +3,7 @@
 use super::{FlatFile, FlatMap, FlatObstacle, FlatPart, FlatProblem, GridMap, RosMap};
 use crate::error::Error;
 use crate::problem::MAX_COORDINATE;
-use crate::source::{MAX_MESH_BYTES, MAX_TEXT_BYTES, read_file};
+use crate::source::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES};
 use mp_geom::flat::Polygon;
 use nalgebra::Isometry2;
 use std::path::Path;
@@ -12,6 +12,12 @@ impl FlatProblem {
     /// Whether a file is a world in the plane: its name ends in `.toml`, and it has a table `world`.
     #[must_use]
     pub fn is_one(path: &Path) -> bool {
+        Self::is_one_of(&Disk, path)
+    }
+
+    /// The same of files from elsewhere.
+    #[must_use]
+    pub fn is_one_of(files: &dyn Files, path: &Path) -> bool {
         let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let begins = |line: &str| {
             let line = line.trim_start();
@@ -19,7 +25,8 @@ impl FlatProblem {
                 || line.strip_prefix("world").is_some_and(|l| l.trim_start().starts_with(['=', '.']))
         };
         named
-            && read_file(path, MAX_TEXT_BYTES)
+            && files
+                .read(path, MAX_TEXT_BYTES)
                 .is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(begins))
     }
 
@@ -28,22 +35,30 @@ impl FlatProblem {
     /// # Errors
     /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref();
-        let file = FlatFile::parse(&path.display().to_string(), &read_file(path, MAX_TEXT_BYTES)?)?;
+        Self::load_from(&Disk, path.as_ref())
+    }
+
+    /// The same of files from elsewhere.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
+        let file = FlatFile::parse(&path.display().to_string(), &files.read(path, MAX_TEXT_BYTES)?)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut obstacles = file.obstacles.clone();
         let mut extent = None;
         if let Some(map) = &file.map {
-            let (polygon, corners) = read_map(map, file.unknown_is_free, folder).map_err(|e| match e {
-                Fault::File(e) => {
-                    let help = e.remedy().unwrap_or("check the name of the file").to_owned();
-                    file.fault(FlatPart::Map, &format!("this file is not usable: {e}"), &help)
-                        .with_kind(e.kind())
-                }
-                Fault::Size(message) => {
-                    file.fault(FlatPart::Map, &message, "coordinates are metres: check the scale")
-                }
-            })?;
+            let (polygon, corners) =
+                read_map(files, map, file.unknown_is_free, folder).map_err(|e| match e {
+                    Fault::File(e) => {
+                        let help = e.remedy().unwrap_or("check the name of the file").to_owned();
+                        file.fault(FlatPart::Map, &format!("this file is not usable: {e}"), &help)
+                            .with_kind(e.kind())
+                    }
+                    Fault::Size(message) => {
+                        file.fault(FlatPart::Map, &message, "coordinates are metres: check the scale")
+                    }
+                })?;
             extent = Some(corners);
             obstacles.extend(polygon.map(|polygon| FlatObstacle { name: "the map".into(), polygon }));
         }
@@ -70,12 +85,13 @@ impl From<Error> for Fault {
 
 /// The polygon of a map, and the box around it.
 fn read_map(
+    files: &dyn Files,
     map: &FlatMap,
     unknown_is_free: bool,
     folder: &Path,
 ) -> Result<(Option<Polygon>, [[f64; 2]; 2]), Fault> {
     let grid =
-        |place: &Path| GridMap::parse(&place.display().to_string(), &read_file(place, MAX_MESH_BYTES)?);
+        |place: &Path| GridMap::parse(&place.display().to_string(), &files.read(place, MAX_MESH_BYTES)?);
     let (grid, scale, origin, polygon) = match map {
         FlatMap::Image { file, scale, origin: [x, y], threshold } => {
             let grid = grid(&folder.join(file))?;
@@ -85,7 +101,7 @@ fn read_map(
         }
         FlatMap::Ros(name) => {
             let place = folder.join(name);
-            let map = RosMap::parse(&place.display().to_string(), &read_file(&place, MAX_TEXT_BYTES)?)?;
+            let map = RosMap::parse(&place.display().to_string(), &files.read(&place, MAX_TEXT_BYTES)?)?;
             let image = place.parent().unwrap_or(Path::new("")).join(&map.image);
             let grid = grid(&image)?;
             let polygon = map.outline(&grid, unknown_is_free);

@@ -3,9 +3,9 @@
 use super::config;
 use crate::collada::{Scene, center::center_of_mesh};
 use crate::error::{Error, ErrorKind};
-use crate::mesh::{MeshFormat, read_mesh};
+use crate::mesh::{MeshFormat, read_mesh_of};
 use crate::problem::{Body, PlacedBody, Problem, SpaceKind, check_mesh, check_size, cited};
-use crate::source::{MAX_MESH_BYTES, read_file};
+use crate::source::{Files, MAX_MESH_BYTES};
 use crate::text::Text;
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -15,7 +15,7 @@ use std::path::Path;
 ///
 /// As OMPL.app does: the origin of the robot is the mean of its vertices (in the plane, z stays); the bounds
 /// are the volume, or the box around the world without one, enlarged to contain start and goal.
-pub(crate) fn load(path: &Path, text: &Text<'_>) -> Result<Problem, Error> {
+pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Problem, Error> {
     let (read, places) = config::parse(text)?;
     if let (Some(kind), Some(place)) = (&read.control, places.control) {
         return Err(text
@@ -30,7 +30,8 @@ pub(crate) fn load(path: &Path, text: &Text<'_>) -> Result<Problem, Error> {
     check_size(text, places.goal, "the goal", read.goal.position.coords.as_slice())?;
 
     let folder = path.parent().unwrap_or(Path::new(""));
-    let (file, (mesh, center)) = cited(text, folder, places.robot, "the robot", mesh_and_center)?;
+    let (file, (mesh, center)) =
+        cited(text, folder, places.robot, "the robot", |f| mesh_and_center(files, f))?;
     check_mesh(text, places.robot, &file, &mesh)?;
     let shift = match read.space {
         SpaceKind::Se3 => -center,
@@ -42,7 +43,7 @@ pub(crate) fn load(path: &Path, text: &Text<'_>) -> Result<Problem, Error> {
 
     let mut obstacles = Vec::new();
     if let (Some(place), true) = (places.world, read.world.is_some()) {
-        let (file, mesh) = cited(text, folder, place, "the world", |f| read_mesh(f))?;
+        let (file, mesh) = cited(text, folder, place, "the world", |f| read_mesh_of(files, f))?;
         check_mesh(text, place, &file, &mesh)?;
         obstacles.push(PlacedBody { name: "world".to_owned(), file, mesh, pose: Isometry3::identity() });
     }
@@ -74,15 +75,15 @@ pub(crate) fn load(path: &Path, text: &Text<'_>) -> Result<Problem, Error> {
 }
 
 /// A mesh and the mean of its vertices.
-fn mesh_and_center(path: &Path) -> Result<(TriMesh, Vector3<f64>), Error> {
-    let bytes = read_file(path, MAX_MESH_BYTES)?;
+fn mesh_and_center(files: &dyn Files, path: &Path) -> Result<(TriMesh, Vector3<f64>), Error> {
+    let bytes = files.read(path, MAX_MESH_BYTES)?;
     if MeshFormat::of(path, &bytes) == Some(MeshFormat::Collada) {
         let file = path.display().to_string();
         let scene = Scene::parse(&file, &bytes)?;
         return Ok((scene.to_mesh(&file)?, scene.center()));
     }
     drop(bytes);
-    let mesh = read_mesh(path)?;
+    let mesh = read_mesh_of(files, path)?;
     let center = center_of_mesh(&mesh);
     Ok((mesh, center))
 }

@@ -2,9 +2,9 @@
 
 use super::{ObstacleShape, RobotFile, RobotPart, RobotProblem};
 use crate::error::{Error, ErrorKind};
-use crate::mesh::read_mesh;
+use crate::mesh::{read_mesh, read_mesh_of};
 use crate::problem::{MAX_COORDINATE, PlacedBody};
-use crate::source::{MAX_TEXT_BYTES, decode, read_file};
+use crate::source::{Disk, Files, MAX_TEXT_BYTES, decode};
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use std::path::{Path, PathBuf};
 
@@ -24,14 +24,21 @@ impl RobotProblem {
     /// # Errors
     /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref();
+        Self::load_from(&Disk, path.as_ref())
+    }
+
+    /// The same of files from elsewhere. Meshes of the robot itself are read from the disk.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
         let shown = path.display().to_string();
-        let file = RobotFile::parse(&shown, &read_file(path, MAX_TEXT_BYTES)?)?;
+        let file = RobotFile::parse(&shown, &files.read(path, MAX_TEXT_BYTES)?)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let text = |part: RobotPart, name: &str| {
             let place = folder.join(name);
             let read =
-                || Ok(decode(&place.display().to_string(), &read_file(&place, MAX_TEXT_BYTES)?)?.to_owned());
+                || Ok(decode(&place.display().to_string(), &files.read(&place, MAX_TEXT_BYTES)?)?.to_owned());
             let read: Result<String, Error> = read();
             read.map(|text| (place.clone(), text)).map_err(|e| cited(&file, part, &e))
         };
@@ -64,7 +71,7 @@ impl RobotProblem {
                     match obstacles.iter().find(|o| o.file == place) {
                         Some(seen) => (place, seen.mesh.clone()),
                         None => {
-                            let mesh = read_mesh(&place).map_err(|e| {
+                            let mesh = read_mesh_of(files, &place).map_err(|e| {
                                 let message = format!("the mesh of {} is not usable: {e}", entry.name);
                                 let help = e.remedy().unwrap_or("check the name of the file").to_owned();
                                 fault(&message, &help).with_kind(e.kind())

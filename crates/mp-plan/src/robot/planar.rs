@@ -350,7 +350,12 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
             shape: BodyShape::Area(o.polygon.rings().to_vec()),
             pose: Some(Isometry3::identity()),
         });
-        std::iter::once(robot).chain(still).collect()
+        let walls = self.robot.world().walls().map(|[l, h]| Body {
+            name: "the walls".to_owned(),
+            shape: BodyShape::Lines(vec![vec![l, Point2::new(h.x, l.y), h, Point2::new(l.x, h.y), l]]),
+            pose: Some(Isometry3::identity()),
+        });
+        std::iter::once(robot).chain(still).chain(walls).collect()
     }
     fn poses(&self, q: &B::State) -> Vec<Isometry3<f64>> {
         let pose = B::pose(q);

@@ -1,0 +1,138 @@
+//! Finding scenes: by file, or by the name of a shipped one.
+
+use crate::{Error, Scene};
+use std::path::{Path, PathBuf};
+
+/// Endings of scene files, in the order in which they are tried.
+const ENDINGS: [&str; 4] = ["env", "txt", "cfg", "toml"];
+
+impl Scene {
+    /// The scene meant by `given`: a file, a file less its ending, or the name of a shipped scene. A file comes first.
+    ///
+    /// # Errors
+    /// When there is no such scene (with the most similar name), or as [`load`](Self::load).
+    pub fn find(given: impl AsRef<Path>) -> Result<Self, Error> {
+        let given = given.as_ref();
+        if let Some(file) = file_of(given) {
+            return Self::load(file);
+        }
+        #[cfg(feature = "scenes")]
+        if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
+            return Self::in_memory(scene);
+        }
+        if given.is_dir() {
+            return Err(Error::new(format!("{} is a folder, not a scene file", given.display()))
+                .help("name a file in it"));
+        }
+        let stem = given.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        let shipped = Self::shipped();
+        let beside =
+            scenes_in(given.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")));
+        let names = shipped.iter().copied().chain(beside.iter().map(String::as_str));
+        let help = match similar(&stem, names) {
+            Some(name) => format!("did you mean `{name}`?"),
+            None => format!("name a scene file, or one of the shipped scenes: {}", shipped.join(", ")),
+        };
+        Err(Error::new(format!("there is no scene {}", given.display())).help(help))
+    }
+
+    /// The names of the shipped scenes.
+    #[must_use]
+    pub fn shipped() -> Vec<&'static str> {
+        #[cfg(feature = "scenes")]
+        return mp_scenes::names().collect();
+        #[cfg(not(feature = "scenes"))]
+        Vec::new()
+    }
+
+    #[cfg(feature = "scenes")]
+    fn in_memory(scene: mp_scenes::File) -> Result<Self, Error> {
+        let files = mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes));
+        Self::load_from(&files, Path::new(scene.path))
+    }
+}
+
+/// The file meant by `given`, with or without its ending.
+fn file_of(given: &Path) -> Option<PathBuf> {
+    if given.is_file() {
+        return Some(given.to_owned());
+    }
+    let with = |ending: &&str| {
+        let mut name = given.as_os_str().to_owned();
+        name.push(".");
+        name.push(ending);
+        PathBuf::from(name)
+    };
+    ENDINGS.iter().map(with).find(|path| path.is_file())
+}
+
+/// The names of the scenes in `folder`, sorted.
+fn scenes_in(folder: &Path) -> Vec<String> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let scenes = files.filter(|p| p.extension().is_some_and(|e| ENDINGS.iter().any(|x| e == *x)));
+    let mut names: Vec<String> =
+        scenes.filter_map(|p| p.file_stem().map(|s| s.to_string_lossy().into_owned())).collect();
+    names.sort();
+    names
+}
+
+/// The name most like `given`, when one is like it at all.
+fn similar<'a>(given: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let allowed = given.chars().count().max(3) / 3 + 1;
+    let near = names.map(|name| (edits(given, name), name));
+    near.filter(|(d, _)| *d <= allowed).min_by_key(|(d, _)| *d).map(|(_, name)| name)
+}
+
+/// How many letters to insert, drop or replace to get from `a` to `b` (Levenshtein 1966).
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &cb) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(!ca.eq_ignore_ascii_case(&cb));
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_are_found_and_far_ones_are_not() {
+        let similar = |given| similar(given, ["easy", "cubicles"].into_iter());
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(similar("cubicle"), Some("cubicles"));
+        assert_eq!(similar("esay"), Some("easy"));
+        assert_eq!(similar("zebra"), None);
+    }
+
+    #[cfg(feature = "scenes")]
+    #[test]
+    fn shipped_scenes_are_found_by_name_and_are_sound() {
+        for name in Scene::shipped() {
+            let scene = Scene::find(name).unwrap_or_else(|e| panic!("{}", e.report()));
+            assert_eq!(scene.name(), name);
+            scene.check_ends().unwrap_or_else(|e| panic!("{}", e.report()));
+        }
+        let e = Scene::find("cubicels").unwrap_err();
+        assert!(e.remedy().is_some_and(|help| help.contains("cubicles")), "{e:?}");
+        assert!(Scene::find("no/such/thing/at/all").is_err());
+    }
+
+    #[test]
+    fn files_come_first_with_or_without_ending() {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("easy.env"), "nonsense").unwrap();
+        for name in ["easy", "easy.env"] {
+            let e = Scene::find(dir.path().join(name)).unwrap_err();
+            assert!(e.file().is_some_and(|file| file.file().ends_with("easy.env")), "{e:?}");
+        }
+        assert!(Scene::find(dir.path()).unwrap_err().message().contains("is a folder"));
+    }
+}
