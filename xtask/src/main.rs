@@ -1,46 +1,79 @@
-//! The runner: plan, check, info, render, bench, assets and ci on the command line.
+//! The runner: `cargo xtask plan …` builds the program `mp` and starts it, `cargo xtask bench …` the program
+//! `mp-bench`; `cargo xtask ci` runs what continuous integration runs.
 //!
-//! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
+//! It has no dependencies and does no work of its own, so that it is compiled in a second.
 
-mod arm;
-mod assets;
-mod bench;
-mod check;
 mod ci;
-mod cli;
-mod flat;
-mod info;
-mod names;
-mod output;
-mod plan;
-mod render;
-mod scenes;
 
-use clap::Parser;
-use cli::{Cli, Command};
-use std::process::ExitCode;
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+const HELP: &str = "\
+Builds and starts what it is asked for:
+
+  cargo xtask plan | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
+  cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
+  cargo xtask assets [--check]  writes the shipped scenes again, or checks that they are as their source makes them
+  cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
+
+Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.";
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    tracing_subscriber::fmt()
-        .with_env_filter(tracing_subscriber::EnvFilter::from_default_env())
-        .with_writer(std::io::stderr)
-        .init();
-    let outcome = match &cli.command {
-        Command::Assets(args) => assets::run(args),
-        Command::Bench(args) => bench::run(args),
-        Command::Ci(args) => ci::run(args),
-        Command::Plan(args) => plan::run(args),
-        Command::Check(args) => check::run(args),
-        Command::Info(args) => info::run(args),
-        Command::Render(args) => render::run(args),
-    };
-    match outcome {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(report) => {
-            output::note(&format!("{report:?}"));
-            ExitCode::from(2)
+    let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
+    let command = arguments.first().map(|c| c.to_string_lossy().into_owned()).unwrap_or_default();
+    match command.as_str() {
+        "plan" | "check" | "info" | "render" | "scenes" | "completions" | "man" | "--version" => {
+            start("mp-cli", "mp", &arguments)
         }
+        "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
+        "assets" => start("mp-bench", "mp-bench", &arguments),
+        "ci" => match arguments[1..].iter().map(|a| a.to_string_lossy()).collect::<Vec<_>>().as_slice() {
+            [] => ci::run(true),
+            [only] if only == "--no-tests" => ci::run(false),
+            other => bad(&format!("`ci` takes --no-tests or nothing, not {}", other.join(" "))),
+        },
+        "" | "help" | "--help" | "-h" => {
+            let _ = writeln!(std::io::stdout().lock(), "{HELP}");
+            ExitCode::SUCCESS
+        }
+        other => bad(&format!("there is no command `{other}`\n\n{HELP}")),
+    }
+}
+
+fn bad(message: &str) -> ExitCode {
+    note(&format!("error: {message}"));
+    ExitCode::from(2)
+}
+
+/// Prints a line on standard error.
+fn note(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// The folder of the workspace.
+fn root() -> PathBuf {
+    // Cargo says where the package is now; what was compiled in may have moved since.
+    let package = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
+    let package = package.filter(|p| p.ends_with("xtask") && p.is_dir());
+    let package = package.unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")));
+    package.parent().map(Path::to_path_buf).unwrap_or(package)
+}
+
+/// Cargo, as it started this program.
+fn cargo() -> Command {
+    Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+}
+
+/// Builds a program of the workspace, optimised, and starts it in the folder where we are.
+fn start(package: &str, program: &str, arguments: &[OsString]) -> ExitCode {
+    let manifest = root().join("Cargo.toml");
+    let mut command = cargo();
+    command.args(["run", "--release", "--package", package, "--bin", program, "--manifest-path"]);
+    command.arg(manifest).arg("--").args(arguments);
+    match command.status() {
+        Ok(status) => ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(130)),
+        Err(e) => bad(&format!("cannot run cargo: {e}")),
     }
 }

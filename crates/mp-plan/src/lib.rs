@@ -33,13 +33,14 @@
 //!
 //! | to | use |
 //! |---|---|
-//! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
+//! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::parse`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
 //! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what becomes of the path |
 //! | plan | [`Scene::plan`]; watched and stopped from outside: [`Scene::plan_with`], [`Control`], [`Watch`] |
 //! | read what came of it | [`Report`], with a documented JSON form |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
 //! | know why a configuration is not free | [`Scene::explain`] |
 //! | know what is odd about a scene | [`Scene::lint`] |
+//! | know what is in a file | [`info::Info`] |
 //! | draw | `Scene::picture` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
 //! | bring a kind of robot of your own | [`RobotKind`] |
 //! | have states in your hands instead of rows | [`search`], [`shorten`] with a [`RobotKind`] |
@@ -52,7 +53,10 @@ mod counted;
 mod error;
 mod find;
 mod finish;
+pub mod info;
+mod inputs;
 mod numbers;
+mod parallel;
 mod path;
 #[cfg(feature = "pictures")]
 mod picture;
@@ -67,7 +71,9 @@ mod watch;
 pub use check::{Explanation, Verdict};
 pub use error::Error;
 pub use finish::shorten;
+pub use inputs::is_same_file;
 pub use numbers::{brief, count};
+pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{PICTURE_SIZE, PictureKind};

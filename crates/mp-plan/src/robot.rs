@@ -14,7 +14,7 @@ use crate::{Error, Metric};
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{
     Clearance, DefaultNn, Factored, Metric as _, MotionBound, MotionValidity, Numbers, ObstacleKnowledge,
-    Path, Validity,
+    Validity,
 };
 use mp_geom::TriMesh;
 use mp_roadmap::RoadmapState;
@@ -22,6 +22,7 @@ use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::path::{Path, PathBuf};
 
 /// What one number of a configuration is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -223,6 +224,12 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
 
     /// What the numbers of a configuration are.
     fn columns(&self) -> Vec<Column>;
+    /// The least and the largest value of each number, in the order of the columns; `None` where it turns without end.
+    fn limits(&self) -> Vec<Option<[f64; 2]>>;
+    /// What else there is to say of the robot, for people: name and text.
+    fn details(&self) -> Vec<(String, String)> {
+        Vec::new()
+    }
     /// How paths are written as text.
     fn path_format(&self) -> PathFormat {
         PathFormat::Joints
@@ -232,8 +239,16 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// The configuration of a row, which has as many numbers as there are columns.
     fn state(&self, row: &[f64]) -> Self::State;
     /// The rows of a path: by default one for each state. May add rows for readers that interpolate numbers.
-    fn rows(&self, path: &Path<Self::State>) -> Vec<Vec<f64>> {
+    fn rows(&self, path: &mp_cspace::Path<Self::State>) -> Vec<Vec<f64>> {
         path.states.iter().map(|q| self.row(q)).collect()
+    }
+    /// Writes the problem to `folder` for other planners, as docs/formats/export.md says; returns the file to begin with.
+    ///
+    /// # Errors
+    /// When such robots are not exported, or a file cannot be written.
+    fn export(&self, _folder: &Path) -> Result<PathBuf, Error> {
+        Err(Error::new(format!("{} is no rigid body among meshes: only those are exported", self.name()))
+            .help("its files are text already"))
     }
     /// What is wrong with rows that came from a file, beyond their length, such as leaving the plane.
     fn odd_rows(&self, _rows: &[Vec<f64>]) -> Option<String> {

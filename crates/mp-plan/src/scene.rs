@@ -2,19 +2,20 @@
 
 use crate::check::{check, check_ends, explain, lint, states};
 use crate::finish::finish;
+use crate::inputs::Recording;
 use crate::robot::{ArmScene, PlanarScene, RigidScene};
 use crate::search::search;
 use crate::{
     Body, Column, Control, Error, Explanation, PathFormat, PathRows, REPORT_VERSION, Report, Request,
     RobotKind, Verdict,
 };
-use mp_cspace::{MotionBound, Outcome, Space};
+use mp_cspace::{MotionBound, Outcome, Rng, Space, Validity};
 use mp_io::{Disk, Files, FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 /// A scene made ready to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share it.
@@ -32,6 +33,7 @@ use std::time::Instant;
 pub struct Scene {
     robot: Arc<dyn AnyRobot>,
     file: Option<PathBuf>,
+    pub(crate) inputs: Arc<[PathBuf]>,
 }
 
 impl fmt::Debug for Scene {
@@ -56,7 +58,7 @@ pub struct Sweep {
 impl Scene {
     /// A scene of a robot of your own kind, or of one of this crate's: [`RigidScene`], [`ArmScene`], [`PlanarScene`].
     pub fn new(robot: impl RobotKind + 'static) -> Self {
-        Self { robot: Arc::new(robot), file: None }
+        Self { robot: Arc::new(robot), file: None, inputs: Arc::default() }
     }
 
     /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem or a world
@@ -74,19 +76,48 @@ impl Scene {
     /// As [`load`](Self::load).
     pub fn load_from(files: &dyn Files, file: &Path) -> Result<Self, Error> {
         let _span = tracing::info_span!("load", file = %file.display()).entered();
+        let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        if ["urdf", "xacro", "srdf", "yaml", "yml"].contains(&ending.as_str()) {
+            return Err(foreign(file));
+        }
         let of = |e: Error| match e.file() {
             Some(_) => e,
             None => e.context(format!("cannot plan in {}", file.display())),
         };
+        let recording = Recording { files, read: Mutex::default() };
+        let files: &dyn Files = &recording;
+        let mut named = Vec::new();
         let scene = match RobotProblem::is_named(file) {
             true if FlatProblem::is_one_of(files, file) => {
                 Self::from_world(FlatProblem::load_from(files, file)?).map_err(of)?
             }
-            true => Self::new(ArmScene::from_problem(RobotProblem::load_from(files, file)?)?),
+            true => {
+                let arm = ArmScene::from_problem(RobotProblem::load_from(files, file)?)?;
+                named.extend(arm.mesh_files().iter().cloned());
+                Self::new(arm)
+            }
             false => Self::from_problem(Problem::load_from(files, file)?).map_err(of)?,
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
-        Ok(Self { file: Some(file.to_owned()), ..scene })
+        let mut inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        inputs.extend(named);
+        Ok(Self { file: Some(file.to_owned()), inputs: inputs.into(), ..scene })
+    }
+
+    /// Reads a scene from the text of a file of any kind: which, is seen by how it begins. Other files that it names are
+    /// looked for in `folder`; reports call it `name`.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self, Error> {
+        let begins = |what: &str| text.lines().any(|line| line.trim_start().starts_with(what));
+        let ending = match text {
+            _ if begins("[problem]") => "cfg",
+            _ if begins("[world]") || begins("[robot]") || begins("world.") || begins("robot.") => "toml",
+            _ => "env",
+        };
+        let file = folder.join(format!("{name}.{ending}"));
+        Self::load_from(&OneText { file: &file, text }, &file)
     }
 
     /// A rigid body among meshes.
@@ -141,6 +172,24 @@ impl Scene {
     #[must_use]
     pub fn columns(&self) -> Vec<Column> {
         self.robot.columns()
+    }
+
+    /// The least and the largest value of each number of a configuration; `None` where it turns without end.
+    #[must_use]
+    pub fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        self.robot.limits()
+    }
+
+    /// What there is to say of the robot beside, for people: name and text.
+    #[must_use]
+    pub fn details(&self) -> Vec<(String, String)> {
+        self.robot.details()
+    }
+
+    /// The share of the space in which the robot is free, by so many samples: the same for the same scene.
+    #[must_use]
+    pub fn free_share(&self, samples: u32) -> f64 {
+        self.robot.free_share(samples)
     }
 
     /// How its paths are written as text.
@@ -235,10 +284,31 @@ impl Scene {
         self.robot.sweep(path)
     }
 
+    /// Writes the problem to `folder` as one JSON and two OFF files for other planners; returns the former.
+    ///
+    /// # Errors
+    /// When it is no rigid body among meshes, or a file cannot be written.
+    pub fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
+        self.robot.export(folder)
+    }
+
     /// Whether the scene is best seen from above, and where the origin of the robot may be.
     #[must_use]
     pub fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>) {
         self.robot.view()
+    }
+}
+
+/// A text that is no file, among the files of the disk.
+#[derive(Debug)]
+struct OneText<'a> {
+    file: &'a Path,
+    text: &'a str,
+}
+
+impl Files for OneText<'_> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
+        if path == self.file { Ok(self.text.as_bytes().to_vec()) } else { Disk.read(path, limit) }
     }
 }
 
@@ -247,6 +317,9 @@ trait AnyRobot: Send + Sync {
     fn name(&self) -> &str;
     fn space_name(&self) -> String;
     fn columns(&self) -> Vec<Column>;
+    fn limits(&self) -> Vec<Option<[f64; 2]>>;
+    fn details(&self) -> Vec<(String, String)>;
+    fn free_share(&self, samples: u32) -> f64;
     fn path_format(&self) -> PathFormat;
     fn start(&self) -> Vec<f64>;
     fn goals(&self) -> Vec<Vec<f64>>;
@@ -258,6 +331,7 @@ trait AnyRobot: Send + Sync {
     fn bodies(&self) -> Vec<Body>;
     fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error>;
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
+    fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
     fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>);
 }
 
@@ -270,6 +344,17 @@ impl<K: RobotKind> AnyRobot for K {
     }
     fn columns(&self) -> Vec<Column> {
         RobotKind::columns(self)
+    }
+    fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        RobotKind::limits(self)
+    }
+    fn details(&self) -> Vec<(String, String)> {
+        RobotKind::details(self)
+    }
+    fn free_share(&self, samples: u32) -> f64 {
+        let (mut rng, mut checker) = (Rng::seed(1), self.checker().clone());
+        let free = (0..samples).filter(|_| checker.is_valid(&self.space().sample_uniform(&mut rng))).count();
+        free as f64 / f64::from(samples.max(1))
     }
     fn path_format(&self) -> PathFormat {
         RobotKind::path_format(self)
@@ -304,8 +389,40 @@ impl<K: RobotKind> AnyRobot for K {
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
         sweep(self, path)
     }
+    fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
+        RobotKind::export(self, folder)
+    }
     fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>) {
         (self.is_planar(), self.picture_bounds())
+    }
+}
+
+/// An error for a file that names a robot or a map, but is no scene: which format to write around it.
+pub(crate) fn foreign(file: &Path) -> Error {
+    let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let error = |what: &str, help: String| {
+        Error::new(format!("{} is {what}, not a scene", file.display())).help(help)
+    };
+    match ending.as_str() {
+        "urdf" | "xacro" => error(
+            "a robot description",
+            format!(
+                "write a robot problem around it, a file `problem.toml` beside it:\n    [robot]\n    urdf = \"{name}\"\n    \
+                 [motion]\n    start = [0, 0, …]   # one number for each joint that moves\n    goal = [1, 0, …]\n  \
+                 docs/formats/robot-problem.md has all of it"
+            ),
+        ),
+        "srdf" => error("an SRDF", "name it in a robot problem: docs/formats/robot-problem.md".to_owned()),
+        "yaml" | "yml" => error(
+            "a map of ROS",
+            format!(
+                "write a world around it, a file `world.toml` beside it:\n    [world]\n    map = \"{name}\"\n    \
+                 [robot]\n    disc = 0.2          # radius, metres\n    [motion]\n    start = [0, 0]\n    \
+                 goal = [1, 0]\n  docs/formats/flat-world.md has all of it"
+            ),
+        ),
+        _ => error("an XML file", "name a scene: .env, .cfg or .toml".to_owned()),
     }
 }
 

@@ -1,10 +1,12 @@
 //! What the compiler does not check: that the crates depend on each other as `ARCHITECTURE.md` says, that the
 //! paths it names exist, that files stay short, and that every algorithm has an example and a test.
 
-use miette::{IntoDiagnostic, Result, WrapErr};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+/// What keeps a check from being made.
+type Result<T> = std::result::Result<T, String>;
 
 /// A file longer than this is worth a look.
 const LONG: usize = 500;
@@ -52,17 +54,19 @@ pub(crate) fn check(root: &Path) -> Result<Vec<Finding>> {
 }
 
 fn read(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot read {}", path.display()))
+    std::fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))
+}
+
+fn list(folder: &Path) -> Result<impl Iterator<Item = Result<PathBuf>>> {
+    let failed = |e: std::io::Error| format!("cannot list {}: {e}", folder.display());
+    let entries: Vec<_> =
+        std::fs::read_dir(folder).map_err(failed)?.map(|e| e.map(|e| e.path()).map_err(failed)).collect();
+    Ok(entries.into_iter())
 }
 
 fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) -> Result<()> {
-    let entries = std::fs::read_dir(folder)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot list {}", folder.display()))?;
-    for entry in entries {
-        let path = entry.into_diagnostic()?.path();
+    for entry in list(folder)? {
+        let path = entry?;
         if path.is_dir() && !path.ends_with("target") {
             rust_files(&path, out)?;
         } else if path.extension().is_some_and(|e| e == "rs") {
@@ -111,8 +115,8 @@ fn arrows(root: &Path, architecture: &str) -> Result<Vec<Finding>> {
     let mut findings = Vec::new();
     let mut folders = vec![root.join("xtask")];
     let crates = root.join("crates");
-    for entry in std::fs::read_dir(&crates).into_diagnostic().wrap_err("cannot list crates")? {
-        folders.push(entry.into_diagnostic()?.path());
+    for entry in list(&crates)? {
+        folders.push(entry?);
     }
     folders.sort();
     for folder in folders.iter().filter(|f| f.join("Cargo.toml").is_file()) {
@@ -180,7 +184,7 @@ mod tests {
 
     #[test]
     fn the_workspace_is_tidy() {
-        let findings = check(&crate::scenes::root()).unwrap();
+        let findings = check(&crate::root()).unwrap();
         let errors: Vec<_> = findings.iter().filter(|f| f.is_error).map(ToString::to_string).collect();
         assert!(errors.is_empty(), "{errors:#?}");
     }

@@ -111,6 +111,12 @@ impl RobotProblem {
         }
     }
 
+    /// Where a mesh is that the URDF names, as [`mesh`](Self::mesh) finds it; `None` when it is not there.
+    #[must_use]
+    pub fn mesh_file(&self, name: &str) -> Option<PathBuf> {
+        self.place_of(name).ok()
+    }
+
     fn place_of(&self, name: &str) -> Result<PathBuf, String> {
         let folder = self.urdf_file.parent().unwrap_or(Path::new(""));
         let Some(inside) = name.strip_prefix("package://") else {

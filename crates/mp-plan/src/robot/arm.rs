@@ -7,6 +7,7 @@ use mp_geom::TriMesh;
 use mp_io::{PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};
 use nalgebra::{DVector, Isometry3};
+use std::path::PathBuf;
 
 /// Between two copies of the arm in a picture no point moves farther than this share of its reach.
 const PICTURE_SPACING: f64 = 0.12;
@@ -25,6 +26,7 @@ pub struct ArmScene {
     goals: Vec<Configuration>,
     /// The file it came from, for the place of errors.
     source: Option<Box<RobotProblem>>,
+    mesh_files: Vec<PathBuf>,
 }
 
 impl ArmScene {
@@ -61,7 +63,16 @@ impl ArmScene {
         }
         let start = state("the start", start)?;
         let goals = goals.iter().map(|goal| state("the goal", goal)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self { name: name.into(), arm, obstacles, space, start, goals, source: None })
+        Ok(Self {
+            name: name.into(),
+            arm,
+            obstacles,
+            space,
+            start,
+            goals,
+            source: None,
+            mesh_files: Vec::new(),
+        })
     }
 
     /// Makes the problem of a file ready.
@@ -72,8 +83,13 @@ impl ArmScene {
     pub fn from_problem(problem: RobotProblem) -> Result<Self, Error> {
         let what = format!("cannot make a robot of {}", problem.urdf_file.display());
         let of = |e: Error| e.context(what.clone());
-        let mut model = ArmModel::from_urdf(&problem.urdf, |name| problem.mesh(name))
-            .map_err(|e| of(Error::new(e.to_string())))?;
+        let mut mesh_files = Vec::new();
+        let mut mesh = |name: &str| {
+            mesh_files.extend(problem.mesh_file(name));
+            problem.mesh(name)
+        };
+        let mut model =
+            ArmModel::from_urdf(&problem.urdf, &mut mesh).map_err(|e| of(Error::new(e.to_string())))?;
         model.base = problem.base();
         if let Some(srdf) = &problem.srdf {
             model = model.with_srdf(srdf).map_err(|e| {
@@ -105,7 +121,7 @@ impl ArmScene {
         }
         let (start, goals) = (problem.file.start.clone(), problem.file.goals.clone());
         let scene = Self::new(problem.name.clone(), &model, problem.obstacles.clone(), &start, &goals);
-        Ok(Self { source: Some(Box::new(problem)), ..scene.map_err(of)? })
+        Ok(Self { source: Some(Box::new(problem)), mesh_files, ..scene.map_err(of)? })
     }
 
     /// The arm among its obstacles.
@@ -118,6 +134,12 @@ impl ArmScene {
     #[must_use]
     pub fn obstacle_bodies(&self) -> &[PlacedBody] {
         &self.obstacles
+    }
+
+    /// The files of the meshes of its links.
+    #[must_use]
+    pub fn mesh_files(&self) -> &[PathBuf] {
+        &self.mesh_files
     }
 
     /// The problem of the file it came from.
@@ -246,6 +268,27 @@ impl RobotKind for ArmScene {
         };
         let names = self.arm.coordinates().iter().map(|c| c.name.as_str());
         names.map(|name| Column::new(name, if slides(name) { "m" } else { "rad" })).collect()
+    }
+    fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        let limits = |range: JointRange| match range {
+            JointRange::Interval { low, high } => Some([low, high]),
+            JointRange::Circle => None,
+        };
+        self.arm.coordinates().iter().map(|c| limits(c.range)).collect()
+    }
+    fn details(&self) -> Vec<(String, String)> {
+        let links = crate::count(self.arm.model().links.len(), "link");
+        let base = mp_geom::six_from_pose(&self.arm.model().base).map(brief).join(" ");
+        let pairs = crate::count(self.arm.checked_pairs().len(), "pair");
+        let mut details = vec![
+            ("arm".to_owned(), format!("{links}, at most {} m long", brief(self.arm.reach()))),
+            ("base".to_owned(), base),
+            ("pairs".to_owned(), format!("{pairs} of links must not touch")),
+        ];
+        if let Some(problem) = &self.source {
+            details.insert(0, ("urdf".to_owned(), problem.urdf_file.display().to_string()));
+        }
+        details
     }
     fn row(&self, q: &Configuration) -> Vec<f64> {
         q.as_slice().to_vec()

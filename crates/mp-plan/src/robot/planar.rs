@@ -336,6 +336,10 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     fn columns(&self) -> Vec<Column> {
         B::COLUMNS.iter().map(|(name, unit)| Column::new(*name, *unit)).collect()
     }
+    fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        let [low, high] = self.problem.bounds;
+        (0..B::COLUMNS.len()).map(|i| (i < 2).then(|| [low[i], high[i]])).collect()
+    }
     fn row(&self, q: &B::State) -> Vec<f64> {
         B::row(q)
     }

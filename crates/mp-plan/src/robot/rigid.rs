@@ -277,6 +277,13 @@ impl<M: RigidMotion> RobotKind for RigidScene<M> {
             .map(column)
             .to_vec()
     }
+    fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        let b = self.problem.position_bounds();
+        let planar = self.problem.space == SpaceKind::Se2;
+        let still = |free: Option<[f64; 2]>| if planar { Some([0.0, 0.0]) } else { free };
+        let side = |i: usize| Some([b.min[i], b.max[i]]);
+        vec![side(0), side(1), still(side(2)), None, still(None), still(None)]
+    }
     fn path_format(&self) -> PathFormat {
         PathFormat::Poses
     }
@@ -296,6 +303,9 @@ impl<M: RigidMotion> RobotKind for RigidScene<M> {
             None => M::pose(&states[i]),
         };
         tuples::along(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
+    }
+    fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {
+        Ok(mp_io::export_ompl(&self.problem, folder, &self.problem.name, &mp_io::OmplExport::default())?)
     }
     fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
         if self.problem.space != SpaceKind::Se2 {

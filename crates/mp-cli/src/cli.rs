@@ -1,0 +1,231 @@
+//! The command line.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use mp_plan::{Length, Metric, MotionCheck, PlannerInfo, Request};
+use std::ffi::OsStr;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Motion planning on the command line.
+///
+/// Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
+#[derive(Clone, Debug, Parser)]
+#[command(name = "mp", bin_name = "mp", version, max_term_width = 110)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Clone, Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Plan on a scene: solve, shorten, verify, and write the path and a picture.
+    Plan(Box<Plan>),
+    /// Verify a path with the independent checker: exit 0 only if it is certified free. Or explain one configuration.
+    Check(Check),
+    /// Say what is in a mesh, scene or path file.
+    Info(Info),
+    /// Draw a scene, and a path through it, with no display.
+    Render(Render),
+    /// List the shipped scenes.
+    Scenes,
+    /// Measure, by the program `mp-bench`.
+    #[command(disable_help_flag = true)]
+    Bench(Bench),
+    /// Print completions for a shell.
+    Completions {
+        /// Which shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual, as a page for `man`.
+    Man,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Plan {
+    /// Scene files, or names of shipped scenes (default: the shipped sample); `-` for standard input.
+    #[arg(value_name = "SCENE")]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Which planner. With `or-` before its name independent runs of it race on all threads; with `restart-` it
+    /// begins anew when it takes too long.
+    #[arg(long, value_name = "NAME", default_value = "rrt-connect", value_parser = PlannerName)]
+    pub(crate) planner: String,
+    /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
+    #[arg(long, value_name = "NAME", default_value = "default",
+          value_parser = PossibleValuesParser::new(metrics()).map(|name| metric(&name)))]
+    pub(crate) metric: Metric,
+    /// All randomness flows from this number.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Stop after this many seconds.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    pub(crate) time: f64,
+    /// Stop after this many iterations.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) iterations: Option<u64>,
+    /// Longest edge of a tree, not of a roadmap: a distance of the metric, or a percentage of the extent of the space
+    /// [default: 5%].
+    #[arg(long, value_name = "ε", value_parser = parsed::<Length>)]
+    pub(crate) step: Option<Length>,
+    /// How motions are checked: `certified` (no wall is ever missed) or `discrete:R`, at steps of R (a
+    /// distance of the metric, or a percentage of the extent). What is written is certified either way.
+    #[arg(long, value_name = "CHECK", default_value = "certified", value_parser = parsed::<MotionCheck>)]
+    pub(crate) motion: MotionCheck,
+    /// Plan this often, with seeds N, N + 1, …, and print a table.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) runs: u32,
+    /// How many runs at once; of a single run, how many threads it may use. Results do not depend on it.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
+    /// Set a parameter of the planner.
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// A request in JSON, as a file or `-`: planner, settings, budgets and all else; options given beside it are
+    /// ignored but for --out, --picture, --json, --runs and --threads.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) request: Option<PathBuf>,
+    /// The file of a roadmap: goes on with it when it is there, and keeps what there is in the end. For the same
+    /// scene, robot and metric, and planners that build roadmaps.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) roadmap: Option<PathBuf>,
+    /// Where the path goes, by its ending: `.txt` as text, `.json`, `.csv`; `-` for text on standard output. `{scene}` and
+    /// `{seed}` stand for their names.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Where the picture goes (`.png`; of worlds in the plane `.svg` too). `{scene}` and `{seed}` stand for their names.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) picture: Option<PathBuf>,
+    /// Print one JSON object on standard output, and write only the files asked for.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Leave the path as the planner found it.
+    #[arg(long)]
+    pub(crate) no_shorten: bool,
+    /// Instead of shortening the path, leave out what it does not need and let a snake relax it away from obstacles.
+    #[arg(long)]
+    pub(crate) relax: bool,
+    /// Also write each scene to this folder as one JSON and two OFF files, for other planners.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) export: Option<PathBuf>,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Check {
+    /// A scene file, or the name of a shipped scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    /// A path: text, `.json` or `.csv`; `-` for standard input.
+    #[arg(required_unless_present = "at")]
+    pub(crate) path: Option<PathBuf>,
+    /// Explain this configuration instead: numbers separated by blanks or commas.
+    #[arg(long, value_name = "NUMBERS", conflicts_with = "path", allow_hyphen_values = true)]
+    pub(crate) at: Option<String>,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Info {
+    /// A mesh, scene or path file, or the name of a shipped scene.
+    pub(crate) file: PathBuf,
+    /// Print one JSON object on standard output.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Render {
+    /// A scene file, or the name of a shipped scene; `-` for standard input.
+    pub(crate) scene: PathBuf,
+    /// A path: text, `.json` or `.csv`; `-` for standard input.
+    pub(crate) path: Option<PathBuf>,
+    /// Where the picture goes (`.png`; of worlds in the plane `.svg` too).
+    #[arg(long, visible_alias = "out", value_name = "FILE")]
+    pub(crate) picture: PathBuf,
+    /// Width and height in pixels.
+    #[arg(long, value_name = "W×H", default_value = "1280x960", value_parser = pixels)]
+    pub(crate) size: (usize, usize),
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Bench {
+    /// What `mp-bench` is given.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
+    pub(crate) arguments: Vec<std::ffi::OsString>,
+}
+
+/// Takes the name of a planner, wrapped or not.
+#[derive(Clone, Debug)]
+struct PlannerName;
+
+impl TypedValueParser for PlannerName {
+    type Value = String;
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        arg: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<String, clap::Error> {
+        match value.to_str() {
+            Some(name) if Request::new(name).check().is_ok() => Ok(name.to_owned()),
+            _ => PossibleValuesParser::new(planners()).parse_ref(command, arg, value),
+        }
+    }
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(planners()))
+    }
+}
+
+/// The planners by name.
+fn planners() -> impl Iterator<Item = PossibleValue> {
+    mp_plan::planners().map(|p: &PlannerInfo| {
+        let also = match p.aliases {
+            [] => String::new(),
+            names => format!(" (also {})", names.join(", ")),
+        };
+        PossibleValue::new(p.name).aliases(p.aliases).help(format!("{}{also}", p.summary))
+    })
+}
+
+fn metrics() -> Vec<PossibleValue> {
+    Metric::ALL.iter().map(|(_, name, help)| PossibleValue::new(*name).help(*help)).collect()
+}
+
+/// A name that was checked before.
+fn metric(name: &str) -> Metric {
+    name.parse().unwrap_or_default()
+}
+
+fn parsed<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
+    text.parse().map_err(|e: mp_plan::Error| e.to_string())
+}
+
+/// A finite number above zero.
+fn positive(s: &str) -> Result<f64, String> {
+    match s.trim().parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(_) => Err("must be a finite number above zero".into()),
+        Err(_) => Err("not a number".into()),
+    }
+}
+
+/// `WxH`, both from 64 to 8192.
+fn pixels(s: &str) -> Result<(usize, usize), String> {
+    let sides = s.split_once(['x', '×']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match sides {
+        Some((w, h)) if (64..=8192).contains(&w) && (64..=8192).contains(&h) => Ok((w, h)),
+        Some(_) => Err("each side must be from 64 to 8192".into()),
+        None => Err("expected WIDTHxHEIGHT, such as 1280x960".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,18 @@
+//! Ctrl-C: the first asks politely, the second insists.
+
+use mp_plan::Cancel;
+
+/// A flag that Ctrl-C raises. The second Ctrl-C ends the program at once.
+pub(crate) fn flag() -> Cancel {
+    let cancel = Cancel::new();
+    let raised = cancel.clone();
+    let handler = ctrlc::set_handler(move || {
+        if raised.0.swap(true, std::sync::atomic::Ordering::SeqCst) {
+            std::process::exit(130);
+        }
+    });
+    if let Err(e) = handler {
+        tracing::warn!("Ctrl-C will end the program at once: {e}");
+    }
+    cancel
+}

@@ -1,0 +1,71 @@
+//! The program `mp`: plan, check, info, render on the command line.
+//!
+//! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
+
+mod bench;
+mod check;
+mod cli;
+mod files;
+mod info;
+mod interrupt;
+mod log;
+mod output;
+mod plan;
+mod progress;
+mod render;
+mod text;
+
+use clap::{CommandFactory, Parser};
+use cli::{Cli, Command};
+use mp_plan::Error;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    log::init();
+    let outcome = match &cli.command {
+        Command::Plan(args) => plan::run(args),
+        Command::Check(args) => check::run(args),
+        Command::Info(args) => info::run(args),
+        Command::Render(args) => render::run(args),
+        Command::Scenes => scenes(),
+        Command::Bench(args) => bench::run(args),
+        Command::Completions { shell } => completions(*shell),
+        Command::Man => man(),
+    };
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(error) => {
+            output::note(&error.report());
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// The names of the shipped scenes.
+fn scenes() -> Result<bool, Error> {
+    output::print(&mp_plan::Scene::shipped().join("\n"))?;
+    Ok(true)
+}
+
+fn completions(shell: clap_complete::Shell) -> Result<bool, Error> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "mp", &mut text);
+    output::print(String::from_utf8_lossy(&text).trim_end())?;
+    Ok(true)
+}
+
+fn man() -> Result<bool, Error> {
+    let mut text = Vec::new();
+    let page = |command: clap::Command, out: &mut Vec<u8>| clap_mangen::Man::new(command).render(out);
+    let mut command = Cli::command();
+    command.build();
+    let mut pages = vec![command.clone()];
+    pages.extend(command.get_subcommands().filter(|c| c.get_name() != "help").cloned());
+    for one in pages {
+        page(one, &mut text).map_err(|e| Error::new(format!("cannot make the manual page: {e}")))?;
+    }
+    output::print(String::from_utf8_lossy(&text).trim_end())?;
+    Ok(true)
+}

@@ -1,0 +1,202 @@
+//! `plan`: scenes and seeds to reports, files and an exit code.
+
+use crate::check::scene;
+use crate::cli::Plan;
+use crate::files::Files;
+use crate::output::{is_standard, note, print, standard_input, write};
+use crate::progress::Line;
+use crate::text::{caption, summary, table};
+use crate::{check, interrupt};
+use mp_plan::{
+    Budget, Cancel, Control, Error, Finish, PICTURE_SIZE, PathFileKind, PathRows, Report, Request, Runs,
+    Scene, in_parallel,
+};
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+/// The scene planned on when none is named.
+const SAMPLE: &str = "cubicles";
+
+/// Plans on every scene with every seed. True when all runs are solved.
+pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
+    let request = request(args)?;
+    let named = match args.scenes.as_slice() {
+        [] => vec![PathBuf::from(SAMPLE)],
+        given => given.to_vec(),
+    };
+    let files = Files::new(
+        args.out.as_deref(),
+        args.picture.as_deref(),
+        request.roadmap.as_deref(),
+        args.json,
+        named.len(),
+        args.runs,
+    )?;
+    let last = request.seed.checked_add(u64::from(args.runs) - 1);
+    let last = last.ok_or_else(|| Error::new(format!("the seeds from {} on are too large", request.seed)))?;
+    if named.iter().filter(|given| is_standard(given)).count() > 1 {
+        return Err(Error::new("standard input can be one scene only"));
+    }
+
+    let scenes = named.iter().map(|given| scene(given)).collect::<Result<Vec<_>, _>>()?;
+    let jobs: Vec<(usize, u64)> =
+        (0..scenes.len()).flat_map(|i| (request.seed..=last).map(move |seed| (i, seed))).collect();
+    check_files(&files, &scenes, &jobs)?;
+    for scene in &scenes {
+        for odd in scene.check_ends()? {
+            note(&format!("warning: {}: {odd}", scene.name()));
+        }
+    }
+    if let Some(folder) = &args.export {
+        export(folder, &scenes)?;
+    }
+
+    let cancel = interrupt::flag();
+    let single = jobs.len() == 1;
+    let job = |(i, seed): (usize, u64)| one(&scenes[i], &request, seed, &cancel, &files, single);
+    let reports = match jobs.as_slice() {
+        [only] => vec![job(*only)?],
+        _ => {
+            let line = Line::new("runs", None, true);
+            let done = std::sync::atomic::AtomicUsize::new(0);
+            let counted = |i: usize| {
+                let report = job(jobs[i]);
+                let n = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+                line.say(&format!("{n} of {} done", jobs.len()));
+                report
+            };
+            let all = in_parallel(jobs.len(), usize::from(args.threads), &cancel, counted);
+            all.into_iter().flatten().collect::<Result<Vec<_>, _>>()?
+        }
+    };
+    let (missing, solved) = (jobs.len() - reports.len(), reports.iter().all(|r| r.solved));
+    show(args, reports, single)?;
+    if missing > 0 {
+        note(&format!("interrupted: {missing} of {} runs were not begun", jobs.len()));
+    }
+    Ok(missing == 0 && solved)
+}
+
+/// What the command line asks for.
+fn request(args: &Plan) -> Result<Request, Error> {
+    let single = args.scenes.len() <= 1 && args.runs == 1;
+    let threads = if single { usize::from(args.threads) } else { 1 };
+    if let Some(file) = &args.request {
+        let text = match is_standard(file) {
+            true => standard_input()?,
+            false => String::from_utf8_lossy(&mp_io::read_text(file)?.1).into_owned(),
+        };
+        let read: Request = serde_json::from_str(&text).map_err(|e| {
+            Error::new(format!("{} is no request: {e}", file.display()))
+                .help("docs/formats/report.md describes requests")
+        })?;
+        let request = Request { threads, ..read };
+        request.check()?;
+        return Ok(request);
+    }
+    let mut request = Request {
+        planner: args.planner.clone(),
+        metric: args.metric,
+        motion: args.motion,
+        budget: Budget { time_s: Some(args.time), iterations: args.iterations, queries: None },
+        seed: args.seed,
+        threads,
+        finish: match (args.relax, args.no_shorten) {
+            (true, _) => Finish::Relax,
+            (false, true) => Finish::AsFound,
+            (false, false) => Finish::Shorten,
+        },
+        roadmap: args.roadmap.clone(),
+        ..Request::default()
+    };
+    if let Some(step) = args.step {
+        request = request.set("step", step);
+    }
+    for text in &args.set {
+        match text.split_once('=') {
+            Some((key, value)) if !key.trim().is_empty() => request = request.set(key.trim(), value.trim()),
+            _ => return Err(Error::new(format!("cannot read the setting `{text}`")).help("write KEY=VALUE")),
+        }
+    }
+    if request.roadmap.is_some() && !single {
+        return Err(Error::new("--roadmap goes with a single run").help("name one scene, without --runs"));
+    }
+    request.check()?;
+    Ok(request)
+}
+
+fn check_files(files: &Files, scenes: &[Scene], jobs: &[(usize, u64)]) -> Result<(), Error> {
+    let mut taken = HashSet::new();
+    for &(i, seed) in jobs {
+        files.check(&scenes[i], seed)?;
+        let (out, picture) = files.of(scenes[i].name(), seed);
+        for path in out.into_iter().chain(picture) {
+            if !taken.insert(path.clone()) {
+                return Err(Error::new(format!("{} would be written twice", path.display())));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// One run: plan, then write the path and the picture.
+fn one(
+    scene: &Scene,
+    request: &Request,
+    seed: u64,
+    cancel: &Cancel,
+    files: &Files,
+    watched: bool,
+) -> Result<Report, Error> {
+    let request = Request { seed, ..request.clone() };
+    let mut line = Line::new(scene.name(), request.budget.time_s, watched);
+    let mut report = scene.plan_with(&request, &mut Control::new(cancel.clone(), &mut line))?;
+    let Some(rows) = report.path.clone() else { return Ok(report) };
+    let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    let (out, picture) = files.of(scene.name(), seed);
+    if let Some(file) = out {
+        line.say("writing the path");
+        let kind = if is_standard(&file) { PathFileKind::Text } else { PathFileKind::of(&file)? };
+        write(&file, path.to_file(kind).as_bytes())?;
+        report.path_file = Some(file.display().to_string());
+    }
+    if let Some(file) = picture {
+        line.say("drawing the picture");
+        let kind = scene.picture_kind(&file)?;
+        write(&file, &scene.picture(Some(&path), &caption(&report), kind, PICTURE_SIZE)?)?;
+        report.picture_file = Some(file.display().to_string());
+    }
+    Ok(report)
+}
+
+/// Prints what came of it: JSON on standard output, or a summary or table. Where the path goes to standard output, that
+/// is all that is there.
+fn show(args: &Plan, reports: Vec<Report>, single: bool) -> Result<(), Error> {
+    if args.json {
+        let text = match reports.as_slice() {
+            [only] if single => only.to_json()?,
+            _ => check::json(&Runs::new(reports))?,
+        };
+        return print(&text);
+    }
+    let taken = args.out.as_deref().is_some_and(is_standard);
+    let tell = |text: &str| if taken { Ok(note(text)) } else { print(text) };
+    match reports.as_slice() {
+        [] => Ok(()),
+        [only] if single => {
+            tell(&summary(only))?;
+            if only.solved { Ok(()) } else { tell("  nothing was written") }
+        }
+        runs => tell(&table(runs)),
+    }
+}
+
+/// Writes every scene as one JSON and two OFF files.
+fn export(folder: &Path, scenes: &[Scene]) -> Result<(), Error> {
+    std::fs::create_dir_all(folder)
+        .map_err(|e| Error::new(format!("cannot make the folder {}: {e}", folder.display())))?;
+    for scene in scenes {
+        note(&format!("exported {}", scene.export(folder)?.display()));
+    }
+    Ok(())
+}

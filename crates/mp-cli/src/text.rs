@@ -1,0 +1,216 @@
+//! What is said about runs to a person.
+
+use mp_plan::{Report, StoppedBy, brief, medians};
+
+/// A few lines for a person.
+pub(crate) fn summary(report: &Report) -> String {
+    let mut lines = Vec::new();
+    let by = format!("{}, seed {}", report.planner, report.seed);
+    match report.stopped_by {
+        None => lines.push(format!("{}: solved in {} by {by}", report.scene, seconds(report.time_s))),
+        Some(reason) => lines.push(format!(
+            "{}: not solved in {} by {by}: {}",
+            report.scene,
+            seconds(report.time_s),
+            explained(reason)
+        )),
+    }
+    let mut row = |name: &str, text: String| lines.push(format!("  {name:<11}{text}"));
+    row("iterations", grouped(report.iterations));
+    row("nodes", grouped(report.nodes as u64));
+    if let (Some(edges), Some(components)) = (report.edges, report.components) {
+        let parts = if components == 1 { "component" } else { "components" };
+        row("roadmap", format!("{} edges, {components} {parts}", grouped(edges as u64)));
+    }
+    row(
+        "checks",
+        format!(
+            "{} collision queries for {} motions ({})",
+            grouped(report.collision_checks),
+            grouped(report.motion_checks),
+            report.motion
+        ),
+    );
+    match report.rejected {
+        0 => {}
+        1 => row("rejected", "1 candidate path that the verifier did not pass".into()),
+        n => row("rejected", format!("{} candidate paths that the verifier did not pass", grouped(n))),
+    }
+    if let (Some(time), Some(length)) = (report.first_s, report.first_length) {
+        row("first path", format!("after {}, length {}", seconds(time), brief(length)));
+    }
+    if let (Some(found), Some(length)) = (report.path_length_found, report.path_length) {
+        let how = if report.shortened { "shortened" } else { "not shortened" };
+        let length =
+            if report.shortened { format!("{} → {}", brief(found), brief(length)) } else { brief(length) };
+        row("length", format!("{length}, {how} and verified in {}", seconds(report.finish_s)));
+    }
+    if let Some(clearance) = report.clearance {
+        row("clearance", format!("at least {} m", brief(clearance)));
+    }
+    if let (Some(file), Some(path)) = (&report.path_file, &report.path) {
+        row("path", format!("{file}, {} configurations", path.len()));
+    }
+    if let Some(file) = &report.picture_file {
+        row("picture", file.clone());
+    }
+    lines.join("\n")
+}
+
+/// One line for the picture.
+pub(crate) fn caption(report: &Report) -> String {
+    let length = report.path_length.map(|l| format!(", length {}", brief(l))).unwrap_or_default();
+    format!("{}, seed {}: {} nodes{length}", report.planner, report.seed, grouped(report.nodes as u64))
+}
+
+fn explained(reason: StoppedBy) -> String {
+    let option = match reason {
+        StoppedBy::Time => " (--time)",
+        StoppedBy::Iterations => " (--iterations)",
+        _ => "",
+    };
+    format!("{reason}{option}")
+}
+
+/// `0.0123 s`, `12.3 s`.
+fn seconds(s: f64) -> String {
+    match s {
+        s if s < 0.1 => format!("{:.1} ms", 1e3 * s),
+        s if s < 10.0 => format!("{s:.2} s"),
+        s => format!("{s:.1} s"),
+    }
+}
+
+/// `12 345`.
+fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, d) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) && digits.len() > 4 {
+            out.push(' ');
+        }
+        out.push(d);
+    }
+    out
+}
+
+/// All runs as a table, with a line of medians for each scene.
+pub(crate) fn table(reports: &[Report]) -> String {
+    const HEAD: [&str; 9] =
+        ["scene", "seed", "", "time", "iterations", "nodes", "checks", "length", "clearance"];
+    let cell = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), brief);
+    let count = |v: Option<f64>| v.map_or_else(|| "–".to_owned(), |v| grouped(v.round() as u64));
+    let mut rows = vec![HEAD.map(str::to_owned)];
+    for m in medians(reports) {
+        for r in reports.iter().filter(|r| r.scene == m.scene) {
+            rows.push([
+                r.scene.clone(),
+                r.seed.to_string(),
+                r.stopped_by.map_or("solved", StoppedBy::word).to_owned(),
+                seconds(r.time_s),
+                grouped(r.iterations),
+                grouped(r.nodes as u64),
+                grouped(r.collision_checks),
+                cell(r.path_length),
+                cell(r.clearance),
+            ]);
+        }
+        rows.push([
+            m.scene,
+            "median".into(),
+            format!("{}/{}", m.solved, m.runs),
+            m.time_s.map_or_else(|| "–".into(), seconds),
+            count(m.iterations),
+            count(m.nodes),
+            count(m.collision_checks),
+            cell(m.path_length),
+            cell(m.clearance),
+        ]);
+    }
+    let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0);
+    let widths: [usize; 9] = std::array::from_fn(width);
+    let line = |row: &[String; 9]| {
+        let cells = row.iter().zip(widths).enumerate().map(|(k, (cell, w))| {
+            if k == 0 || k == 2 { format!("{cell:<w$}") } else { format!("{cell:>w$}") }
+        });
+        cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(scene: &str, seed: u64, time: Option<f64>) -> Report {
+        Report {
+            scene: scene.into(),
+            scene_file: Some(format!("{scene}.env")),
+            space: "SE3".into(),
+            solved: time.is_some(),
+            verified: time.is_some(),
+            stopped_by: if time.is_some() { None } else { Some(StoppedBy::Time) },
+            why: None,
+            version: 1,
+            first_path: None,
+            fingerprint: None,
+            columns: Vec::new(),
+            planner: "rrt-connect".into(),
+            metric: "default".into(),
+            motion: "certified".into(),
+            seed,
+            iterations: 1234,
+            nodes: 98765,
+            edges: None,
+            components: None,
+            motion_checks: 5000,
+            collision_checks: 1_000_000,
+            rejected: 0,
+            time_s: time.unwrap_or(60.0),
+            finish_s: 0.5,
+            first_s: None,
+            first_length: None,
+            path_length_found: time.map(|_| 20.0),
+            path_length: time.map(|_| 12.5),
+            clearance: time.map(|_| 0.01),
+            shortened: true,
+            path_file: None,
+            picture_file: None,
+            path: time.map(|_| vec![vec![0.0; 6]]),
+        }
+    }
+
+    #[test]
+    fn tables_and_summaries_read_well() {
+        let runs = [report("easy", 1, Some(0.0123)), report("easy", 2, None)];
+        let table = [
+            "scene    seed             time  iterations   nodes     checks  length  clearance",
+            "easy        1  solved  12.3 ms        1234  98 765  1 000 000    12.5       0.01",
+            "easy        2  time     60.0 s        1234  98 765  1 000 000       –          –",
+            "easy   median  1/2     12.3 ms        1234  98 765  1 000 000    12.5       0.01",
+        ];
+        assert_eq!(super::table(&runs).lines().collect::<Vec<_>>(), table);
+        let solved = [
+            "easy: solved in 12.3 ms by rrt-connect, seed 1",
+            "  iterations 1234",
+            "  nodes      98 765",
+            "  checks     1 000 000 collision queries for 5000 motions (certified)",
+            "  length     20 → 12.5, shortened and verified in 0.50 s",
+            "  clearance  at least 0.01 m",
+        ];
+        assert_eq!(summary(&runs[0]).lines().collect::<Vec<_>>(), solved);
+        let not = summary(&runs[1]);
+        assert!(
+            not.starts_with("easy: not solved in 60.0 s by rrt-connect, seed 2: the time is up"),
+            "{not}"
+        );
+    }
+
+    #[test]
+    fn long_numbers_are_grouped() {
+        for (n, text) in [(0, "0"), (999, "999"), (1234, "1234"), (12345, "12 345"), (1_000_000, "1 000 000")]
+        {
+            assert_eq!(grouped(n), text);
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! What is in a mesh file.
+
+use crate::{Error, brief, count};
+use mp_geom::TriMesh;
+use serde::Serialize;
+use std::fmt;
+use std::path::Path;
+
+/// What is in a mesh file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeshInfo {
+    /// The file.
+    pub file: String,
+    /// What is known of the mesh.
+    #[serde(flatten)]
+    pub surface: Surface,
+}
+
+/// What is known of a mesh. Metres; counts of defects are 0 for a sound solid.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Surface {
+    /// `metres`.
+    pub units: &'static str,
+    /// Triangles.
+    pub triangles: usize,
+    /// Vertices.
+    pub vertices: usize,
+    /// Least corner of the box around it.
+    pub min: [f64; 3],
+    /// Greatest corner of the box around it.
+    pub max: [f64; 3],
+    /// Area of its surface, m².
+    pub area: f64,
+    /// Every edge has two sides, oriented one way: it bounds a volume.
+    pub watertight: bool,
+    /// Every edge joins at most two triangles, and no vertex joins parts.
+    pub manifold: bool,
+    /// Neighbours are turned the same way.
+    pub oriented: bool,
+    /// Parts that do not hang together.
+    pub parts: usize,
+    /// Edges of one triangle.
+    pub boundary_edges: usize,
+    /// Edges of more than two triangles.
+    pub crowded_edges: usize,
+    /// Edges whose triangles are turned against each other.
+    pub misoriented_edges: usize,
+    /// Vertices where parts of the surface touch in a point.
+    pub pinched_vertices: usize,
+    /// Triangles without area.
+    pub degenerate_triangles: usize,
+    /// Triangles that are there twice.
+    pub duplicate_triangles: usize,
+    /// What is wrong with it, in words.
+    pub warnings: Vec<String>,
+}
+
+impl MeshInfo {
+    /// Reads a mesh file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is no mesh.
+    pub fn read(file: &Path) -> Result<Self, Error> {
+        let mesh = mp_io::read_mesh(file)?;
+        Ok(Self { file: file.display().to_string(), surface: Surface::of(&mesh) })
+    }
+}
+
+impl Surface {
+    /// What is known of a mesh.
+    #[must_use]
+    pub fn of(mesh: &TriMesh) -> Self {
+        let (t, aabb) = (mesh.topology(), mesh.aabb());
+        let area = (0..mesh.triangles().len())
+            .map(|i| {
+                let [a, b, c] = mesh.triangle(i);
+                0.5 * (b - a).cross(&(c - a)).norm()
+            })
+            .sum();
+        let mut shape = Self {
+            units: "metres",
+            triangles: mesh.triangles().len(),
+            vertices: t.vertices,
+            min: aabb.min.coords.into(),
+            max: aabb.max.coords.into(),
+            area,
+            watertight: t.closed && t.oriented,
+            manifold: t.manifold,
+            oriented: t.oriented,
+            parts: t.components,
+            boundary_edges: t.boundary_edges.len(),
+            crowded_edges: t.crowded_edges.len(),
+            misoriented_edges: t.misoriented_edges.len(),
+            pinched_vertices: t.pinched_vertices.len(),
+            degenerate_triangles: t.degenerate.len(),
+            duplicate_triangles: t.duplicates.len(),
+            warnings: Vec::new(),
+        };
+        shape.warnings = shape.defects();
+        shape
+    }
+
+    fn defects(&self) -> Vec<String> {
+        let defects = [
+            (self.boundary_edges, "boundary edge", "the surface has holes, or is a sheet"),
+            (self.crowded_edges, "edge", "shared by more than two triangles"),
+            (self.misoriented_edges, "edge", "where neighbours are turned against each other"),
+            (self.pinched_vertices, "vertex", "where parts of the surface touch in a point"),
+            (self.degenerate_triangles, "triangle", "without area"),
+            (self.duplicate_triangles, "triangle", "that are there twice"),
+        ];
+        let some = defects.into_iter().filter(|(n, ..)| *n > 0);
+        let plural = |n: usize, what: &str| match (n, what) {
+            (1, _) => format!("1 {what}"),
+            (_, "vertex") => format!("{n} vertices"),
+            _ => count(n, what),
+        };
+        some.map(|(n, what, meaning)| match what {
+            "boundary edge" => format!("{}: {meaning}", plural(n, what)),
+            _ => format!("{} {meaning}", plural(n, what)),
+        })
+        .collect()
+    }
+
+    /// One line for a list of bodies.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let sound = match (self.watertight, self.manifold) {
+            (true, true) => "watertight",
+            (true, false) => "watertight, not manifold",
+            (false, _) => "not watertight",
+        };
+        format!("{}, {sound}", count(self.triangles, "triangle"))
+    }
+}
+
+impl fmt::Display for MeshInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = &self.surface;
+        let yes = |b: bool| if b { "yes" } else { "no" };
+        let size: Vec<String> = (0..3).map(|k| brief(s.max[k] - s.min[k])).collect();
+        let corner = |c: [f64; 3]| format!("({})", c.map(brief).join(", "));
+        writeln!(f, "{}: a mesh", self.file)?;
+        writeln!(
+            f,
+            "  {}, {} vertices, {}",
+            count(s.triangles, "triangle"),
+            s.vertices,
+            count(s.parts, "part")
+        )?;
+        writeln!(f, "  size      {} m, from {} to {}", size.join(" × "), corner(s.min), corner(s.max))?;
+        writeln!(f, "  area      {} m²", brief(s.area))?;
+        writeln!(
+            f,
+            "  surface   watertight {}, manifold {}, oriented {}",
+            yes(s.watertight),
+            yes(s.manifold),
+            yes(s.oriented)
+        )?;
+        s.warnings.iter().try_for_each(|w| writeln!(f, "  warning   {w}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_geom::primitives::cuboid;
+
+    #[test]
+    fn a_box_is_sound_and_an_open_one_is_not() {
+        let whole = cuboid(1.0, 2.0, 3.0).unwrap();
+        let shape = Surface::of(&whole);
+        assert!(shape.watertight && shape.warnings.is_empty(), "{:?}", shape.warnings);
+        assert!((shape.area - 22.0).abs() < 1e-12);
+        let open = TriMesh::new(whole.vertices().to_vec(), whole.triangles()[2..].to_vec()).unwrap();
+        let shape = Surface::of(&open);
+        assert!(!shape.watertight);
+        assert_eq!(shape.warnings, ["4 boundary edges: the surface has holes, or is a sheet"]);
+    }
+}

@@ -1,0 +1,155 @@
+//! What is in a scene.
+
+use super::Surface;
+use crate::{BodyShape, Scene, brief, count};
+use mp_geom::six_from_pose;
+use serde::Serialize;
+use std::fmt;
+
+/// What is in a scene of any kind. Metres and radians.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SceneInfo {
+    /// The file.
+    pub file: Option<String>,
+    /// Its name.
+    pub name: String,
+    /// The space.
+    pub space: String,
+    /// What the numbers of a configuration are.
+    pub columns: Vec<ColumnInfo>,
+    /// Where paths begin.
+    pub start: Vec<f64>,
+    /// Where they may end.
+    pub goals: Vec<Vec<f64>>,
+    /// The bodies, those of the robot first.
+    pub bodies: Vec<BodyInfo>,
+    /// Triangles of all obstacles together.
+    pub triangles: usize,
+    /// The share of the space that is free, by samples.
+    pub free: f64,
+    /// What else there is to say of such robots.
+    pub details: Vec<(String, String)>,
+    /// What is wrong or odd about it.
+    pub warnings: Vec<String>,
+}
+
+/// What one number of a configuration is.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ColumnInfo {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// The least and the largest value; none where it turns without end.
+    pub limits: Option<[f64; 2]>,
+}
+
+/// What is known of a body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyInfo {
+    /// Its name.
+    pub name: String,
+    /// Whether it belongs to the robot.
+    pub moves: bool,
+    /// Where it stands: x y z α β γ.
+    pub pose: Option<[f64; 6]>,
+    /// Its mesh, if it has one.
+    pub mesh: Option<Surface>,
+    /// Corners, of an area in the plane.
+    pub corners: Option<usize>,
+}
+
+impl SceneInfo {
+    /// What there is to say of a scene. Takes some thousands of collision queries.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let bodies: Vec<BodyInfo> = scene.bodies().iter().map(BodyInfo::of).collect();
+        let mut warnings: Vec<String> = Vec::new();
+        for body in &bodies {
+            let defects = body.mesh.iter().flat_map(|mesh| &mesh.warnings);
+            warnings.extend(defects.map(|w| format!("{}: {w}", body.name)));
+        }
+        warnings.extend(scene.lint());
+        let limits = scene.limits();
+        let columns = scene.columns().into_iter().enumerate();
+        let still = bodies.iter().filter(|body| !body.moves);
+        Self {
+            file: scene.file().map(|file| file.display().to_string()),
+            name: scene.name().to_owned(),
+            space: scene.space(),
+            columns: columns
+                .map(|(i, c)| ColumnInfo {
+                    name: c.name,
+                    unit: c.unit,
+                    limits: limits.get(i).copied().flatten(),
+                })
+                .collect(),
+            start: scene.start(),
+            goals: scene.goals(),
+            triangles: still.filter_map(|body| Some(body.mesh.as_ref()?.triangles)).sum(),
+            free: scene.free_share(10_000),
+            details: scene.details(),
+            bodies,
+            warnings,
+        }
+    }
+}
+
+impl BodyInfo {
+    fn of(body: &crate::Body) -> Self {
+        let (mesh, corners) = match &body.shape {
+            BodyShape::Mesh(mesh) => (Some(Surface::of(mesh)), None),
+            BodyShape::Area(rings) | BodyShape::Lines(rings) => {
+                (None, Some(rings.iter().map(Vec::len).sum()))
+            }
+        };
+        let pose = body.pose.map(|pose| six_from_pose(&pose));
+        Self { name: body.name.clone(), moves: body.pose.is_none(), pose, mesh, corners }
+    }
+
+    fn summary(&self) -> String {
+        match (&self.mesh, self.corners) {
+            (Some(mesh), _) => mesh.summary(),
+            (None, corners) => count(corners.unwrap_or(0), "corner"),
+        }
+    }
+}
+
+/// Bodies listed before the rest is only counted.
+const LISTED: usize = 40;
+
+impl fmt::Display for SceneInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let row = |v: &[f64]| v.iter().map(|v| brief(*v)).collect::<Vec<_>>().join(" ");
+        let name = self.file.as_ref().unwrap_or(&self.name);
+        writeln!(f, "{name}: a scene in {}", self.space)?;
+        for c in &self.columns {
+            match c.limits {
+                Some([low, high]) => {
+                    writeln!(f, "    {} from {} to {} {}", c.name, brief(low), brief(high), c.unit)?;
+                }
+                None => writeln!(f, "    {} turns without end", c.name)?,
+            }
+        }
+        writeln!(f, "  start     {}", row(&self.start))?;
+        self.goals.iter().try_for_each(|goal| writeln!(f, "  goal      {}", row(goal)))?;
+        for body in self.bodies.iter().filter(|body| body.moves) {
+            writeln!(f, "  robot     {}: {}", body.name, body.summary())?;
+        }
+        self.details.iter().try_for_each(|(name, text)| writeln!(f, "  {name:<10}{text}"))?;
+        writeln!(f, "  free      {}% of the space", brief(100.0 * self.free))?;
+        let still: Vec<_> = self.bodies.iter().filter(|body| !body.moves).collect();
+        match self.triangles {
+            0 => writeln!(f, "  {}", count(still.len(), "obstacle"))?,
+            n => writeln!(f, "  {}, {}", count(still.len(), "obstacle"), count(n, "triangle"))?,
+        }
+        for body in still.iter().take(LISTED) {
+            let at = body.pose.map(|p| row(&p)).unwrap_or_default();
+            writeln!(f, "    {} at {at}: {}", body.name, body.summary())?;
+        }
+        if still.len() > LISTED {
+            writeln!(f, "    and {} more", still.len() - LISTED)?;
+        }
+        self.warnings.iter().try_for_each(|w| writeln!(f, "  warning   {w}"))
+    }
+}

@@ -1,0 +1,50 @@
+//! Which files a scene was read from: an output must not be one of them.
+
+use crate::Scene;
+use mp_io::{Error, Files};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Files that remember which of them were read.
+#[derive(Debug)]
+pub(crate) struct Recording<'a> {
+    pub(crate) files: &'a dyn Files,
+    pub(crate) read: Mutex<Vec<PathBuf>>,
+}
+
+impl Files for Recording<'_> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
+        if let Ok(mut read) = self.read.lock()
+            && !read.iter().any(|known| known == path)
+        {
+            read.push(path.to_owned());
+        }
+        self.files.read(path, limit)
+    }
+}
+
+impl Scene {
+    /// The files that the scene was read from: its own, meshes, maps, robot descriptions.
+    #[must_use]
+    pub fn inputs(&self) -> &[PathBuf] {
+        &self.inputs
+    }
+
+    /// The input that writing `output` would overwrite, if it is one.
+    #[must_use]
+    pub fn input_at(&self, output: &Path) -> Option<&Path> {
+        let same = |input: &&PathBuf| is_same_file(input, output);
+        self.inputs.iter().find(same).map(PathBuf::as_path)
+    }
+}
+
+/// Whether two names mean the same file, which need not exist.
+#[must_use]
+pub fn is_same_file(a: &Path, b: &Path) -> bool {
+    let place = |path: &Path| {
+        let name = path.file_name()?.to_owned();
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        std::fs::canonicalize(path).ok().or_else(|| Some(std::fs::canonicalize(folder).ok()?.join(name)))
+    };
+    a == b || place(a).zip(place(b)).is_some_and(|(a, b)| a == b)
+}

@@ -1,0 +1,41 @@
+//! Many runs at the same time.
+
+use mp_cspace::Cancel;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Does `count` jobs, numbered from 0, on so many threads, and returns what they came to in the order of their
+/// numbers. Jobs that `cancel` kept from beginning are `None`. Give each job a seed of its own, and results do not
+/// depend on the number of threads.
+///
+/// ```
+/// let squares = mp_plan::in_parallel(4, 2, &mp_plan::Cancel::new(), |i| i * i);
+/// assert_eq!(squares, [Some(0), Some(1), Some(4), Some(9)]);
+/// ```
+pub fn in_parallel<T: Send>(
+    count: usize,
+    threads: usize,
+    cancel: &Cancel,
+    job: impl Fn(usize) -> T + Sync,
+) -> Vec<Option<T>> {
+    let next = AtomicUsize::new(0);
+    let done: Mutex<Vec<Option<T>>> = Mutex::new((0..count).map(|_| None).collect());
+    let work = || {
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            if i >= count || cancel.0.load(Ordering::Relaxed) {
+                break;
+            }
+            let result = job(i);
+            if let Ok(mut done) = done.lock() {
+                done[i] = Some(result);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..threads.clamp(1, count.max(1)) {
+            scope.spawn(work);
+        }
+    });
+    done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
