@@ -69,12 +69,6 @@ impl Files {
     /// is done.
     pub(crate) fn check(&self, scene: &Scene, seed: u64) -> Result<(), Error> {
         let (out, picture) = self.of(scene.name(), seed);
-        if let Some(out) = out.as_ref().filter(|out| !is_standard(out)) {
-            PathFileKind::of(out)?;
-        }
-        if let Some(picture) = &picture {
-            scene.picture_kind(picture)?;
-        }
         let named = [("--out", &out), ("--picture", &picture), ("--roadmap", &self.roadmap)];
         for (i, (option, path)) in named.iter().enumerate() {
             let Some(path) = path.as_ref().filter(|path| !is_standard(path)) else { continue };
@@ -91,7 +85,10 @@ impl Files {
                 }
             }
         }
-        Ok(())
+        if let Some(out) = out.as_ref().filter(|out| !is_standard(out)) {
+            PathFileKind::of(out)?;
+        }
+        picture.map_or(Ok(()), |picture| scene.picture_kind(&picture).map(|_| ()))
     }
 }
 

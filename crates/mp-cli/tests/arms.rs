@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Dir, xtask};
+use common::{Dir, mp};
 
 const URDF: &str = r#"<robot name="two">
 <link name="base"/>
@@ -28,7 +28,7 @@ fn dir() -> Dir {
 fn an_arm_is_planned_checked_drawn_and_described() {
     let dir = dir();
     let args = ["plan", "two.toml", "--json", "--out", "p.txt", "--picture", "p.png"];
-    let run = xtask(&dir, &args);
+    let run = mp(&dir, &args);
     assert_eq!(run.code, 0, "{run:?}");
     let report = run.json();
     assert_eq!((&report["solved"], &report["verified"]), (&true.into(), &true.into()));
@@ -39,36 +39,36 @@ fn an_arm_is_planned_checked_drawn_and_described() {
     let text = dir.read("p.txt");
     assert_eq!(text.lines().next().unwrap(), format!("{} 2", path.len()));
     // The same again, and what is written is what is checked.
-    let again = xtask(&dir, &["plan", "two.toml", "--json", "--out", "q.json"]);
+    let again = mp(&dir, &["plan", "two.toml", "--json", "--out", "q.json"]);
     assert_eq!(again.json()["path"], report["path"]);
     for file in ["p.txt", "q.json"] {
-        let check = xtask(&dir, &["check", "two.toml", file, "--json"]);
+        let check = mp(&dir, &["check", "two.toml", file, "--json"]);
         assert_eq!((check.code, &check.json()["free"]), (0, &true.into()), "{check:?}");
     }
-    assert_eq!(xtask(&dir, &["render", "two.toml", "p.txt", "--picture", "r.png"]).code, 0);
+    assert_eq!(mp(&dir, &["render", "two.toml", "p.txt", "--picture", "r.png"]).code, 0);
     assert!(dir.bytes("r.png").starts_with(b"\x89PNG"));
-    let info = xtask(&dir, &["info", "two.toml"]);
+    let info = mp(&dir, &["info", "two.toml"]);
     assert_eq!(info.code, 0, "{info:?}");
     for words in ["shoulder turns without end", "elbow from -2.5 to 2.5", "post at 1.5"] {
         assert!(info.stdout.contains(words), "{info:?}");
     }
-    let info = xtask(&dir, &["info", "p.txt", "--json"]);
-    assert_eq!((&info.json()["kind"], &info.json()["joints"]), (&"joint path".into(), &2.into()));
+    let info = mp(&dir, &["info", "p.txt", "--json"]);
+    assert_eq!((&info.json()["kind"], &info.json()["numbers"]), (&"path".into(), &2.into()));
 }
 
 #[test]
 fn a_path_that_hits_is_told_where() {
     let dir = dir();
     dir.write("straight.txt", "2 2\n-0.7 0\n0.7 0\n");
-    let check = xtask(&dir, &["check", "two.toml", "straight.txt"]);
+    let check = mp(&dir, &["check", "two.toml", "straight.txt"]);
     assert_eq!(check.code, 1, "{check:?}");
     assert!(check.stdout.contains("post") && check.stdout.contains("configurations 1 and 2"), "{check:?}");
     dir.write("short.txt", "2 2\n-0.7 0\n-0.6 0\n");
-    let check = xtask(&dir, &["check", "two.toml", "short.txt"]);
-    assert_eq!((check.code, check.stdout.contains("does not end at a goal")), (1, true), "{check:?}");
+    let check = mp(&dir, &["check", "two.toml", "short.txt"]);
+    assert_eq!((check.code, check.stdout.contains("does not end at the goal")), (1, true), "{check:?}");
     dir.write("three.txt", "1 3\n0 0 0\n");
-    let check = xtask(&dir, &["check", "two.toml", "three.txt"]);
-    assert_eq!((check.code, check.stderr.contains("3 joints")), (2, true), "{check:?}");
+    let check = mp(&dir, &["check", "two.toml", "three.txt"]);
+    assert_eq!((check.code, check.stderr.contains("3 numbers")), (2, true), "{check:?}");
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn bad_problems_are_told_what_to_do() {
     let plan = |from: &str, to: &str| {
         assert!(TASK.contains(from), "{from}");
         dir.write("bad.toml", TASK.replacen(from, to, 1));
-        let run = xtask(&dir, &["plan", "bad.toml"]);
+        let run = mp(&dir, &["plan", "bad.toml"]);
         assert_eq!(run.code, 2, "{run:?}");
         assert!(run.stdout.is_empty());
         // As it is wrapped to the width of a terminal.
@@ -98,12 +98,12 @@ fn bad_problems_are_told_what_to_do() {
         let told = plan(from, to);
         assert!(words.iter().all(|word| told.contains(word)), "{to}: {told}");
     }
-    let run = xtask(&dir, &["plan", "two.toml", "--metric", "max-displacement"]);
-    assert_eq!((run.code, run.stderr.contains("rigid bodies")), (2, true), "{run:?}");
+    let run = mp(&dir, &["plan", "two.toml", "--metric", "max-displacement"]);
+    assert_eq!((run.code, run.stderr.contains("take one of: default, euclidean")), (2, true), "{run:?}");
     // Posts on either side that the upper link cannot pass.
     let shut = TASK.to_owned() + "\n[[obstacle]]\nbox = [0.2, 0.2, 1]\npose = [-0.5, 0, 0, 0, 0, 0]\n";
     dir.write("shut.toml", shut.replace("pose = [1.5, 0", "pose = [0.8, 0"));
-    let run = xtask(&dir, &["plan", "shut.toml", "--iterations", "300", "--json"]);
+    let run = mp(&dir, &["plan", "shut.toml", "--iterations", "300", "--json"]);
     assert_eq!((run.code, run.json()["solved"].as_bool()), (1, Some(false)), "{run:?}");
 }
 
@@ -122,32 +122,33 @@ fn worlds_in_the_plane_are_planned_checked_drawn_and_described() {
     );
     for (scene, space, picture) in [("room", "R2", "p.svg"), ("rod", "SE2", "p.png")] {
         let file = format!("{scene}.toml");
-        let run = xtask(&dir, &["plan", &file, "--json", "--out", "p.txt", "--picture", picture]);
+        let run = mp(&dir, &["plan", &file, "--json", "--out", "p.txt", "--picture", picture]);
         assert_eq!(run.code, 0, "{run:?}");
         let report = run.json();
         assert_eq!((&report["verified"], &report["space"]), (&true.into(), &space.into()));
         let found = report["path_length"].as_f64().unwrap();
         assert!(found > 2.5 && found < 6.0 && report["clearance"].as_f64().unwrap() > 0.0, "{report}");
-        let check = xtask(&dir, &["check", &file, "p.txt", "--json"]);
+        let check = mp(&dir, &["check", &file, "p.txt", "--json"]);
         assert_eq!((check.code, &check.json()["free"]), (0, &true.into()), "{check:?}");
-        let info = xtask(&dir, &["info", &file]);
-        assert!(info.code == 0 && info.stdout.contains("world in the plane"), "{info:?}");
-        assert_eq!(xtask(&dir, &["render", &file, "p.txt", "--picture", "r.svg"]).code, 0);
+        let info = mp(&dir, &["info", &file]);
+        assert!(info.code == 0 && info.stdout.contains(&format!("a scene in {space}")), "{info:?}");
+        assert_eq!(mp(&dir, &["render", &file, "p.txt", "--picture", "r.svg"]).code, 0);
         assert!(dir.read("r.svg").contains("<path"));
     }
     assert!(dir.read("p.svg").starts_with("<svg") && dir.bytes("p.png").starts_with(b"\x89PNG"));
     dir.write("straight.txt", "2 2\n0.5 0.5\n2.5 0.5\n");
-    let check = xtask(&dir, &["check", "room.toml", "straight.txt"]);
+    let check = mp(&dir, &["check", "room.toml", "straight.txt"]);
     assert_eq!((check.code, check.stdout.contains("hits shelf")), (1, true), "{check:?}");
-    let three = xtask(&dir, &["check", "rod.toml", "straight.txt"]);
+    let three = mp(&dir, &["check", "rod.toml", "straight.txt"]);
     assert_eq!((three.code, three.stderr.contains("2 numbers")), (2, true), "{three:?}");
     dir.write("shut.toml", ROOM.replace("start = [0.5, 0.5]", "start = [1.5, 0.5]"));
-    let shut = xtask(&dir, &["plan", "shut.toml"]);
+    let shut = mp(&dir, &["plan", "shut.toml"]);
     assert!(shut.code == 2 && shut.stderr.contains("in collision with shelf"), "{shut:?}");
     assert!(
-        shut.stderr.contains("a free place nearby is [") && shut.stderr.contains("shut.toml"),
+        shut.stderr.contains("the nearest free configuration found is [")
+            && shut.stderr.contains("shut.toml"),
         "{shut:?}"
     );
-    let metric = xtask(&dir, &["plan", "room.toml", "--metric", "manhattan"]);
-    assert_eq!((metric.code, metric.stderr.contains("leave --metric out")), (2, true), "{metric:?}");
+    let metric = mp(&dir, &["plan", "room.toml", "--metric", "manhattan"]);
+    assert_eq!((metric.code, metric.stderr.contains("take one of: default")), (2, true), "{metric:?}");
 }

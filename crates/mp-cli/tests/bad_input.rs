@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{Dir, xtask};
+use common::{Dir, mp};
 
 /// Command lines that make no sense, and words of the error.
 const COMMANDS: &[(&[&str], &[&str])] = &[
@@ -47,6 +47,15 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
     (&["check", "window.env"], &["PATH"]),
     (&["check", "window.env", "missing.txt"], &["missing.txt", "no such file"]),
     (&["check", "window.env", "robot.off"], &["robot.off"]),
+    (&["check", "window.env", "--at", "1 2 3"], &["6 finite numbers", "alpha [rad]"]),
+    (&["plan", "window.env", "--out", "window.env"], &["overwrite", "window.env"]),
+    (&["plan", "window.env", "--out", "p.doc"], &["p.doc", ".csv"]),
+    (&["plan", "window.env", "--out", "p"], &["no ending", ".csv"]),
+    (&["plan", "window.env", "--picture", "side.off"], &["side.off"]),
+    (&["plan", "window.env", "--out", "p.txt", "--planner", "prm", "--roadmap", "./p.txt"], &["same file"]),
+    (&["plan", "window.env", "--planner", "prm", "--roadmap", "robot.off"], &["overwrite", "robot.off"]),
+    (&["plan", "arm.urdf"], &["arm.urdf", "robot problem", "[motion]"]),
+    (&["info", "map.yaml"], &["map.yaml", "[world]", "disc"]),
     (&["info", "missing.off"], &["missing.off"]),
     (&["info", "."], &["not a file"]),
     (&["render", "window.env", "--picture", "p.bmp"], &["p.bmp", ".png"]),
@@ -57,9 +66,11 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
 #[test]
 fn commands() {
     let dir = Dir::new();
+    dir.write("arm.urdf", "<robot name=\"a\"/>");
+    dir.write("map.yaml", "image: map.pgm\n");
     let before = dir.entries(".");
     for (args, words) in COMMANDS {
-        let run = xtask(&dir, args);
+        let run = mp(&dir, args);
         assert_eq!(run.code, 2, "{args:?}: {run:?}");
         assert!(run.stdout.is_empty(), "{args:?}: {run:?}");
         // Messages are wrapped to the width of the screen.
@@ -116,7 +127,7 @@ fn scene_files() {
     let before = dir.entries(".");
     for (name, _, words) in &scenes {
         for args in [&["plan", name, "--out", "p.txt"][..], &["info", name], &["check", name, "p.txt"]] {
-            let run = xtask(&dir, args);
+            let run = mp(&dir, args);
             assert_eq!(run.code, 2, "{args:?}: {run:?}");
             let told = run.stderr.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
             for word in *words {
@@ -137,21 +148,21 @@ fn ends_in_collision() {
         [("start", "-2 1.4 0.2 0 0 0", "-0.2 1.5 1 0 0 0"), ("goal", "2 1.3 1.8 0.7 0 0", "0.3 -1.5 1 0 0 0")]
     {
         dir.write("hit.env", good.replace(line, moved));
-        let run = xtask(&dir, &["plan", "hit.env", "--out", "p.txt"]);
+        let run = mp(&dir, &["plan", "hit.env", "--out", "p.txt"]);
         assert_eq!(run.code, 2, "{run:?}");
-        let info = xtask(&dir, &["info", "hit.env"]);
+        let info = mp(&dir, &["info", "hit.env"]);
         assert!(info.code == 0 && info.stdout.contains(&format!("the {end} is in collision")), "{info:?}");
         let told = run.stderr.split_whitespace().filter(|w| *w != "│").collect::<Vec<_>>().join(" ");
         let body = if end == "start" { "Obstacle #1" } else { "Obstacle #2" };
         assert!(told.contains(&format!("the {end} is in collision with {body} (0.")), "{told}");
         let free = told.split("free configuration found is ").nth(1).unwrap_or_else(|| panic!("{told}"));
         dir.write("freed.env", good.replace(line, free.trim()));
-        let run = xtask(&dir, &["plan", "freed.env", "--json"]);
+        let run = mp(&dir, &["plan", "freed.env", "--json"]);
         assert_eq!(run.code, 0, "{run:?}");
     }
     assert!(!dir.exists("p.txt"));
     dir.write("touch.env", good.replace("-2 1.4 0.2 0 0 0", "-0.50000001 1.4 0.2 0 0 0"));
-    let run = xtask(&dir, &["plan", "touch.env"]);
+    let run = mp(&dir, &["plan", "touch.env"]);
     assert!(run.code == 2 && run.stderr.contains("from contact"), "{run:?}");
 }
 
@@ -170,11 +181,11 @@ fn meshes_and_paths() {
     ];
     for (name, bytes) in files {
         dir.write(name, bytes);
-        let run = xtask(&dir, &["info", name]);
+        let run = mp(&dir, &["info", name]);
         assert_eq!(run.code, 2, "{name}: {run:?}");
         assert!(run.stderr.contains(name), "{name}: {run:?}");
         if !name.ends_with(".off") {
-            assert_eq!(xtask(&dir, &["check", "window.env", name]).code, 2, "{name}");
+            assert_eq!(mp(&dir, &["check", "window.env", name]).code, 2, "{name}");
         }
     }
 }

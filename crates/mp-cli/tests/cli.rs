@@ -2,17 +2,19 @@
 
 mod common;
 
-use common::{Dir, xtask};
+use common::{Dir, mp};
 use serde_json::Value;
 
 /// Every field of the JSON of one run, and whether it may be null.
-const FIELDS: [(&str, bool); 28] = [
+const FIELDS: [(&str, bool); 33] = [
+    ("version", false),
     ("scene", false),
     ("scene_file", false),
     ("space", false),
     ("solved", false),
     ("verified", false),
     ("stopped_by", true),
+    ("why", true),
     ("planner", false),
     ("metric", false),
     ("motion", false),
@@ -28,6 +30,9 @@ const FIELDS: [(&str, bool); 28] = [
     ("finish_s", false),
     ("first_s", true),
     ("first_length", true),
+    ("first_path", true),
+    ("fingerprint", true),
+    ("columns", false),
     ("path_length_found", true),
     ("path_length", true),
     ("clearance", true),
@@ -53,7 +58,7 @@ fn assert_fields(report: &Value, solved: bool) {
 #[test]
 fn plan_solves_verifies_and_writes() {
     let dir = Dir::new();
-    let run = xtask(&dir, &["plan", "window.env", "--json", "--out", "a/p.txt", "--picture", "a/p.png"]);
+    let run = mp(&dir, &["plan", "window.env", "--json", "--out", "a/p.txt", "--picture", "a/p.png"]);
     assert_eq!(run.code, 0, "{run:?}");
     let report = run.json();
     assert_fields(&report, true);
@@ -65,7 +70,7 @@ fn plan_solves_verifies_and_writes() {
     assert!(dir.bytes("a/p.png").starts_with(b"\x89PNG"));
     assert_eq!(dir.entries("a"), ["p.png", "p.txt"], "no leftovers");
 
-    let check = xtask(&dir, &["check", "window.env", "a/p.txt", "--json"]);
+    let check = mp(&dir, &["check", "window.env", "a/p.txt", "--json"]);
     assert_eq!((check.code, &check.json()["free"]), (0, &true.into()), "{check:?}");
 }
 
@@ -74,7 +79,7 @@ fn a_roadmap_is_kept_and_gone_on_with() {
     let dir = Dir::new();
     let plan = |scene: &str, planner: &str, more: &[&str]| {
         let args = ["plan", scene, "--planner", planner, "--roadmap", "kept.roadmap", "--json"];
-        xtask(&dir, &[&args[..], more].concat())
+        mp(&dir, &[&args[..], more].concat())
     };
     let first = plan("plane.env", "prm", &[]);
     assert_eq!(first.code, 0, "{first:?}");
@@ -104,13 +109,13 @@ fn a_roadmap_is_kept_and_gone_on_with() {
 #[test]
 fn without_json_a_person_gets_a_summary_and_files() {
     let dir = Dir::new();
-    let run = xtask(&dir, &["plan", "plane.env"]);
+    let run = mp(&dir, &["plan", "plane.env"]);
     assert_eq!(run.code, 0, "{run:?}");
     for words in ["plane: solved in", "nodes", "collision queries", "shortened and verified", "clearance"] {
         assert!(run.stdout.contains(words), "{words}: {}", run.stdout);
     }
     assert_eq!(dir.entries("out"), ["plane.path.txt", "plane.png"]);
-    assert_eq!(xtask(&dir, &["check", "plane", "out/plane.path.txt"]).code, 0);
+    assert_eq!(mp(&dir, &["check", "plane", "out/plane.path.txt"]).code, 0);
 }
 
 #[test]
@@ -119,7 +124,7 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
     let runs = |threads: &str, folder: &str, time: &str| {
         let out = format!("{folder}/{{scene}}-{{seed}}.txt");
         let args = ["plan", "window.env", "plane.env", "--runs", "2", "--seed", "3", "--json"];
-        let run = xtask(&dir, &[&args[..], &["--threads", threads, "--out", &out, "--time", time]].concat());
+        let run = mp(&dir, &[&args[..], &["--threads", threads, "--out", &out, "--time", time]].concat());
         assert_eq!(run.code, 0, "{run:?}");
         run.json()
     };
@@ -149,14 +154,14 @@ fn what_cannot_be_solved_is_not_and_nothing_is_written() {
     for planner in ["rrt", "rrt-connect"] {
         for motion in ["certified", "discrete:1%"] {
             let args = ["plan", "closed.env", "--iterations", "2000", "--json", "--out", "p.txt"];
-            let run = xtask(&dir, &[&args[..], &["--planner", planner, "--motion", motion]].concat());
+            let run = mp(&dir, &[&args[..], &["--planner", planner, "--motion", motion]].concat());
             assert_eq!(run.code, 1, "{run:?}");
             assert_fields(&run.json(), false);
             assert_eq!(run.json()["stopped_by"], "iterations");
             assert_eq!(run.json()["iterations"], 2000);
         }
     }
-    let run = xtask(&dir, &["plan", "closed.env", "--time", "0.2"]);
+    let run = mp(&dir, &["plan", "closed.env", "--time", "0.2"]);
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.stdout.contains("not solved") && run.stdout.contains("--time"), "{}", run.stdout);
     assert!(!dir.exists("p.txt") && !dir.exists("out"));
@@ -171,10 +176,10 @@ fn every_planner_metric_and_motion_check_gives_a_certified_path() {
     for (metric, planner, motion) in cases.into_iter().chain(more) {
         for scene in ["window.env", "plane.env"] {
             let args = ["plan", scene, "--json", "--out", "p.json", "--metric", metric, "--planner", planner];
-            let run = xtask(&dir, &[&args[..], &["--motion", motion]].concat());
+            let run = mp(&dir, &[&args[..], &["--motion", motion]].concat());
             assert_eq!(run.code, 0, "{metric} {planner} {motion}: {run:?}");
             assert_eq!(run.json()["metric"], metric);
-            assert_eq!(xtask(&dir, &["check", scene, "p.json"]).code, 0);
+            assert_eq!(mp(&dir, &["check", scene, "p.json"]).code, 0);
         }
     }
 }
@@ -185,7 +190,7 @@ fn planners_that_improve_use_the_budget_and_say_what_it_gave() {
     for planner in ["rrt-star", "informed-rrt-star"] {
         let args =
             ["plan", "plane.env", "--planner", planner, "--iterations", "2000", "--json", "--no-shorten"];
-        let run = xtask(&dir, &args);
+        let run = mp(&dir, &args);
         assert_eq!(run.code, 0, "{run:?}");
         let report = run.json();
         assert_fields(&report, true);
@@ -193,10 +198,10 @@ fn planners_that_improve_use_the_budget_and_say_what_it_gave() {
         let number = |field: &str| report[field].as_f64().unwrap();
         assert!(number("path_length") < number("first_length"), "{report}");
         assert!(number("first_s") < number("time_s"), "{report}");
-        let short = xtask(&dir, &[&args[..], &["--set", "near=0"]].concat());
+        let short = mp(&dir, &[&args[..], &["--set", "near=0"]].concat());
         assert!(short.code == 2 && short.stderr.contains("near is 0"), "{short:?}");
     }
-    let run = xtask(&dir, &["plan", "plane.env", "--json"]);
+    let run = mp(&dir, &["plan", "plane.env", "--json"]);
     assert!(run.json()["first_s"].is_null());
 }
 
@@ -207,7 +212,7 @@ fn planners_that_run_planners_give_the_same_bytes_on_any_number_of_threads() {
         let runs = ["1", "2"].map(|threads| {
             let out = format!("{threads}.txt");
             let args = ["plan", "window.env", "--json", "--planner", planner, "--threads", threads];
-            let run = xtask(&dir, &[&args[..], &["--out", &out]].concat());
+            let run = mp(&dir, &[&args[..], &["--out", &out]].concat());
             assert_eq!(run.code, 0, "{run:?}");
             let report = run.json();
             assert_eq!(report["planner"], planner);
@@ -216,11 +221,11 @@ fn planners_that_run_planners_give_the_same_bytes_on_any_number_of_threads() {
         assert_eq!(runs[0], runs[1], "{planner}");
         assert_ne!(runs[0].2, 0);
     }
-    let run = xtask(&dir, &["plan", "window.env", "--planner", "or-rrt-conect"]);
+    let run = mp(&dir, &["plan", "window.env", "--planner", "or-rrt-conect"]);
     assert!(run.code == 2 && run.stderr.contains("or-rrt-conect"), "{run:?}");
-    let run = xtask(&dir, &["plan", "window.env", "--planner", "restart-rrt", "--set", "runs=3"]);
+    let run = mp(&dir, &["plan", "window.env", "--planner", "restart-rrt", "--set", "runs=3"]);
     assert!(run.code == 2 && run.stderr.contains("schedule"), "{run:?}");
-    let run = xtask(&dir, &["plan", "window.env", "--planner", "or-rrt", "--set", "runs=0"]);
+    let run = mp(&dir, &["plan", "window.env", "--planner", "or-rrt", "--set", "runs=0"]);
     assert!(run.code == 2 && run.stderr.contains("from 1 to 1024"), "{run:?}");
 }
 
@@ -228,18 +233,18 @@ fn planners_that_run_planners_give_the_same_bytes_on_any_number_of_threads() {
 fn a_path_that_touches_something_is_refused_with_the_place() {
     let dir = Dir::new();
     dir.write("through.txt", "2\n-2 1.4 0.2 0 0 0\n2 1.3 1.8 0.7 0 0\n");
-    let run = xtask(&dir, &["check", "window.env", "through.txt"]);
+    let run = mp(&dir, &["check", "window.env", "through.txt"]);
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.stdout.contains("hits Obstacle #"), "{}", run.stdout);
     assert!(run.stdout.contains("between configurations 1 and 2"), "{}", run.stdout);
 
     dir.write("elsewhere.txt", "2\n-2 1.4 0.2 0 0 0\n-2 1 1 0 0 0\n");
-    let run = xtask(&dir, &["check", "window.env", "elsewhere.txt", "--json"]);
+    let run = mp(&dir, &["check", "window.env", "elsewhere.txt", "--json"]);
     assert_eq!((run.code, &run.json()["free"]), (1, &false.into()));
     assert!(run.stdout.contains("does not end at the goal"), "{}", run.stdout);
 
     dir.write("tilted.txt", "2\n-2 0 0 0 0.1 0\n2 0 0 0 0 0\n");
-    let run = xtask(&dir, &["check", "plane.env", "tilted.txt"]);
+    let run = mp(&dir, &["check", "plane.env", "tilted.txt"]);
     assert!(run.code == 1 && run.stdout.contains("leaves the plane"), "{run:?}");
 }
 
@@ -248,15 +253,15 @@ fn info_tells_meshes_scenes_and_paths_apart() {
     let dir = Dir::new();
     dir.write("p.txt", "2\n0 0 0 0 0 0\n1 0 0 0 0 0\n");
     for (file, kind) in [("robot.off", "mesh"), ("window.env", "scene"), ("p.txt", "path")] {
-        let run = xtask(&dir, &["info", file, "--json"]);
+        let run = mp(&dir, &["info", file, "--json"]);
         assert_eq!((run.code, &run.json()["kind"]), (0, &kind.into()), "{run:?}");
-        assert!(xtask(&dir, &["info", file]).stdout.starts_with(file));
+        assert!(mp(&dir, &["info", file]).stdout.starts_with(file));
     }
-    let mesh = xtask(&dir, &["info", "robot.off", "--json"]).json();
+    let mesh = mp(&dir, &["info", "robot.off", "--json"]).json();
     assert_eq!((&mesh["triangles"], &mesh["watertight"]), (&12.into(), &true.into()));
-    let scene = xtask(&dir, &["info", "window.env", "--json"]).json();
-    assert_eq!(scene["obstacles"].as_array().unwrap().len(), 4);
-    assert_eq!(xtask(&dir, &["info", "p.txt", "--json"]).json()["length"], 1.0);
+    let scene = mp(&dir, &["info", "window.env", "--json"]).json();
+    assert_eq!(scene["bodies"].as_array().unwrap().len(), 5);
+    assert_eq!(mp(&dir, &["info", "p.txt", "--json"]).json()["length"], 1.0);
 }
 
 #[test]
@@ -264,7 +269,7 @@ fn pictures_are_the_same_twice() {
     let dir = Dir::new();
     dir.write("p.txt", "3\n-2 0 1 0 0 0\n0 0 1 0.3 0 0\n2 0 1 0.7 0 0\n");
     for name in ["a.png", "b.png"] {
-        let run = xtask(&dir, &["render", "window.env", "p.txt", "--picture", name, "--size", "320x240"]);
+        let run = mp(&dir, &["render", "window.env", "p.txt", "--picture", name, "--size", "320x240"]);
         assert_eq!(run.code, 0, "{run:?}");
     }
     let picture = dir.bytes("a.png");
@@ -281,7 +286,7 @@ fn pictures_are_the_same_twice() {
 #[test]
 fn scenes_are_exported_for_other_planners() {
     let dir = Dir::new();
-    let run = xtask(&dir, &["plan", "window.env", "plane.env", "--export", "other", "--json"]);
+    let run = mp(&dir, &["plan", "window.env", "plane.env", "--export", "other", "--json"]);
     assert_eq!(run.code, 0, "{run:?}");
     let window: Value = serde_json::from_str(&dir.read("other/window.json")).unwrap();
     assert_eq!((&window["space"], &window["resolution_fraction"]), (&"SE3".into(), &0.01.into()));

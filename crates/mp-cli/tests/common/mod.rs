@@ -2,9 +2,10 @@
 
 #![allow(dead_code, reason = "each test file uses a part of this")]
 
-use mp::geom::{TriMesh, primitives::cuboid};
+use mp_geom::{TriMesh, primitives::cuboid};
 use nalgebra::{Isometry3, Translation3};
 use serde_json::Value;
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 
@@ -29,19 +30,32 @@ impl Run {
 }
 
 /// Runs the program in `dir`.
-pub(crate) fn xtask(dir: &Dir, args: &[&str]) -> Run {
+pub(crate) fn mp(dir: &Dir, args: &[&str]) -> Run {
     finish(start(dir, args))
 }
 
+/// Runs the program in `dir` with `input` on standard input.
+pub(crate) fn fed(dir: &Dir, args: &[&str], input: &str) -> Run {
+    let mut child = command(dir, args).stdin(Stdio::piped()).spawn().unwrap();
+    // A program that does not read it is right to.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    finish(child)
+}
+
 pub(crate) fn start(dir: &Dir, args: &[&str]) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_xtask"))
-        .args(args)
-        .current_dir(dir.0.path())
-        .env_remove("RUST_LOG")
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
+    start_with(dir, args, &[])
+}
+
+/// The same with variables of the environment.
+pub(crate) fn start_with(dir: &Dir, args: &[&str], variables: &[(&str, &str)]) -> Child {
+    command(dir, args).envs(variables.iter().copied()).spawn().unwrap()
+}
+
+fn command(dir: &Dir, args: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_mp"));
+    command.args(args).current_dir(dir.0.path()).env_remove("RUST_LOG");
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
 }
 
 pub(crate) fn finish(child: Child) -> Run {
@@ -56,6 +70,11 @@ fn block(x: f64, y: f64, z: f64, at: [f64; 3]) -> TriMesh {
 }
 
 impl Dir {
+    /// A folder with nothing in it.
+    pub(crate) fn empty() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
     pub(crate) fn new() -> Self {
         let dir = Self(tempfile::tempdir().unwrap());
         dir.mesh("robot.off", &cuboid(0.8, 0.2, 0.3).unwrap());
@@ -77,7 +96,7 @@ impl Dir {
     }
 
     fn mesh(&self, name: &str, mesh: &TriMesh) {
-        mp::io::write_off(self.path(name), mesh).unwrap();
+        mp_io::write_off(self.path(name), mesh).unwrap();
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {

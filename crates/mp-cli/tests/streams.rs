@@ -1,0 +1,122 @@
+//! Standard input and output, formats by ending, requests, shipped scenes, completions and the manual.
+
+mod common;
+
+use common::{Dir, fed, mp};
+
+#[test]
+fn a_scene_comes_in_and_a_path_goes_out() {
+    let dir = Dir::new();
+    let scene = dir.read("window.env");
+    let run = fed(&dir, &["plan", "-", "--out", "-", "--picture", "p.png"], &scene);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.stderr.contains("stdin: solved in"), "{run:?}");
+    assert!(run.stdout.lines().skip(1).all(|line| line.split(' ').count() == 6), "{run:?}");
+    let check = fed(&dir, &["check", "window.env", "-"], &run.stdout);
+    assert_eq!(check.code, 0, "{check:?}");
+    let both = fed(&dir, &["check", "-", "-"], "");
+    assert!(both.code == 2 && both.stderr.contains("standard input"), "{both:?}");
+    let taken = mp(&dir, &["plan", "window.env", "--out", "-", "--json"]);
+    assert!(taken.code == 2 && taken.stderr.contains("taken"), "{taken:?}");
+}
+
+#[test]
+fn paths_are_written_and_read_by_their_ending() {
+    let dir = Dir::new();
+    let mut rows = Vec::new();
+    for name in ["p.txt", "p.json", "p.csv"] {
+        let run = mp(&dir, &["plan", "plane.env", "--json", "--out", name]);
+        assert_eq!(run.code, 0, "{run:?}");
+        rows.push(run.json()["path"].clone());
+        let check = mp(&dir, &["check", "plane.env", name]);
+        assert_eq!(check.code, 0, "{check:?}");
+        let check = fed(&dir, &["check", "plane.env", "-"], &dir.read(name));
+        assert_eq!(check.code, 0, "{name}: {check:?}");
+    }
+    assert!(rows.iter().all(|row| *row == rows[0]));
+    assert!(dir.read("p.csv").starts_with("x [m],y [m],z [m],alpha [rad],"), "{}", dir.read("p.csv"));
+    assert_eq!(mp(&dir, &["info", "p.csv", "--json"]).json()["numbers"], 6);
+}
+
+#[test]
+fn a_configuration_is_explained() {
+    let dir = Dir::new();
+    let free = mp(&dir, &["check", "window.env", "--at", "-2 1.4 0.2 0 0 0", "--json"]);
+    assert_eq!((free.code, &free.json()["free"]), (0, &true.into()), "{free:?}");
+    let hit = mp(&dir, &["check", "window.env", "--at=0,1.5,1,0,0,0"]);
+    assert_eq!(hit.code, 1, "{hit:?}");
+    for words in ["in collision with Obstacle #1 (", "nearest free configuration found is"] {
+        assert!(hit.stdout.contains(words), "{hit:?}");
+    }
+}
+
+#[test]
+fn a_request_is_plain_data() {
+    let dir = Dir::new();
+    let text = r#"{"planner": "rrt", "seed": 3, "settings": {"step": "10%"}, "finish": "as-found"}"#;
+    dir.write("r.json", text);
+    let run = mp(&dir, &["plan", "window.env", "--request", "r.json", "--json"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let report = run.json();
+    assert_eq!((&report["planner"], &report["seed"]), (&"rrt".into(), &3.into()));
+    assert_eq!(report["shortened"], false);
+    let args =
+        ["plan", "window.env", "--planner", "rrt", "--seed", "3", "--step", "10%", "--no-shorten", "--json"];
+    assert_eq!(mp(&dir, &args).json()["fingerprint"], report["fingerprint"]);
+    assert_eq!(fed(&dir, &["plan", "window.env", "--request", "-", "--json"], text).code, 0);
+    let bad = fed(&dir, &["plan", "window.env", "--request", "-"], r#"{"planer": "rrt"}"#);
+    assert!(bad.code == 2 && bad.stderr.contains("planer"), "{bad:?}");
+}
+
+#[test]
+fn shipped_scenes_need_no_folder() {
+    let dir = Dir::empty();
+    let names = mp(&dir, &["scenes"]);
+    assert!(names.stdout.lines().any(|name| name == "cubicles"), "{names:?}");
+    for (scene, planner) in [("easy", "rrt-connect"), ("rrs-low", "rrs"), ("arm", "rrt-connect")] {
+        let run = mp(
+            &dir,
+            &["plan", scene, "--planner", planner, "--json", "--out", "p.txt", "--picture", "p.png"],
+        );
+        assert_eq!(run.code, 0, "{run:?}");
+        assert_eq!(mp(&dir, &["check", scene, "p.txt"]).code, 0);
+        assert_eq!(mp(&dir, &["render", scene, "p.txt", "--picture", "q.png"]).code, 0);
+        assert_eq!(mp(&dir, &["info", scene]).code, 0);
+    }
+    let none = mp(&dir, &["plan", "cubicels"]);
+    assert!(none.code == 2 && none.stderr.contains("did you mean `cubicles`?"), "{none:?}");
+}
+
+#[test]
+fn a_path_that_is_not_free_is_drawn_and_said_to_be() {
+    let dir = Dir::new();
+    dir.write("through.txt", "2\n-2 1.4 0.2 0 0 0\n2 1.3 1.8 0.7 0 0\n");
+    let run = mp(&dir, &["render", "window.env", "through.txt", "--picture", "p.png", "--size", "320x240"]);
+    assert!(run.code == 1 && run.stderr.contains("not free") && dir.exists("p.png"), "{run:?}");
+}
+
+#[test]
+fn shells_and_man_are_served() {
+    let dir = Dir::empty();
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let run = mp(&dir, &["completions", shell]);
+        assert!(run.code == 0 && run.stdout.contains("rrt-connect"), "{shell}: {run:?}");
+    }
+    let man = mp(&dir, &["man"]);
+    assert!(man.code == 0 && man.stdout.contains(".TH"), "{man:?}");
+    for words in ["plan", "\\-\\-planner", "certified free"] {
+        assert!(man.stdout.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn logs_go_to_standard_error() {
+    let dir = Dir::new();
+    let run =
+        common::finish(common::start_with(&dir, &["plan", "plane.env", "--json"], &[("RUST_LOG", "info")]));
+    assert_eq!(run.code, 0, "{run:?}");
+    for words in ["loaded", "planned", "outcome"] {
+        assert!(run.stderr.contains(words), "{words}: {run:?}");
+    }
+    run.json();
+}

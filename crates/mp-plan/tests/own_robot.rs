@@ -1,0 +1,202 @@
+//! A kind of robot that is none of ours: a crane with a boom that turns and a trolley that slides, among posts.
+
+use mp_cspace::{
+    Clearance, JointRange, Joints, KnownFree, MotionBound, MotionCheck, MotionValidity, Validity,
+};
+use mp_plan::{
+    Body, BodyShape, Checker, Column, Error, Measured, Metric, PathRows, Request, RobotKind, Scene, Touch,
+};
+use nalgebra::{DVector, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
+
+/// Angle of the boom and place of the trolley on it; the load hangs below and must not come near a post.
+type Configuration = DVector<f64>;
+
+/// Radius of the load, metres.
+const LOAD: f64 = 0.3;
+/// The farthest place of the trolley, metres.
+const BOOM: f64 = 5.0;
+const TOLERANCE: f64 = 1e-3;
+
+#[derive(Clone, Debug)]
+struct Crane {
+    space: Joints<Configuration>,
+    ends: [Configuration; 2],
+    check: Load,
+}
+
+#[derive(Clone, Debug)]
+struct Load {
+    posts: Vec<Vector2<f64>>,
+    asked: u64,
+}
+
+fn place(q: &Configuration) -> Vector2<f64> {
+    Vector2::new(q[1] * q[0].cos(), q[1] * q[0].sin())
+}
+
+impl Validity<Configuration> for Load {
+    fn is_valid(&mut self, q: &Configuration) -> bool {
+        self.clearance(q, f64::MIN_POSITIVE) > 0.0
+    }
+}
+impl Clearance<Configuration> for Load {
+    fn clearance(&mut self, q: &Configuration, _: f64) -> f64 {
+        self.asked += 1;
+        let load = place(q);
+        self.posts.iter().map(|post| (post - load).norm() - LOAD).fold(f64::INFINITY, f64::min)
+    }
+}
+impl MotionBound<Configuration> for Load {
+    fn motion_bound(&self, from: &Configuration, to: &Configuration) -> f64 {
+        (to[0] - from[0]).abs() * from[1].max(to[1]) + (to[1] - from[1]).abs()
+    }
+}
+impl Checker<Configuration> for Load {
+    fn queries(&self) -> u64 {
+        self.asked
+    }
+}
+
+/// The verifier: fine steps, in its own words.
+#[derive(Clone)]
+struct Steps<'c>(&'c Crane);
+
+impl MotionValidity<Configuration> for Steps<'_> {
+    fn check_motion(&mut self, a: &Configuration, b: &Configuration) -> MotionCheck {
+        self.check_extension(a, b, KnownFree::Neither)
+    }
+    fn check_extension(&mut self, a: &Configuration, b: &Configuration, _: KnownFree) -> MotionCheck {
+        let mut least = f64::INFINITY;
+        for i in 0..=2000 {
+            let at = f64::from(i) / 2000.0;
+            let (turn, reach) = (a[0] + at * (b[0] - a[0]), a[1] + at * (b[1] - a[1]));
+            let (sine, cosine) = turn.sin_cos();
+            for post in &self.0.check.posts {
+                let clearance = (post.x - reach * cosine).hypot(post.y - reach * sine) - LOAD;
+                least = least.min(clearance);
+                if clearance <= 0.0 {
+                    return MotionCheck::Collides { at };
+                }
+            }
+        }
+        MotionCheck::Free { clearance: least }
+    }
+}
+
+impl RobotKind for Crane {
+    type State = Configuration;
+    type Space = Joints<Configuration>;
+    type Checker = Load;
+    type Verifier<'c> = Steps<'c>;
+
+    fn name(&self) -> &str {
+        "crane"
+    }
+    fn space_name(&self) -> String {
+        "crane".to_owned()
+    }
+    fn space(&self) -> &Self::Space {
+        &self.space
+    }
+    fn start(&self) -> &Configuration {
+        &self.ends[0]
+    }
+    fn goals(&self) -> &[Configuration] {
+        &self.ends[1..]
+    }
+    fn checker(&self) -> &Load {
+        &self.check
+    }
+    fn verifier(&self) -> Result<Steps<'_>, Error> {
+        Ok(Steps(self))
+    }
+    fn tolerance(&self) -> f64 {
+        TOLERANCE
+    }
+    fn measured(&self, _: Metric) -> Result<Measured<'_, Configuration>, Error> {
+        Ok(Measured::new(&self.space))
+    }
+    fn touching(&self, q: &Configuration) -> Vec<Touch> {
+        let near = |(_, post): &(usize, &Vector2<f64>)| (*post - place(q)).norm() <= LOAD;
+        let posts = self.check.posts.iter().enumerate().filter(near);
+        let touch = |(i, _)| Touch { part: None, other: format!("post {i}"), with_itself: false, depth: None };
+        posts.map(touch).collect()
+    }
+    fn nearest_free(&self, _: &Configuration) -> Option<Configuration> {
+        None
+    }
+    fn columns(&self) -> Vec<Column> {
+        vec![Column::new("turn", "rad"), Column::new("reach", "m")]
+    }
+    fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        vec![Some([-3.0, 3.0]), Some([1.0, BOOM])]
+    }
+    fn row(&self, q: &Configuration) -> Vec<f64> {
+        q.as_slice().to_vec()
+    }
+    fn state(&self, row: &[f64]) -> Configuration {
+        DVector::from_column_slice(row)
+    }
+    fn bodies(&self) -> Vec<Body> {
+        let square = |half: f64| {
+            let corner = |(x, y): (f64, f64)| Point2::new(x * half, y * half);
+            vec![[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec()]
+        };
+        let load = Body { name: "load".into(), shape: BodyShape::Area(square(LOAD)), pose: None };
+        let post = |p: &Vector2<f64>| Body {
+            name: "post".into(),
+            shape: BodyShape::Area(square(0.05)),
+            pose: Some(Isometry3::translation(p.x, p.y, 0.0)),
+        };
+        std::iter::once(load).chain(self.check.posts.iter().map(post)).collect()
+    }
+    fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), q[0]);
+        vec![Isometry3::from_parts(Translation3::new(place(q).x, place(q).y, 0.0), turn)]
+    }
+    fn picture_spacing(&self) -> f64 {
+        LOAD
+    }
+}
+
+fn crane(goal: [f64; 2]) -> Crane {
+    let ranges =
+        [JointRange::Interval { low: -3.0, high: 3.0 }, JointRange::Interval { low: 1.0, high: BOOM }];
+    Crane {
+        space: Joints::new(ranges).unwrap(),
+        ends: [DVector::from_vec(vec![-1.0, 4.0]), DVector::from_vec(goal.to_vec())],
+        check: Load { posts: (0..8).map(|i| Vector2::new(1.6 + 0.4 * f64::from(i), 0.0)).collect(), asked: 0 },
+    }
+}
+
+#[test]
+fn a_robot_of_ones_own_is_planned_for_by_every_planner_that_needs_no_more() {
+    let scene = Scene::new(crane([1.0, 4.0]));
+    for planner in ["rrt-connect", "rrt", "rrt-star", "rsrt", "or-rrt-connect", "prm", "visibility-prm"] {
+        let report = scene.plan(&Request::new(planner).iterations(5_000)).unwrap_or_else(|e| panic!("{e}"));
+        assert!(report.solved && report.collision_checks > 0, "{planner}: {report:?}");
+        let rows = report.path.unwrap();
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        let verdict = scene.check(&path).unwrap();
+        assert!(verdict.free, "{planner}: {verdict:?}");
+        // It had to draw the load in to pass inside of the posts.
+        assert!(path.rows.iter().any(|row| row[1] < 1.6), "{planner}");
+    }
+    for (planner, lacks) in [("rrs", "gradient"), ("obrrt", "hints"), ("obprm", "obstacles")] {
+        let error = scene.plan(&Request::new(planner).iterations(10)).unwrap_err();
+        assert!(error.to_string().contains(lacks), "{planner}: {error}");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_explained() {
+    let error = Scene::new(crane([0.0, 4.0])).plan(&Request::default()).unwrap_err();
+    assert!(error.message().contains("the goal is in collision with post"), "{error}");
+    let scene = Scene::new(crane([1.0, 4.0]));
+    let through = PathRows { format: scene.path_format(), columns: vec![], rows: vec![vec![-1.0, 4.0], vec![1.0, 4.0]] };
+    let verdict = scene.check(&through).unwrap();
+    assert!(!verdict.free && verdict.faults[0].contains("hits post"), "{verdict:?}");
+    assert!(scene.explain(&[9.0, 4.0]).unwrap().fault.unwrap().contains("out of bounds"));
+    assert!(scene.explain(&[9.0]).unwrap_err().remedy().unwrap().contains("turn [rad]"));
+    assert!(scene.lint().is_empty(), "{:?}", scene.lint());
+}
