@@ -27,6 +27,8 @@ pub(crate) struct Facts {
     obstacles: Vec<Obstacle>,
     start: Vec<f64>,
     goals: Vec<Vec<f64>>,
+    /// What was left aside of the URDF.
+    notes: Vec<String>,
     warnings: Vec<String>,
 }
 
@@ -84,6 +86,7 @@ impl Facts {
             obstacles: obstacles.collect(),
             start: task.problem.file.start.clone(),
             goals: task.problem.file.goals.clone(),
+            notes: task.arm.model().notes.clone(),
             warnings,
         })
     }
@@ -116,6 +119,7 @@ impl fmt::Display for Facts {
         for o in &self.obstacles {
             writeln!(f, "    {} at {}, {}", o.name, row(&o.pose), count(o.triangles, "triangle"))?;
         }
+        self.notes.iter().try_for_each(|note| writeln!(f, "  note      {note}"))?;
         self.warnings.iter().try_for_each(|w| writeln!(f, "  warning   {w}"))
     }
 }

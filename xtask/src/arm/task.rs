@@ -31,6 +31,9 @@ impl Task {
         let mut model = ArmModel::from_urdf(&problem.urdf, |name| problem.mesh(name))
             .into_diagnostic()
             .wrap_err_with(of)?;
+        for note in &model.notes {
+            tracing::info!("{}: {note}", problem.urdf_file.display());
+        }
         model.base = problem.base();
         if let Some(srdf) = &problem.srdf {
             model = model.with_srdf(srdf).map_err(|e| {

@@ -56,7 +56,10 @@ impl Facts {
             .collect();
         let mut warnings = Vec::new();
         for body in std::iter::once(&robot).chain(&obstacles) {
-            warnings.extend(body.mesh.warnings.iter().map(|w| format!("{} ({}): {w}", body.name, body.file)));
+            // One line for each body: surfaces of drawing programs have every one of these faults.
+            if !body.mesh.warnings.is_empty() {
+                warnings.push(format!("{} ({}): {}", body.name, body.file, body.mesh.warnings.join("; ")));
+            }
         }
         if obstacles.is_empty() {
             warnings.push("there are no obstacles".into());

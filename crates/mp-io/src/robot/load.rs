@@ -117,7 +117,10 @@ impl RobotProblem {
             return Err(format!("{name} names no file: write package://PACKAGE/FILE"));
         }
         let start = self.packages.as_deref().unwrap_or(folder);
-        let absolute = std::fs::canonicalize(start).map_err(|e| format!("{}: {e}", start.display()))?;
+        let absolute = std::fs::canonicalize(start).map_err(|e| {
+            let whose = if self.packages.is_some() { "`packages` of the problem" } else { "of the URDF" };
+            format!("{name} cannot be sought in the folder {whose}, {}: {e}", start.display())
+        })?;
         let above = if self.packages.is_some() { 1 } else { usize::MAX };
         for folder in absolute.ancestors().take(above) {
             if let Some(found) = in_folder(folder, package, rest) {
