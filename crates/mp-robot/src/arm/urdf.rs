@@ -2,6 +2,7 @@
 
 mod extract;
 
+use super::compile::MAX_LENGTH;
 use super::{ArmModel, Joint, JointKind, Link, UrdfError};
 use extract::{Extract, extract, some};
 use mp_geom::{TriMesh, primitives};
@@ -50,7 +51,7 @@ impl ArmModel {
                 };
                 let shape = shape(&collision.geometry, &mut mesh).map_err(fail)?;
                 let origin = pose(&collision.origin);
-                if !super::kinematics::is_pose(&origin, super::compile::MAX_LENGTH) {
+                if !super::kinematics::is_pose(&origin, MAX_LENGTH) {
                     return Err(fail("its origin is no pose: numbers must be finite".to_owned()));
                 }
                 made = made.with(&shape, &origin);
@@ -103,13 +104,17 @@ impl ArmModel {
             };
             let ends = [low, high].map(|x| x * mimic.multiplier + mimic.offset);
             let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-            let held = low == high && (own_low..=own_high).contains(&low);
-            if held || own_low > own_high || own_low.max(low) < own_high.min(high) {
+            let room = match low == high {
+                true => (own_low..=own_high).contains(&low),
+                false => own_low.max(low) < own_high.min(high),
+            };
+            // Whoever releases what is held shall find followers that can follow.
+            if own_low > own_high || (room && own_low < own_high) {
                 continue;
             }
             self.joints[i].kind = match self.joints[i].kind {
-                JointKind::Prismatic { .. } => JointKind::Prismatic { low, high },
-                _ => JointKind::Revolute { low, high },
+                JointKind::Prismatic { .. } => JointKind::Prismatic { low: -MAX_LENGTH, high: MAX_LENGTH },
+                _ => JointKind::Continuous,
             };
             aside.push(self.joints[i].name.clone());
         }

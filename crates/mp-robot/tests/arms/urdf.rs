@@ -252,6 +252,13 @@ fn followers_without_room_are_followed_no_less() {
     assert!(model.notes.len() == 1 && model.notes[0].contains("\"close\""), "{:?}", model.notes);
     let arm = Arm::new(&model, []).unwrap();
     assert_eq!(arm.coordinates()[1].range, JointRange::Interval { low: -0.5, high: 0.5 });
+    // Neither has room, until the leader is given some.
+    let still =
+        GRIPPER.replace("lower=\"-0.25\" upper=\"1\"", "").replace("lower=\"-0.5\" upper=\"0.5\"", "");
+    let model = read(&still).unwrap();
+    assert_eq!(Arm::new(&model, []).unwrap().dof(), 2);
+    let arm = Arm::new(&model.with_limits("open", -0.4, 0.3).unwrap(), []).unwrap();
+    assert_eq!(arm.coordinates()[1].range, JointRange::Interval { low: -0.4, high: 0.3 });
 }
 
 #[test]
