@@ -60,13 +60,13 @@ impl Scene {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let mut meshes: HashMap<*const Geometry, TriMesh> = HashMap::new();
         for Instance { geometry, matrix } in &self.instances {
-            if geometry.ends.is_empty() {
+            if geometry.polygons().next().is_none() {
                 continue;
             }
             let mesh = match meshes.entry(Rc::as_ptr(geometry)) {
                 Entry::Occupied(known) => known.into_mut(),
                 Entry::Vacant(new) => {
-                    new.insert(build(file, geometry.positions.clone(), geometry.polygons())?)
+                    new.insert(build(file, geometry.positions().to_vec(), geometry.polygons())?)
                 }
             };
             if vertices.len() + mesh.vertices().len() > MAX_INSTANCED

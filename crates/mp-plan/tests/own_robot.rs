@@ -119,7 +119,8 @@ impl RobotKind for Crane {
     fn touching(&self, q: &Configuration) -> Vec<Touch> {
         let near = |(_, post): &(usize, &Vector2<f64>)| (*post - place(q)).norm() <= LOAD;
         let posts = self.check.posts.iter().enumerate().filter(near);
-        let touch = |(i, _)| Touch { part: None, other: format!("post {i}"), with_itself: false, depth: None };
+        let touch =
+            |(i, _)| Touch { part: None, other: format!("post {i}"), with_itself: false, depth: None };
         posts.map(touch).collect()
     }
     fn nearest_free(&self, _: &Configuration) -> Option<Configuration> {
@@ -165,7 +166,10 @@ fn crane(goal: [f64; 2]) -> Crane {
     Crane {
         space: Joints::new(ranges).unwrap(),
         ends: [DVector::from_vec(vec![-1.0, 4.0]), DVector::from_vec(goal.to_vec())],
-        check: Load { posts: (0..8).map(|i| Vector2::new(1.6 + 0.4 * f64::from(i), 0.0)).collect(), asked: 0 },
+        check: Load {
+            posts: (0..8).map(|i| Vector2::new(1.6 + 0.4 * f64::from(i), 0.0)).collect(),
+            asked: 0,
+        },
     }
 }
 
@@ -193,7 +197,11 @@ fn what_is_wrong_is_explained() {
     let error = Scene::new(crane([0.0, 4.0])).plan(&Request::default()).unwrap_err();
     assert!(error.message().contains("the goal is in collision with post"), "{error}");
     let scene = Scene::new(crane([1.0, 4.0]));
-    let through = PathRows { format: scene.path_format(), columns: vec![], rows: vec![vec![-1.0, 4.0], vec![1.0, 4.0]] };
+    let through = PathRows {
+        format: scene.path_format(),
+        columns: vec![],
+        rows: vec![vec![-1.0, 4.0], vec![1.0, 4.0]],
+    };
     let verdict = scene.check(&through).unwrap();
     assert!(!verdict.free && verdict.faults[0].contains("hits post"), "{verdict:?}");
     assert!(scene.explain(&[9.0, 4.0]).unwrap().fault.unwrap().contains("out of bounds"));

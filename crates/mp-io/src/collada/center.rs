@@ -1,15 +1,15 @@
 //! The mean of the vertices, which OMPL.app takes for the origin of a robot.
 //!
 //! Its importer works in single precision, gives polygons without normals their face normals, and then joins
-//! the corners of a mesh that agree in position, normal, texture coordinates and colour. What is left are the
-//! vertices, all instances counted.
+//! the corners of a group that agree in position, normal, texture coordinates and colour. What is left are the
+//! vertices, those of lines among them, all instances counted.
 
 use super::geometry::{Geometry, Group};
 use super::{Instance, Scene};
 use nalgebra::{Matrix4, Vector3};
 use std::collections::HashMap;
 
-/// Attributes that differ by less count as equal.
+/// Attributes count as equal at this distance and below.
 const SAME: f32 = 1e-5;
 /// How many vertices of one position are compared; beyond it, a vertex counts anew.
 const MAX_COMPARED: usize = 64;
@@ -33,14 +33,11 @@ impl Scene {
 /// The mean of the vertices of a mesh that comes without normals: the corners are joined where position and
 /// face normal agree.
 pub(crate) fn center_of_mesh(mesh: &mp_geom::TriMesh) -> Vector3<f64> {
-    let mut geometry = Geometry { positions: mesh.vertices().to_vec(), ..Geometry::default() };
-    for t in mesh.triangles() {
-        geometry.corners.extend(t);
-        geometry.ends.push(geometry.corners.len());
-    }
-    let group = Group { polygons: 0..geometry.ends.len(), attributes: Vec::new(), has_normals: false };
+    let geometry = Geometry::of_mesh(mesh);
     let mut center = Center::default();
-    center.add(&join(&geometry, &group), &Matrix4::identity());
+    for group in &geometry.groups {
+        center.add(&join(&geometry, group), &Matrix4::identity());
+    }
     center.mean()
 }
 
@@ -71,11 +68,14 @@ impl Center {
 fn join(geometry: &Geometry, group: &Group) -> Vec<[f32; 3]> {
     let mut out: Vec<[f32; 3]> = Vec::new();
     let mut attributes: Vec<f32> = Vec::new();
-    let mut width = 0;
+    // How many numbers each attribute has, the face normal first.
+    let sizes: Vec<usize> =
+        std::iter::once(3).chain(group.attributes.iter().map(|a| a.source.width())).collect();
+    let width: usize = sizes.iter().sum();
     let mut by_position: HashMap<[u32; 3], Vec<usize>> = HashMap::new();
     let mut corner = 0;
-    for polygon in group.polygons.clone() {
-        let corners = geometry.polygon(polygon);
+    for face in group.faces.clone() {
+        let corners = geometry.face(face);
         let normal = if group.has_normals { Vector3::zeros() } else { newell(geometry, corners) };
         for &c in corners {
             let mut own: Vec<f32> = normal.iter().map(|v| *v as f32).collect();
@@ -83,12 +83,16 @@ fn join(geometry: &Geometry, group: &Group) -> Vec<[f32; 3]> {
                 own.extend(attribute.source.row(attribute.rows[corner] as usize).iter().map(|v| *v as f32));
             }
             corner += 1;
-            width = own.len();
-            let position: [f32; 3] = geometry.positions[c as usize].coords.map(|v| v as f32).into();
+            let position: [f32; 3] = geometry.position(c).coords.map(|v| v as f32).into();
             // Adding 0 makes one zero of two.
             let candidates = by_position.entry(position.map(|v| (v + 0.0).to_bits())).or_default();
             let same = |i: &usize| {
-                attributes[i * width..(i + 1) * width].iter().zip(&own).all(|(a, b)| (a - b).abs() < SAME)
+                let (mut theirs, mut own) = (&attributes[i * width..], own.as_slice());
+                sizes.iter().all(|&size| {
+                    let pair = own.iter().zip(theirs).take(size);
+                    (own, theirs) = (&own[size..], &theirs[size..]);
+                    pair.map(|(a, b)| (a - b) * (a - b)).sum::<f32>() <= SAME * SAME
+                })
             };
             if !candidates.iter().rev().take(MAX_COMPARED).any(same) {
                 candidates.push(out.len());
@@ -101,9 +105,9 @@ fn join(geometry: &Geometry, group: &Group) -> Vec<[f32; 3]> {
     out
 }
 
-/// The unit normal of a polygon; zero when it has no area.
+/// The unit normal of a polygon; zero when it has no area, as a line.
 fn newell(geometry: &Geometry, corners: &[u32]) -> Vector3<f64> {
-    let p = |i: usize| geometry.positions[corners[i % corners.len()] as usize].coords;
+    let p = |i: usize| geometry.position(corners[i % corners.len()]).coords;
     let origin = p(0);
     let sum: Vector3<f64> = (0..corners.len()).map(|i| (p(i) - origin).cross(&(p(i + 1) - origin))).sum();
     sum.try_normalize(0.0).unwrap_or_default()

@@ -41,6 +41,11 @@ impl Source {
         self.xyz.map(|k| self.values[self.offset + i * self.stride + k])
     }
 
+    /// How many numbers a row has.
+    pub(super) fn width(&self) -> usize {
+        self.stride
+    }
+
     /// Row `i`, all of it.
     pub(super) fn row(&self, i: usize) -> &[f64] {
         let start = self.offset + i * self.stride;

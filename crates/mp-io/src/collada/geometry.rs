@@ -1,33 +1,37 @@
-//! `<geometry>`: positions, and polygons of all kinds of primitives.
+//! `<geometry>`: positions, and polygons and lines of all kinds of primitives.
 
 use super::document::{Document, Source, child};
 use crate::error::{Error, ErrorKind};
 use crate::text::{Token, clipped};
+use mp_geom::TriMesh;
 use nalgebra::Point3;
 use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// The polygons of a geometry.
+/// The faces of a geometry: polygons, and lines, which are faces of two corners.
 #[derive(Debug, Default)]
 pub(super) struct Geometry {
-    pub(super) positions: Vec<Point3<f64>>,
-    /// The corners of all polygons, as indices of positions.
+    /// Those that polygons use, then those that only lines use.
+    positions: Vec<Point3<f64>>,
+    /// How many of them polygons use.
+    of_polygons: usize,
+    /// The corners of all faces, as indices of positions.
     pub(super) corners: Vec<u32>,
-    /// Where each polygon ends in `corners`.
-    pub(super) ends: Vec<usize>,
-    /// The `<triangles>`, `<polylist>` … it is made of.
+    /// Where each face ends in `corners`.
+    ends: Vec<usize>,
+    /// The `<triangles>`, `<lines>` … it is made of.
     pub(super) groups: Vec<Group>,
 }
 
-/// Polygons that share their inputs.
+/// Faces that share their inputs.
 #[derive(Debug)]
 pub(super) struct Group {
-    /// Which polygons of the geometry they are.
-    pub(super) polygons: std::ops::Range<usize>,
+    /// Which faces of the geometry they are.
+    pub(super) faces: std::ops::Range<usize>,
     /// What corners have beside positions.
     pub(super) attributes: Vec<Attribute>,
-    /// Whether normals are among them.
+    /// Whether its polygons have no use for face normals: normals are among the attributes, or filled in.
     pub(super) has_normals: bool,
 }
 
@@ -39,15 +43,38 @@ pub(super) struct Attribute {
 }
 
 impl Geometry {
-    /// The corners of polygon `i`.
-    pub(super) fn polygon(&self, i: usize) -> &[u32] {
+    /// The triangles of a mesh, in one group without attributes.
+    pub(super) fn of_mesh(mesh: &TriMesh) -> Self {
+        let positions = mesh.vertices().to_vec();
+        let mut geometry = Self { of_polygons: positions.len(), positions, ..Self::default() };
+        for t in mesh.triangles() {
+            geometry.corners.extend(t);
+            geometry.ends.push(geometry.corners.len());
+        }
+        let faces = 0..geometry.ends.len();
+        geometry.groups.push(Group { faces, attributes: Vec::new(), has_normals: false });
+        geometry
+    }
+
+    /// The position of index `i`.
+    pub(super) fn position(&self, i: u32) -> &Point3<f64> {
+        &self.positions[i as usize]
+    }
+
+    /// The positions that polygons use.
+    pub(super) fn positions(&self) -> &[Point3<f64>] {
+        &self.positions[..self.of_polygons]
+    }
+
+    /// The corners of face `i`.
+    pub(super) fn face(&self, i: usize) -> &[u32] {
         let start = if i == 0 { 0 } else { self.ends[i - 1] };
         &self.corners[start..self.ends[i]]
     }
 
     /// The corners of all polygons.
     pub(super) fn polygons(&self) -> impl Iterator<Item = &[u32]> + Clone {
-        (0..self.ends.len()).map(|i| self.polygon(i))
+        (0..self.ends.len()).map(|i| self.face(i)).filter(|face| is_polygon(face))
     }
 
     /// Reads the element `<geometry>`.
@@ -68,28 +95,61 @@ impl Geometry {
                 "polygons" => Kind::Polygons,
                 "tristrips" => Kind::Strips,
                 "trifans" => Kind::Fans,
-                _ => continue, // sources, vertices, lines, extras
+                "lines" => Kind::Lines,
+                "linestrips" => Kind::LineStrips,
+                _ => continue, // sources, vertices, extras
             };
+            // Writers leave empty groups of lines behind, some without inputs.
+            if kind.is_lines() && document.count(primitive, "count")?.unwrap_or(0) == 0 {
+                continue;
+            }
             Reader::new(&mut sources, primitive, &mut geometry)?.read(kind)?;
         }
-        geometry.drop_unused_positions();
+        geometry.sort_positions();
+        geometry.fill_in_normals();
         Ok(geometry)
     }
 
-    /// Positions that no polygon uses are no part of the scene.
-    fn drop_unused_positions(&mut self) {
+    /// Puts the positions of polygons before those that only lines use, and drops those of neither.
+    fn sort_positions(&mut self) {
         let mut new = vec![u32::MAX; self.positions.len()];
         let mut kept = Vec::new();
-        for c in &mut self.corners {
-            let slot = &mut new[*c as usize];
-            if *slot == u32::MAX {
-                *slot = kept.len() as u32; // fewer than the positions, whose indices are u32
-                kept.push(self.positions[*c as usize]);
+        for polygons in [true, false] {
+            let mut start = 0;
+            for &end in &self.ends {
+                let face = &mut self.corners[start..end];
+                start = end;
+                if is_polygon(face) != polygons {
+                    continue;
+                }
+                for c in face {
+                    let slot = &mut new[*c as usize];
+                    if *slot == u32::MAX {
+                        *slot = kept.len() as u32; // fewer than the positions, whose indices are u32
+                        kept.push(self.positions[*c as usize]);
+                    }
+                    *c = *slot;
+                }
             }
-            *c = *slot;
+            if polygons {
+                self.of_polygons = kept.len();
+            }
         }
         self.positions = kept;
     }
+
+    /// Where a group has normals, the importer gives one and the same to all corners of the groups before it.
+    fn fill_in_normals(&mut self) {
+        let last = self.groups.iter().rposition(|group| group.has_normals && !group.faces.is_empty());
+        for group in &mut self.groups[..last.unwrap_or(0)] {
+            group.has_normals = true;
+        }
+    }
+}
+
+/// Whether the corners are those of a polygon, not of a line.
+fn is_polygon(face: &[u32]) -> bool {
+    face.len() > 2
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -99,6 +159,14 @@ enum Kind {
     Polygons,
     Strips,
     Fans,
+    Lines,
+    LineStrips,
+}
+
+impl Kind {
+    fn is_lines(self) -> bool {
+        matches!(self, Self::Lines | Self::LineStrips)
+    }
 }
 
 /// Sources read so far: primitives of a geometry mostly share theirs.
@@ -191,7 +259,8 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
             }
         }
         let (positions, base) = positions.ok_or_else(|| {
-            document.error(primitive, "the polygons have no positions").expected(
+            let what = primitive.tag_name().name();
+            document.error(primitive, format!("the {what} have no positions")).expected(
                 "an <input semantic=\"VERTEX\"> whose <vertices> has an <input semantic=\"POSITION\">",
             )
         })?;
@@ -212,25 +281,28 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
         let found = match kind {
             Kind::Polylist => self.polylist(&lists)?,
             Kind::Triangles => self.triangles(&lists)?,
-            Kind::Polygons | Kind::Strips | Kind::Fans => {
+            Kind::Polygons | Kind::Strips | Kind::Fans | Kind::Lines | Kind::LineStrips => {
                 for list in &lists {
                     let numbers = self.numbers(*list)?;
                     match kind {
                         Kind::Strips => self.strip(*list, &numbers)?,
                         Kind::Fans => self.fan(*list, &numbers)?,
+                        Kind::Lines => self.lines(*list, &numbers)?,
+                        Kind::LineStrips => self.line_strip(*list, &numbers)?,
                         _ => self.polygon(*list, &numbers)?,
                     }
                 }
                 lists.len()
             }
         };
-        if let Some(n) = stated.filter(|&n| n != found) {
+        // SketchUp counts its lines wrong.
+        if let Some(n) = stated.filter(|&n| n != found && !kind.is_lines()) {
             let tag = self.primitive.tag_name().name();
             let message = format!("<{tag} count=\"{n}\"> has {found}");
             return Err(self.document.error(self.primitive, message).expected("as many as it counts"));
         }
         self.geometry.groups.push(Group {
-            polygons: first..self.geometry.ends.len(),
+            faces: first..self.geometry.ends.len(),
             attributes: self.attributes.into_iter().map(|(_, a)| a).collect(),
             has_normals: self.has_normals,
         });
@@ -335,6 +407,12 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
                 .error(place, format!("a polygon with {n} corners"))
                 .expected("three or more"));
         }
+        self.face(place, numbers)
+    }
+
+    /// Adds the face of `numbers`.
+    fn face(&mut self, place: Node<'_, '_>, numbers: &[u32]) -> Result<(), Error> {
+        let n = numbers.len() / self.stride;
         if self.geometry.corners.len() + n > super::MAX_INSTANCED {
             return Err(self.document.error(place, "too many corners").with_kind(ErrorKind::TooLarge));
         }
@@ -364,6 +442,20 @@ impl<'d, 'r, 'a> Reader<'d, 'r, 'a> {
             self.polygon(place, &[corners[0], w[0], w[1]].concat())?;
         }
         Ok(())
+    }
+
+    fn lines(&mut self, place: Node<'_, '_>, numbers: &[u32]) -> Result<(), Error> {
+        let lines = numbers.chunks_exact(2 * self.stride);
+        if !lines.remainder().is_empty() {
+            let message = format!("<p> has {} ends of lines", numbers.len() / self.stride);
+            return Err(self.document.error(place, message).expected("two for each line"));
+        }
+        lines.into_iter().try_for_each(|line| self.face(place, line))
+    }
+
+    fn line_strip(&mut self, place: Node<'_, '_>, numbers: &[u32]) -> Result<(), Error> {
+        let corners: Vec<_> = numbers.chunks_exact(self.stride).collect();
+        corners.windows(2).try_for_each(|line| self.face(place, &line.concat()))
     }
 }
 

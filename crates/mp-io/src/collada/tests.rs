@@ -186,3 +186,96 @@ fn places_are_right_whatever_the_line_ends() {
         assert_eq!(e.message(), "index 8 is out of range");
     }
 }
+
+/// As SketchUp writes surfaces with their edges: positions and normals in `<vertices>`, triangles and lines that
+/// share them, edges alone in a geometry of their own, and a count of lines that is wrong.
+fn sketchup(lines: &str) -> String {
+    let normals = "<source id=\"n\"><float_array count=\"24\">0 0 1 0 0 1 0 0 1 0 0 1 0 0 -1 0 0 -1 0 0 -1 0 0 -1</float_array></source>";
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    let both = format!(
+        "{normals}<triangles count=\"2\" material=\"face\">{input}<p>0 1 2 2 1 0</p></triangles>\
+         <lines count=\"9\" material=\"edge\">{input}<p>{lines}</p></lines>"
+    );
+    dae(ASSET, &both, PLAIN).replace(
+        "<input semantic=\"POSITION\" source=\"#p\"/>",
+        "<input semantic=\"POSITION\" source=\"#p\"/><input semantic=\"NORMAL\" source=\"#n\"/>",
+    )
+}
+
+fn center(text: &str) -> Vector3<f64> {
+    Scene::parse("t.dae", text.as_bytes()).unwrap_or_else(|e| panic!("{e}")).center()
+}
+
+#[test]
+fn the_center_counts_the_ends_of_lines() {
+    let text = sketchup("0 1 1 2 4 6");
+    // The triangles have the vertices 0, 1 and 2, the lines 0, 1, 2, 4 and 6: eight in all.
+    let expected = Vector3::new(2.0 * (0.0 + 1.0 + 1.0) + 0.0 + 1.0, 2.0 * 1.0 + 0.0 + 1.0, 2.0 + 2.0) / 8.0;
+    assert!((center(&text) - expected).norm() < 1e-6, "{}", center(&text));
+    // Every instance counts.
+    let shifted = "<node><translate>10 0 0</translate><instance_geometry url=\"#g\"/></node>";
+    let twice = text.replace(PLAIN, &(PLAIN.to_owned() + shifted));
+    assert!((center(&twice) - expected - Vector3::new(5.0, 0.0, 0.0)).norm() < 1e-6);
+    // So do geometries of lines alone.
+    let edge = "<geometry id=\"e\"><mesh><source id=\"ep\"><float_array count=\"6\">0 0 9 0 0 18</float_array></source>\
+                <vertices id=\"ev\"><input semantic=\"POSITION\" source=\"#ep\"/></vertices>\
+                <lines count=\"1\"><input semantic=\"VERTEX\" source=\"#ev\" offset=\"0\"/><p>1 0</p></lines></mesh></geometry>";
+    let alone = text
+        .replace("</library_geometries>", &(edge.to_owned() + "</library_geometries>"))
+        .replace(PLAIN, &(PLAIN.to_owned() + "<node><instance_geometry url=\"#e\"/></node>"));
+    let expected = (8.0 * expected + Vector3::new(0.0, 0.0, 27.0)) / 10.0;
+    assert!((center(&alone) - expected).norm() < 1e-6, "{}", center(&alone));
+}
+
+#[test]
+fn lines_are_no_part_of_the_mesh() {
+    let text = sketchup("0 1 1 2 4 6");
+    let mesh = parse(&text);
+    assert_eq!((mesh.triangles().len(), mesh.vertices().len()), (2, 3));
+    assert_eq!(mesh.aabb().max, Point3::new(1.0, 1.0, 0.0));
+    // Lines before the polygons they share positions with leave the mesh as it is.
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    let first = dae(ASSET, &format!("<lines count=\"2\">{input}<p>6 2 2 7</p></lines>{TRIANGLE}"), PLAIN);
+    assert_eq!(parse(&first), parse(&dae(ASSET, TRIANGLE, PLAIN)));
+    assert!((center(&first) - Vector3::new(4.0, 4.0, 4.0) / 6.0).norm() < 1e-6);
+}
+
+#[test]
+fn strips_of_lines_and_empty_lines() {
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    let with = |lines: &str| center(&dae(ASSET, &format!("{TRIANGLE}{lines}"), PLAIN));
+    // Four ends of one strip and two of another: 0 1 5 4, 4 7.
+    let strips = with(&format!("<linestrips count=\"2\">{input}<p>0 1 5 4</p><p>4 7</p></linestrips>"));
+    assert!((strips - Vector3::new(4.0, 2.0, 6.0) / 8.0).norm() < 1e-6, "{strips}");
+    // The importer goes by the count where it is zero, and knows no points.
+    for nothing in [
+        "<lines count=\"0\"/>",
+        "<lines count=\"0\"><p>4 5</p></lines>",
+        "<points count=\"1\"><p>4</p></points>",
+    ] {
+        assert!((with(nothing) - Vector3::new(2.0, 1.0, 0.0) / 3.0).norm() < 1e-6, "{nothing}");
+    }
+}
+
+#[test]
+fn lines_of_an_odd_number_of_ends_are_refused() {
+    for (lines, message) in [("0 1 2", "<p> has 3 ends of lines"), ("0 8", "index 8 is out of range")] {
+        let e = parse_collada("t.dae", sketchup(lines).as_bytes()).unwrap_err();
+        assert_eq!(e.message(), message);
+    }
+}
+
+#[test]
+fn groups_before_one_with_normals_join_whatever_their_faces() {
+    let input = r##"<input semantic="VERTEX" source="#v" offset="0"/>"##;
+    let normals = "<source id=\"n\"><float_array count=\"3\">0 0 1</float_array></source>";
+    let bent = format!("{normals}<triangles>{input}<p>0 1 2 0 1 4</p></triangles>");
+    let lit = format!(
+        "<triangles>{input}<input semantic=\"NORMAL\" source=\"#n\" offset=\"1\"/><p>4 0 5 0 6 0</p></triangles>"
+    );
+    // The corners of the bent group are 0, 1, 2 and 4 once; alone, 0 and 1 count for either face.
+    let before = center(&dae(ASSET, &format!("{bent}{lit}"), PLAIN));
+    assert!((before - Vector3::new(4.0, 2.0, 8.0) / 7.0).norm() < 1e-6, "{before}");
+    let after = center(&dae(ASSET, &format!("{lit}{bent}"), PLAIN));
+    assert!((after - Vector3::new(5.0, 2.0, 8.0) / 9.0).norm() < 1e-6, "{after}");
+}

@@ -94,11 +94,12 @@ impl RobotProblem {
     }
 
     /// Reads a mesh that the URDF names: a file relative to the URDF, `file://` and an absolute name, or
-    /// `package://PACKAGE/name`, which is looked for in the folder of packages the problem gives, or else in the
-    /// folders above the URDF.
+    /// `package://PACKAGE/NAME`. That is looked for in the folder of packages the problem gives, or else in the
+    /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
+    /// PACKAGE. `package:///NAME` names no package: it is looked for as `NAME` in the same folders.
     ///
     /// # Errors
-    /// A message for people.
+    /// A message for people: which file, sought where.
     pub fn mesh(&self, name: &str) -> Result<TriMesh, String> {
         let place = self.place_of(name)?;
         let mesh = read_mesh(&place).map_err(|e| match e.remedy() {
@@ -122,27 +123,51 @@ impl RobotProblem {
         let Some(inside) = name.strip_prefix("package://") else {
             return Ok(folder.join(name.strip_prefix("file://").unwrap_or(name)));
         };
-        if let Some(packages) = &self.packages {
-            return Ok(packages.join(inside));
-        }
         let (package, rest) = inside.split_once('/').unwrap_or((inside, ""));
-        let absolute = std::fs::canonicalize(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        for above in absolute.ancestors() {
-            let beside = above.join(inside);
-            let own = above.join(rest);
-            if beside.is_file() {
-                return Ok(beside);
-            }
-            if above.file_name().is_some_and(|n| n == package) && own.is_file() {
-                return Ok(own);
+        // Further slashes would make it a name from the root of the disk.
+        let rest = rest.trim_start_matches('/');
+        if rest.is_empty() {
+            return Err(format!("{name} names no file: write package://PACKAGE/FILE"));
+        }
+        let start = self.packages.as_deref().unwrap_or(folder);
+        let absolute = std::fs::canonicalize(start).map_err(|e| {
+            let whose = if self.packages.is_some() { "`packages` of the problem" } else { "of the URDF" };
+            format!("{name} cannot be sought in the folder {whose}, {}: {e}", start.display())
+        })?;
+        let above = if self.packages.is_some() { 1 } else { usize::MAX };
+        for folder in absolute.ancestors().take(above) {
+            if let Some(found) = in_folder(folder, package, rest) {
+                return Ok(found);
             }
         }
-        Err(format!(
-            "{name} is in no folder above {}: say `packages = \"FOLDER\"` in the problem, the folder that holds \
-             {package}",
-            folder.display()
-        ))
+        let (file, holds) = match package {
+            "" => (rest.to_owned(), rest.split('/').next().unwrap_or(rest)),
+            _ => (format!("{package}/{rest}"), package),
+        };
+        let start = start.display();
+        Err(match self.packages {
+            Some(_) => format!(
+                "{name} is not there: {file} and share/{file} were sought in {start}, the folder `packages` of the \
+                 problem; it must be the folder that holds {holds}"
+            ),
+            None => format!(
+                "{name} is not there: {file} and share/{file} were sought in {start} and every folder above; say \
+                 `packages = \"FOLDER\"` in the problem, the folder that holds {holds}"
+            ),
+        })
     }
+}
+
+/// The file `rest` of a package in or below `folder`, if it is there.
+fn in_folder(folder: &Path, package: &str, rest: &str) -> Option<PathBuf> {
+    let in_package = |folder: PathBuf| folder.join(package).join(rest);
+    let own = package.is_empty() || folder.file_name().is_some_and(|name| name == package);
+    let places = [
+        Some(in_package(folder.to_owned())),
+        Some(in_package(folder.join("share"))),
+        own.then(|| folder.join(rest)),
+    ];
+    places.into_iter().flatten().find(|place| place.is_file())
 }
 
 /// The fault of a file, at the place that names it when it cannot be opened.

@@ -83,7 +83,58 @@ fn meshes_are_found() {
     assert!(problem.mesh("b.off").unwrap_err().contains("no such file"));
     problem.packages = Some(dir.path().to_owned());
     assert!(problem.mesh("package://parts/meshes/a.off").is_ok());
-    assert!(problem.mesh("package://meshes/a.off").unwrap_err().contains("no such file"));
+    let error = problem.mesh("package://meshes/a.off").unwrap_err();
+    assert!(error.contains("meshes/a.off") && error.contains("share/meshes/a.off"), "{error}");
+    assert!(error.contains(&dir.path().canonicalize().unwrap().display().to_string()), "{error}");
+    problem.packages = Some(dir.path().join("lost"));
+    assert!(problem.mesh("package://parts/meshes/a.off").unwrap_err().contains("lost"));
+}
+
+#[test]
+fn packages_are_found_where_they_are_installed() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    std::fs::create_dir_all(at("prefix/share/robot/urdf")).unwrap();
+    std::fs::create_dir_all(at("prefix/share/parts/meshes")).unwrap();
+    std::fs::create_dir_all(at("prefix/share/robot/meshes")).unwrap();
+    let mesh = mp_geom::primitives::cuboid(0.1, 1.0, 1.0).unwrap();
+    for name in ["prefix/share/robot/meshes/arm.off", "prefix/share/parts/meshes/hand.off"] {
+        crate::write_off(at(name), &mesh).unwrap();
+    }
+    std::fs::write(at("prefix/share/robot/urdf/arm.urdf"), "<robot name=\"arm\"/>").unwrap();
+    std::fs::create_dir_all(at("tasks")).unwrap();
+    let text = "[robot]\nurdf = \"../prefix/share/robot/urdf/arm.urdf\"\n[motion]\nstart = [0]\ngoal = [1]\n";
+    std::fs::write(at("tasks/task.toml"), text).unwrap();
+    let mut problem = RobotProblem::load(at("tasks/task.toml")).unwrap();
+    let found = [
+        "../meshes/arm.off",
+        "package://robot/meshes/arm.off",
+        "package://parts/meshes/hand.off",
+        // No package: relative to a folder above.
+        "package:///meshes/arm.off",
+        "package:///robot/meshes/arm.off",
+        "package:///share/parts/meshes/hand.off",
+    ];
+    for name in found {
+        assert!(problem.mesh(name).is_ok(), "{name}: {:?}", problem.mesh(name));
+    }
+    for folder in ["prefix", "prefix/share"] {
+        problem.packages = Some(at(folder));
+        assert!(problem.mesh("package://parts/meshes/hand.off").is_ok(), "{folder}");
+    }
+    problem.packages = Some(at("prefix/share/parts"));
+    assert!(problem.mesh("package://parts/meshes/hand.off").is_ok());
+    problem.packages = None;
+    for name in ["package://parts/meshes/foot.off", "package:///meshes/foot.off"] {
+        let error = problem.mesh(name).unwrap_err();
+        let places = ["foot.off", "share/", "every folder above", "packages = "];
+        assert!(places.iter().all(|word| error.contains(word)), "{error}");
+    }
+    for name in ["package://", "package://parts", "package://parts/", "package:///"] {
+        assert!(problem.mesh(name).unwrap_err().contains("names no file"), "{name}");
+    }
+    let lost = problem.mesh("file:///lost/arm.off").unwrap_err();
+    assert!(lost.contains("/lost/arm.off") && lost.contains("no such file"), "{lost}");
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn collada() {
         dae(
             "semantic=\"POSITION\" ",
             "semantic=\"NORMAL\" ",
-            "m.dae:5:1: the polygons have no positions; expected an <input semantic=\"VERTEX\"> whose <vertices> has an <input semantic=\"POSITION\">",
+            "m.dae:5:1: the triangles have no positions; expected an <input semantic=\"VERTEX\"> whose <vertices> has an <input semantic=\"POSITION\">",
             "the format is described in docs/formats/meshes.md",
         ),
         dae(

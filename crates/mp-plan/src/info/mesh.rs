@@ -157,7 +157,10 @@ impl fmt::Display for MeshInfo {
             yes(s.manifold),
             yes(s.oriented)
         )?;
-        s.warnings.iter().try_for_each(|w| writeln!(f, "  warning   {w}"))
+        match s.warnings.is_empty() {
+            true => Ok(()),
+            false => writeln!(f, "  warning   {}", s.warnings.join("; ")),
+        }
     }
 }
 

@@ -66,8 +66,9 @@ impl SceneInfo {
         let bodies: Vec<BodyInfo> = scene.bodies().iter().map(BodyInfo::of).collect();
         let mut warnings: Vec<String> = Vec::new();
         for body in &bodies {
-            let defects = body.mesh.iter().flat_map(|mesh| &mesh.warnings);
-            warnings.extend(defects.map(|w| format!("{}: {w}", body.name)));
+            // One line for each body: surfaces of drawing programs have every one of these faults.
+            let defects = body.mesh.as_ref().map(|mesh| mesh.warnings.join("; ")).unwrap_or_default();
+            warnings.extend((!defects.is_empty()).then(|| format!("{}: {defects}", body.name)));
         }
         warnings.extend(scene.lint());
         let limits = scene.limits();

@@ -43,36 +43,37 @@ impl ArmScene {
         start: &[f64],
         goals: &[Vec<f64>],
     ) -> Result<Self, Error> {
-        let bodies = obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-        let arm = Arm::new(model, bodies)?;
-        let space: Joints<Configuration> = arm.space()?;
-        let state = |what: &str, values: &[f64]| -> Result<Configuration, Error> {
-            if values.len() == arm.dof() {
-                return Ok(space.wrapped(&DVector::from_column_slice(values)));
-            }
-            let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.as_str()).collect();
-            Err(Error::new(format!(
-                "{what} has {} numbers; the robot has {} joints",
-                values.len(),
-                arm.dof()
-            ))
-            .help(format!("in order: {}", names.join(", "))))
+        let arm = Self::among(model, &obstacles)?;
+        let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.clone()).collect();
+        let check = |what: &str, values: &Vec<f64>| match wrong_count(what, values, &names) {
+            Some([message, help]) => Err(Error::new(message).help(help)),
+            None => Ok(()),
         };
+        check("the start", &start.to_vec())?;
+        goals.iter().try_for_each(|goal| check("the goal", goal))?;
+        Self::assembled(name.into(), arm, obstacles, start, goals)
+    }
+
+    fn among(model: &ArmModel, obstacles: &[PlacedBody]) -> Result<Arm, Error> {
+        let bodies = obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
+        Ok(Arm::new(model, bodies)?)
+    }
+
+    /// The scene of configurations whose length was checked.
+    fn assembled(
+        name: String,
+        arm: Arm,
+        obstacles: Vec<PlacedBody>,
+        start: &[f64],
+        goals: &[Vec<f64>],
+    ) -> Result<Self, Error> {
+        let space: Joints<Configuration> = arm.space()?;
+        let state = |values: &[f64]| space.wrapped(&DVector::from_column_slice(values));
         if goals.is_empty() {
             return Err(Error::new("there is no goal"));
         }
-        let start = state("the start", start)?;
-        let goals = goals.iter().map(|goal| state("the goal", goal)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Self {
-            name: name.into(),
-            arm,
-            obstacles,
-            space,
-            start,
-            goals,
-            source: None,
-            mesh_files: Vec::new(),
-        })
+        let (start, goals) = (state(start), goals.iter().map(|goal| state(goal)).collect());
+        Ok(Self { name, arm, obstacles, space, start, goals, source: None, mesh_files: Vec::new() })
     }
 
     /// Makes the problem of a file ready.
@@ -90,6 +91,9 @@ impl ArmScene {
         };
         let mut model =
             ArmModel::from_urdf(&problem.urdf, &mut mesh).map_err(|e| of(Error::new(e.to_string())))?;
+        for note in &model.notes {
+            tracing::info!("{}: {note}", problem.urdf_file.display());
+        }
         model.base = problem.base();
         if let Some(srdf) = &problem.srdf {
             model = model.with_srdf(srdf).map_err(|e| {
@@ -101,26 +105,17 @@ impl ArmScene {
                 problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
             })?;
         }
-        // The number of joints first, as that is told with its place.
-        let moving = |kind: JointKind| !matches!(kind, JointKind::Fixed);
-        let names: Vec<_> = model
-            .joints
-            .iter()
-            .filter(|joint| moving(joint.kind) && joint.mimic.is_none())
-            .map(|joint| joint.name.as_str())
-            .collect();
+        let arm = Self::among(&model, &problem.obstacles).map_err(&of)?;
+        let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.clone()).collect();
         let start = std::iter::once((RobotPart::Start, "the start", &problem.file.start));
         let goals = problem.file.goals.iter().enumerate().map(|(i, q)| (RobotPart::Goal(i), "the goal", q));
         for (part, what, values) in start.chain(goals) {
-            if values.len() != names.len() {
-                let message =
-                    format!("{what} has {} numbers; the robot has {} joints", values.len(), names.len());
-                let help = format!("in order: {}", names.join(", "));
+            if let Some([message, help]) = wrong_count(what, values, &names) {
                 return Err(problem.file.fault(part, &message, &help).into());
             }
         }
         let (start, goals) = (problem.file.start.clone(), problem.file.goals.clone());
-        let scene = Self::new(problem.name.clone(), &model, problem.obstacles.clone(), &start, &goals);
+        let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, &goals);
         Ok(Self { source: Some(Box::new(problem)), mesh_files, ..scene.map_err(of)? })
     }
 
@@ -153,6 +148,15 @@ impl ArmScene {
         let links = self.arm.model().links.iter().enumerate();
         links.filter_map(|(i, link)| Some((i, TriMesh::merged(link.shapes.iter())?)))
     }
+}
+
+/// What is wrong with the length of a configuration, and what to do.
+fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 2]> {
+    let (found, joints) = (values.len(), names.len());
+    (found != joints).then(|| {
+        let message = format!("{what} has {found} numbers; the robot has {joints} joints");
+        [message, format!("in order: {}", names.join(", "))]
+    })
 }
 
 impl Checker<Configuration> for Arm {
@@ -288,6 +292,7 @@ impl RobotKind for ArmScene {
         if let Some(problem) = &self.source {
             details.insert(0, ("urdf".to_owned(), problem.urdf_file.display().to_string()));
         }
+        details.extend(self.arm.model().notes.iter().map(|note| ("note".to_owned(), note.clone())));
         details
     }
     fn row(&self, q: &Configuration) -> Vec<f64> {

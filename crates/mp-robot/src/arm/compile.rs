@@ -3,11 +3,21 @@
 use super::kinematics::{Coordinate, Frame, Kinematics, Place, is_pose, range};
 use super::{ArmError, ArmModel, Joint, JointKind};
 use mp_cspace::JointRange;
-use nalgebra::{Isometry3, Unit};
+use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
 use std::collections::HashMap;
 
 /// Largest coordinate of an origin and largest limit.
 pub(crate) const MAX_LENGTH: f64 = 1e70;
+
+/// What gives a joint its value.
+#[derive(Clone, Copy)]
+enum Value {
+    /// It has none.
+    Fixed,
+    /// Its limits are equal, or those of what it follows.
+    Held(f64),
+    Follows(Source),
+}
 
 /// Which coordinate a joint follows and how.
 #[derive(Clone, Copy)]
@@ -25,7 +35,7 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
     let joints = numbered("joint", model.joints.iter().map(|joint| joint.name.as_str()))?;
     model.joints.iter().try_for_each(check)?;
     let tree = Tree::new(model, &links)?;
-    let (coordinates, sources) = coordinates(model, &joints)?;
+    let (coordinates, values) = coordinates(model, &joints)?;
 
     let mut out = Kinematics {
         base: model.base,
@@ -47,9 +57,10 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
         for &j in &tree.below[link] {
             let (joint, child) = (&model.joints[j], tree.ends[j][1]);
             let origin = pose * joint.origin;
-            let (frame, pose) = match sources[j] {
-                None => (frame, origin),
-                Some(source) => {
+            let (frame, pose) = match values[j] {
+                Value::Fixed => (frame, origin),
+                Value::Held(value) => (frame, origin * motion(joint, value)),
+                Value::Follows(source) => {
                     out.frames.push(moving(joint, frame, origin, source, &out.coordinates));
                     (out.frames.len(), Isometry3::identity())
                 }
@@ -90,7 +101,7 @@ fn check(joint: &Joint) -> Result<(), ArmError> {
     }
     match range {
         JointRange::Interval { low, high }
-            if !(low < high && low.abs() <= MAX_LENGTH && high.abs() <= MAX_LENGTH) =>
+            if !(low <= high && low.abs() <= MAX_LENGTH && high.abs() <= MAX_LENGTH) =>
         {
             Err(ArmError::Limits { joint: name(), low, high })
         }
@@ -158,30 +169,45 @@ impl Tree {
     }
 }
 
-/// The coordinates, and what each joint follows (nothing where it is fixed).
+/// The coordinates, and what gives each joint its value.
 fn coordinates(
     model: &ArmModel,
     joints: &HashMap<&str, usize>,
-) -> Result<(Vec<Coordinate>, Vec<Option<Source>>), ArmError> {
+) -> Result<(Vec<Coordinate>, Vec<Value>), ArmError> {
     let mut all = Vec::new();
     let mut own = vec![None; model.joints.len()];
     for (j, joint) in model.joints.iter().enumerate() {
-        if let (Some(range), None) = (range(joint.kind), &joint.mimic) {
+        if let (Some(range), None, None) = (range(joint.kind), &joint.mimic, joint.kind.held()) {
             own[j] = Some(all.len());
             all.push(Coordinate { name: joint.name.clone(), range });
         }
     }
-    let mut sources = Vec::new();
+    let mut values = Vec::new();
     for (j, joint) in model.joints.iter().enumerate() {
         if joint.kind == JointKind::Fixed {
-            sources.push(None);
+            values.push(Value::Fixed);
             continue;
         }
-        let source = follow(model, joints, &own, j)?;
-        narrow(joint, source, &mut all[source.coordinate])?;
-        sources.push(Some(source));
+        let value = follow(model, joints, &own, j)?;
+        match (value, joint.kind.limits()) {
+            (Value::Follows(source), _) => narrow(joint, source, &mut all[source.coordinate])?,
+            (Value::Held(value), Some([low, high])) if !(low..=high).contains(&value) => {
+                let of = joint.mimic.as_ref().map_or_else(String::new, |mimic| mimic.joint.clone());
+                let why = "that joint does not move, and its value is outside of the limits of this one";
+                return Err(ArmError::Mimic { joint: joint.name.clone(), of, why });
+            }
+            _ => {}
+        }
+        values.push(value);
     }
-    if all.is_empty() { Err(ArmError::NothingMoves) } else { Ok((all, sources)) }
+    if !all.is_empty() {
+        return Ok((all, values));
+    }
+    let held = model.joints.iter().filter(|joint| joint.kind.held().is_some());
+    match held.map(|joint| format!("\"{}\"", joint.name)).collect::<Vec<_>>() {
+        none if none.is_empty() => Err(ArmError::NothingMoves),
+        held => Err(ArmError::AllHeld { joints: held.join(", ") }),
+    }
 }
 
 /// From joint to joint until one follows no other.
@@ -190,13 +216,16 @@ fn follow(
     joints: &HashMap<&str, usize>,
     own: &[Option<usize>],
     start: usize,
-) -> Result<Source, ArmError> {
+) -> Result<Value, ArmError> {
     let (mut j, mut scale, mut offset) = (start, 1.0, 0.0);
     for _ in 0..=model.joints.len() {
         if let Some(coordinate) = own[j] {
-            return Ok(Source { coordinate, scale, offset });
+            return Ok(Value::Follows(Source { coordinate, scale, offset }));
         }
         let joint = &model.joints[j];
+        if let (Some(value), None) = (joint.kind.held(), &joint.mimic) {
+            return Ok(Value::Held(value * scale + offset));
+        }
         let Some(mimic) = &joint.mimic else {
             let (joint, of) = (model.joints[start].name.clone(), joint.name.clone());
             return Err(ArmError::Mimic {
@@ -245,6 +274,15 @@ fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<
             let room = *own_low < *own_high;
             if room { Ok(()) } else { Err(wrong("the limits of both leave no room to move")) }
         }
+    }
+}
+
+/// How far a joint of that value is from its origin.
+fn motion(joint: &Joint, value: f64) -> Isometry3<f64> {
+    let axis = Unit::new_normalize(joint.axis);
+    match joint.kind {
+        JointKind::Prismatic { .. } => Translation3::from(axis.into_inner() * value).into(),
+        _ => Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_axis_angle(&axis, value)),
     }
 }
 

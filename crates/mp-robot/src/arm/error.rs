@@ -1,4 +1,4 @@
-//! What can be wrong with an arm.
+//! What can be wrong with an arm, and with the text it is read from.
 
 use mp_collide::SceneError;
 use mp_cspace::SpaceError;
@@ -47,6 +47,14 @@ pub enum ArmError {
         "no joint of this arm moves by itself: at least one revolute, continuous or prismatic joint is needed"
     )]
     NothingMoves,
+    /// Nothing moves, for the limits of all that could are equal.
+    #[error(
+        "no joint of this arm moves by itself: give one of {joints}, whose limits are equal, room to move"
+    )]
+    AllHeld {
+        /// The joints.
+        joints: String,
+    },
     /// A link hangs on two joints.
     #[error(
         "link \"{link}\" is the child of joint \"{first}\" and of joint \"{second}\": chains must be trees, so \
@@ -103,10 +111,10 @@ pub enum ArmError {
         /// The largest possible.
         max: f64,
     },
-    /// Limits that leave no room.
+    /// Limits that are none.
     #[error(
-        "joint \"{joint}\" may move from {low} to {high}: the lower limit must be below the upper and both \
-         finite; make the joint fixed if it shall not move, continuous if it turns without end"
+        "joint \"{joint}\" may move from {low} to {high}: the lower limit must not be above the upper and \
+         both finite; make the joint continuous if it turns without end"
     )]
     Limits {
         /// The joint.
@@ -161,4 +169,46 @@ pub enum ArmError {
     /// Joint ranges that make no space.
     #[error(transparent)]
     Space(#[from] SpaceError),
+}
+
+/// Why no arm could be made of a URDF or SRDF.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum UrdfError {
+    /// Not XML, or not a URDF or SRDF.
+    #[error("this is not {what}: {message}")]
+    Syntax {
+        /// "a URDF" or "an SRDF".
+        what: &'static str,
+        /// What is wrong, and in which line.
+        message: String,
+    },
+    /// A joint of a kind that is not handled.
+    #[error(
+        "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; a floating \
+         base can be placed by the base pose and a fixed joint"
+    )]
+    Kind {
+        /// Where it is in the text.
+        line: u32,
+        /// The joint.
+        joint: String,
+        /// Its kind.
+        kind: &'static str,
+    },
+    /// A shape that is none.
+    #[error("line {line}: collision shape {number} of link \"{link}\": {message}")]
+    Shape {
+        /// Where it is in the text.
+        line: u32,
+        /// The link.
+        link: String,
+        /// Which of its shapes, counted from 1.
+        number: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// What was read makes no arm.
+    #[error(transparent)]
+    Arm(#[from] ArmError),
 }

@@ -8,14 +8,16 @@ mod kinematics;
 mod model;
 mod pairs;
 mod robot;
+mod srdf;
 mod travel;
+#[cfg(feature = "urdf")]
 mod urdf;
 mod verify;
+mod xml;
 
-pub use error::ArmError;
+pub use error::{ArmError, UrdfError};
 pub use explain::ArmContact;
 pub use kinematics::{Coordinate, Kinematics};
 pub use model::{ArmModel, Joint, JointKind, Link, Mimic};
 pub use robot::Arm;
-pub use urdf::UrdfError;
 pub use verify::ArmVerifier;

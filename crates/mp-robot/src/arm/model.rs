@@ -1,5 +1,6 @@
 //! What an arm is made of: plain data, by names.
 
+use super::ArmError;
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Vector3};
 
@@ -32,7 +33,7 @@ impl Link {
 pub enum JointKind {
     /// Not at all.
     Fixed,
-    /// Turns about its axis between two angles (rad).
+    /// Turns about its axis between two angles (rad); held there where they are equal.
     Revolute {
         /// The lower limit.
         low: f64,
@@ -41,13 +42,28 @@ pub enum JointKind {
     },
     /// Turns about its axis without end.
     Continuous,
-    /// Slides along its axis between two places (m).
+    /// Slides along its axis between two places (m); held there where they are equal.
     Prismatic {
         /// The lower limit.
         low: f64,
         /// The upper limit.
         high: f64,
     },
+}
+
+impl JointKind {
+    /// The limits, lower and upper, of a kind that has some.
+    pub(super) fn limits(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Revolute { low, high } | Self::Prismatic { low, high } => Some([low, high]),
+            Self::Fixed | Self::Continuous => None,
+        }
+    }
+
+    /// The value of a joint that cannot move because its limits are equal.
+    pub(super) fn held(self) -> Option<f64> {
+        self.limits().filter(|[low, high]| low == high).map(|[low, _]| low)
+    }
 }
 
 /// A joint that follows another: its value is `multiplier` times the other's, plus `offset`.
@@ -151,17 +167,53 @@ impl Joint {
 pub struct ArmModel {
     /// The links. One has no parent: the root, which stands still.
     pub links: Vec<Link>,
-    /// The joints. Those that move and mimic no other are the coordinates, in this order.
+    /// The joints. Those that move and mimic no other are the coordinates, in this order. Joints whose limits are
+    /// equal do not move.
     pub joints: Vec<Joint>,
     /// Where the root is in the world.
     pub base: Isometry3<f64>,
     /// Pairs of links that may touch and overlap, besides those a joint joins; `None` to find by sampling
     /// which pairs always do.
     pub may_touch: Option<Vec<(String, String)>>,
+    /// What was set aside as the model was read, sentences for people. Nothing for models made by hand.
+    pub notes: Vec<String>,
 }
 
 impl Default for ArmModel {
     fn default() -> Self {
-        Self { links: Vec::new(), joints: Vec::new(), base: Isometry3::identity(), may_touch: None }
+        Self {
+            links: Vec::new(),
+            joints: Vec::new(),
+            base: Isometry3::identity(),
+            may_touch: None,
+            notes: Vec::new(),
+        }
+    }
+}
+
+impl ArmModel {
+    /// The same with other limits (rad or m) for a joint that moves and has some, or that turns without end and
+    /// becomes revolute.
+    ///
+    /// # Errors
+    /// [`ArmError::NoSuchCoordinate`] when there is no such joint, or it is fixed or mimics another.
+    pub fn with_limits(mut self, joint: &str, low: f64, high: f64) -> Result<Self, ArmError> {
+        let wrong = |why: String| ArmError::NoSuchCoordinate { joint: joint.to_owned(), why };
+        let names = || {
+            let moving = self.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
+            moving.map(|j| format!("\"{}\"", j.name)).collect::<Vec<_>>().join(", ")
+        };
+        let Some(found) = self.joints.iter().position(|j| j.name == joint) else {
+            return Err(wrong(format!("the joints that move are {}", names())));
+        };
+        if let Some(mimic) = &self.joints[found].mimic {
+            return Err(wrong(format!("it mimics \"{}\"", mimic.joint)));
+        }
+        self.joints[found].kind = match self.joints[found].kind {
+            JointKind::Fixed => return Err(wrong("it is fixed".to_owned())),
+            JointKind::Prismatic { .. } => JointKind::Prismatic { low, high },
+            JointKind::Revolute { .. } | JointKind::Continuous => JointKind::Revolute { low, high },
+        };
+        Ok(self)
     }
 }

@@ -1,46 +1,13 @@
-//! Arms from URDF and SRDF text.
+//! Arms from URDF text.
 
-use super::{ArmError, ArmModel, Joint, JointKind, Link};
+mod extract;
+
+use super::compile::MAX_LENGTH;
+use super::{ArmModel, Joint, JointKind, Link, UrdfError};
+use extract::{Extract, extract, some};
 use mp_geom::{TriMesh, primitives};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-use thiserror::Error;
 use urdf_rs::{Geometry, JointType};
-
-/// Why no arm could be made of a URDF or SRDF.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum UrdfError {
-    /// Not XML, or not a URDF.
-    #[error("this is not a URDF: {message}")]
-    Syntax {
-        /// What the parser says.
-        message: String,
-    },
-    /// A joint of a kind that is not handled.
-    #[error(
-        "joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; a floating \
-         base can be placed by the base pose and a fixed joint"
-    )]
-    Kind {
-        /// The joint.
-        joint: String,
-        /// Its kind.
-        kind: &'static str,
-    },
-    /// A shape that is none.
-    #[error("collision shape {number} of link \"{link}\": {message}")]
-    Shape {
-        /// The link.
-        link: String,
-        /// Which of its shapes, counted from 1.
-        number: usize,
-        /// What is wrong.
-        message: String,
-    },
-    /// What was read makes no arm.
-    #[error(transparent)]
-    Arm(#[from] ArmError),
-}
 
 /// Segments of a cylinder or capsule, subdivisions of a ball: they contain the shape they stand for.
 const SEGMENTS: u32 = 32;
@@ -48,7 +15,14 @@ const SEGMENTS: u32 = 32;
 impl ArmModel {
     /// Reads a URDF through the crate `urdf-rs`. Of it count links, their collision shapes (box, cylinder, capsule,
     /// sphere, mesh; each with its origin) and joints (revolute, continuous, prismatic, fixed; limits and mimics).
-    /// Links without collision shapes have none, whatever they look like.
+    /// Links without collision shapes have none, whatever they look like. All else is left out before the text is
+    /// parsed: nothing in it can be wrong.
+    ///
+    /// [`ArmModel::notes`] has what was left out though it is incomplete or foreign, and these:
+    ///
+    /// - Joints whose limits are equal do not move, and are no coordinates, until
+    ///   [`with_limits`](Self::with_limits) gives them others.
+    /// - The limits of a joint that mimics another are set aside where they leave both no room to move.
     ///
     /// Round shapes become meshes of flat faces that contain them: larger by less than 1% of the radius (2% for
     /// spheres).
@@ -57,32 +31,36 @@ impl ArmModel {
     /// message for people.
     ///
     /// # Errors
-    /// [`UrdfError`], naming the joint or link.
+    /// [`UrdfError`], naming the line, and the joint or link.
     pub fn from_urdf(
         text: &str,
         mut mesh: impl FnMut(&str) -> Result<TriMesh, String>,
     ) -> Result<Self, UrdfError> {
-        sound(text, "robot")?;
-        let robot = urdf_rs::read_from_string(text)
-            .map_err(|error| UrdfError::Syntax { message: error.to_string() })?;
-        let mut model = Self::default();
-        for link in &robot.links {
+        let Extract { urdf, links, joints, notes } = extract(text)?;
+        let robot = urdf_rs::read_from_string(&urdf)
+            .map_err(|error| UrdfError::Syntax { what: "a URDF", message: error.to_string() })?;
+        let mut model = Self { notes, ..Self::default() };
+        for (link, lines) in robot.links.iter().zip(&links) {
             let mut made = Link::new(&link.name);
-            for (i, collision) in link.collision.iter().enumerate() {
-                let fail =
-                    |message: String| UrdfError::Shape { link: link.name.clone(), number: i + 1, message };
+            for (i, (collision, &line)) in link.collision.iter().zip(lines).enumerate() {
+                let fail = |message: String| UrdfError::Shape {
+                    line,
+                    link: link.name.clone(),
+                    number: i + 1,
+                    message,
+                };
                 let shape = shape(&collision.geometry, &mut mesh).map_err(fail)?;
                 let origin = pose(&collision.origin);
-                if !super::kinematics::is_pose(&origin, super::compile::MAX_LENGTH) {
+                if !super::kinematics::is_pose(&origin, MAX_LENGTH) {
                     return Err(fail("its origin is no pose: numbers must be finite".to_owned()));
                 }
                 made = made.with(&shape, &origin);
             }
             model.links.push(made);
         }
-        for joint in &robot.joints {
+        for (joint, &line) in robot.joints.iter().zip(&joints) {
             let limits = (joint.limit.lower, joint.limit.upper);
-            let refused = |kind| Err(UrdfError::Kind { joint: joint.name.clone(), kind });
+            let refused = |kind| Err(UrdfError::Kind { line, joint: joint.name.clone(), kind });
             let kind = match joint.joint_type {
                 JointType::Fixed => JointKind::Fixed,
                 JointType::Continuous => JointKind::Continuous,
@@ -101,80 +79,50 @@ impl ArmModel {
             }
             model.joints.push(made);
         }
+        model.make_room();
+        let held = model.joints.iter().filter(|j| j.kind.held().is_some() && j.mimic.is_none());
+        let held: Vec<_> = held.map(|j| j.name.clone()).collect();
+        if !held.is_empty() {
+            let note = format!("these joints do not move, for their limits are equal: {}", some(&held));
+            model.notes.push(note);
+        }
         Ok(model)
     }
 
-    /// The same with other limits (rad or m) for a joint that moves and has some, or that turns without end and
-    /// becomes revolute.
-    ///
-    /// # Errors
-    /// [`ArmError::NoSuchCoordinate`] when there is no such joint, or it is fixed or mimics another.
-    pub fn with_limits(mut self, joint: &str, low: f64, high: f64) -> Result<Self, ArmError> {
-        let wrong = |why: String| ArmError::NoSuchCoordinate { joint: joint.to_owned(), why };
-        let names = || {
-            let moving = self.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
-            moving.map(|j| format!("\"{}\"", j.name)).collect::<Vec<_>>().join(", ")
-        };
-        let Some(found) = self.joints.iter().position(|j| j.name == joint) else {
-            return Err(wrong(format!("the joints that move are {}", names())));
-        };
-        if let Some(mimic) = &self.joints[found].mimic {
-            return Err(wrong(format!("it mimics \"{}\"", mimic.joint)));
-        }
-        self.joints[found].kind = match self.joints[found].kind {
-            JointKind::Fixed => return Err(wrong("it is fixed".to_owned())),
-            JointKind::Prismatic { .. } => JointKind::Prismatic { low, high },
-            JointKind::Revolute { .. } | JointKind::Continuous => JointKind::Revolute { low, high },
-        };
-        Ok(self)
-    }
-
-    /// Takes the pairs of links that may touch from an SRDF: its `disable_collisions`. All else in it is left
-    /// aside.
-    ///
-    /// # Errors
-    /// [`UrdfError::Syntax`] when it is no SRDF; links that are missing are found by [`Arm::new`](crate::Arm::new).
-    pub fn with_srdf(mut self, text: &str) -> Result<Self, UrdfError> {
-        let document = sound(text, "robot")?;
-        let mut pairs = Vec::new();
-        for node in document.root_element().children().filter(|n| n.has_tag_name("disable_collisions")) {
-            let link = |name: &str| {
-                node.attribute(name).map(str::to_owned).ok_or_else(|| {
-                    let line = document.text_pos_at(node.range().start).row;
-                    let message = format!("line {line}: <disable_collisions> has no attribute {name}");
-                    UrdfError::Syntax { message }
-                })
+    /// Sets the limits of followers aside where they leave no room to move: what they follow has limits of its own.
+    fn make_room(&mut self) {
+        let mut aside = Vec::new();
+        for i in 0..self.joints.len() {
+            let Some(mimic) = &self.joints[i].mimic else { continue };
+            let Some(leader) = self.joints.iter().find(|j| j.name == mimic.joint && j.mimic.is_none()) else {
+                continue;
             };
-            pairs.push((link("link1")?, link("link2")?));
+            let (Some([own_low, own_high]), Some([low, high])) =
+                (self.joints[i].kind.limits(), leader.kind.limits())
+            else {
+                continue;
+            };
+            let ends = [low, high].map(|x| x * mimic.multiplier + mimic.offset);
+            let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+            let room = match low == high {
+                true => (own_low..=own_high).contains(&low),
+                false => own_low.max(low) < own_high.min(high),
+            };
+            // Whoever releases what is held shall find followers that can follow.
+            if own_low > own_high || (room && own_low < own_high) {
+                continue;
+            }
+            self.joints[i].kind = match self.joints[i].kind {
+                JointKind::Prismatic { .. } => JointKind::Prismatic { low: -MAX_LENGTH, high: MAX_LENGTH },
+                _ => JointKind::Continuous,
+            };
+            aside.push(self.joints[i].name.clone());
         }
-        self.may_touch = Some(pairs);
-        Ok(self)
+        if !aside.is_empty() {
+            let note = "the limits of joints that mimic others are set aside, for they leave them no room";
+            self.notes.push(format!("{note}: {}", some(&aside)));
+        }
     }
-}
-
-/// Elements may be nested no deeper than this.
-const MAX_DEPTH: usize = 64;
-
-/// The document, if it is XML with that root and not too deep for parsers that recurse.
-fn sound<'a>(text: &'a str, root: &str) -> Result<roxmltree::Document<'a>, UrdfError> {
-    let syntax = |message: String| UrdfError::Syntax { message };
-    let document = roxmltree::Document::parse(text).map_err(|error| syntax(error.to_string()))?;
-    let found = document.root_element().tag_name().name();
-    if found != root {
-        return Err(syntax(format!(
-            "its first element is <{found}>, not <{root}>; xacro must be expanded first"
-        )));
-    }
-    let mut deepest = 0;
-    let mut stack = vec![(document.root_element(), 1)];
-    while let Some((node, depth)) = stack.pop() {
-        deepest = deepest.max(depth);
-        stack.extend(node.children().filter(roxmltree::Node::is_element).map(|child| (child, depth + 1)));
-    }
-    if deepest > MAX_DEPTH {
-        return Err(syntax(format!("its elements are nested {deepest} deep; {MAX_DEPTH} is the most")));
-    }
-    Ok(document)
 }
 
 fn pose(pose: &urdf_rs::Pose) -> Isometry3<f64> {

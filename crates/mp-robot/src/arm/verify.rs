@@ -42,8 +42,8 @@ enum Moves {
 
 impl Tree {
     pub(super) fn new(model: &ArmModel) -> Self {
-        let own: Vec<_> =
-            model.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none()).collect();
+        let own = model.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
+        let own: Vec<_> = own.filter(|j| j.kind.held().is_none()).collect();
         let mut tree = Self {
             links: Vec::new(),
             coordinates: own.iter().map(|j| j.kind == JointKind::Continuous).collect(),
@@ -57,8 +57,12 @@ impl Tree {
                 if let Some(i) = coordinate(&at) {
                     return (i, factor, offset);
                 }
-                let mimic = model.joints.iter().find(|j| j.name == at).and_then(|j| j.mimic.as_ref());
-                let Some(mimic) = mimic else { return (0, 0.0, 0.0) };
+                let joint = model.joints.iter().find(|j| j.name == at);
+                let Some(mimic) = joint.and_then(|j| j.mimic.as_ref()) else {
+                    // It has one value only, if it has one.
+                    let held = joint.and_then(|j| j.kind.held()).unwrap_or(0.0);
+                    return (0, 0.0, offset + factor * held);
+                };
                 (offset, factor) = (offset + factor * mimic.offset, factor * mimic.multiplier);
                 at.clone_from(&mimic.joint);
             }

@@ -44,6 +44,8 @@ fn trees_that_are_none() {
     says(&refused(|m| m.links[3].name = "upper".into()), &["two links", "upper"]);
     says(&refused(|m| m.joints[3].name = "joint 1".into()), &["two joints", "joint 1"]);
     says(&refused(|m| m.joints.iter_mut().for_each(|j| j.kind = JointKind::Fixed)), &["moves"]);
+    let still = JointKind::Revolute { low: 0.5, high: 0.5 };
+    says(&refused(|m| m.joints.iter_mut().for_each(|j| j.kind = still)), &["moves", "equal", "\"joint 6\""]);
 }
 
 #[test]
@@ -51,7 +53,7 @@ fn joints_that_make_no_sense() {
     for axis in [Vector3::zeros(), Vector3::new(f64::NAN, 0.0, 1.0), Vector3::x() * 1e300] {
         says(&refused(|m| m.joints[1].axis = axis), &["axis", "joint 2"]);
     }
-    for (low, high) in [(1.0, -1.0), (0.5, 0.5), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
+    for (low, high) in [(1.0, -1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
         let kind = JointKind::Revolute { low, high };
         says(&refused(|m| m.joints[1].kind = kind), &["joint 2", "lower limit", "continuous"]);
     }
@@ -82,6 +84,11 @@ fn followers_that_cannot() {
         mimic("joint 1", 1.0)(m);
     };
     says(&refused(fixed), &["joint 2", "joint 1", "fixed"]);
+    let held = |m: &mut ArmModel| {
+        m.joints[0].kind = JointKind::Revolute { low: 2.5, high: 2.5 };
+        mimic("joint 1", 1.0)(m);
+    };
+    says(&refused(held), &["joint 2", "joint 1", "does not move", "outside"]);
     let endless = |m: &mut ArmModel| {
         m.joints[0].kind = JointKind::Continuous;
         mimic("joint 1", 1.0)(m);

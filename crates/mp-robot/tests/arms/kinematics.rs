@@ -130,3 +130,26 @@ fn continuous_joints_go_the_short_way() {
     let bound = mp_cspace::MotionBound::motion_bound(&arm, &a, &b);
     assert!(bound > 0.28 && bound < (2.0 * PI - 6.0) * (2.2 + 2.0 * 1.2), "{bound}");
 }
+
+#[test]
+fn joints_with_equal_limits_are_held() {
+    // Joint 3 held, joint 5 following it.
+    let held = {
+        let mut model = six();
+        model.joints[2].kind = JointKind::Revolute { low: 0.7, high: 0.7 };
+        model.joints[4] = model.joints[4].clone().mimic("joint 3", -0.5, 0.1);
+        model
+    };
+    let (free, held) = (Kinematics::new(&six()).unwrap(), Kinematics::new(&held).unwrap());
+    assert_eq!(held.dof(), 4);
+    let q = [0.3, -0.4, 0.9, 1.1];
+    let all = [q[0], q[1], 0.7, q[2], -0.25, q[3]];
+    for (a, b) in free.link_poses(&all).unwrap().iter().zip(held.link_poses(&q).unwrap()) {
+        assert!((a.to_homogeneous() - b.to_homogeneous()).abs().max() < 1e-14);
+    }
+    // A slider stays where it is held.
+    let mut model = bar(JointKind::Revolute { low: -3.0, high: 3.0 });
+    model.joints[1].kind = JointKind::Prismatic { low: 0.25, high: 0.25 };
+    let poses = Kinematics::new(&model).unwrap().link_poses(&[0.0]).unwrap();
+    assert_eq!(poses[3].translation.vector, Vector3::new(2.0, 0.0, 0.75));
+}

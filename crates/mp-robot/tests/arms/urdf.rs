@@ -128,19 +128,155 @@ fn faults_are_named() {
     says("<robot name", "<model name", &["not a URDF"]);
     says("type=\"continuous\"", "type=\"floating\"", &["turn", "floating", "base pose"]);
     says("type=\"continuous\"", "type=\"planar\"", &["turn", "planar"]);
-    says("type=\"continuous\"", "type=\"screw\"", &["not a URDF"]);
-    says("finger.stl", "thumb.stl", &["left", "shape 1", "thumb.stl"]);
+    says("type=\"continuous\"", "type=\"screw\"", &["not a URDF", "line 29", "turn", "screw", "prismatic"]);
+    says("finger.stl", "thumb.stl", &["line 18", "left", "shape 1", "thumb.stl"]);
     says("1 -1 2", "1 0 2", &["left", "scale"]);
     says("radius=\"0.05\"", "radius=\"-0.05\"", &["carriage", "shape 1", "radius"]);
     says("0.1 0 0\" rpy", "0.1 nan 0\" rpy", &["carriage", "origin"]);
     says("0 0 0.1\" rpy", "0 0 inf\" rpy", &["lift", "origin"]);
     says("0 0 2", "0 0 0", &["lift", "axis"]);
-    says("lower=\"0\" upper=\"0.5\"", "", &["lift", "0 to 0", "fixed"]);
+    says("lower=\"0\" upper=\"0.5\"", "lower=\"1\" upper=\"0.5\"", &["lift", "1 to 0.5", "lower limit"]);
     says("mimic joint=\"open\"", "mimic joint=\"shut\"", &["close", "shut"]);
     says("mimic joint=\"open\"", "mimic joint=\"close\"", &["close", "itself"]);
     says("child link=\"right\"", "child link=\"left\"", &["left", "open", "close"]);
     says("<link name=\"spin\"/>", "", &["turn", "child", "spin"]);
+    says(" name=\"lift\"", "", &["line 4", "<joint> has no name"]);
+    says("<parent link=\"base\"/>", "", &["line 4", "\"lift\"", "prismatic", "no <parent>"]);
+    says(
+        "<limit lower=\"0\" upper=\"0.5\" effort=\"1\" velocity=\"1\"/>",
+        "",
+        &["line 4", "lift", "no <limit>"],
+    );
+    says("lower=\"0\"", "lower=\"zero\"", &["line 8", "lower of <limit>", "zero", "a number"]);
+    says("0 0 0.1\" rpy", "0 0.1\" rpy", &["line 6", "xyz of <origin>", "3 numbers"]);
+    says("<axis xyz=\"0 0 2\"/>", "<axis/>", &["line 7", "<axis> has no xyz"]);
+    says("<sphere radius=\"0.06\"/>", "<cone radius=\"0.06\"/>", &["line 16", "<cone>", "<capsule>"]);
+    says("<geometry><sphere radius=\"0.06\"/></geometry>", "", &["line 16", "<geometry>"]);
+    says(" filename=\"package://gripper/finger.stl\"", "", &["line 18", "<mesh> has no filename"]);
+    says(
+        "<link name=\"spin\"/>",
+        "<link name=\"spin\"/><xacro:wheel xmlns:xacro=\"http://ros.org/wiki/xacro\"/>",
+        &["line 20", "<xacro:wheel>", "run xacro"],
+    );
+    says("<link name=\"spin\"/>", "<link name=\"spin\"/><xacro:wheel/>", &["line 20", "run xacro"]);
     let deep = format!("<robot name=\"x\">{}{}</robot>", "<link>".repeat(100), "</link>".repeat(100));
     assert!(matches!(read(&deep), Err(UrdfError::Syntax { .. })));
     assert!(matches!(read(""), Err(UrdfError::Syntax { .. })));
+}
+
+/// What stands in files of robots that others publish.
+#[test]
+fn what_no_planner_reads_may_be_anything() {
+    let plain = read(GRIPPER).unwrap();
+    assert!(plain.notes.is_empty(), "{:?}", plain.notes);
+    let notes = |from: &str, to: &str, words: &[&str]| {
+        assert!(GRIPPER.contains(from), "{from}");
+        let model = read(&GRIPPER.replacen(from, to, 1)).unwrap_or_else(|error| panic!("{to}: {error}"));
+        assert_eq!((&model.links, &model.joints), (&plain.links, &plain.joints), "{to}");
+        let all = model.notes.join("\n");
+        assert!(words.iter().all(|word| all.contains(word)), "{to}: {all}");
+        assert_eq!(model.notes.len(), usize::from(!words.is_empty()), "{to}: {all}");
+    };
+    // Name spaces that are declared and that are not.
+    notes(
+        "velocity=\"1\"",
+        "velocity=\"1\" drake:acceleration=\"15\"",
+        &["attributes of other", "\"drake\""],
+    );
+    let declared = "<robot xmlns:drake=\"http://drake.mit.edu\" name=\"gripper\">";
+    notes("<robot name=\"gripper\">", declared, &[]);
+    let used = format!("{declared}<drake:collision_filter_group><member/></drake:collision_filter_group>");
+    notes("<robot name=\"gripper\">", &used, &["elements", "\"http://drake.mit.edu\""]);
+    notes(
+        "<axis xyz=\"0 0 2\"/>",
+        "<sim:axis xyz=\"1 0 0\"/><axis xyz=\"0 0 2\"/>",
+        &["elements", "\"sim\""],
+    );
+    notes("name=\"lift\"", "sim:name=\"drop\" name=\"lift\"", &["\"sim\""]);
+    // Masses, visual shapes, materials.
+    let spin = "<link name=\"spin\"/>";
+    let with = |inside: &str| format!("<link name=\"spin\">{inside}</link>");
+    notes(spin, &with("<inertial><mass value=\"1\"/></inertial>"), &["masses", "\"spin\""]);
+    notes(spin, &with("<inertial/><inertial/>"), &["masses", "\"spin\""]);
+    notes(spin, &with("<inertial><mass value=\"?\"/><inertia/></inertial>"), &[]);
+    notes(spin, &with("<visual><geometry><mesh/></geometry></visual>"), &["visual", "\"spin\""]);
+    notes(spin, &with("<visual><geometry><mesh filename=\"lost.stl\"/></geometry></visual>"), &[]);
+    notes(spin, &with("<visual><material><texture/></material></visual><visual/>"), &[]);
+    notes(
+        spin,
+        &format!("{spin}<material/><gazebo><joint/><link/></gazebo><transmission><joint/></transmission>"),
+        &[],
+    );
+    // Limits without velocity, second elements.
+    notes("velocity=\"1\"", "", &[]);
+    notes(
+        "<axis xyz=\"0 0 2\"/>",
+        "<axis xyz=\"0 0 2\"/><axis xyz=\"1 0 0\"/><dynamics damping=\"?\"/>",
+        &[],
+    );
+    notes("<child link=\"spin\"/>", "<child link=\"spin\"/><limit effort=\"1\" lower=\"?\"/>", &[]);
+    // Characters that XML has words for.
+    let odd = GRIPPER.replace("\"spin\"", "\"a &lt;&amp;&quot; b\"");
+    assert!(read(&odd).unwrap().links.iter().any(|link| link.name == "a <&\" b"));
+}
+
+#[test]
+fn many_undeclared_prefixes_are_refused() {
+    let many: String = (0..100).map(|i| format!("<p{i}:x/>")).collect();
+    let error = read(&GRIPPER.replace("<link name=\"spin\"/>", &many)).unwrap_err().to_string();
+    assert!(error.contains("prefixes"), "{error}");
+}
+
+#[test]
+fn joints_without_room_are_held() {
+    // As many published files have it: a limit without lower and upper, which stand for 0.
+    let model = read(&GRIPPER.replace("lower=\"0\" upper=\"0.5\"", "")).unwrap();
+    assert!(model.notes.len() == 1 && model.notes[0].contains("\"lift\""), "{:?}", model.notes);
+    let names = |model: &ArmModel| {
+        let arm = Arm::new(model, []).unwrap();
+        arm.coordinates().iter().map(|c| c.name.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(&model), ["open", "turn"]);
+    assert_eq!(names(&model.clone().with_limits("lift", 0.0, 0.1).unwrap()), ["lift", "open", "turn"]);
+    let none = r#"<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
+        <child link="b"/><limit lower="0.5" upper="0.5"/></joint></robot>"#;
+    let error = Arm::new(&read(none).unwrap(), []).unwrap_err().to_string();
+    assert!(error.contains("\"j\"") && error.contains("equal"), "{error}");
+}
+
+#[test]
+fn followers_without_room_are_followed_no_less() {
+    // The other way from what it follows, but with the limits of that.
+    let text = GRIPPER.replace("lower=\"-0.25\" upper=\"1\"", "lower=\"0.5\" upper=\"1\"");
+    let model = read(&text).unwrap();
+    assert!(model.notes.len() == 1 && model.notes[0].contains("\"close\""), "{:?}", model.notes);
+    let arm = Arm::new(&model, []).unwrap();
+    assert_eq!(arm.coordinates()[1].range, JointRange::Interval { low: -0.5, high: 0.5 });
+    // Neither has room, until the leader is given some.
+    let still =
+        GRIPPER.replace("lower=\"-0.25\" upper=\"1\"", "").replace("lower=\"-0.5\" upper=\"0.5\"", "");
+    let model = read(&still).unwrap();
+    assert_eq!(Arm::new(&model, []).unwrap().dof(), 2);
+    let arm = Arm::new(&model.with_limits("open", -0.4, 0.3).unwrap(), []).unwrap();
+    assert_eq!(arm.coordinates()[1].range, JointRange::Interval { low: -0.4, high: 0.3 });
+}
+
+#[test]
+fn later_versions_mean_what_they_say() {
+    let turned = |version: &str| {
+        let text = r#"<robot name="r" version="V"><link name="a"/><link name="b"/><joint name="j" type="continuous">
+            <parent link="a"/><child link="b"/><origin xyz="0 0 0" quat_xyzw="0 0 1 0"/></joint></robot>"#;
+        read(&text.replace('V', version)).unwrap().joints[0].origin.rotation.angle()
+    };
+    assert!(turned("1.0") == 0.0 && (turned("1.1") - std::f64::consts::PI).abs() < 1e-9);
+}
+
+#[test]
+fn damaged_files_are_errors_or_robots() {
+    for start in 0..GRIPPER.len() {
+        let without = |n: usize| [&GRIPPER[..start], &GRIPPER[(start + n).min(GRIPPER.len())..]].concat();
+        for text in [without(1), without(9), GRIPPER[..start].to_owned()] {
+            let _ = read(&text).map(|model| Arm::new(&model, []).map(|arm| arm.dof()));
+        }
+    }
 }

@@ -176,3 +176,13 @@ fn nearest_free_is_free_and_near() {
     assert_eq!(caged.nearest_free(&Six::zeros(), &space, margin), None);
     assert_eq!(caged.nearest_free(&Six::repeat(f64::NAN), &space, margin), None);
 }
+
+#[test]
+fn held_joints_are_where_they_are_for_both() {
+    let mut model = six();
+    model.joints[2].kind = mp_robot::JointKind::Revolute { low: 0.9, high: 0.9 };
+    model.joints[4] = model.joints[4].clone().mimic("joint 3", -0.5, 0.1);
+    let arm = Arm::new(&model, clutter()).unwrap();
+    let counts = agree(&arm, &arm.space().unwrap(), 150);
+    assert!(counts.into_iter().all(|n| n > 15), "{counts:?}");
+}

@@ -1,0 +1,27 @@
+//! Which links may touch, from SRDF text.
+
+use super::xml::Text;
+use super::{ArmModel, UrdfError};
+
+impl ArmModel {
+    /// Takes the pairs of links that may touch from an SRDF: its `disable_collisions`. All else in it is left
+    /// aside.
+    ///
+    /// # Errors
+    /// [`UrdfError::Syntax`] when it is no SRDF; links that are missing are found by [`Arm::new`](crate::Arm::new).
+    pub fn with_srdf(mut self, text: &str) -> Result<Self, UrdfError> {
+        let text = Text::new("an SRDF", text)?;
+        let document = text.parse()?;
+        let mut pairs = Vec::new();
+        for node in document.root_element().children().filter(|n| n.has_tag_name("disable_collisions")) {
+            let link = |name: &str| {
+                node.attribute(name)
+                    .map(str::to_owned)
+                    .ok_or_else(|| text.error(&node, format!("<disable_collisions> has no attribute {name}")))
+            };
+            pairs.push((link("link1")?, link("link2")?));
+        }
+        self.may_touch = Some(pairs);
+        Ok(self)
+    }
+}

@@ -1,0 +1,91 @@
+//! XML text: parsed with care, and errors that say the line.
+
+use super::UrdfError;
+use roxmltree::{Document, Node};
+use std::borrow::Cow;
+
+/// Elements may be nested no deeper than this.
+const MAX_DEPTH: usize = 64;
+/// The most prefixes that are declared for a document that does not.
+const MAX_PREFIXES: usize = 16;
+
+/// The text of a document whose root is `<robot>`.
+pub(super) struct Text<'a> {
+    /// What it is: "a URDF".
+    what: &'static str,
+    /// With a declaration, in the line of the root, of each prefix that has none.
+    text: Cow<'a, str>,
+}
+
+impl<'a> Text<'a> {
+    /// The text, all its prefixes declared.
+    pub(super) fn new(what: &'static str, text: &'a str) -> Result<Self, UrdfError> {
+        let mut text = Self { what, text: Cow::Borrowed(text) };
+        for _ in 0..=MAX_PREFIXES {
+            let prefix = match Document::parse(&text.text) {
+                Err(roxmltree::Error::UnknownNamespace(prefix, _)) => prefix,
+                _ => return Ok(text),
+            };
+            let Some(at) = end_of_root_name(&text.text) else { return Ok(text) };
+            text.text.to_mut().insert_str(at, &format!(" xmlns:{prefix}=\"{prefix}\""));
+        }
+        Err(text.wrong(format!("more than {MAX_PREFIXES} prefixes of names are not declared")))
+    }
+
+    /// The document, if it is XML with that root and not too deep for parsers that recurse.
+    pub(super) fn parse(&self) -> Result<Document<'_>, UrdfError> {
+        let document = Document::parse(&self.text).map_err(|error| {
+            let shown = error.to_string();
+            // The reader gives row and column at the end of its sentence.
+            let message = shown.rsplit_once(" at ").map_or(shown.as_str(), |(message, _)| message);
+            self.wrong(format!("line {}: {message}", error.pos().row))
+        })?;
+        let root = document.root_element();
+        let found = root.tag_name().name();
+        if found != "robot" {
+            let message =
+                format!("its first element is <{found}>, not <robot>; xacro must be expanded first");
+            return Err(self.error(&root, message));
+        }
+        let mut stack = vec![(root, 1)];
+        while let Some((node, depth)) = stack.pop() {
+            if depth > MAX_DEPTH {
+                return Err(self.error(&node, format!("elements nested more than {MAX_DEPTH} deep")));
+            }
+            stack.extend(node.children().filter(Node::is_element).map(|child| (child, depth + 1)));
+        }
+        Ok(document)
+    }
+
+    /// An error in the line of `node`.
+    pub(super) fn error(&self, node: &Node<'_, '_>, message: impl std::fmt::Display) -> UrdfError {
+        self.wrong(format!("line {}: {message}", line(node)))
+    }
+
+    /// An error of the whole text.
+    pub(super) fn wrong(&self, message: String) -> UrdfError {
+        UrdfError::Syntax { what: self.what, message }
+    }
+}
+
+/// The line of `node`, counted from 1.
+pub(super) fn line(node: &Node<'_, '_>) -> u32 {
+    node.document().text_pos_at(node.range().start).row
+}
+
+/// Where the name of the first element ends.
+fn end_of_root_name(text: &str) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        at += text[at..].find('<')?;
+        let rest = &text[at..];
+        let skipped = [("<?", "?>"), ("<!--", "-->")].into_iter().find(|(start, _)| rest.starts_with(start));
+        match skipped {
+            Some((_, end)) => at += rest.find(end)? + end.len(),
+            None => {
+                let ends = |c: char| c.is_ascii_whitespace() || c == '/' || c == '>';
+                return Some(at + rest.find(ends)?);
+            }
+        }
+    }
+}
