@@ -134,6 +134,9 @@ where
         }
         "rrs" => Box::new(Plain(Rrs::with_index(bent(info, problem, settings)?, index, tuning)?)),
         "rrs-connect" => {
+            if !problem.goals().can_aim() {
+                return Err(BuildError::NoGoalState { planner: info.name });
+            }
             Box::new(Plain(RrsConnect::with_index(bent(info, problem, settings)?, index, tuning)?))
         }
         _ => return Err(unknown(name)),

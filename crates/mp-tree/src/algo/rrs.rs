@@ -33,8 +33,9 @@
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
 //! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 4 |
 //!
-//! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). [`build_snake`] makes
-//! it by name.
+//! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). By name it takes the
+//! gradient from the [problem](crate::Problem::with_obstacles), and its paths are plain: straight between the nodes of the
+//! snakes, and verified piece by piece.
 //!
 //! A point goes around a disc in the unit square, in one bend:
 //! ```
@@ -62,8 +63,6 @@
 //! assert!(unbent(&path).states.iter().all(free));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//!
-//! [`build_snake`]: crate::build_snake
 
 use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{Parameter, PlannerInfo, Rrt};
@@ -85,7 +84,7 @@ pub const SNAKE_STEPS: Parameter = Parameter {
     doc: "most steps of a snake that bends one edge",
 };
 
-/// The entry of [`snake_planners`](crate::snake_planners).
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrs",
     summary: "RRT whose blocked edges are bent around obstacles by snakes; for many small obstacles",
