@@ -9,7 +9,7 @@ use std::fmt::Debug;
 /// others where [`compile_for`](crate::compile_for) names them. Whoever calls the method compiles no planner.
 ///
 /// ```
-/// use mp_cspace::erased::{AnyIndex, AnySpace};
+/// use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 /// use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Settings, Straight};
 /// use mp_roadmap::{AnyTeam, RoadmapState};
 /// use nalgebra::Vector2;
@@ -17,10 +17,10 @@ use std::fmt::Debug;
 /// let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 /// let any = AnySpace::new(&space);
 /// let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
-/// let check = Discrete::new(&space, free, Resolution::Fraction(0.01))?;
+/// let check: AnyCheck<_> = Box::new(Discrete::new(&space, free, Resolution::Fraction(0.01))?);
 /// let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
 /// let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
-/// let team = AnyTeam::from(Problem::new(&any, Straight::new(&any, Box::new(check)), verifier, start, goal)?);
+/// let team = AnyTeam::from(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?);
 ///
 /// let mut planner = Vector2::roadmap_planner("prm", team, AnyIndex::of(&space), &Settings::default())?;
 /// let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());

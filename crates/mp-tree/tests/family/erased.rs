@@ -15,13 +15,15 @@ impl<S, V: Clearance<S> + MotionBound<S> + Validity<S> + ObstacleHints<S> + Clon
 {
 }
 
+type Made<'c, P, S> = Problem<'c, P, Straight<'c, P, erased::AnyCheck<'c, S>>>;
+
 /// A problem in `planned`, which is `space` or its erasure.
 fn problem<'c, C: Space, P: Space<State = C::State>, V: Robot<C::State> + 'c>(
     space: &'c C,
     planned: &'c P,
     robot: &V,
     [start, goal]: &[C::State; 2],
-) -> Result<Problem<'c, P, Straight<'c, P, erased::AnyCheck<'c, C::State>>>, BuildError> {
+) -> Result<Made<'c, P, C::State>, BuildError> {
     let check = Certified::new(space, robot.clone(), 1e-3).unwrap();
     let fine = FineDiscrete::new(space, robot.clone(), Resolution::Fraction(1e-3)).unwrap();
     let local = Straight::new(planned, Box::new(check) as erased::AnyCheck<'c, C::State>);
