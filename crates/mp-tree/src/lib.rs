@@ -77,67 +77,25 @@
 //!   step it interrupts: whoever catches it may look at the trees and step on.
 
 pub mod algo;
-mod apart;
-mod attach;
-mod branch;
-mod grow;
-mod improve;
-mod propose;
-mod recipe;
+mod by_name;
+mod engine;
 mod registry;
-mod rewire;
-mod select;
-mod settings;
-mod single;
-mod snakes;
-mod state;
-mod tree;
-mod two;
-mod uniform;
-mod untried;
-mod wrap;
 
-pub use algo::aorrtc::Aorrtc;
-pub use algo::bi_rrt::BiRrt;
-pub use algo::con_con::RrtConCon;
-pub use algo::con_ext::RrtConExt;
-pub use algo::cvp_rrt::{CvpRrt, LeastViolated};
-pub use algo::cyclic_rrt::{Cyclic, CyclicRrt, Listed};
-pub use algo::dd_rrt::{DdRrt, Domain, DynamicDomain};
-pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
-pub use algo::mvb_rrt::{MvbRrt, VoronoiBias};
-pub use algo::obrrt::{GrowthWeights, Obrrt, ObstacleGuided};
 pub use algo::or_parallel::OrParallel;
-pub use algo::rc_rrt::{RcRrt, Unexhausted};
 pub use algo::restarts::{Lengths, Restarts, Schedule};
-pub use algo::rrs::Rrs;
-pub use algo::rrs_connect::RrsConnect;
-pub use algo::rrt::Rrt;
-pub use algo::rrt_connect::RrtConnect;
-pub use algo::rrt_inputs::RrtInputs;
-pub use algo::rrt_star::RrtStar;
-pub use algo::rsrt::Rsrt;
 pub use algo::shared_tree::SharedTree;
-pub use algo::utility_rrt::{UtilityGuided, UtilityRrt};
-pub use apart::AppendApart;
-pub use attach::{Append, AppendDistinct, Attach, Attached};
-pub use branch::{Branch, Growing, Steer};
-pub use grow::{Connect, Extend, Grown, Growth};
-pub use improve::{Improving, improve};
+pub use algo::types::*;
+pub use by_name::{AnyPlanner, INPUTS, LEVELS};
+pub use engine::{
+    Acceptable, Append, AppendApart, AppendDistinct, Attach, Attached, Branch, Connect, Core, Extend,
+    GOAL_BIAS, Growing, Grown, Growth, Improving, NEEDS_BOTH_ENDS, Near, Nearest, PATIENCE, Propose, Purpose,
+    Recipe, Rewire, STEP, Samples, Selector, SingleTree, Steer, Tree, Tuning, TwoTrees, Untried, improve,
+};
 pub use mp_cspace::erased::{AnyIndex, AnyProblem};
 pub use mp_cspace::{
     BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step, Verify, Workers,
     closest,
 };
-pub use propose::{Acceptable, Propose, Samples};
-pub use recipe::{Recipe, Tuning};
-pub use registry::{AnyPlanner, build, build_with, planner, planners};
-pub use rewire::{Near, Rewire};
-pub use select::{Nearest, Purpose, Selector};
-pub use settings::{GOAL_BIAS, INPUTS, LEVELS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-pub use single::SingleTree;
-pub use state::{ProblemFactory, TreeState};
-pub use tree::Tree;
-pub use two::TwoTrees;
-pub use untried::Untried;
-pub use wrap::{Named, Wrapper, build_from, wrappers};
+pub use registry::{
+    Named, ProblemFactory, TreeState, Wrapper, build, build_from, build_with, planner, planners, wrappers,
+};

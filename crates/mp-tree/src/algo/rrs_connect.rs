@@ -46,9 +46,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::rrs::{RANGE, SNAKE_STEPS};
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{PlannerInfo, RrtConnect};
+use super::rrs::{Plain, RANGE, SNAKE_STEPS, bent};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{BuildError, PlannerInfo, RrtConnect};
 use mp_snake::SnakePlanner;
 
 /// The entry of [`planners`](crate::planners).
@@ -60,6 +61,15 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &[],
     cannot: NEEDS_BOTH_ENDS,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    if !given.problem.goals().can_aim() {
+        return Err(BuildError::NoGoalState { planner: INFO.name });
+    }
+    let problem = bent(INFO.name, given.problem, given.settings)?;
+    Ok(Box::new(Plain(RrsConnect::with_index(problem, given.index, given.tuning)?)))
+}
 
 /// RRS-Connect: see the [module](self). Made by [`RrtConnect::new`] of a problem with a [`SnakePlanner`].
 pub type RrsConnect<'c, C, M, F, N> = RrtConnect<'c, C, SnakePlanner<'c, C, M, F>, N>;

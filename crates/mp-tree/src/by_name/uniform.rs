@@ -1,9 +1,24 @@
 //! Problems moved by a uniform set of inputs, for planners by name.
 
-use crate::settings::{INPUTS, LEVELS};
-use crate::{BuildError, Problem, Settings, Tuning};
+use crate::{BuildError, Parameter, Problem, Settings, Tuning};
 use mp_cspace::inputs::{Between, InputPlanner, InputSet, Kinematic};
 use mp_cspace::{LocalPlanner, Space};
+
+/// Of planners that move by a set of inputs: how many directions.
+pub const INPUTS: Parameter = Parameter {
+    name: "inputs",
+    range: "a whole number",
+    default: "0",
+    doc: "directions of motion, spread over translation and rotation; 0: both ways along each axis",
+};
+
+/// Of planners that move by a set of inputs: how many lengths of each.
+pub const LEVELS: Parameter = Parameter {
+    name: "levels",
+    range: "a whole number, 1 to 20",
+    default: "3",
+    doc: "lengths of motion: the step, a quarter of it, a quarter of that, and so on",
+};
 
 /// A local planner that moves by velocities, one second each; its motions and edges are those of `L`.
 pub(crate) type ByVelocities<'c, C, L> = InputPlanner<'c, C, Kinematic<'c, C>, Vec<f64>, Between<L>>;

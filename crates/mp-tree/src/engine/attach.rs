@@ -1,6 +1,6 @@
 //! Slot: how a new motion joins the tree.
 
-use crate::{Selector, Steer, Tree};
+use super::{Selector, Steer, Tree};
 use mp_cspace::{Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// What became of a motion.

@@ -1,6 +1,6 @@
 //! Slot: how far to grow in one iteration.
 
-use crate::{Attach, Growing, Selector};
+use super::{Attach, Growing, Selector};
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
 /// What became of growing toward a target.
@@ -23,6 +23,12 @@ pub trait Growth<C: Space, L: LocalPlanner<C::State>> {
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown;
+    /// Whether a planner may try the straight way from the start to a goal, in one motion of any length, before it asks
+    /// this growth for the first time. Variants that must see every motion decline: those that refuse motions free of
+    /// collision, or promise to make none longer than a step. With two growths both must agree.
+    fn leaps(&self) -> bool {
+        true
+    }
     /// Nodes of the tree that grows in `direction` were removed: node `i` was `survivors[i]`.
     fn pruned(&mut self, _direction: Direction, _survivors: &[NodeId]) {}
 }

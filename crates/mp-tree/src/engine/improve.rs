@@ -1,14 +1,10 @@
 //! The loop with one tree that goes on after a solution, for better ones.
 
-use crate::{
-    Attach, Branch, BuildError, Goals, Grown, Growth, Problem, Propose, Purpose, Recipe, Selector, Steer,
-    Tree,
-};
+use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Tree};
 use mp_cspace::{
-    Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, ProblemParts, Progress, Rng, Space,
-    Stop, StopReason,
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
+    Space, Stop, StopReason,
 };
-use rand::RngExt;
 
 /// The least part of its cost by which a path must be better than the one before: less than that
 /// may be rounding.
@@ -22,15 +18,10 @@ const GAIN: f64 = 1e-9;
 /// goal states that it has reached.
 #[derive(Debug)]
 pub struct Improving<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
-    start: C::State,
-    goals: Goals<'c, C::State>,
-    tried: usize,
-    steer: Steer<'c, C, L>,
+    core: Core<'c, C, L>,
     branch: Branch<C, L, Se, A>,
     propose: P,
     growth: G,
-    goal_bias: f64,
-    iterations: u64,
     /// The nodes in the goal, in the order in which they were found.
     arrived: Vec<NodeId>,
     /// How many nodes have been tested for lying in the region.
@@ -52,18 +43,11 @@ where
     /// # Errors
     /// When a parameter is out of range.
     pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
-        let goal_bias = recipe.tuning.checked_bias()?;
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            steer: Steer::new(space, local, verify, &recipe.tuning)?,
-            start,
-            goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
-            goals,
-            tried: 0,
+            core: Core::new(problem, &recipe.tuning)?,
             branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
             propose: recipe.propose,
             growth: recipe.grow,
-            iterations: 0,
             arrived: Vec::new(),
             tested: 0,
             best: f64::INFINITY,
@@ -84,13 +68,12 @@ where
 
     /// Plants the root and tries the straight ways.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        if self.branch.tree().is_empty() {
-            self.branch.add_root(self.steer.space(), self.start.clone(), observer);
-        }
-        while let Some(goal) = self.goals.listed().get(self.tried) {
-            self.tried += 1;
-            let grown = self.branch.leap(0, goal, &mut self.steer, rng, observer);
-            if !self.goals.has_region() {
+        // A start in the goal is found with the other nodes that are.
+        self.core.plant(&mut self.branch, observer);
+        while self.growth.leaps()
+            && let Some(grown) = self.core.leap(&mut self.branch, rng, observer)
+        {
+            if !self.core.goals.has_region() {
                 self.note(grown);
             }
         }
@@ -107,18 +90,15 @@ where
 
     /// A goal to aim at instead of exploring, now and then.
     fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
-        if self.goal_bias == 0.0 || !rng.random_bool(self.goal_bias) {
-            return None;
-        }
-        let goal = self.goals.aim(rng)?;
+        let goal = self.core.aim(rng)?;
         let known = |&id: &NodeId| *self.branch.tree().state(id) == goal;
-        if self.goals.has_region() || !self.arrived.iter().any(known) { Some(goal) } else { None }
+        if self.core.goals.has_region() || !self.arrived.iter().any(known) { Some(goal) } else { None }
     }
 
     /// The cheapest path, if it is better than what was returned last and passes verification.
     fn better(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
-        while self.goals.has_region() && (self.tested as usize) < self.branch.tree().len() {
-            let reached = self.goals.reached(self.branch.tree().state(self.tested));
+        while self.core.goals.has_region() && (self.tested as usize) < self.branch.tree().len() {
+            let reached = self.core.goals.reached(self.branch.tree().state(self.tested));
             self.arrived.extend(reached.then_some(self.tested));
             self.tested += 1;
         }
@@ -135,10 +115,10 @@ where
                 let renamed = |id: &NodeId| survivors.binary_search(id).ok().map(|new| new as NodeId);
                 self.arrived = self.arrived.iter().filter_map(renamed).collect();
             };
-            if self.branch.verify(id, &mut self.steer, observer, pruned) {
+            if let Some(path) = self.core.path(&mut self.branch, id, observer, pruned) {
                 self.best = cost;
                 self.propose.improved(cost);
-                return Some(self.branch.tree().path(id));
+                return Some(path);
             }
         }
     }
@@ -160,7 +140,7 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        self.iterations += 1;
+        self.core.iterations += 1;
         self.begin(rng, observer);
         if let Some(path) = self.better(observer) {
             return Some(path);
@@ -169,22 +149,19 @@ where
             Some(goal) => (goal, Purpose::Join),
             None => {
                 let (points, select) = self.branch.parts();
-                (self.propose.propose(rng, self.steer.space(), points, select), Purpose::Explore)
+                (self.propose.propose(rng, self.core.steer.space(), points, select), Purpose::Explore)
             }
         };
         observer.on(Event::Sampled(&target));
-        let grown = self.branch.toward(&target, why, &mut self.steer, &mut self.growth, rng, observer);
-        if why == Purpose::Join && !self.goals.has_region() {
+        let grown = self.branch.toward(&target, why, &mut self.core.steer, &mut self.growth, rng, observer);
+        if why == Purpose::Join && !self.core.goals.has_region() {
             self.note(grown);
         }
         self.better(observer)
     }
 
     fn progress(&self) -> Progress {
-        let nodes = self.branch.tree().len();
-        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
-        progress.rejected = self.steer.rejected();
-        progress
+        self.core.progress(self.branch.tree().len())
     }
 
     fn improves(&self) -> bool {

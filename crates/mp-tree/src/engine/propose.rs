@@ -1,6 +1,6 @@
 //! Slot: what to grow toward next.
 
-use crate::{Purpose, Selector};
+use super::{Purpose, Selector};
 use mp_cspace::{Hit, Rng, Sampler, Space};
 
 /// Proposes the next target of exploration, seeing the tree that is about to grow.

@@ -1,8 +1,9 @@
 //! One growing tree with its policies, and the loop body every planner of the family shares.
 
-use crate::{Attach, Attached, BuildError, Grown, Growth, Purpose, Selector, Tree, Tuning, Verify};
+use super::{Attach, Attached, Grown, Growth, Purpose, Selector, Tree, Tuning};
 use mp_cspace::{
-    Direction, Event, Extension, Hit, LocalPlanner, Motion, MotionCheck, NodeId, Observer, Reach, Rng, Space,
+    BuildError, Direction, Event, Extension, Hit, LocalPlanner, Motion, MotionCheck, NodeId, Observer, Reach,
+    Rng, Space, Verify,
 };
 use std::fmt;
 
@@ -18,7 +19,11 @@ pub struct Steer<'c, C: Space, L: LocalPlanner<C::State>> {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
-    pub(crate) fn new(
+    /// To move in `space` by `local`.
+    ///
+    /// # Errors
+    /// When the step is out of range.
+    pub fn new(
         space: &'c C,
         local: L,
         verify: Box<dyn Verify<C::State, L::Edge> + Send + 'c>,
@@ -71,7 +76,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
     }
 
     /// Whether a state is a possible end of a path: contained, verified, admitted.
-    pub(crate) fn accepts(&mut self, q: &C::State) -> bool {
+    pub fn accepts(&mut self, q: &C::State) -> bool {
         self.space.contains(q) && self.local.admits(q) && self.verify.verify_state(q).is_free()
     }
 
@@ -83,7 +88,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
     }
 
     /// Whether the verifier passes a motion in forward time.
-    pub(crate) fn passes(&mut self, from: &C::State, edge: &L::Edge, to: &C::State) -> bool {
+    pub fn passes(&mut self, from: &C::State, edge: &L::Edge, to: &C::State) -> bool {
         self.verify.verify_edge(from, edge, to).is_free()
     }
 
@@ -217,7 +222,8 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
     }
 
     /// The selector.
-    pub(crate) fn selector(&self) -> &Se {
+    #[must_use]
+    pub fn selector(&self) -> &Se {
         &self.select
     }
 

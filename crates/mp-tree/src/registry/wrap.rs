@@ -2,9 +2,9 @@
 
 use crate::algo::or_parallel::{RUNS, SLICE};
 use crate::algo::restarts::{SCHEDULE, UNIT};
+use crate::algo::rrs::{self, Plain, bent};
+use crate::algo::rrt;
 use crate::algo::shared_tree::BATCH;
-use crate::algo::{rrs, rrt};
-use crate::snakes::{Plain, bent};
 use crate::{
     AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
     SharedTree, Tuning, Workers, build_with, planner,
@@ -209,7 +209,7 @@ where
                 let tuning = Tuning::read(&settings, info)?;
                 let (batch, workers, index) = (count(BATCH)?, self.workers.clone(), self.index.clone());
                 Ok(if info.name == rrs::INFO.name {
-                    let make = |_| bent(info, (self.make)()?, &settings);
+                    let make = |_| bent(info.name, (self.make)()?, &settings);
                     Box::new(Plain(SharedTree::with_index(batch, workers, index, tuning, make)?))
                 } else {
                     Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| (self.make)())?)

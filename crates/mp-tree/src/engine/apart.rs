@@ -1,7 +1,7 @@
 //! Slot: motions that only join the tree where nothing is yet.
 
-use crate::{Attach, Attached, BuildError, Selector, Steer, Tree};
-use mp_cspace::{Hit, LocalPlanner, Motion, NodeId, Space};
+use super::{Attach, Attached, Selector, Steer, Tree};
+use mp_cspace::{BuildError, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// Under the node it came from, unless another node of the tree is there already: up to rounding, or
 /// within a radius.

@@ -1,6 +1,6 @@
 //! Parameters that several planners have.
 
-use crate::{Demand, Parameter};
+use mp_cspace::{Demand, Parameter};
 
 /// [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that grow a tree from the goal.
 pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[
@@ -30,20 +30,4 @@ pub const PATIENCE: Parameter = Parameter {
     range: "a whole number",
     default: "10",
     doc: "rejected paths after which every new edge is verified as it grows",
-};
-
-/// Of planners that move by a set of inputs: how many directions.
-pub const INPUTS: Parameter = Parameter {
-    name: "inputs",
-    range: "a whole number",
-    default: "0",
-    doc: "directions of motion, spread over translation and rotation; 0: both ways along each axis",
-};
-
-/// Of planners that move by a set of inputs: how many lengths of each.
-pub const LEVELS: Parameter = Parameter {
-    name: "levels",
-    range: "a whole number, 1 to 20",
-    default: "3",
-    doc: "lengths of motion: the step, a quarter of it, a quarter of that, and so on",
 };

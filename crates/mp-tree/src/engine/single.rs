@@ -1,32 +1,24 @@
 //! The loop with one tree, grown from the start.
 
-use crate::{
-    Attach, Branch, BuildError, Goals, Grown, Growth, Problem, Propose, Purpose, Recipe, Selector, Steer,
-    Tree,
-};
+use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Steer, Tree};
 use mp_cspace::{
-    Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, ProblemParts, Progress, Rng, Space,
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
+    Space,
 };
-use rand::RngExt;
 
 /// A planner that grows one tree from the start until it enters the goal.
 ///
-/// The first iteration tries to go straight from the start to each listed goal state. Each one
+/// The first iteration tries to go straight from the start to each listed goal state, unless the growth
+/// [declines](Growth::leaps). Each one
 /// then proposes a target (with probability [`goal_bias`](crate::Tuning::goal_bias) a goal),
 /// grows the tree toward it, and verifies the path to what entered the goal. Stepping on after a
 /// solution grows the same tree on; the same path may be found again.
 #[derive(Debug)]
 pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
-    start: C::State,
-    /// How many listed goal states have been tried straight from the start.
-    tried: usize,
-    goals: Goals<'c, C::State>,
-    steer: Steer<'c, C, L>,
+    core: Core<'c, C, L>,
     branch: Branch<C, L, Se, A>,
     propose: P,
     growth: G,
-    goal_bias: f64,
-    iterations: u64,
 }
 
 /// A tree, how it moves and how it grows.
@@ -50,18 +42,11 @@ where
     /// # Errors
     /// When a parameter is out of range.
     pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
-        let goal_bias = recipe.tuning.checked_bias()?;
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            steer: Steer::new(space, local, verify, &recipe.tuning)?,
-            start,
-            tried: 0,
-            goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
-            goals,
+            core: Core::new(problem, &recipe.tuning)?,
             branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
             propose: recipe.propose,
             growth: recipe.grow,
-            iterations: 0,
         })
     }
 
@@ -72,13 +57,14 @@ where
     }
 
     /// How it grows.
-    pub(crate) fn growth(&self) -> &G {
+    #[must_use]
+    pub fn growth(&self) -> &G {
         &self.growth
     }
 
     /// The tree, how it moves and how it grows.
     pub(crate) fn parts(&mut self) -> Parts<'_, 'c, C, L, G> {
-        (self.branch.tree(), &mut self.steer, &mut self.growth)
+        (self.branch.tree(), &mut self.core.steer, &mut self.growth)
     }
 
     /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the
@@ -88,16 +74,12 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if self.branch.tree().is_empty() {
-            let arrived = self.goals.reached(&self.start);
-            let root = self.branch.add_root(self.steer.space(), self.start.clone(), observer);
-            if arrived {
-                return self.candidate(root, observer);
-            }
+        if let Some(root) = self.core.plant(&mut self.branch, observer) {
+            return self.candidate(root, observer);
         }
-        while let Some(goal) = self.goals.listed().get(self.tried) {
-            self.tried += 1;
-            let grown = self.branch.leap(0, goal, &mut self.steer, rng, observer);
+        while self.growth.leaps()
+            && let Some(grown) = self.core.leap(&mut self.branch, rng, observer)
+        {
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate(id, observer) {
                 return Some(path);
@@ -116,13 +98,13 @@ where
     ) -> Option<Path<C::State, L::Edge>> {
         observer.on(Event::Sampled(target));
         let before = self.branch.tree().len();
-        let grown = self.branch.toward(target, why, &mut self.steer, &mut self.growth, rng, observer);
+        let grown = self.branch.toward(target, why, &mut self.core.steer, &mut self.growth, rng, observer);
         if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
             return self.candidate(id, observer);
         }
-        if self.goals.has_region() {
+        if self.core.goals.has_region() {
             let mut new = before as NodeId..self.branch.tree().len() as NodeId;
-            let entered = new.find(|&id| self.goals.reached(self.branch.tree().state(id)))?;
+            let entered = new.find(|&id| self.core.goals.reached(self.branch.tree().state(id)))?;
             return self.candidate(entered, observer);
         }
         None
@@ -135,8 +117,7 @@ where
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         let pruned = |survivors: &[NodeId]| self.growth.pruned(Direction::Forward, survivors);
-        let passed = self.branch.verify(id, &mut self.steer, observer, pruned);
-        passed.then(|| self.branch.tree().path(id))
+        self.core.path(&mut self.branch, id, observer, pruned)
     }
 }
 
@@ -156,25 +137,20 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        self.iterations += 1;
+        self.core.iterations += 1;
         if let Some(path) = self.begin(rng, observer) {
             return Some(path);
         }
-        if self.goal_bias > 0.0
-            && rng.random_bool(self.goal_bias)
-            && let Some(goal) = self.goals.aim(rng)
-        {
+        if let Some(goal) = self.core.aim(rng) {
             return self.grow(&goal, Purpose::Join, rng, observer);
         }
         let (points, select) = self.branch.parts();
-        let target = self.propose.propose(rng, self.steer.space(), points, select);
+        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
         self.grow(&target, Purpose::Explore, rng, observer)
     }
 
     fn progress(&self) -> Progress {
-        let nodes = self.branch.tree().len();
-        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
-        progress.rejected = self.steer.rejected();
+        let mut progress = self.core.progress(self.branch.tree().len());
         progress.exhausted = self.branch.is_exhausted();
         progress
     }

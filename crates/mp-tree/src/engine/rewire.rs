@@ -1,7 +1,7 @@
 //! Attach by the cheapest way: what makes RRT* of RRT.
 
-use crate::{Attach, Attached, BuildError, Selector, Steer, Tree};
-use mp_cspace::{Direction, Hit, LocalPlanner, Motion, NodeId, Space};
+use super::{Attach, Attached, Selector, Steer, Tree};
+use mp_cspace::{BuildError, Direction, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// Which nodes of a tree of n nodes, in a space of dimension d, count as near a new one.
 #[derive(Clone, Copy, Debug, PartialEq)]

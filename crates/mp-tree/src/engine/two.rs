@@ -1,17 +1,16 @@
 //! The loop with two trees, grown from the start and from the goal.
 
-use crate::{
-    Attach, Branch, BuildError, Goals, Grown, Growth, Problem, Propose, Purpose, Recipe, Selector, Steer,
-    Tree,
-};
+use super::core::joined;
+use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Tree};
 use mp_cspace::{
-    Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, ProblemParts, Progress, Rng, Space,
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
+    Space,
 };
-use rand::RngExt;
 
 /// A planner that grows one tree from the start and one from the goal until they meet.
 ///
-/// The first iteration tries to go straight from the start to each listed goal state. Each one
+/// The first iteration tries to go straight from the start to each listed goal state, unless one of the growths
+/// [declines](Growth::leaps). Each one
 /// then grows one tree toward a proposed target, and the other toward what was reached; the trees
 /// take turns. Where they meet, the path is verified. The goal tree has a root for each listed
 /// goal state; where goals come from a sampler, a root is added with probability
@@ -19,21 +18,17 @@ use rand::RngExt;
 /// Stepping on after a solution grows the same trees on.
 #[derive(Debug)]
 pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
-    start: C::State,
+    core: Core<'c, C, L>,
+    trees: [Branch<C, L, Se, A>; 2],
     /// How many listed goal states have been looked at, how many roots that gave, and how many of
     /// those have been tried straight from the start.
     planted: usize,
     roots: NodeId,
     tried: NodeId,
-    goals: Goals<'c, C::State>,
-    steer: Steer<'c, C, L>,
-    trees: [Branch<C, L, Se, A>; 2],
     propose: P,
     explore: GA,
     join: GB,
-    goal_bias: f64,
     turn: usize,
-    iterations: u64,
 }
 
 impl<'c, C, L, P, Se, GA, GB, A> TwoTrees<'c, C, L, P, Se, GA, GB, A>
@@ -62,24 +57,18 @@ where
         if !problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner });
         }
-        let goal_bias = recipe.tuning.checked_bias()?;
         let forward = Branch::new(0, Direction::Forward, recipe.select.clone(), recipe.attach.clone());
         let backward = Branch::new(1, Direction::Backward, recipe.select, recipe.attach);
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            steer: Steer::new(space, local, verify, &recipe.tuning)?,
-            start,
+            core: Core::new(problem, &recipe.tuning)?,
+            trees: [forward, backward],
             planted: 0,
             roots: 0,
             tried: 0,
-            goals,
-            trees: [forward, backward],
             propose: recipe.propose,
             explore: recipe.grow.0,
             join: recipe.grow.1,
-            goal_bias,
             turn: 0,
-            iterations: 0,
         })
     }
 
@@ -96,48 +85,29 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        let space = self.steer.space();
-        if self.trees[0].tree().is_empty() {
-            let arrived = self.goals.reached(&self.start);
-            let root = self.trees[0].add_root(space, self.start.clone(), observer);
-            if arrived {
-                return Some(self.trees[0].tree().path(root));
-            }
+        if let Some(root) = self.core.plant(&mut self.trees[0], observer) {
+            return Some(self.trees[0].tree().path(root));
         }
-        while let Some(goal) = self.goals.listed().get(self.planted) {
+        let space = self.core.steer.space();
+        while let Some(goal) = self.core.goals.listed().get(self.planted) {
             self.planted += 1;
             if !self.trees[1].knows(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
             self.roots = self.trees[1].tree().len() as NodeId;
         }
-        while self.tried < self.roots {
+        while self.explore.leaps() && self.join.leaps() && self.tried < self.roots {
             let goal_root = self.tried;
             self.tried += 1;
             let [forward, backward] = &mut self.trees;
             let goal = backward.tree().state(goal_root);
-            let grown = forward.leap(0, goal, &mut self.steer, rng, observer);
+            let grown = forward.leap(0, goal, &mut self.core.steer, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate([id, goal_root], observer) {
                 return Some(path);
             }
         }
         None
-    }
-
-    /// Roots the goal tree at a new sample of the goal, now and then.
-    fn sample_goal(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        let wanted = self.trees[1].tree().is_empty() || rng.random_bool(self.goal_bias);
-        if !wanted {
-            return;
-        }
-        let space = self.steer.space();
-        if let Some(goal) = self.goals.sample(rng)
-            && !self.trees[1].knows(space, &goal)
-            && self.steer.accepts(&goal)
-        {
-            self.trees[1].add_root(space, goal, observer);
-        }
     }
 
     /// The path through two nodes with the same state, if it passes verification; otherwise its
@@ -153,15 +123,11 @@ where
                 self.explore.pruned(direction, survivors);
                 self.join.pruned(direction, survivors);
             };
-            if !tree.verify(id, &mut self.steer, observer, pruned) {
+            if !tree.verify(id, &mut self.core.steer, observer, pruned) {
                 return None;
             }
         }
-        let mut path = self.trees[0].tree().path(meeting[0]);
-        let rest = self.trees[1].tree().path(meeting[1]);
-        path.states.extend(rest.states.into_iter().skip(1));
-        path.edges.extend(rest.edges);
-        Some(path)
+        Some(joined([0, 1].map(|i| self.trees[i].tree().path(meeting[i]))))
     }
 }
 
@@ -182,32 +148,31 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        self.iterations += 1;
+        self.core.iterations += 1;
         if let Some(path) = self.begin(rng, observer) {
             return Some(path);
         }
-        if self.goals.has_sampler() {
-            self.sample_goal(rng, observer);
+        if self.core.goals.has_sampler() {
+            self.core.sample_goal(&mut self.trees[1], rng, observer);
         }
         let turn = self.turn;
         self.turn ^= 1;
         let [forward, backward] = &mut self.trees;
         let (a, b) = if turn == 0 { (forward, backward) } else { (backward, forward) };
         let (points, select) = a.parts();
-        let target = self.propose.propose(rng, self.steer.space(), points, select);
+        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
         observer.on(Event::Sampled(&target));
-        let grown = a.toward(&target, Purpose::Explore, &mut self.steer, &mut self.explore, rng, observer);
+        let grown =
+            a.toward(&target, Purpose::Explore, &mut self.core.steer, &mut self.explore, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
         let joined =
-            b.toward(a.tree().state(i), Purpose::Join, &mut self.steer, &mut self.join, rng, observer);
+            b.toward(a.tree().state(i), Purpose::Join, &mut self.core.steer, &mut self.join, rng, observer);
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, observer)
     }
 
     fn progress(&self) -> Progress {
         let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
-        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
-        progress.rejected = self.steer.rejected();
-        progress
+        self.core.progress(nodes)
     }
 }

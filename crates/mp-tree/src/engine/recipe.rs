@@ -1,7 +1,7 @@
 //! What makes one variant of the family differ from another.
 
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{BuildError, PlannerInfo, Settings, Step};
+use super::settings::{GOAL_BIAS, PATIENCE, STEP};
+use mp_cspace::{BuildError, PlannerInfo, Settings, Step};
 
 /// The parameters every planner of the family has.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,11 @@ impl Tuning {
         })
     }
 
-    pub(crate) fn checked_bias(&self) -> Result<f64, BuildError> {
+    /// The goal bias.
+    ///
+    /// # Errors
+    /// When it is out of range.
+    pub fn checked_bias(&self) -> Result<f64, BuildError> {
         if (0.0..=1.0).contains(&self.goal_bias) {
             return Ok(self.goal_bias);
         }

@@ -1,6 +1,6 @@
 //! Slot: growth by inputs none of which is tried twice at the same node.
 
-use crate::{Attach, Growing, Grown, Growth, Selector};
+use super::{Attach, Growing, Grown, Growth, Selector};
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
