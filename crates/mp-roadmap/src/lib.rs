@@ -59,47 +59,20 @@
 //! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
 //!   and going on changes nothing.
 
-mod ahead;
 pub mod algo;
-mod answers;
-mod builder;
-mod connect;
-mod export;
-mod file;
-mod forest;
-mod generate;
-mod mixed;
-mod planner;
+mod by_name;
+mod engine;
 mod registry;
-mod roadmap;
-mod search;
-mod settings;
-mod stages;
-mod state;
-mod steer;
 
-pub use ahead::Foreseeing;
-pub use algo::bridge_prm::{BetweenObstacles, BridgePrm};
-pub use algo::gaussian_prm::{GaussianPrm, NearObstacles};
-pub use algo::lazy_prm::{LazyPrm, Unchecked};
-pub use algo::obprm::{Obprm, OnObstacles, OnSurfaces, Strategy};
-pub use algo::obstacle_geometry_prm::{AroundObstacles, ByGeometry, ObstacleGeometryPrm};
-pub use algo::prm::{Learn, Learning, Prm};
-pub use algo::prm_star::{PrmStar, Star};
-pub use algo::visibility_prm::{Visibility, VisibilityPrm};
-pub use answers::{Answers, Listed, Unanswered};
-pub use builder::{Builder, Pace, Recipe};
-pub use connect::{Connector, Growing, Nearest, Reachable};
-pub use file::{RoadmapError, RoadmapFileError, fingerprint};
-pub use generate::{Came, Candidate, Free, NodeGenerator};
-pub use mixed::{Mixing, PairRule, Pairs};
+pub use algo::types::*;
+pub use by_name::{AnyPlanner, AnyTeam, Team};
+pub use engine::{
+    AStar, Among, Answers, Builder, CYCLES, Came, Candidate, Connector, Entry, Foreseeing, Free, Growing,
+    HasRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, Nearest, NodeGenerator, PATIENCE, Pace,
+    PairRule, Pairs, Query, RADIUS, Reachable, Recipe, Roadmap, RoadmapError, RoadmapFileError,
+    RoadmapPlanner, Stages, Steer, Tag, Turns, UNDIRECTED, Unanswered, Way, fingerprint, length, reachable,
+    yes,
+};
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Settings};
-pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
-pub use registry::{AnyPlanner, AnyTeam, Team, build, build_with, planner, planners};
-pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};
-pub use search::{AStar, Entry, Query};
-pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
-pub use stages::{Among, Stages, Turns};
-pub use state::RoadmapState;
-pub use steer::Steer;
+pub use registry::{RoadmapState, build, build_with, planner, planners};

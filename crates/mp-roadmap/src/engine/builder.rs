@@ -1,7 +1,7 @@
 //! The one loop that builds roadmaps.
 
-use crate::ahead::{Ahead, Answers, Look};
-use crate::{Candidate, Connector, Growing, NodeGenerator, Roadmap, Steer};
+use super::ahead::{Ahead, Answers, Look};
+use super::{Candidate, Connector, Growing, NodeGenerator, Roadmap, Steer};
 use mp_cspace::{
     BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
     Stop, StopReason,

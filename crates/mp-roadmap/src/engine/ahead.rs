@@ -4,7 +4,7 @@
 //! what the attempts to come will probably ask, of the roadmap as it is, and keep the answers. The attempts are
 //! then made one after the other as ever, and take the answers that are there.
 
-use crate::{Builder, Candidate, Connector, NodeGenerator, Roadmap, Steer};
+use super::{Builder, Candidate, Connector, NodeGenerator, Roadmap, Steer};
 use mp_cspace::{Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers};
 use std::collections::VecDeque;
 use std::fmt;

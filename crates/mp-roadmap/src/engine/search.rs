@@ -1,6 +1,6 @@
 //! Shortest ways through a roadmap.
 
-use crate::{LinkState, Roadmap, Steer, Way};
+use super::{LinkState, Roadmap, Steer, Way};
 use mp_cspace::{LocalPlanner, Metric, NodeId, Reversible, Space};
 use petgraph::graph::EdgeIndex;
 use std::cmp::Ordering;

@@ -1,6 +1,6 @@
 //! Roadmaps for other programs: GraphML and DOT.
 
-use crate::{LinkState, Roadmap};
+use super::{LinkState, Roadmap};
 use mp_cspace::Numbers;
 use petgraph::dot::{Config, Dot};
 use petgraph::visit::EdgeRef;

@@ -1,7 +1,7 @@
 //! What the generators that look for obstacles by pairs of states have in common: most attempts look, some are uniform.
 
-use crate::settings::{length, reachable};
-use crate::{
+use super::settings::{length, reachable};
+use super::{
     AStar, Candidate, Kind, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Steer,
 };
 use mp_cspace::{

@@ -1,6 +1,6 @@
 //! Where nodes come from.
 
-use crate::{Kind, Roadmap, Steer};
+use super::{Kind, Roadmap, Steer};
 use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, Uniform};
 
 /// A configuration that may become a node.

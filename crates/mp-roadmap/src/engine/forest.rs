@@ -1,6 +1,6 @@
 //! The only way between two nodes of a roadmap without cycles.
 
-use crate::{Roadmap, Way};
+use super::{Roadmap, Way};
 use mp_cspace::NodeId;
 use petgraph::graph::EdgeIndex;
 

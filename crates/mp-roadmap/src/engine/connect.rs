@@ -1,7 +1,7 @@
 //! How candidates become nodes, and which edges they get.
 
-use crate::ahead::{Answers, Foreseeing};
-use crate::{Came, Candidate, Roadmap, Steer, Tag};
+use super::ahead::{Answers, Foreseeing};
+use super::{Came, Candidate, Roadmap, Steer, Tag};
 use mp_cspace::{
     BuildError, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible, Space,
 };

@@ -1,8 +1,8 @@
 //! Many queries to one roadmap.
 
-use crate::forest::Forest;
-use crate::planner::verify;
-use crate::{AStar, Builder, LinkState, Query, Roadmap, Steer, Way};
+use super::forest::Forest;
+use super::planner::verify;
+use super::{AStar, Builder, LinkState, Query, Roadmap, Steer, Way};
 use mp_cspace::shortest::shortest_paths;
 use mp_cspace::{
     BuildError, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible, Space,

@@ -1,6 +1,6 @@
 //! Connecting in stages: cheap motions first, then some that turn in place.
 
-use crate::{Candidate, Connector, Growing, Kind, Reachable};
+use super::{Candidate, Connector, Growing, Kind, Reachable};
 use mp_cspace::{BuildError, Hit, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Reversible, Space};
 use std::collections::BTreeMap;
 
@@ -51,7 +51,7 @@ impl<H> Stages<H> {
         }
         if let Turns::At(fractions) = &turns {
             for &at in fractions {
-                crate::mixed::part("where to turn", at)?;
+                super::mixed::part("where to turn", at)?;
             }
         }
         let (near, scratch, groups) = (Vec::new(), Vec::new(), BTreeMap::new());

@@ -1,6 +1,6 @@
 //! Roadmaps as planners of one path: they grow until start and goal are connected.
 
-use crate::{Builder, Candidate, Connector, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap, Steer, Way};
+use super::{Builder, Candidate, Connector, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap, Steer, Way};
 use mp_cspace::{
     BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
     ProblemParts, Progress, Reversible, Rng, Space, Workers,

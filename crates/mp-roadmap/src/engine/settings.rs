@@ -1,6 +1,6 @@
 //! Parameters that several planners have.
 
-use crate::Reachable;
+use super::Reachable;
 use mp_cspace::{BuildError, Demand, Parameter, Settings, Space, Step};
 
 /// [`PlannerInfo::cannot`](mp_cspace::PlannerInfo::cannot) of roadmaps.

@@ -1,6 +1,6 @@
 //! Roadmaps in files. `docs/formats/roadmap.md` describes them.
 
-use crate::{Kind, Link, LinkState, Roadmap, Tag};
+use super::{Kind, Link, LinkState, Roadmap, Tag};
 use mp_cspace::{NodeId, Numbers};
 use petgraph::visit::EdgeRef;
 use std::io::Write;
