@@ -1,15 +1,4 @@
-//! The probabilistic roadmap family: one engine, and one file per named algorithm.
-//!
-//! | algorithm | | nodes | edges |
-//! |---|---|---|---|
-//! | [`Prm`] | [`algo::prm`] | uniform, then more where connecting is difficult | to near nodes of other components |
-//! | [`PrmStar`] | [`algo::prm_star`] | uniform | to ever more near nodes; ever better paths |
-//! | [`LazyPrm`] | [`algo::lazy_prm`] | uniform, not checked | to near nodes, checked when a way leads along them |
-//! | [`VisibilityPrm`] | [`algo::visibility_prm`] | guards that see no other guard; connections that see two components | from connections to guards |
-//! | [`GaussianPrm`] | [`algo::gaussian_prm`] | near obstacles | as PRM |
-//! | [`BridgePrm`] | [`algo::bridge_prm`] | between obstacles, and uniform | as PRM |
-//! | [`Obprm`] | [`algo::obprm`] | on and near the surfaces of obstacles | as PRM, or to near nodes of each obstacle; then by turns in place |
-//! | [`ObstacleGeometryPrm`] | [`algo::obstacle_geometry_prm`] | far from obstacles, by spheres; near them, by their direction and volume | as PRM; then by turns in place far from obstacles |
+//! The probabilistic roadmap family: one engine, and one file per named algorithm. [`algo`] has the table of them.
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
 //! [`build`] makes planners of the second kind by name. The last two must know what obstacles look like

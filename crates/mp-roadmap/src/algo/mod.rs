@@ -1,4 +1,15 @@
 //! The named algorithms, one file each, and the list of those that are made by name.
+//!
+//! | algorithm | | nodes | edges |
+//! |---|---|---|---|
+//! | [`Prm`](crate::Prm) | [`prm`] | uniform, then more where connecting is difficult | to near nodes of other components |
+//! | [`PrmStar`](crate::PrmStar) | [`prm_star`] | uniform | to ever more near nodes; ever better paths |
+//! | [`LazyPrm`](crate::LazyPrm) | [`lazy_prm`] | uniform, not checked | to near nodes, checked when a way leads along them |
+//! | [`VisibilityPrm`](crate::VisibilityPrm) | [`visibility_prm`] | guards that see no other guard; connections that see two components | from connections to guards |
+//! | [`GaussianPrm`](crate::GaussianPrm) | [`gaussian_prm`] | near obstacles | as PRM |
+//! | [`BridgePrm`](crate::BridgePrm) | [`bridge_prm`] | between obstacles, and uniform | as PRM |
+//! | [`Obprm`](crate::Obprm) | [`obprm`] | on and near the surfaces of obstacles | as PRM, or to near nodes of each obstacle; then by turns in place |
+//! | [`ObstacleGeometryPrm`](crate::ObstacleGeometryPrm) | [`obstacle_geometry_prm`] | far from obstacles, by spheres; near them, by their direction and volume | as PRM; then by turns in place far from obstacles |
 
 pub mod bridge_prm;
 pub mod gaussian_prm;

@@ -62,11 +62,11 @@ impl<S: Numbers, E: std::fmt::Debug> Roadmap<S, E> {
     /// The roadmap in the DOT language of Graphviz; blocked edges dotted, unchecked ones dashed.
     #[must_use]
     pub fn to_dot(&self) -> String {
-        let node = |_, (id, tag): (petgraph::graph::NodeIndex, &crate::Tag)| {
+        let node = |_, (id, tag): (petgraph::graph::NodeIndex, &crate::engine::Tag)| {
             let kind = tag.kind.name();
             format!("label=\"{}\" kind=\"{kind}\" state=\"{}\" ", id.index(), self.written(id.index()))
         };
-        let edge = |_, edge: petgraph::graph::EdgeReference<'_, crate::Link<E>>| {
+        let edge = |_, edge: petgraph::graph::EdgeReference<'_, crate::engine::Link<E>>| {
             let style = match edge.weight().state {
                 LinkState::Unchecked => "dashed",
                 LinkState::Free => "solid",

@@ -77,7 +77,7 @@ impl Forest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{AStar, Tag};
+    use crate::engine::{AStar, Tag};
     use mp_cspace::{Metric, Rn, Rng, Space};
     use rand::RngExt;
 

@@ -27,6 +27,11 @@ use std::fmt::Debug;
 /// assert!(matches!(outcome, Outcome::Solved(_)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "the roadmap planners are not compiled for the state `{Self}`",
+    label = "not a `RoadmapState`",
+    note = "`mp_roadmap::compile_for!({Self});` compiles them, in the crate of the state"
+)]
 pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// The planner called `name`, as [`build_with`](crate::build_with) makes it.
     ///

@@ -66,7 +66,7 @@
 
 use crate::by_name::{Given, Made, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, Settings, Step, Verify};
+use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, Settings, Verify};
 use mp_cspace::erased::AnyGradient;
 use mp_cspace::{MotionCheck, MotionValidity, Observer, Path, Planner, Progress, Rng, Space, Straight};
 use mp_snake::{Curve, Params, Pieces, Repulsion, SnakePlanner, unbent};
@@ -122,7 +122,7 @@ where
     let field = problem.take_obstacles().gradient.ok_or(BuildError::NoGradient { planner })?;
     let parts = problem.into_parts();
     let space = parts.space;
-    let range = range(settings, space)?;
+    let range = settings.length_of(&RANGE, space)?;
     let unmade = |reason: String| BuildError::Unmade { reason };
     let params = Params::for_edges(range).map_err(|e| unmade(e.to_string()))?;
     let iterations = settings.count_of(&SNAKE_STEPS)?;
@@ -132,16 +132,6 @@ where
         SnakePlanner::with_params(space, parts.local.check, repulsion, Params { iterations, ..params })
             .map_err(|e| unmade(e.to_string()))?;
     Problem::new(space, local, Pieces(Boxed(parts.verify)), parts.start, parts.goals)
-}
-
-fn range<C: Space>(settings: &Settings, space: &C) -> Result<f64, BuildError> {
-    let step = settings.step(RANGE.name)?.unwrap_or(Step::Fraction(0.03));
-    step.length_in(space).map_err(|e| match e {
-        BuildError::OutOfRange { value, range, .. } => {
-            BuildError::OutOfRange { name: RANGE.name, value, range }
-        }
-        other => other,
-    })
 }
 
 /// A verifier behind a pointer.

@@ -210,7 +210,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
             if distance == 0.0 && self.tree.state(id) == target {
                 return Grown::Reached(id);
             }
-            let grown = growth.grow(id, &mut self.growing(target, steer, rng, observer));
+            let grown = growth.grow(id, &mut self.growing(target, why, steer, rng, observer));
             let grew = grown != Grown::Trapped;
             self.select.feedback(id, why, grew);
             if grew {
@@ -240,7 +240,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         if self.tree.state(from) == target {
             return Grown::Reached(from);
         }
-        let grown = growth.grow(from, &mut self.growing(target, steer, rng, observer));
+        let grown = growth.grow(from, &mut self.growing(target, Purpose::Explore, steer, rng, observer));
         if grown == Grown::Trapped {
             observer.on(Event::Trapped { tree: self.index });
         }
@@ -260,7 +260,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
             return Grown::Reached(from);
         }
         let extension = steer.extend(self.tree.state(from), target, self.tree.direction(), Reach::Full);
-        self.growing(target, steer, rng, observer).settle(from, extension)
+        self.growing(target, Purpose::Join, steer, rng, observer).settle(from, extension)
     }
 
     /// Verifies the path between a root and `id`, edge by edge from the root; edges that passed
@@ -294,6 +294,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
     fn growing<'a, 'c>(
         &'a mut self,
         target: &'a C::State,
+        why: Purpose,
         steer: &'a mut Steer<'c, C, L>,
         rng: &'a mut Rng,
         observer: &'a mut dyn Observer<C::State>,
@@ -304,6 +305,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
             select: &mut self.select,
             attach: &mut self.attach,
             target,
+            why,
             steer,
             rng,
             observer,
@@ -318,6 +320,7 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     select: &'a mut Se,
     attach: &'a mut A,
     target: &'a C::State,
+    why: Purpose,
     steer: &'a mut Steer<'c, C, L>,
     rng: &'a mut Rng,
     observer: &'a mut dyn Observer<C::State>,
@@ -328,6 +331,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
     #[must_use]
     pub fn target(&self) -> &C::State {
         self.target
+    }
+
+    /// Why it grows: to explore, where the selector was not asked.
+    #[must_use]
+    pub fn purpose(&self) -> Purpose {
+        self.why
     }
 
     /// The tree.

@@ -20,9 +20,9 @@ macro_rules! constructors {
             /// # Errors
             /// When a parameter is out of range, or the problem lacks what the planner needs.
             pub fn new(
-                problem: $crate::Problem<'c, C, L>,
+                problem: mp_cspace::Problem<'c, C, L>,
                 $($arg: $type),*
-            ) -> Result<Self, $crate::BuildError>
+            ) -> Result<Self, mp_cspace::BuildError>
             where
                 C: mp_cspace::DefaultNn<Nn = N>,
                 N: Default,
@@ -35,11 +35,11 @@ macro_rules! constructors {
             /// # Errors
             /// When a parameter is out of range, or the problem lacks what the planner needs.
             pub fn with_index(
-                $problem: $crate::Problem<'c, C, L>,
+                $problem: mp_cspace::Problem<'c, C, L>,
                 $index: N,
                 $($arg: $type,)*
                 $($more: $kind,)?
-            ) -> Result<Self, $crate::BuildError>
+            ) -> Result<Self, mp_cspace::BuildError>
             $body
         }
     };

@@ -34,6 +34,11 @@ pub type ProblemFactory<'c, S> = Arc<dyn Fn() -> Result<AnyProblem<'c, S>, Build
 /// assert!(matches!(outcome, Outcome::Solved(_)));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[diagnostic::on_unimplemented(
+    message = "the tree planners are not compiled for the state `{Self}`",
+    label = "not a `TreeState`",
+    note = "`mp_tree::compile_for!({Self});` compiles them, in the crate of the state"
+)]
 pub trait TreeState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// The planner called `name`, as [`build_from`](crate::build_from) makes it.
     ///
