@@ -49,6 +49,11 @@ pub enum Extension<S, E> {
 
 /// Extends from one state toward another: the trait that carries the straight line, certified
 /// edges, rotate-at-s, kinodynamic input sets and the snake.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not plan motions between states `{S}`",
+    label = "not a `LocalPlanner<{S}>`",
+    note = "a motion check becomes a local planner by `Straight::new(&space, check)`"
+)]
 pub trait LocalPlanner<S> {
     /// What an edge remembers, enough to replay it exactly.
     type Edge: Clone + Debug + Send + Sync;

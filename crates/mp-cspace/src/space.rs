@@ -60,6 +60,11 @@ impl<S, M: TrueMetric<S> + ?Sized> TrueMetric<S> for &M {}
 /// - no two contained states are farther apart than `extent`.
 ///
 /// Spaces are shared by threads, and states passed between them.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no configuration space",
+    label = "not a `Space`",
+    note = "implement `Space`, and `Metric` for its states; or take one of `Rn`, `Se2`, `Se3`, `Joints`, `Product`"
+)]
 pub trait Space: Metric<Self::State> + Sync {
     /// A configuration. Equality is exact: planners use it to tell a state they already have.
     type State: Clone + Debug + PartialEq + Send + Sync;

@@ -208,6 +208,11 @@ pub enum KnownFree {
 ///
 /// Both what planners check edges with (discrete or certified) and what independently verifies
 /// a finished path implement it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not check motions between states `{S}`",
+    label = "not a `MotionValidity<{S}>`",
+    note = "a check of single states (`Validity`, or a closure) becomes one by `Discrete::new`, a clearance by `Certified::new`"
+)]
 pub trait MotionValidity<S> {
     /// Checks the motion from `from` to `to`, both ends included.
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck;

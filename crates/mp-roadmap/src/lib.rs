@@ -1,15 +1,4 @@
-//! The probabilistic roadmap family: one engine, and one file per named algorithm.
-//!
-//! | algorithm | | nodes | edges |
-//! |---|---|---|---|
-//! | [`Prm`] | [`algo::prm`] | uniform, then more where connecting is difficult | to near nodes of other components |
-//! | [`PrmStar`] | [`algo::prm_star`] | uniform | to ever more near nodes; ever better paths |
-//! | [`LazyPrm`] | [`algo::lazy_prm`] | uniform, not checked | to near nodes, checked when a way leads along them |
-//! | [`VisibilityPrm`] | [`algo::visibility_prm`] | guards that see no other guard; connections that see two components | from connections to guards |
-//! | [`GaussianPrm`] | [`algo::gaussian_prm`] | near obstacles | as PRM |
-//! | [`BridgePrm`] | [`algo::bridge_prm`] | between obstacles, and uniform | as PRM |
-//! | [`Obprm`] | [`algo::obprm`] | on and near the surfaces of obstacles | as PRM, or to near nodes of each obstacle; then by turns in place |
-//! | [`ObstacleGeometryPrm`] | [`algo::obstacle_geometry_prm`] | far from obstacles, by spheres; near them, by their direction and volume | as PRM; then by turns in place far from obstacles |
+//! The probabilistic roadmap family: one engine, and one file per named algorithm. [`algo`] has the table of them.
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
 //! [`build`] makes planners of the second kind by name. The last two must know what obstacles look like
@@ -59,47 +48,20 @@
 //! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
 //!   and going on changes nothing.
 
-mod ahead;
 pub mod algo;
-mod answers;
-mod builder;
-mod connect;
-mod export;
-mod file;
-mod forest;
-mod generate;
-mod mixed;
-mod planner;
+mod by_name;
+mod engine;
 mod registry;
-mod roadmap;
-mod search;
-mod settings;
-mod stages;
-mod state;
-mod steer;
 
-pub use ahead::Foreseeing;
-pub use algo::bridge_prm::{BetweenObstacles, BridgePrm};
-pub use algo::gaussian_prm::{GaussianPrm, NearObstacles};
-pub use algo::lazy_prm::{LazyPrm, Unchecked};
-pub use algo::obprm::{Obprm, OnObstacles, OnSurfaces, Strategy};
-pub use algo::obstacle_geometry_prm::{AroundObstacles, ByGeometry, ObstacleGeometryPrm};
-pub use algo::prm::{Learn, Learning, Prm};
-pub use algo::prm_star::{PrmStar, Star};
-pub use algo::visibility_prm::{Visibility, VisibilityPrm};
-pub use answers::{Answers, Listed, Unanswered};
-pub use builder::{Builder, Pace, Recipe};
-pub use connect::{Connector, Growing, Nearest, Reachable};
-pub use file::{RoadmapError, RoadmapFileError, fingerprint};
-pub use generate::{Came, Candidate, Free, NodeGenerator};
-pub use mixed::{Mixing, PairRule, Pairs};
+pub use algo::types::*;
+pub use by_name::{AnyPlanner, AnyTeam, Team};
+pub use engine::{
+    AStar, Among, Answers, Builder, CYCLES, Came, Candidate, Connector, Entry, Foreseeing, Free, Growing,
+    HasRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, Nearest, NodeGenerator, PATIENCE, Pace,
+    PairRule, Pairs, Query, RADIUS, Reachable, Recipe, Roadmap, RoadmapError, RoadmapFileError,
+    RoadmapPlanner, Stages, Steer, Tag, Turns, UNDIRECTED, Unanswered, Way, fingerprint, length, reachable,
+    yes,
+};
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Settings};
-pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
-pub use registry::{AnyPlanner, AnyTeam, Team, build, build_with, planner, planners};
-pub use roadmap::{Kind, Link, LinkState, Roadmap, Tag, Way};
-pub use search::{AStar, Entry, Query};
-pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
-pub use stages::{Among, Stages, Turns};
-pub use state::RoadmapState;
-pub use steer::Steer;
+pub use registry::{RoadmapState, build, build_with, planner, planners};

@@ -1,27 +1,4 @@
-//! The rapidly-exploring random tree family: one engine, and one file per named algorithm.
-//!
-//! | algorithm | | trees | per iteration |
-//! |---|---|---|---|
-//! | [`Rrt`] | [`algo::rrt`] | from the start | one step toward a sample |
-//! | [`CyclicRrt`] | [`algo::cyclic_rrt`] | from the start, with cycles | as RRT, or an edge to a similar node; lists alternative paths |
-//! | [`RrtConnect`] | [`algo::rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
-//! | [`Aorrtc`] | [`algo::aorrtc`] | from start and goal, anew for each better path | as RRT-Connect, in the space of states and costs; ever better paths |
-//! | [`RrtStar`] | [`algo::rrt_star`] | from the start, rewired | one step toward a sample, attached by the cheapest way; ever better paths |
-//! | [`InformedRrtStar`] | [`algo::informed_rrt_star`] | from the start, rewired | as RRT*, toward samples that can be on a better path |
-//! | [`BiRrt`] | [`algo::bi_rrt`] | from start and goal | one step toward a sample; then one step of the other tree toward it |
-//! | [`RrtConExt`] | [`algo::con_ext`] | from start and goal | all the way toward a sample; then one step of the other tree |
-//! | [`RrtConCon`] | [`algo::con_con`] | from start and goal | all the way toward a sample; then the other tree all the way to it |
-//! | [`RrtInputs`] | [`algo::rrt_inputs`] | from the start, by a set of inputs | the best of all successors free of collision |
-//! | [`CvpRrt`] | [`algo::cvp_rrt`] | from the start, by a set of inputs | one untried input, at a node that has not often failed |
-//! | [`RcRrt`] | [`algo::rc_rrt`] | from the start, by a set of inputs | untried inputs, until all are exhausted |
-//! | [`Rsrt`] | [`algo::rsrt`] | from the start, by a set of inputs | the first successor free of collision, sorted by distance |
-//! | [`DdRrt`] | [`algo::dd_rrt`] | from start and goal | as RRT-Connect, without samples far from nodes that failed |
-//! | [`DdRrt`] | [`algo::add_rrt`] | from start and goal | the same, each node learning what is far |
-//! | [`MvbRrt`] | [`algo::mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
-//! | [`UtilityRrt`] | [`algo::utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
-//! | [`Obrrt`] | [`algo::obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
-//! | [`Rrs`] | [`algo::rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
-//! | [`RrsConnect`] | [`algo::rrs_connect`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
+//! The rapidly-exploring random tree family: one engine, and one file per named algorithm. [`algo`] has the table of them.
 //!
 //! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
 //! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
@@ -66,6 +43,90 @@
 //! A variant is a [`Recipe`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
 //! which goes on for better paths.
 //!
+//! # Writing your own planner
+//! A variant of the family is made of slots, those here or your own. RRT whose tree is as greedy as those of
+//! [`RrtConCon`]:
+//! ```
+//! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
+//! # use mp_tree::Problem;
+//! # use nalgebra::Vector2;
+//! # let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! # let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! # let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! # let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//! # let problem = Problem::new(&space, local, verifier, start, goal)?;
+//! use mp_cspace::{Linear, Uniform};
+//! use mp_tree::{Append, Connect, Nearest, Recipe, Samples, SingleTree, Tuning};
+//!
+//! let propose = Samples(Uniform(&space));
+//! let (select, grow) = (Nearest(Linear::new()), Connect::default());
+//! let recipe = Recipe { propose, select, grow, attach: Append, tuning: Tuning::default() };
+//! let mut planner = SingleTree::assemble(problem, recipe)?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! assert!(matches!(outcome, Outcome::Solved(_)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//! The loops try the straight way to the goal first, unless the growth [declines](Growth::leaps).
+//!
+//! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem and traces
+//! and verifies paths, [`Branch`] is a tree that grows, and forgets what hangs on an edge the verifier refuses. A tree
+//! that grows from random nodes:
+//! ```
+//! use mp_cspace::{Direction, Linear, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
+//! use mp_tree::{AppendDistinct, Branch, Core, Extend, Grown, Nearest};
+//! use rand::RngExt;
+//!
+//! struct RandomTree<'c, C: Space, L: LocalPlanner<C::State>> {
+//!     core: Core<'c, C, L>,
+//!     branch: Branch<C, L, Nearest<Linear>, AppendDistinct>,
+//! }
+//!
+//! impl<C: Space, L: LocalPlanner<C::State>> Planner<C::State> for RandomTree<'_, C, L> {
+//!     type Edge = L::Edge;
+//!
+//!     fn step(
+//!         &mut self,
+//!         rng: &mut Rng,
+//!         observer: &mut dyn Observer<C::State>,
+//!     ) -> Option<Path<C::State, L::Edge>> {
+//!         let Self { core, branch } = self;
+//!         core.iterations += 1;
+//!         if let Some(root) = core.plant(branch, observer) {
+//!             return core.path(branch, root, observer, |_| ());
+//!         }
+//!         let goal = core.aim(rng);
+//!         let target = goal.clone().unwrap_or_else(|| core.steer.space().sample_uniform(rng));
+//!         let from = rng.random_range(0..branch.tree().len()) as NodeId;
+//!         let grown = branch.grow_from(from, &target, &mut core.steer, &mut Extend, rng, observer);
+//!         match grown {
+//!             Grown::Reached(id) if goal.is_some() => core.path(branch, id, observer, |_| ()),
+//!             _ => None,
+//!         }
+//!     }
+//!
+//!     fn progress(&self) -> Progress {
+//!         self.core.progress(self.branch.tree().len())
+//!     }
+//! }
+//! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Straight};
+//! # use mp_tree::{Problem, Step, Tuning};
+//! # use nalgebra::Vector2;
+//! # let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+//! # let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+//! # let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+//! # let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+//! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+//! # let problem = Problem::new(&space, local, verifier, start, goal)?;
+//!
+//! let tuning = Tuning { step: Step::Fraction(0.2), goal_bias: 0.2, ..Tuning::default() };
+//! let branch = Branch::new(0, Direction::Forward, Nearest(Linear::new()), AppendDistinct::default());
+//! let mut planner = RandomTree { core: Core::new(problem, &tuning)?, branch };
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! assert!(matches!(outcome, Outcome::Solved(_)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! # What is promised
 //! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that
 //!   fails is removed from the tree with all that hangs on it, and planning goes on.
@@ -77,67 +138,25 @@
 //!   step it interrupts: whoever catches it may look at the trees and step on.
 
 pub mod algo;
-mod apart;
-mod attach;
-mod branch;
-mod grow;
-mod improve;
-mod propose;
-mod recipe;
+mod by_name;
+mod engine;
 mod registry;
-mod rewire;
-mod select;
-mod settings;
-mod single;
-mod snakes;
-mod state;
-mod tree;
-mod two;
-mod uniform;
-mod untried;
-mod wrap;
 
-pub use algo::aorrtc::Aorrtc;
-pub use algo::bi_rrt::BiRrt;
-pub use algo::con_con::RrtConCon;
-pub use algo::con_ext::RrtConExt;
-pub use algo::cvp_rrt::{CvpRrt, LeastViolated};
-pub use algo::cyclic_rrt::{Cyclic, CyclicRrt, Listed};
-pub use algo::dd_rrt::{DdRrt, Domain, DynamicDomain};
-pub use algo::informed_rrt_star::{Informed, InformedRrtStar};
-pub use algo::mvb_rrt::{MvbRrt, VoronoiBias};
-pub use algo::obrrt::{GrowthWeights, Obrrt, ObstacleGuided};
 pub use algo::or_parallel::OrParallel;
-pub use algo::rc_rrt::{RcRrt, Unexhausted};
 pub use algo::restarts::{Lengths, Restarts, Schedule};
-pub use algo::rrs::Rrs;
-pub use algo::rrs_connect::RrsConnect;
-pub use algo::rrt::Rrt;
-pub use algo::rrt_connect::RrtConnect;
-pub use algo::rrt_inputs::RrtInputs;
-pub use algo::rrt_star::RrtStar;
-pub use algo::rsrt::Rsrt;
 pub use algo::shared_tree::SharedTree;
-pub use algo::utility_rrt::{UtilityGuided, UtilityRrt};
-pub use apart::AppendApart;
-pub use attach::{Append, AppendDistinct, Attach, Attached};
-pub use branch::{Branch, Growing, Steer};
-pub use grow::{Connect, Extend, Grown, Growth};
-pub use improve::{Improving, improve};
+pub use algo::types::*;
+pub use by_name::{AnyPlanner, INPUTS, LEVELS};
+pub use engine::{
+    Acceptable, Append, AppendApart, AppendDistinct, Attach, Attached, Branch, Connect, Core, Extend,
+    GOAL_BIAS, Growing, Grown, Growth, Improving, NEEDS_BOTH_ENDS, Near, Nearest, PATIENCE, Propose, Purpose,
+    Recipe, Rewire, STEP, Samples, Selector, SingleTree, Steer, Tree, Tuning, TwoTrees, Untried, improve,
+};
 pub use mp_cspace::erased::{AnyIndex, AnyProblem};
 pub use mp_cspace::{
     BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step, Verify, Workers,
     closest,
 };
-pub use propose::{Acceptable, Propose, Samples};
-pub use recipe::{Recipe, Tuning};
-pub use registry::{AnyPlanner, build, build_with, planner, planners};
-pub use rewire::{Near, Rewire};
-pub use select::{Nearest, Purpose, Selector};
-pub use settings::{GOAL_BIAS, INPUTS, LEVELS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-pub use single::SingleTree;
-pub use state::{ProblemFactory, TreeState};
-pub use tree::Tree;
-pub use two::TwoTrees;
-pub use untried::Untried;
-pub use wrap::{Named, Wrapper, build_from, wrappers};
+pub use registry::{
+    Named, ProblemFactory, TreeState, Wrapper, build, build_from, build_with, planner, planners, wrappers,
+};

@@ -59,8 +59,20 @@ fn problem<'c>(
     ends: [[f64; 2]; 2],
 ) -> Problem<'c, Rn<2>, Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>> {
     let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
-    Problem::new(space, local, Exact(boxes.clone()), ends[0].into(), SVector::from(ends[1])).unwrap()
+    let problem = Problem::new(space, local, Exact(boxes.clone()), ends[0].into(), SVector::from(ends[1]));
+    bending(problem.unwrap(), field(boxes))
 }
+
+/// A problem that knows the gradient of the clearance.
+fn bending<'c, C: Space, L: LocalPlanner<C::State>>(
+    problem: Problem<'c, C, L>,
+    field: impl FnMut(&C::State, f64, &mut [f64]) -> f64 + Send + 'c,
+) -> Problem<'c, C, L> {
+    problem
+        .with_obstacles(ObstacleKnowledge { gradient: Some(Box::new(field)), ..ObstacleKnowledge::default() })
+}
+
+const SNAKES: [&str; 2] = ["rrs", "rrs-connect"];
 
 fn solve(
     name: &str,
@@ -73,10 +85,7 @@ fn solve(
     let space = square();
     let settings = Settings::parse(settings).unwrap();
     let problem = problem(&space, boxes, ends);
-    let mut planner = match snake_planners().iter().any(|info| info.is_called(name)) {
-        true => build_snake(name, problem, field(boxes), <KdTree>::default(), &settings).unwrap(),
-        false => build(name, problem, &settings).unwrap(),
-    };
+    let mut planner = build(name, problem, &settings).unwrap();
     let path = match planner.solve(&mut Rng::seed(seed), &mut Iterations(limit), &mut ()) {
         Outcome::Solved(path) => Some(path),
         Outcome::Stopped(_) => None,
@@ -95,11 +104,11 @@ fn passages_are_passed_and_paths_are_free() {
         (trap, [[0.5, 0.5], [0.05, 0.5]]),
         (orchard(), ENDS),
     ];
-    for info in snake_planners() {
+    for name in SNAKES {
         for (boxes, ends) in &worlds {
             for seed in 0..10 {
-                let (path, _) = solve(info.name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
-                let path = path.unwrap_or_else(|| panic!("{} seed {seed}", info.name));
+                let (path, _) = solve(name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
+                let path = path.unwrap_or_else(|| panic!("{} seed {seed}", name));
                 assert_path(
                     &space,
                     &path,
@@ -107,12 +116,8 @@ fn passages_are_passed_and_paths_are_free() {
                     |q| *q == Point::from(ends[1]),
                     |q| boxes.distance(q) > 0.0,
                 );
-                assert!(
-                    !path.states.windows(2).any(|w| boxes.hit(&w[0], &w[1])),
-                    "{} seed {seed}",
-                    info.name
-                );
-                let again = solve(info.name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
+                assert!(!path.states.windows(2).any(|w| boxes.hit(&w[0], &w[1])), "{} seed {seed}", name);
+                let again = solve(name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
                 assert_eq!(again.0, Some(path), "the same seed gives the same path");
             }
         }
@@ -122,10 +127,10 @@ fn passages_are_passed_and_paths_are_free() {
 #[test]
 fn what_is_closed_stays_closed() {
     let closed = hollow([0.5, 0.5], 0.2, 0.02, 0.0);
-    for info in snake_planners() {
+    for name in SNAKES {
         for seed in 0..3 {
-            let (path, _) = solve(info.name, &closed, [[0.5, 0.5], [0.05, 0.5]], &["range=0.1"], seed, 1500);
-            assert_eq!(path, None, "{} seed {seed}", info.name);
+            let (path, _) = solve(name, &closed, [[0.5, 0.5], [0.05, 0.5]], &["range=0.1"], seed, 1500);
+            assert_eq!(path, None, "{} seed {seed}", name);
         }
     }
 }
@@ -183,8 +188,8 @@ fn a_rod_bends_and_turns() {
         let local = Straight::new(&space, Certified::new(&space, rod.clone(), 1e-3).unwrap());
         let verifier = FineDiscrete::new(&space, rod.clone(), Resolution::Length(1e-4)).unwrap();
         let problem = Problem::new(&space, local, verifier, start, goal).unwrap();
-        let field = rod_field(&rod, &space);
-        let mut planner = build_snake(name, problem, field, <KdTree>::default(), &settings).unwrap();
+        let problem = bending(problem, rod_field(&rod, &space));
+        let mut planner = build(name, problem, &settings).unwrap();
         let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("{name}: {outcome:?}") };
         assert_path(&space, &path, &start, |q| *q == goal, |q| rod.clone().is_valid(q));
@@ -196,11 +201,7 @@ fn bad_settings_are_refused() {
     let (space, boxes) = (square(), orchard());
     let refused = |name: &str, text: &str| {
         let settings = Settings::parse([text]).unwrap();
-        let problem = problem(&space, &boxes, ENDS);
-        build_snake(name, problem, field(&boxes), <KdTree>::default(), &settings)
-            .map(drop)
-            .unwrap_err()
-            .to_string()
+        build(name, problem(&space, &boxes, ENDS), &settings).map(drop).unwrap_err().to_string()
     };
     for (text, word) in [
         ("range=0", "range"),
@@ -211,8 +212,5 @@ fn bad_settings_are_refused() {
         let message = refused("rrs", text);
         assert!(message.contains(word), "{text}: {message}");
     }
-    assert!(refused("rrt", "step=0.1").contains("rrs"));
-    let error = build("rrs", problem(&space, &boxes, ENDS), &Settings::default()).map(drop).unwrap_err();
-    assert!(error.to_string().contains("build_snake"), "{error}");
     assert!(planner("rss").unwrap_err().to_string().contains("`rrs`"));
 }

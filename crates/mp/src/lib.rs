@@ -54,13 +54,14 @@
 //! ```
 //!
 //! Scenes from files are [`io::Problem`]s, those of arms [`io::RobotProblem`]s; `examples/scene.rs` and
-//! `examples/arm.rs` plan on one. The command line
-//! (`cargo xtask plan`) does the same with shortening, pictures and a report.
+//! `examples/arm.rs` plan on one. With [`plan::Scene`] it is three lines, shortening, pictures and a report
+//! included; the program `mp` is made of it.
 
 pub use mp_collide as collide;
 pub use mp_cspace as cspace;
 pub use mp_geom as geom;
 pub use mp_io as io;
+pub use mp_plan as plan;
 pub use mp_render as render;
 pub use mp_roadmap as roadmap;
 pub use mp_robot as robot;

@@ -60,6 +60,11 @@ impl Hit {
 /// each new point by [`inserted`](NearestNeighbors::inserted), each once, in any order. Distances
 /// are *from* the point *to* the query. Ties go to the smallest id, so every implementation gives
 /// identical answers, to the bit. States at a distance that is not a number are never found.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no index of nearest neighbours for the space `{C}`",
+    label = "not a `NearestNeighbors<{C}>`",
+    note = "`Linear` serves every space; a space whose `DefaultNn` is given needs no index"
+)]
 pub trait NearestNeighbors<C: Space> {
     /// Tells the index that `points[id]` is new.
     ///

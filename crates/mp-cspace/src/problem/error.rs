@@ -1,7 +1,7 @@
 //! Bad input, refused before planning begins.
 
-use crate::MotionCheck;
 use crate::inputs::InputError;
+use crate::{MotionCheck, ParameterError};
 use std::fmt;
 
 /// Which end of the path.
@@ -105,6 +105,9 @@ pub enum BuildError {
     /// The planner moves by a set of inputs, and there is something wrong with them.
     #[error(transparent)]
     Inputs(#[from] InputError),
+    /// A parameter of a motion check or verifier is out of its range.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
     /// A factory of problems could not make one.
     #[error("cannot make the problem: {reason}")]
     Unmade {

@@ -1,6 +1,7 @@
 //! Parameters by name: what a planner is told at run time.
 
 use super::{BuildError, Step};
+use crate::Space;
 
 /// A parameter of a planner, for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -199,6 +200,26 @@ impl Settings {
                 Some(percent) => percent.trim().parse().ok().map(|p: f64| Step::Fraction(p / 100.0)),
                 None => value.parse().ok().map(Step::Length),
             }
+        })
+    }
+
+    /// The length set for `parameter`, by default as its table says: a length, or with `%` a part of the extent of `space`.
+    ///
+    /// # Errors
+    /// When it is neither, not positive, or longer than the extent.
+    pub fn length_of<C: Space>(&self, parameter: &Parameter, space: &C) -> Result<f64, BuildError> {
+        let default =
+            || Self(vec![(parameter.name.to_owned(), parameter.default.to_owned())]).step(parameter.name);
+        let step = match self.step(parameter.name)? {
+            Some(step) => Some(step),
+            None => default()?,
+        };
+        let malformed = || malformed(format!("{}={}", parameter.name, parameter.default), "a length");
+        step.ok_or_else(malformed)?.length_in(space).map_err(|error| match error {
+            BuildError::OutOfRange { value, range, .. } => {
+                BuildError::OutOfRange { name: parameter.name, value, range }
+            }
+            other => other,
         })
     }
 }

@@ -130,6 +130,7 @@ impl RobotProblem {
             return Err(format!("{name} names no file: write package://PACKAGE/FILE"));
         }
         let start = self.packages.as_deref().unwrap_or(folder);
+        let start = if start.as_os_str().is_empty() { Path::new(".") } else { start };
         let absolute = std::fs::canonicalize(start).map_err(|e| {
             let whose = if self.packages.is_some() { "`packages` of the problem" } else { "of the URDF" };
             format!("{name} cannot be sought in the folder {whose}, {}: {e}", start.display())

@@ -83,14 +83,13 @@ impl ArmScene {
     /// robot: with the place in the file.
     pub fn from_problem(problem: RobotProblem) -> Result<Self, Error> {
         let what = format!("cannot make a robot of {}", problem.urdf_file.display());
-        let of = |e: Error| e.context(what.clone());
+        let of = &|e: Error| e.context(what.clone());
         let mut mesh_files = Vec::new();
         let mut mesh = |name: &str| {
             mesh_files.extend(problem.mesh_file(name));
             problem.mesh(name)
         };
-        let mut model =
-            ArmModel::from_urdf(&problem.urdf, &mut mesh).map_err(|e| of(Error::new(e.to_string())))?;
+        let mut model = from_urdf(&problem.urdf, &mut mesh).map_err(of)?;
         for note in &model.notes {
             tracing::info!("{}: {note}", problem.urdf_file.display());
         }
@@ -105,7 +104,7 @@ impl ArmScene {
                 problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
             })?;
         }
-        let arm = Self::among(&model, &problem.obstacles).map_err(&of)?;
+        let arm = Self::among(&model, &problem.obstacles).map_err(of)?;
         let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.clone()).collect();
         let start = std::iter::once((RobotPart::Start, "the start", &problem.file.start));
         let goals = problem.file.goals.iter().enumerate().map(|(i, q)| (RobotPart::Goal(i), "the goal", q));
@@ -148,6 +147,18 @@ impl ArmScene {
         let links = self.arm.model().links.iter().enumerate();
         links.filter_map(|(i, link)| Some((i, TriMesh::merged(link.shapes.iter())?)))
     }
+}
+
+/// The model of a URDF, whose meshes are found by `mesh`.
+#[cfg(feature = "urdf")]
+fn from_urdf(urdf: &str, mesh: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<ArmModel, Error> {
+    ArmModel::from_urdf(urdf, mesh).map_err(|e| Error::new(e.to_string()))
+}
+
+#[cfg(not(feature = "urdf"))]
+fn from_urdf(_: &str, _: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<ArmModel, Error> {
+    Err(Error::new("this program was built without the feature `urdf`, which reads arms")
+        .help("build it with the feature, which is on by default"))
 }
 
 /// What is wrong with the length of a configuration, and what to do.

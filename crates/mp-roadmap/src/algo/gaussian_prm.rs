@@ -47,8 +47,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::mixed::{sigma, uniform};
-use crate::settings::{CYCLES, NEIGHBOURS, RADIUS};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::mixed::{sigma, uniform};
+use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
 use crate::{AStar, Mixing, Nearest, PairRule, Pairs, RoadmapPlanner};
 use mp_cspace::{Gaussian, PlannerInfo, Rng, Space, Step};
 
@@ -62,8 +63,14 @@ pub const INFO: PlannerInfo = PlannerInfo {
     citation: "Boor, Overmars and van der Stappen 1999",
     parameters: &[sigma("5%"), uniform("0.1"), NEIGHBOURS, RADIUS, CYCLES],
     aliases: &[],
-    cannot: crate::settings::UNDIRECTED,
+    cannot: crate::engine::settings::UNDIRECTED,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let recipe = Pairs::<NearObstacles>::read(given.space, given.settings, MIXING)?;
+    given.made(recipe)
+}
 
 /// Of two states, the free one where the other is not: the rule of Gaussian PRM.
 #[derive(Clone, Copy, Debug)]

@@ -47,7 +47,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::{
     AStar, Candidate, Kind, LinkState, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
     RoadmapPlanner, Steer,
@@ -81,6 +82,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &[],
     cannot: UNDIRECTED,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let recipe = read(given.space, given.settings)?;
+    given.made(recipe)
+}
 
 /// Samples that are not checked: uniform ones, and once edges were removed also about their middles.
 #[derive(Clone, Debug)]
@@ -167,10 +174,7 @@ pub fn recipe(reach: Reachable, pace: Pace) -> Result<Recipe<Unchecked, Nearest,
     })
 }
 
-pub(crate) fn read<C: Space>(
-    space: &C,
-    settings: &Settings,
-) -> Result<Recipe<Unchecked, Nearest, AStar>, BuildError> {
+fn read<C: Space>(space: &C, settings: &Settings) -> Result<Recipe<Unchecked, Nearest, AStar>, BuildError> {
     let pace = Pace { first: settings.count_of(&FIRST)? as usize, more: settings.count_of(&MORE)? as usize };
     recipe(reachable(space, settings)?, pace)
 }

@@ -1,4 +1,15 @@
-//! The algorithms, one file each.
+//! The named algorithms, one file each, and the list of those that are made by name.
+//!
+//! | algorithm | | nodes | edges |
+//! |---|---|---|---|
+//! | [`Prm`](crate::Prm) | [`prm`] | uniform, then more where connecting is difficult | to near nodes of other components |
+//! | [`PrmStar`](crate::PrmStar) | [`prm_star`] | uniform | to ever more near nodes; ever better paths |
+//! | [`LazyPrm`](crate::LazyPrm) | [`lazy_prm`] | uniform, not checked | to near nodes, checked when a way leads along them |
+//! | [`VisibilityPrm`](crate::VisibilityPrm) | [`visibility_prm`] | guards that see no other guard; connections that see two components | from connections to guards |
+//! | [`GaussianPrm`](crate::GaussianPrm) | [`gaussian_prm`] | near obstacles | as PRM |
+//! | [`BridgePrm`](crate::BridgePrm) | [`bridge_prm`] | between obstacles, and uniform | as PRM |
+//! | [`Obprm`](crate::Obprm) | [`obprm`] | on and near the surfaces of obstacles | as PRM, or to near nodes of each obstacle; then by turns in place |
+//! | [`ObstacleGeometryPrm`](crate::ObstacleGeometryPrm) | [`obstacle_geometry_prm`] | far from obstacles, by spheres; near them, by their direction and volume | as PRM; then by turns in place far from obstacles |
 
 pub mod bridge_prm;
 pub mod gaussian_prm;
@@ -8,3 +19,39 @@ pub mod obstacle_geometry_prm;
 pub mod prm;
 pub mod prm_star;
 pub mod visibility_prm;
+
+use crate::by_name::{Maker, Types};
+use mp_cspace::PlannerInfo;
+
+/// Lists the planners made by name, each with the types of its file that stand at the root of the crate. Each file has an
+/// `INFO` and a `make`.
+macro_rules! planners {
+    ($($module:ident: $($kind:ident),*;)+) => {
+        /// All of them.
+        pub(crate) const PLANNERS: &[PlannerInfo] = &[$($module::INFO),+];
+
+        /// The planner called `name`, and what makes it.
+        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, Maker<'c, 's, T>)> {
+            $(if $module::INFO.is_called(name) {
+                return Some((&$module::INFO, $module::make));
+            })+
+            None
+        }
+
+        /// Their types.
+        pub(crate) mod types {
+            $($(pub use super::$module::$kind;)*)+
+        }
+    };
+}
+
+planners! {
+    prm: Learn, Learning, Prm;
+    prm_star: PrmStar, Star;
+    lazy_prm: LazyPrm, Unchecked;
+    visibility_prm: Visibility, VisibilityPrm;
+    gaussian_prm: GaussianPrm, NearObstacles;
+    bridge_prm: BetweenObstacles, BridgePrm;
+    obprm: Obprm, OnObstacles, OnSurfaces, Strategy;
+    obstacle_geometry_prm: AroundObstacles, ByGeometry, ObstacleGeometryPrm;
+}

@@ -72,8 +72,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::mixed::{drew_uniform, part, uniform};
-use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::mixed::{drew_uniform, part, uniform};
+use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
     AStar, Among, Candidate, Kind, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Stages,
     Steer, Turns,
@@ -238,8 +239,14 @@ pub const INFO: PlannerInfo = PlannerInfo {
         CYCLES,
     ],
     aliases: &["ob-prm"],
-    cannot: crate::settings::UNDIRECTED,
+    cannot: crate::engine::settings::UNDIRECTED,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let recipe = read(given.space, given.geometry(INFO.name)?, given.settings)?;
+    given.made(recipe)
+}
 
 /// Configurations on and near the surfaces of obstacles: the generator of OBPRM.
 #[derive(Clone, Debug)]
@@ -420,7 +427,7 @@ pub fn recipe<C: Space, H: Clone>(
     })
 }
 
-pub(crate) fn read<C: Space, H: Clone>(
+fn read<C: Space, H: Clone>(
     space: &C,
     hints: H,
     settings: &Settings,

@@ -65,7 +65,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
 use crate::{
     AStar, Among, Candidate, Kind, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Stages,
     Steer, Turns,
@@ -116,8 +117,14 @@ pub const INFO: PlannerInfo = PlannerInfo {
     citation: "Benitez and Vallejo 2004",
     parameters: &[FAR, BANDS, NEIGHBOURS, RADIUS, CYCLES],
     aliases: &["geometry-prm"],
-    cannot: crate::settings::UNDIRECTED,
+    cannot: crate::engine::settings::UNDIRECTED,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let recipe = read(given.space, given.geometry(INFO.name)?, given.settings)?;
+    given.made(recipe)
+}
 
 /// Far and near configurations: the generator of obstacle-geometry PRM.
 #[derive(Clone, Debug)]
@@ -272,7 +279,7 @@ pub fn recipe<H: Clone>(
     })
 }
 
-pub(crate) fn read<C: Space, H: Clone>(
+fn read<C: Space, H: Clone>(
     space: &C,
     hints: H,
     settings: &Settings,

@@ -61,7 +61,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
     AStar, Came, Candidate, Free, Kind, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
     RoadmapPlanner, Steer,
@@ -139,8 +140,14 @@ pub const INFO: PlannerInfo = PlannerInfo {
     citation: "Kavraki, Švestka, Latombe and Overmars 1996",
     parameters: &[NEIGHBOURS, RADIUS, CYCLES, LEARN, EXPAND, BOUNCES, WALK],
     aliases: &["basic-prm"],
-    cannot: crate::settings::UNDIRECTED,
+    cannot: crate::engine::settings::UNDIRECTED,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let recipe = read(given.space, given.settings)?;
+    given.made(recipe)
+}
 
 /// The two steps of the learning phase in turn: the generator of PRM.
 #[derive(Clone, Debug)]
@@ -304,7 +311,7 @@ pub fn recipe<C: Space>(
     })
 }
 
-pub(crate) fn read<'c, C: Space>(
+fn read<'c, C: Space>(
     space: &'c C,
     settings: &Settings,
 ) -> Result<Recipe<Learn<'c, C>, Nearest, AStar>, BuildError> {

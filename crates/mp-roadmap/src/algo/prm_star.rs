@@ -43,7 +43,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::UNDIRECTED;
+use crate::by_name::{Given, Made, Types};
+use crate::engine::settings::UNDIRECTED;
 use crate::{
     AStar, Candidate, Connector, Foreseeing, Free, Growing, Nearest, Pace, Reachable, Recipe, RoadmapPlanner,
 };
@@ -68,6 +69,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &["prm*"],
     cannot: UNDIRECTED,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let recipe = read(given.space, given.settings)?;
+    given.made(recipe)
+}
 
 /// Every candidate becomes a node, and is connected to as many neighbours as shortest paths need.
 #[derive(Clone, Debug)]
@@ -168,7 +175,7 @@ pub fn recipe<C: Space>(
     })
 }
 
-pub(crate) fn read<'c, C: Space>(
+fn read<'c, C: Space>(
     space: &'c C,
     settings: &Settings,
 ) -> Result<Recipe<Free<Uniform<'c, C>>, Star, AStar>, BuildError> {

@@ -49,7 +49,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::UNDIRECTED;
+use crate::by_name::{Given, Made, Types};
+use crate::engine::settings::UNDIRECTED;
 use crate::{AStar, Candidate, Connector, Free, Growing, Kind, Pace, Recipe, Roadmap, RoadmapPlanner};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, Motion, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
@@ -72,6 +73,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &["visib-prm"],
     cannot: UNDIRECTED,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let recipe = read(given.space, given.settings)?;
+    given.made(recipe)
+}
 
 /// Only guards and connections become nodes: the connector of Visib-PRM.
 #[derive(Clone, Debug)]
@@ -288,7 +295,7 @@ pub fn recipe<C: Space>(
     })
 }
 
-pub(crate) fn read<'c, C: Space>(
+fn read<'c, C: Space>(
     space: &'c C,
     settings: &Settings,
 ) -> Result<Recipe<Free<Uniform<'c, C>>, Visibility, AStar>, BuildError> {

@@ -1,5 +1,6 @@
 //! Planners that know what obstacles look like, and what they are made of.
 
+use mp_cspace::erased::{AnyCheck, AnyGeometry, AnySpace};
 use mp_cspace::*;
 use mp_geom::primitives::cuboid;
 use mp_geom::{TriMesh, pose_from_six};
@@ -32,11 +33,14 @@ const TOLERANCE: f64 = 0.004;
 
 type Local<'c> = Straight<'c, Se2, Certified<'c, Se2, PlanarFlyer>>;
 
+fn ends() -> [Se2State; 2] {
+    [Se2State::new(-1.4, 0.3, 1.5), Se2State::new(1.4, -0.3, -1.0)]
+}
+
 fn problem<'c>(space: &'c Se2, robot: &PlanarFlyer) -> Problem<'c, Se2, Local<'c>> {
-    let ends = [Se2State::new(-1.4, 0.3, 1.5), Se2State::new(1.4, -0.3, -1.0)];
+    let [start, goal] = ends();
     let check = Certified::new(space, robot.clone(), TOLERANCE).unwrap();
     let verifier = Verifier::with_tolerance(space, robot, 0.2 * TOLERANCE).unwrap();
-    let [start, goal] = ends;
     knowing(Problem::new(space, Straight::new(space, check), verifier, start, goal).unwrap(), robot)
 }
 
@@ -303,5 +307,35 @@ fn what_cannot_be_made_says_why() {
         let all = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));
         let settings = Settings::parse(all).unwrap();
         assert!(!read || OnSurfaces::read(&settings).unwrap() == OnSurfaces::default());
+    }
+}
+
+/// Erased problems are planned as generic ones, to the bit: every planner, alone and by a team.
+#[test]
+fn erased_problems_are_planned_the_same() {
+    let (space, robot) = (plane(), corridor(0.3));
+    let any = AnySpace::new(&space);
+    let erased = || {
+        let check: AnyCheck<'_, Se2State> =
+            Box::new(Certified::new(&space, robot.clone(), TOLERANCE).unwrap());
+        let verifier = Verifier::with_tolerance(&space, &robot, 0.2 * TOLERANCE).unwrap();
+        let [start, goal] = ends();
+        Ok(knowing(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?, &robot))
+    };
+    for info in planners() {
+        for hands in [1, 2] {
+            let workers = || Workers::new(hands).unwrap();
+            let settings = Settings::default();
+            let team = Team::new(workers(), hands, || Ok(problem(&space, &robot))).unwrap();
+            let mut one = build_with(info.name, team, <Se2 as DefaultNn>::Nn::default(), &settings).unwrap();
+            let team = Team::new(workers(), hands, erased).unwrap();
+            let mut other =
+                Se2State::roadmap_planner(info.name, team, AnyIndex::of(&space), &settings).unwrap();
+            let found = [&mut one, &mut other].map(|planner| {
+                let outcome = planner.solve(&mut Rng::seed(5), &mut Iterations(3_000), &mut ());
+                (outcome, planner.progress(), planner.map().states().to_vec(), planner.map().edges())
+            });
+            assert!(found[0] == found[1], "{} {hands}", info.name);
+        }
     }
 }

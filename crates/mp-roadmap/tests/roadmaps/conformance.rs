@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use mp_cspace::*;
-use mp_roadmap::{AnyPlanner, build, planners};
+use mp_roadmap::{AnyPlanner, build};
 use std::f64::consts::FRAC_PI_2;
 
 const SEEDS: u64 = 20;
@@ -53,7 +53,7 @@ where
 
     /// Every planner finds a way, whatever the seed, and on some seeds with a discrete check as well.
     fn is_solved(&self, iterations: u64, free: impl Fn(&C::State, &C::State) -> bool) {
-        for info in planners() {
+        for info in crate::blind() {
             for (seed, certified) in
                 (0..SEEDS).map(|seed| (seed, true)).chain((0..DISCRETE).map(|seed| (seed, false)))
             {
@@ -71,7 +71,7 @@ where
 
     /// No planner finds a way, as there is none.
     fn is_never_solved(&self) {
-        for info in planners() {
+        for info in crate::blind() {
             let mut planner = self.planner(info.name, true);
             let outcome = planner.solve(&mut Rng::seed(3), &mut Iterations(HOPELESS), &mut ());
             let Outcome::Stopped(reason) = outcome else { panic!("{}: {outcome:?}", info.name) };
@@ -92,7 +92,7 @@ fn empty_space_takes_one_motion() {
     let space = square();
     let (start, goal) = ([0.1; 2].into(), [0.9; 2].into());
     let world = World { space: &space, robot: Boxes::default(), ends: [start, goal] };
-    for info in planners() {
+    for info in crate::blind() {
         let mut planner = world.planner(info.name, true);
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
         assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] }, "{}", info.name);

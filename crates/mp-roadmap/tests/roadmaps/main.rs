@@ -6,3 +6,11 @@ mod common;
 mod conformance;
 mod engine;
 mod keep;
+
+use mp_cspace::PlannerInfo;
+
+/// The planners that need not know what obstacles look like; [`around`] tests the others.
+fn blind() -> impl Iterator<Item = &'static PlannerInfo> {
+    let asks = ["obprm", "obstacle-geometry-prm"];
+    mp_roadmap::planners().iter().filter(move |info| !asks.contains(&info.name))
+}

@@ -47,8 +47,9 @@
 //! ```
 
 use super::dd_rrt::{RADIUS, TRIES};
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Domain, Parameter, PlannerInfo};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{DdRrt, Domain, Parameter, PlannerInfo};
 
 /// [`Domain::adapt`].
 const ADAPT: Parameter = Parameter {
@@ -74,6 +75,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &["adaptive-dynamic-domain"],
     cannot: NEEDS_BOTH_ENDS,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let domain = Domain::adaptive().read(given.settings)?;
+    Ok(Box::new(DdRrt::with_index(given.problem, given.index, given.tuning, domain)?))
+}
 
 impl Domain {
     /// The defaults of the adaptive dynamic domain.

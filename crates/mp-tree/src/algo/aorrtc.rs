@@ -57,14 +57,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::engine::{constructors, joined};
 use crate::{
-    Append, Attach, Branch, BuildError, Connect, Goals, Growing, Grown, Growth, Informed, Nearest,
-    PlannerInfo, Problem, Selector, Steer, Tree, Tuning,
+    Append, Attach, Branch, BuildError, Connect, Core, Growing, Grown, Growth, Informed, Nearest,
+    PlannerInfo, Selector, Tree, Tuning,
 };
 use mp_cspace::{
-    DefaultNn, Direction, Event, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path,
-    Planner, ProblemParts, Progress, Reach, Rng, Space,
+    Direction, Event, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 
@@ -77,6 +79,11 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &[],
     cannot: NEEDS_BOTH_ENDS,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    Ok(Box::new(Aorrtc::with_index(given.problem, given.index, given.tuning)?))
+}
 
 /// A search without success ends after this many iterations more than the one before.
 const PATIENT: u64 = 10_000;
@@ -149,65 +156,43 @@ impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Gr
 /// AORRTC: see the [module](self).
 #[derive(Debug)]
 pub struct Aorrtc<'c, C: Space, L: LocalPlanner<C::State>, N> {
-    start: C::State,
-    goals: Goals<'c, C::State>,
-    steer: Steer<'c, C, L>,
+    core: Core<'c, C, L>,
     trees: [Branch<C, L, Nearest<N>, Append>; 2],
     /// An empty index.
     index: N,
     informed: Informed<'c, C>,
-    goal_bias: f64,
     planted: usize,
     tried: usize,
     best: f64,
     turn: usize,
-    iterations: u64,
     /// The iteration with which the search began, and how many it may take.
     since: u64,
     allowed: u64,
 }
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Aorrtc<'c, C, L, N> {
-    /// AORRTC with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning)
-    }
-
-    /// AORRTC with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+constructors! {
+    "AORRTC" Aorrtc<C, L, N> where [N: Clone],
+    |problem, index, tuning: Tuning| {
         if !problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner: INFO.name });
         }
         let informed = Informed::of(&problem);
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            goal_bias: tuning.checked_bias()?,
+            core: Core::new(problem, &tuning)?,
             informed,
             trees: Self::trees_with(&index),
             index,
-            steer: Steer::new(space, local, verify, &tuning)?,
-            start,
-            goals,
             planted: 0,
             tried: 0,
             best: f64::INFINITY,
             turn: 0,
-            iterations: 0,
             since: 0,
             allowed: PATIENT,
         })
     }
+}
 
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Aorrtc<'c, C, L, N> {
     fn trees_with(index: &N) -> [Branch<C, L, Nearest<N>, Append>; 2] {
         let tree = |i, direction| Branch::new(i, direction, Nearest(index.clone()), Append);
         [tree(0, Direction::Forward), tree(1, Direction::Backward)]
@@ -225,27 +210,25 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        let space = self.steer.space();
-        if self.trees[0].tree().is_empty() {
-            let arrived = self.goals.reached(&self.start);
-            let root = self.trees[0].add_root(space, self.start.clone(), observer);
-            if arrived && self.best > 0.0 {
-                self.best = 0.0;
-                return Some(self.trees[0].tree().path(root));
-            }
+        if let Some(root) = self.core.plant(&mut self.trees[0], observer)
+            && self.best > 0.0
+        {
+            self.best = 0.0;
+            return Some(self.trees[0].tree().path(root));
         }
-        while let Some(goal) = self.goals.listed().get(self.planted) {
+        let space = self.core.steer.space();
+        while let Some(goal) = self.core.goals.listed().get(self.planted) {
             self.planted += 1;
             if !self.trees[1].knows(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
         }
-        while let Some(goal) = self.goals.listed().get(self.tried) {
+        while let Some(goal) = self.core.goals.listed().get(self.tried) {
             self.tried += 1;
             let roots = 0..self.trees[1].tree().len() as NodeId;
             let mut roots = roots.filter(|&id| self.trees[1].tree().state(id) == goal);
             let root = roots.find(|&id| self.trees[1].tree().parent(id).is_none());
-            let grown = self.trees[0].leap(0, goal, &mut self.steer, rng, observer);
+            let grown = self.trees[0].leap(0, goal, &mut self.core.steer, rng, observer);
             if let (Grown::Reached(id), Some(root)) = (grown, root)
                 && let Some(path) = self.candidate([id, root], rng, observer)
             {
@@ -259,28 +242,15 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     fn renew(&mut self, observer: &mut dyn Observer<C::State>) {
         self.trees = Self::trees_with(&self.index);
         self.planted = 0;
-        self.since = self.iterations;
+        self.since = self.core.iterations;
         for tree in 0..2 {
             observer.on(Event::Pruned { tree, survivors: &[] });
         }
     }
 
-    /// Roots the goal tree at a new sample of the goal, now and then.
-    fn sample_goal(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        let wanted = self.trees[1].tree().is_empty() || rng.random_bool(self.goal_bias);
-        let space = self.steer.space();
-        if wanted
-            && let Some(goal) = self.goals.sample(rng)
-            && !self.trees[1].knows(space, &goal)
-            && self.steer.accepts(&goal)
-        {
-            self.trees[1].add_root(space, goal, observer);
-        }
-    }
-
     /// The node of a tree to grow from toward `q`, at a cost of at most `bound`.
     fn choose(&mut self, tree: usize, q: &C::State, bound: f64) -> Option<NodeId> {
-        let space = self.steer.space();
+        let space = self.core.steer.space();
         let branch = &mut self.trees[tree];
         if bound < f64::INFINITY {
             return nearest_within(space, branch.tree(), branch.selector(), q, bound);
@@ -299,7 +269,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
-            if !tree.verify(id, &mut self.steer, observer, |_| ()) {
+            if !tree.verify(id, &mut self.core.steer, observer, |_| ()) {
                 return None;
             }
         }
@@ -310,9 +280,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         let mut costs: Vec<f64> = a.lineage(meeting[0]).filter_map(|id| a.edge_cost(id)).collect();
         costs.reverse();
         costs.extend(b.lineage(meeting[1]).filter_map(|id| b.edge_cost(id)));
-        let (mut path, rest) = (a.path(meeting[0]), b.path(meeting[1]));
-        path.states.extend(rest.states.into_iter().skip(1));
-        path.edges.extend(rest.edges);
+        let mut path = joined([a.path(meeting[0]), b.path(meeting[1])]);
         self.shorten(&mut path, &mut costs, rng);
         self.best = costs.iter().sum();
         self.informed.found(self.best);
@@ -331,11 +299,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             let j = rng.random_range(i + 2..path.states.len());
             let cost: f64 = costs[i..j].iter().sum();
             let (from, to) = (&path.states[i], &path.states[j]);
-            if self.steer.space().distance(from, to) >= cost * (1.0 - GAIN) {
+            if self.core.steer.space().distance(from, to) >= cost * (1.0 - GAIN) {
                 continue;
             }
-            let Some(way) = self.steer.reach(from, to, Direction::Forward) else { continue };
-            if way.cost < cost && self.steer.passes(from, &way.edge, to) {
+            let Some(way) = self.core.steer.reach(from, to, Direction::Forward) else { continue };
+            if way.cost < cost && self.core.steer.passes(from, &way.edge, to) {
                 path.states.drain(i + 1..j);
                 path.edges.splice(i..j, [way.edge]);
                 costs.splice(i..j, [way.cost]);
@@ -354,16 +322,16 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        self.iterations += 1;
-        if self.best < f64::INFINITY && self.iterations - self.since > self.allowed {
+        self.core.iterations += 1;
+        if self.best < f64::INFINITY && self.core.iterations - self.since > self.allowed {
             self.allowed += PATIENT;
             self.renew(observer);
         }
         if let Some(path) = self.begin(rng, observer) {
             return Some(path);
         }
-        if self.goals.has_sampler() {
-            self.sample_goal(rng, observer);
+        if self.core.goals.has_sampler() {
+            self.core.sample_goal(&mut self.trees[1], rng, observer);
         }
         let (turn, other) = (self.turn, 1 - self.turn);
         self.turn = other;
@@ -377,7 +345,7 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
         }
         let bound = if most < f64::INFINITY { least + (most - least) * rng.random::<f64>() } else { most };
         let from = self.choose(turn, &target, bound)?;
-        let (branch, steer, informed) = (&mut self.trees[turn], &mut self.steer, &self.informed);
+        let (branch, steer, informed) = (&mut self.trees[turn], &mut self.core.steer, &self.informed);
         let mut growth = Resampled(
             |direction, q: &C::State| if most < f64::INFINITY { informed.least(direction, q) } else { most },
         );
@@ -385,7 +353,7 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
         let state = self.trees[turn].tree().state(i).clone();
         let from = self.choose(other, &state, self.best - self.trees[turn].tree().cost(i))?;
-        let (branch, steer) = (&mut self.trees[other], &mut self.steer);
+        let (branch, steer) = (&mut self.trees[other], &mut self.core.steer);
         let joined = branch.grow_from(from, &state, steer, &mut Connect::default(), rng, observer);
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, rng, observer)
@@ -393,9 +361,7 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
 
     fn progress(&self) -> Progress {
         let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
-        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
-        progress.rejected = self.steer.rejected();
-        progress
+        self.core.progress(nodes)
     }
 
     fn improves(&self) -> bool {

@@ -41,9 +41,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, Tuning, TwoTrees};
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{Append, Extend, Nearest, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -55,27 +57,17 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: NEEDS_BOTH_ENDS,
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    Ok(Box::new(BiRrt::with_index(given.problem, given.index, given.tuning)?))
+}
+
 /// Bi-RRT: see the [module](self).
 pub type BiRrt<'c, C, L, N> = TwoTrees<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Extend, Append>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> BiRrt<'c, C, L, N> {
-    /// Bi-RRT with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning)
-    }
-
-    /// Bi-RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+constructors! {
+    "Bi-RRT" BiRrt<C, L, N> where [N: Clone],
+    |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let grow = (Extend, Extend);
         let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };

@@ -41,11 +41,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{
-    Append, BuildError, Connect, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, Tuning, TwoTrees,
-};
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{Append, Connect, Extend, Nearest, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -57,28 +57,18 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: NEEDS_BOTH_ENDS,
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    Ok(Box::new(RrtConExt::with_index(given.problem, given.index, given.tuning)?))
+}
+
 /// RRTConExt: see the [module](self).
 pub type RrtConExt<'c, C, L, N> =
     TwoTrees<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Connect, Extend, Append>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> RrtConExt<'c, C, L, N> {
-    /// RRTConExt with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning)
-    }
-
-    /// RRTConExt with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+constructors! {
+    "RRTConExt" RrtConExt<C, L, N> where [N: Clone],
+    |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let grow = (Connect::default(), Extend);
         let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };

@@ -48,13 +48,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, INPUTS, LEVELS, PATIENCE, STEP};
+use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, BuildError, Nearest, PlannerInfo, Problem, Purpose, Recipe, Samples, Selector, SingleTree,
-    Tuning, Untried,
+    AppendApart, Nearest, PlannerInfo, Purpose, Recipe, Samples, Selector, SingleTree, Tuning, Untried,
 };
 use mp_cspace::inputs::EachOnce;
-use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space, Uniform};
+use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
 use rand::RngExt;
 
 /// For people.
@@ -67,28 +68,19 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
+    Ok(Box::new(CvpRrt::with_index(problem, given.index, given.tuning)?))
+}
+
 /// CVP-RRT: see the [module](self).
 pub type CvpRrt<'c, C, L, N> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, LeastViolated<Nearest<N>>, Untried, AppendApart>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State> + EachOnce, N: NearestNeighbors<C>> CvpRrt<'c, C, L, N> {
-    /// CVP-RRT with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning)
-    }
-
-    /// CVP-RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+constructors! {
+    "CVP-RRT" CvpRrt<C, L, N> where [L: EachOnce],
+    |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let select = LeastViolated::new(Nearest(index), problem.local().count());
         let attach = AppendApart::default();

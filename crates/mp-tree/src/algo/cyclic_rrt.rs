@@ -56,15 +56,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo, Problem,
-    Recipe, Samples, Selector, Settings, SingleTree, Steer, Tree, Tuning,
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo, Recipe,
+    Samples, Selector, SingleTree, Steer, Tree, Tuning,
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
-    DefaultNn, Direction, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
-    Progress, Reach, Rng, Space, Uniform,
+    Direction, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Progress,
+    Reach, Rng, Space, Uniform,
 };
 use std::collections::BTreeMap;
 
@@ -86,9 +88,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
-/// What is set for `tolerance`.
-pub(crate) fn tolerance(settings: &Settings) -> Result<f64, BuildError> {
-    settings.part_of(&TOLERANCE)
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let tolerance = given.settings.part_of(&TOLERANCE)?;
+    Ok(Box::new(CyclicRrt::with_index(given.problem, given.index, given.tuning, tolerance)?))
 }
 
 /// Paths and their costs.
@@ -244,29 +247,9 @@ pub struct CyclicRrt<'c, C: Space, L: LocalPlanner<C::State>, N> {
     arrived: Vec<C::State>,
 }
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<'c, C, L, N> {
-    /// States within `tolerance` steps are similar. With the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning, tolerance: f64) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning, tolerance)
-    }
-
-    /// As [`new`](Self::new), with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        tuning: Tuning,
-        tolerance: f64,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "The cyclic variant of RRT, where states within `tolerance` steps are similar," CyclicRrt<C, L, N>,
+    |problem, index, tuning: Tuning, tolerance: f64| {
         if !(0.0..=1.0).contains(&tolerance) {
             let range = "in [0, 1], in steps".to_owned();
             return Err(BuildError::OutOfRange { name: "tolerance", value: tolerance, range });
@@ -282,7 +265,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
         let recipe = Recipe { propose, select: Nearest(index), grow, attach, tuning };
         Ok(Self { inner: SingleTree::assemble(problem, recipe)?, arrived: Vec::new() })
     }
+}
 
+impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<'c, C, L, N> {
     /// The tree; empty before the first step.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {

@@ -49,12 +49,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
-    Acceptable, Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Problem, Purpose,
-    Recipe, Samples, Selector, Settings, Tuning, TwoTrees,
+    Acceptable, Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Purpose, Recipe,
+    Samples, Selector, Settings, Tuning, TwoTrees,
 };
-use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space, Uniform};
+use mp_cspace::{Hit, NearestNeighbors, NodeId, Rng, Space, Uniform};
 
 /// [`Domain::radius`].
 pub(super) const RADIUS: Parameter = Parameter {
@@ -80,6 +82,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &["dynamic-domain"],
     cannot: NEEDS_BOTH_ENDS,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let domain = Domain::fixed().read(given.settings)?;
+    Ok(Box::new(DdRrt::with_index(given.problem, given.index, given.tuning, domain)?))
+}
 
 /// From how far away samples attract a node that failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -211,29 +219,9 @@ pub type DdRrt<'c, C, L, N> = TwoTrees<
     Append,
 >;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> DdRrt<'c, C, L, N> {
-    /// Dynamic-domain RRT with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning, domain: Domain) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning, domain)
-    }
-
-    /// Dynamic-domain RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        tuning: Tuning,
-        domain: Domain,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "Dynamic-domain RRT" DdRrt<C, L, N> where [N: Clone],
+    |problem, index, tuning: Tuning, domain: Domain| {
         let propose = Acceptable::new(Samples(Uniform(problem.space())));
         let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
         let select = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;

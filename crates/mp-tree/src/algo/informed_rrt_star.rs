@@ -47,13 +47,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::rrt_star::{GAMMA, NEAR};
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use super::rrt_star::{GAMMA, NEAR, near};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    BuildError, Extend, Improving, Near, Nearest, PlannerInfo, Problem, Propose, Recipe, Rewire, Selector,
-    Tuning,
+    Extend, Improving, Near, Nearest, PlannerInfo, Problem, Propose, Recipe, Rewire, Selector, Tuning,
 };
-use mp_cspace::{DefaultNn, Direction, LocalPlanner, NearestNeighbors, Rng, Space};
+use mp_cspace::{Direction, LocalPlanner, Rng, Space};
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -64,6 +65,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &[],
     cannot: &[],
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let near = near(given.settings)?;
+    Ok(Box::new(InformedRrtStar::with_index(given.problem, given.index, given.tuning, near)?))
+}
 
 /// How many uniform samples are drawn at most for one that is of use.
 pub const TRIES: usize = 100;
@@ -142,30 +149,9 @@ impl<C: Space> Propose<C> for Informed<'_, C> {
 /// Informed RRT*: see the [module](self).
 pub type InformedRrtStar<'c, C, L, N> = Improving<'c, C, L, Informed<'c, C>, Nearest<N>, Extend, Rewire>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> InformedRrtStar<'c, C, L, N> {
-    /// Informed RRT* with the nearest neighbours that suit the space and the customary number of
-    /// near ones.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning, Near::default())
-    }
-
-    /// Informed RRT* with an empty index and a notion of near of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        tuning: Tuning,
-        near: Near,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "Informed RRT*" InformedRrtStar<C, L, N>,
+    |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
         let propose = Informed::of(&problem);
         let attach = Rewire::new(near)?;
         Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })

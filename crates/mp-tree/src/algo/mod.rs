@@ -1,4 +1,27 @@
-//! The named algorithms, one file each.
+//! The named algorithms, one file each, and the list of those that are made by name.
+//!
+//! | algorithm | | trees | per iteration |
+//! |---|---|---|---|
+//! | [`Rrt`](crate::Rrt) | [`rrt`] | from the start | one step toward a sample |
+//! | [`CyclicRrt`](crate::CyclicRrt) | [`cyclic_rrt`] | from the start, with cycles | as RRT, or an edge to a similar node; lists alternative paths |
+//! | [`RrtConnect`](crate::RrtConnect) | [`rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
+//! | [`Aorrtc`](crate::Aorrtc) | [`aorrtc`] | from start and goal, anew for each better path | as RRT-Connect, in the space of states and costs; ever better paths |
+//! | [`RrtStar`](crate::RrtStar) | [`rrt_star`] | from the start, rewired | one step toward a sample, attached by the cheapest way; ever better paths |
+//! | [`InformedRrtStar`](crate::InformedRrtStar) | [`informed_rrt_star`] | from the start, rewired | as RRT*, toward samples that can be on a better path |
+//! | [`BiRrt`](crate::BiRrt) | [`bi_rrt`] | from start and goal | one step toward a sample; then one step of the other tree toward it |
+//! | [`RrtConExt`](crate::RrtConExt) | [`con_ext`] | from start and goal | all the way toward a sample; then one step of the other tree |
+//! | [`RrtConCon`](crate::RrtConCon) | [`con_con`] | from start and goal | all the way toward a sample; then the other tree all the way to it |
+//! | [`RrtInputs`](crate::RrtInputs) | [`rrt_inputs`] | from the start, by a set of inputs | the best of all successors free of collision |
+//! | [`CvpRrt`](crate::CvpRrt) | [`cvp_rrt`] | from the start, by a set of inputs | one untried input, at a node that has not often failed |
+//! | [`RcRrt`](crate::RcRrt) | [`rc_rrt`] | from the start, by a set of inputs | untried inputs, until all are exhausted |
+//! | [`Rsrt`](crate::Rsrt) | [`rsrt`] | from the start, by a set of inputs | the first successor free of collision, sorted by distance |
+//! | [`DdRrt`](crate::DdRrt) | [`dd_rrt`] | from start and goal | as RRT-Connect, without samples far from nodes that failed |
+//! | [`DdRrt`](crate::DdRrt) | [`add_rrt`] | from start and goal | the same, each node learning what is far |
+//! | [`MvbRrt`](crate::MvbRrt) | [`mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
+//! | [`UtilityRrt`](crate::UtilityRrt) | [`utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
+//! | [`Obrrt`](crate::Obrrt) | [`obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
+//! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
+//! | [`RrsConnect`](crate::RrsConnect) | [`rrs_connect`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
 
 pub mod add_rrt;
 pub mod aorrtc;
@@ -23,3 +46,51 @@ pub mod rrt_star;
 pub mod rsrt;
 pub mod shared_tree;
 pub mod utility_rrt;
+
+use crate::by_name::{Maker, Types};
+use mp_cspace::PlannerInfo;
+
+/// Lists the planners made by name, each with the types of its file that stand at the root of the crate. Each file has an
+/// `INFO` and a `make`.
+macro_rules! planners {
+    ($($module:ident: $($kind:ident),*;)+) => {
+        /// All of them.
+        pub(crate) const PLANNERS: &[PlannerInfo] = &[$($module::INFO),+];
+
+        /// The planner called `name`, and what makes it.
+        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, Maker<'c, 's, T>)> {
+            $(if $module::INFO.is_called(name) {
+                return Some((&$module::INFO, $module::make));
+            })+
+            None
+        }
+
+        /// Their types.
+        pub(crate) mod types {
+            $($(pub use super::$module::$kind;)*)+
+        }
+    };
+}
+
+planners! {
+    rrt: Rrt;
+    rrt_connect: RrtConnect;
+    bi_rrt: BiRrt;
+    con_ext: RrtConExt;
+    con_con: RrtConCon;
+    rrt_star: RrtStar;
+    informed_rrt_star: Informed, InformedRrtStar;
+    aorrtc: Aorrtc;
+    rrt_inputs: RrtInputs;
+    rsrt: Rsrt;
+    cvp_rrt: CvpRrt, LeastViolated;
+    rc_rrt: RcRrt, Unexhausted;
+    dd_rrt: DdRrt, Domain, DynamicDomain;
+    add_rrt: ;
+    mvb_rrt: MvbRrt, VoronoiBias;
+    utility_rrt: UtilityGuided, UtilityRrt;
+    obrrt: GrowthWeights, Obrrt, ObstacleGuided;
+    cyclic_rrt: Cyclic, CyclicRrt, Listed;
+    rrs: Rrs;
+    rrs_connect: RrsConnect;
+}

@@ -49,12 +49,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
-    Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Problem, Propose, Purpose, Recipe,
-    Selector, Tuning, TwoTrees,
+    Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Propose, Purpose, Recipe, Selector,
+    Tuning, TwoTrees,
 };
-use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space};
+use mp_cspace::{Hit, NodeId, Rng, Space};
 
 /// How many samples are looked at together.
 pub(crate) const SAMPLES: Parameter = Parameter {
@@ -73,6 +75,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &["ms-rrt"],
     cannot: NEEDS_BOTH_ENDS,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let samples = given.settings.count_of(&SAMPLES)?;
+    Ok(Box::new(MvbRrt::with_index(given.problem, given.index, given.tuning, samples)?))
+}
 
 /// Proposes the mean of those of several samples that have the same nearest node: the node with the
 /// most.
@@ -118,29 +126,9 @@ impl<C: Space> Propose<C> for VoronoiBias {
 /// Multi-sample RRT: see the [module](self).
 pub type MvbRrt<'c, C, L, N> = TwoTrees<'c, C, L, VoronoiBias, Nearest<N>, Extend, Connect, Append>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> MvbRrt<'c, C, L, N> {
-    /// Multi-sample RRT with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning, samples: u64) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning, samples)
-    }
-
-    /// Multi-sample RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        tuning: Tuning,
-        samples: u64,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "Multi-sample RRT" MvbRrt<C, L, N> where [N: Clone],
+    |problem, index, tuning: Tuning, samples: u64| {
         let samples = BuildError::count_within(SAMPLES.name, samples, 1, 100_000)?;
         let propose = VoronoiBias { samples, hits: Vec::new() };
         let grow = (Extend, Connect::default());

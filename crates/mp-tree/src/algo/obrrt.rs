@@ -96,12 +96,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, PlannerInfo, Problem, Recipe,
-    Samples, Selector, SingleTree, Tuning,
+    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, PlannerInfo, Recipe, Samples,
+    Selector, SingleTree, Tuning,
 };
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Rng, Space, Uniform};
+use mp_cspace::{LocalPlanner, NodeId, ObstacleHints, Rng, Space, Uniform};
 use rand::RngExt;
 
 /// For people.
@@ -113,6 +115,13 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &["ob-rrt"],
     cannot: &[],
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let mut problem = given.problem;
+    let hints = problem.take_obstacles().hints.ok_or(BuildError::NoHints { planner: INFO.name })?;
+    Ok(Box::new(Obrrt::with_index(problem, given.index, hints, given.tuning, GrowthWeights::default())?))
+}
 
 /// States looked at on a way that failed, for where it collides.
 const LOOKS: u32 = 10;
@@ -298,41 +307,9 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Growth<C, 
 pub type Obrrt<'c, C, L, N, H> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, ObstacleGuided<H>, AppendDistinct>;
 
-impl<'c, C, L, N, H> Obrrt<'c, C, L, N, H>
-where
-    C: Space,
-    L: LocalPlanner<C::State>,
-    N: NearestNeighbors<C>,
-    H: ObstacleHints<C::State>,
-{
-    /// Obstacle-based RRT with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(
-        problem: Problem<'c, C, L>,
-        hints: H,
-        tuning: Tuning,
-        weights: GrowthWeights,
-    ) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), hints, tuning, weights)
-    }
-
-    /// Obstacle-based RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        hints: H,
-        tuning: Tuning,
-        weights: GrowthWeights,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "Obstacle-based RRT" Obrrt<C, L, N, H> where [H: ObstacleHints<C::State>],
+    |problem, index, hints: H, tuning: Tuning, weights: GrowthWeights| {
         let (propose, grow) = (Samples(Uniform(problem.space())), ObstacleGuided::new(hints, weights)?);
         let attach = AppendDistinct::default();
         Self::assemble(problem, Recipe { propose, select: Nearest(index), grow, attach, tuning })

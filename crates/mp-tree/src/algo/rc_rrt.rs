@@ -48,13 +48,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, INPUTS, LEVELS, PATIENCE, STEP};
+use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, BuildError, Nearest, Parameter, PlannerInfo, Problem, Purpose, Recipe, Samples, Selector,
-    Settings, SingleTree, Tuning, Untried,
+    AppendApart, BuildError, Nearest, Parameter, PlannerInfo, Purpose, Recipe, Samples, Selector, Settings,
+    SingleTree, Tuning, Untried,
 };
 use mp_cspace::inputs::EachOnce;
-use mp_cspace::{DefaultNn, Hit, LocalPlanner, NearestNeighbors, NodeId, Rng, Space, Uniform};
+use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
 
 /// How far apart states are that count as one.
 const APART: Parameter = Parameter {
@@ -74,6 +76,13 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let apart = apart(given.problem.space(), &given.tuning, given.settings)?;
+    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
+    Ok(Box::new(RcRrt::with_index(problem, given.index, apart, given.tuning)?))
+}
+
 /// What is set for `apart`, as a distance.
 pub(crate) fn apart<C: Space>(space: &C, tuning: &Tuning, settings: &Settings) -> Result<f64, BuildError> {
     Ok(settings.part_of(&APART)? * tuning.step.length_in(space)?)
@@ -83,29 +92,9 @@ pub(crate) fn apart<C: Space>(space: &C, tuning: &Tuning, settings: &Settings) -
 pub type RcRrt<'c, C, L, N> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Unexhausted<Nearest<N>>, Untried, AppendApart>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State> + EachOnce, N: NearestNeighbors<C>> RcRrt<'c, C, L, N> {
-    /// RC-RRT with the nearest neighbours that suit the space; states within `apart` count as one.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, apart: f64, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), apart, tuning)
-    }
-
-    /// RC-RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        apart: f64,
-        tuning: Tuning,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "RC-RRT, where states within `apart` count as one," RcRrt<C, L, N> where [L: EachOnce],
+    |problem, index, apart: f64, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let (select, attach) = (Unexhausted::new(Nearest(index)), AppendApart::within(apart)?);
         Self::assemble(problem, Recipe { propose, select, grow: Untried::until_new(), attach, tuning })

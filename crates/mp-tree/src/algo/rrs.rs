@@ -33,8 +33,9 @@
 //! | `range`: how far obstacles repel | (0, extent of the space] | 3% of the extent |
 //! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 4 |
 //!
-//! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). [`build_snake`] makes
-//! it by name.
+//! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). By name it takes the
+//! gradient from the [problem](crate::Problem::with_obstacles), and its paths are plain: straight between the nodes of the
+//! snakes, and verified piece by piece.
 //!
 //! A point goes around a disc in the unit square, in one bend:
 //! ```
@@ -62,12 +63,13 @@
 //! assert!(unbent(&path).states.iter().all(free));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//!
-//! [`build_snake`]: crate::build_snake
 
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{Parameter, PlannerInfo, Rrt};
-use mp_snake::SnakePlanner;
+use crate::by_name::{Given, Made, Types};
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
+use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, Settings, Verify};
+use mp_cspace::erased::AnyGradient;
+use mp_cspace::{MotionCheck, MotionValidity, Observer, Path, Planner, Progress, Rng, Space, Straight};
+use mp_snake::{Curve, Params, Pieces, Repulsion, SnakePlanner, unbent};
 
 /// How far obstacles push snakes.
 pub const RANGE: Parameter = Parameter {
@@ -85,7 +87,7 @@ pub const SNAKE_STEPS: Parameter = Parameter {
     doc: "most steps of a snake that bends one edge",
 };
 
-/// The entry of [`snake_planners`](crate::snake_planners).
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrs",
     summary: "RRT whose blocked edges are bent around obstacles by snakes; for many small obstacles",
@@ -95,5 +97,64 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let problem = bent(INFO.name, given.problem, given.settings)?;
+    Ok(Box::new(Plain(Rrs::with_index(problem, given.index, given.tuning)?)))
+}
+
 /// RRS: see the [module](self). Made by [`Rrt::new`] of a problem with a [`SnakePlanner`].
 pub type Rrs<'c, C, M, F, N> = Rrt<'c, C, SnakePlanner<'c, C, M, F>, N>;
+
+/// A problem whose blocked edges are bent.
+type Bent<'c, C, M> = Problem<'c, C, SnakePlanner<'c, C, M, AnyGradient<'c, <C as Space>::State>>>;
+
+/// `problem` for the planner called `planner`: edges that are blocked are bent by its clearance gradient.
+pub(crate) fn bent<'c, C, M>(
+    planner: &'static str,
+    mut problem: Problem<'c, C, Straight<'c, C, M>>,
+    settings: &Settings,
+) -> Result<Bent<'c, C, M>, BuildError>
+where
+    C: Space<State: 'c>,
+    M: MotionValidity<C::State> + Send + 'c,
+{
+    let field = problem.take_obstacles().gradient.ok_or(BuildError::NoGradient { planner })?;
+    let parts = problem.into_parts();
+    let space = parts.space;
+    let range = settings.length_of(&RANGE, space)?;
+    let unmade = |reason: String| BuildError::Unmade { reason };
+    let params = Params::for_edges(range).map_err(|e| unmade(e.to_string()))?;
+    let iterations = settings.count_of(&SNAKE_STEPS)?;
+    let iterations = u32::try_from(iterations).unwrap_or(u32::MAX);
+    let repulsion = Repulsion::new(field, range).map_err(|e| unmade(e.to_string()))?;
+    let local =
+        SnakePlanner::with_params(space, parts.local.check, repulsion, Params { iterations, ..params })
+            .map_err(|e| unmade(e.to_string()))?;
+    Problem::new(space, local, Pieces(Boxed(parts.verify)), parts.start, parts.goals)
+}
+
+/// A verifier behind a pointer.
+struct Boxed<'c, S>(Box<dyn Verify<S, ()> + Send + 'c>);
+
+impl<S> MotionValidity<S> for Boxed<'_, S> {
+    fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
+        self.0.verify_edge(from, &(), to)
+    }
+}
+
+/// A planner whose paths are made plain: straight between the nodes of the snakes.
+pub(crate) struct Plain<P>(pub(crate) P);
+
+impl<S: Clone, P: Planner<S, Edge = Curve<S>>> Planner<S> for Plain<P> {
+    type Edge = ();
+    fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S>> {
+        self.0.step(rng, observer).map(|path| unbent(&path))
+    }
+    fn progress(&self) -> Progress {
+        self.0.progress()
+    }
+    fn improves(&self) -> bool {
+        self.0.improves()
+    }
+}

@@ -19,8 +19,9 @@
 //!
 //! A point goes around a disc in the unit square, by name:
 //! ```
-//! use mp_cspace::{Discrete, FineDiscrete, Iterations, KdTree, Outcome, Resolution, Rn, Rng, Straight};
-//! use mp_tree::{Problem, Settings, build_snake};
+//! use mp_cspace::erased::AnyGradient;
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, ObstacleKnowledge, Outcome, Resolution, Rn, Rng, Straight};
+//! use mp_tree::{Problem, Settings, build};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
@@ -36,19 +37,22 @@
 //!
 //! let problem = Problem::new(&space, local, verifier, start, goal)?;
 //! let settings = Settings::parse(["step=30%", "range=0.1"])?;
-//! let mut planner = build_snake("rrs-connect", problem, field, <KdTree>::default(), &settings)?;
+//! let gradient: Option<AnyGradient<Vector2<f64>>> = Some(Box::new(field));
+//! let problem = problem.with_obstacles(ObstacleKnowledge { gradient, ..ObstacleKnowledge::default() });
+//! let mut planner = build("rrs-connect", problem, &settings)?;
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(100), &mut ());
 //! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
 //! assert_eq!((path.states.first(), path.states.last()), (Some(&start), Some(&goal)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::rrs::{RANGE, SNAKE_STEPS};
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{PlannerInfo, RrtConnect};
+use super::rrs::{Plain, RANGE, SNAKE_STEPS, bent};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::{BuildError, PlannerInfo, RrtConnect};
 use mp_snake::SnakePlanner;
 
-/// The entry of [`snake_planners`](crate::snake_planners).
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrs-connect",
     summary: "RRT-Connect whose blocked edges are bent around obstacles by snakes",
@@ -57,6 +61,15 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &[],
     cannot: NEEDS_BOTH_ENDS,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    if !given.problem.goals().can_aim() {
+        return Err(BuildError::NoGoalState { planner: INFO.name });
+    }
+    let problem = bent(INFO.name, given.problem, given.settings)?;
+    Ok(Box::new(Plain(RrsConnect::with_index(problem, given.index, given.tuning)?)))
+}
 
 /// RRS-Connect: see the [module](self). Made by [`RrtConnect::new`] of a problem with a [`SnakePlanner`].
 pub type RrsConnect<'c, C, M, F, N> = RrtConnect<'c, C, SnakePlanner<'c, C, M, F>, N>;

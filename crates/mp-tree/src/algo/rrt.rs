@@ -42,9 +42,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{Append, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, SingleTree, Tuning};
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
+use crate::{Append, Extend, Nearest, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -56,27 +58,17 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    Ok(Box::new(Rrt::with_index(given.problem, given.index, given.tuning)?))
+}
+
 /// RRT: see the [module](self).
 pub type Rrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Append>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> Rrt<'c, C, L, N> {
-    /// RRT with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning)
-    }
-
-    /// RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+constructors! {
+    "RRT" Rrt<C, L, N>,
+    |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let recipe = Recipe { propose, select: Nearest(index), grow: Extend, attach: Append, tuning };
         Self::assemble(problem, recipe)

@@ -57,12 +57,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, INPUTS, LEVELS, PATIENCE, STEP};
-use crate::{
-    AppendDistinct, BuildError, Extend, Nearest, PlannerInfo, Problem, Recipe, Samples, SingleTree, Tuning,
-};
+use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
+use crate::{AppendDistinct, Extend, Nearest, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use mp_cspace::Uniform;
 use mp_cspace::inputs::{Order, TestOrder};
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -74,29 +74,20 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
+    Ok(Box::new(RrtInputs::with_index(problem, given.index, given.tuning)?))
+}
+
 /// RRT by inputs: see the [module](self).
 pub type RrtInputs<'c, C, L, N> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, AppendDistinct>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State> + TestOrder, N: NearestNeighbors<C>> RrtInputs<'c, C, L, N> {
-    /// RRT by inputs with the nearest neighbours that suit the space. Sets the order of the local
-    /// planner.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning)
-    }
-
-    /// RRT by inputs with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(mut problem: Problem<'c, C, L>, index: N, tuning: Tuning) -> Result<Self, BuildError> {
+constructors! {
+    "RRT by inputs" RrtInputs<C, L, N> where [L: TestOrder],
+    |problem, index, tuning: Tuning| {
+        let mut problem = problem;
         problem.local_mut().set_order(Order::TestAll);
         let propose = Samples(Uniform(problem.space()));
         let attach = AppendDistinct::default();

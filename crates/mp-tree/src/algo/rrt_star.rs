@@ -49,12 +49,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, PATIENCE, STEP};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    BuildError, Extend, Improving, Near, Nearest, Parameter, PlannerInfo, Problem, Recipe, Rewire, Samples,
-    Settings, Tuning,
+    BuildError, Extend, Improving, Near, Nearest, Parameter, PlannerInfo, Recipe, Rewire, Samples, Settings,
+    Tuning,
 };
-use mp_cspace::{DefaultNn, LocalPlanner, NearestNeighbors, Space, Uniform};
+use mp_cspace::Uniform;
 
 /// [`Near::Nearest`] by name.
 pub const NEAR: Parameter = Parameter {
@@ -82,6 +84,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     cannot: &[],
 };
 
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let near = near(given.settings)?;
+    Ok(Box::new(RrtStar::with_index(given.problem, given.index, given.tuning, near)?))
+}
+
 /// What counts as near, from settings.
 ///
 /// # Errors
@@ -97,29 +105,9 @@ pub fn near(settings: &Settings) -> Result<Near, BuildError> {
 /// RRT*: see the [module](self).
 pub type RrtStar<'c, C, L, N> = Improving<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Rewire>;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> RrtStar<'c, C, L, N> {
-    /// RRT* with the nearest neighbours that suit the space and the customary number of near ones.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning, Near::default())
-    }
-
-    /// RRT* with an empty index and a notion of near of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        tuning: Tuning,
-        near: Near,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "RRT*" RrtStar<C, L, N>,
+    |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
         let propose = Samples(Uniform(problem.space()));
         let attach = Rewire::new(near)?;
         Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })

@@ -62,12 +62,12 @@
 //! ```
 
 use crate::{
-    AppendDistinct, Attach, Branch, BuildError, Goals, Growing, Grown, Growth, Nearest, Parameter, Problem,
-    Purpose, Selector, Steer, Tree, Tuning, Workers,
+    AppendDistinct, Attach, Branch, BuildError, Core, Growing, Grown, Growth, Nearest, Parameter, Problem,
+    Purpose, Selector, Tree, Tuning, Workers,
 };
 use mp_cspace::{
     DefaultNn, Direction, Event, Extension, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
-    ProblemParts, Progress, Reach, Rng, Space,
+    Progress, Reach, Rng, Space,
 };
 use rand::RngExt;
 use std::any::Any;
@@ -125,19 +125,14 @@ impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Found<C::State, L::Ed
 
 /// One RRT grown by all threads: see the [module](self).
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
-    start: C::State,
-    tried: usize,
-    goals: Goals<'c, C::State>,
-    steer: Steer<'c, C, L>,
+    core: Core<'c, C, L>,
     branch: Branch<C, L, Nearest<N>, AppendDistinct>,
     slots: Vec<Slot<C::State, L>>,
     workers: Workers,
-    goal_bias: f64,
     seed: Option<u64>,
     drawn: u64,
     /// Nodes in the goal, to be verified.
     arrived: Vec<NodeId>,
-    iterations: u64,
     motions: u64,
     panics: u64,
 }
@@ -177,9 +172,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             let range = BATCH.range.to_owned();
             return Err(BuildError::OutOfRange { name: BATCH.name, value: batch as f64, range });
         }
-        let goal_bias = tuning.checked_bias()?;
-        let ProblemParts { space, local, verify, start, goals } = make(0)?.into_parts();
-        let steer = Steer::new(space, local, verify, &tuning)?;
+        let core = Core::new(make(0)?, &tuning)?;
         let slot = |i| {
             let local = make(i)?.into_parts().local;
             let why = Purpose::Explore;
@@ -187,18 +180,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         };
         let slots = (1..=batch).map(slot).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {
-            start,
-            tried: 0,
-            goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
-            goals,
-            steer,
+            core,
             branch: Branch::new(0, Direction::Forward, Nearest(index), AppendDistinct::default()),
             slots,
             workers,
             seed: None,
             drawn: 0,
             arrived: Vec::new(),
-            iterations: 0,
             motions: 0,
             panics: 0,
         })
@@ -218,14 +206,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
 
     /// Plants the root and tries the straight ways to the goal.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        if self.branch.tree().is_empty() {
-            let arrived = self.goals.reached(&self.start);
-            let root = self.branch.add_root(self.steer.space(), self.start.clone(), observer);
-            self.arrived.extend(arrived.then_some(root));
-        }
-        while let Some(goal) = self.goals.listed().get(self.tried) {
-            self.tried += 1;
-            let grown = self.branch.leap(0, goal, &mut self.steer, rng, observer);
+        self.arrived.extend(self.core.plant(&mut self.branch, observer));
+        while let Some(grown) = self.core.leap(&mut self.branch, rng, observer) {
             if let Grown::Reached(id) = grown {
                 return self.arrived.push(id);
             }
@@ -236,11 +218,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         for slot in &mut self.slots {
             slot.rng = Rng::stream(seed, self.drawn);
             self.drawn += 1;
-            (slot.target, slot.why, slot.found) = (None, Purpose::Explore, None);
-            if self.goal_bias > 0.0 && slot.rng.random_bool(self.goal_bias) {
-                slot.target = self.goals.aim(&mut slot.rng);
-                slot.why = if slot.target.is_some() { Purpose::Join } else { Purpose::Explore };
-            }
+            slot.found = None;
+            slot.target = self.core.aim(&mut slot.rng);
+            slot.why = if slot.target.is_some() { Purpose::Join } else { Purpose::Explore };
         }
     }
 
@@ -249,8 +229,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         L: Send,
         N: Sync,
     {
-        let (space, points) = (self.steer.space(), self.branch.tree().states());
-        let (step, index) = (self.steer.step(), &self.branch.selector().0);
+        let (space, points) = (self.core.steer.space(), self.branch.tree().states());
+        let (step, index) = (self.core.steer.step(), &self.branch.selector().0);
         self.workers.each(&mut self.slots, |slot| {
             let work = AssertUnwindSafe(|| slot.work((space, step), points, index));
             slot.panicked = catch_unwind(work).err();
@@ -274,12 +254,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             let new = self.branch.tree().len();
             self.motions += u64::from(*self.branch.tree().state(from) != target);
             let mut found = Found(Some(extension));
-            let grown = self.branch.grow_from(from, &target, &mut self.steer, &mut found, rng, observer);
+            let grown = self.branch.grow_from(from, &target, &mut self.core.steer, &mut found, rng, observer);
             let entered = match (slot.why, grown) {
                 (Purpose::Join, Grown::Reached(id)) => Some(id),
                 _ => {
                     let state = self.branch.tree().states().get(new);
-                    state.is_some_and(|state| self.goals.reached(state)).then_some(new as NodeId)
+                    state.is_some_and(|state| self.core.goals.reached(state)).then_some(new as NodeId)
                 }
             };
             // Several samples of a batch may be the same goal.
@@ -293,12 +273,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         while !self.arrived.is_empty() {
             let id = self.arrived.remove(0);
             let rest = &mut self.arrived;
-            let passed = self.branch.verify(id, &mut self.steer, observer, |survivors| {
+            let path = self.core.path(&mut self.branch, id, observer, |survivors| {
                 let renamed = rest.iter().filter_map(|old| survivors.binary_search(old).ok());
                 *rest = renamed.map(|new| new as NodeId).collect();
             });
-            if passed {
-                return Some(self.branch.tree().path(id));
+            if path.is_some() {
+                return path;
             }
         }
         None
@@ -318,7 +298,7 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        self.iterations += 1;
+        self.core.iterations += 1;
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         self.begin(rng, observer);
         if let Some(path) = self.arrive(observer) {
@@ -332,9 +312,8 @@ where
 
     /// An iteration is a batch.
     fn progress(&self) -> Progress {
-        let motions = self.motions + self.steer.motions();
-        let mut progress = Progress::new(self.iterations, self.branch.tree().len(), motions);
-        progress.rejected = self.steer.rejected();
+        let mut progress = self.core.progress(self.branch.tree().len());
+        progress.motions += self.motions;
         progress
     }
 }
@@ -347,7 +326,7 @@ where
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SharedTree")
             .field("batch", &self.slots.len())
-            .field("iterations", &self.iterations)
+            .field("iterations", &self.core.iterations)
             .field("motions", &self.motions)
             .field("panics", &self.panics)
             .finish_non_exhaustive()

@@ -53,12 +53,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
+use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
+use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, Attach, BuildError, Connect, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo,
-    Problem, Recipe, Samples, Selector, Tuning, TwoTrees,
+    Recipe, Samples, Selector, Tuning, TwoTrees,
 };
-use mp_cspace::{DefaultNn, Direction, LocalPlanner, NearestNeighbors, NodeId, Space, Uniform};
+use mp_cspace::{Direction, LocalPlanner, NodeId, Space, Uniform};
 use rand::RngExt;
 
 /// How many expansions are compared.
@@ -78,6 +80,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
     aliases: &["utility-guided"],
     cannot: NEEDS_BOTH_ENDS,
 };
+
+/// Makes it by name.
+pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
+    let candidates = given.settings.count_of(&CANDIDATES)?;
+    Ok(Box::new(UtilityRrt::with_index(given.problem, given.index, given.tuning, candidates)?))
+}
 
 /// Failures that a node remembers by place.
 const REMEMBERED: usize = 8;
@@ -209,29 +217,9 @@ pub type UtilityRrt<'c, C, L, N> = TwoTrees<
     AppendDistinct,
 >;
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> UtilityRrt<'c, C, L, N> {
-    /// Utility-guided RRT with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn new(problem: Problem<'c, C, L>, tuning: Tuning, candidates: u64) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), tuning, candidates)
-    }
-
-    /// Utility-guided RRT with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range, or there are no goal states to grow from.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        tuning: Tuning,
-        candidates: u64,
-    ) -> Result<Self, BuildError> {
+constructors! {
+    "Utility-guided RRT" UtilityRrt<C, L, N> where [N: Clone],
+    |problem, index, tuning: Tuning, candidates: u64| {
         let candidates = BuildError::count_within(CANDIDATES.name, candidates, 1, 100_000)?;
         let explore = UtilityGuided { candidates, past: [Vec::new(), Vec::new()] };
         let recipe = Recipe {

@@ -286,6 +286,36 @@ pub(crate) fn joints<const N: usize>() -> Rn<N> {
     Rn::new([-std::f64::consts::PI; N], [std::f64::consts::PI; N]).unwrap()
 }
 
+/// What planners may ask of obstacles: hints, and the clearance with its gradient, by central differences.
+pub(crate) fn knowledge<'c, C, V>(space: &'c C, robot: &V) -> ObstacleKnowledge<'c, C::State>
+where
+    C: Space,
+    V: Clearance<C::State> + ObstacleHints<C::State> + Clone + Send + 'c,
+{
+    let (mut field, mut velocity) = (robot.clone(), vec![0.0; space.dim()]);
+    let gradient = move |q: &C::State, reach: f64, gradient: &mut [f64]| {
+        let clearance = field.clearance(q, f64::INFINITY);
+        gradient.fill(0.0);
+        if clearance < reach {
+            for (k, slope) in gradient.iter_mut().enumerate() {
+                velocity.fill(0.0);
+                velocity[k] = 1.0;
+                let [before, after] = [-1e-5, 1e-5].map(|t| {
+                    let moved = space.moved(q, &velocity, t);
+                    moved.map_or(0.0, |q| field.clearance(&q, f64::INFINITY))
+                });
+                *slope = (after - before) / 2e-5;
+            }
+        }
+        clearance
+    };
+    ObstacleKnowledge {
+        hints: Some(Box::new(robot.clone())),
+        gradient: Some(Box::new(gradient)),
+        ..ObstacleKnowledge::default()
+    }
+}
+
 /// Checks a path from `start` to `goal`, densely along each edge.
 pub(crate) fn assert_path<C: Space>(
     space: &C,

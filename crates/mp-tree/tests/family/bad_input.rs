@@ -18,7 +18,8 @@ fn problem<'c>(
     goal: impl Into<Goals<'c, Point>>,
 ) -> Result<Problem<'c, Rn<2>, Local<'c>>, BuildError> {
     let local = Straight::new(space, Certified::new(space, wall(), 1e-3).unwrap());
-    Ok(Problem::new(space, local, Exact(wall()), start.into(), goal)?.with_hints(wall()))
+    let problem = Problem::new(space, local, Exact(wall()), start.into(), goal)?;
+    Ok(problem.with_obstacles(knowledge(space, &wall())))
 }
 
 fn point(x: f64, y: f64) -> Point {
@@ -146,7 +147,11 @@ fn names_must_be_known() {
 fn obstacles_must_be_known_to_be_followed() {
     let (space, boxes) = (square(), wall());
     let local = Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
-    let problem = Problem::new(&space, local, Exact(boxes), point(0.1, 0.1), point(0.9, 0.1)).unwrap();
-    let error = build("obrrt", problem, &Settings::default()).err().unwrap();
-    assert_eq!(error, BuildError::NoHints { planner: "obrrt" });
+    let problem =
+        || Problem::new(&space, local.clone(), Exact(boxes.clone()), point(0.1, 0.1), point(0.9, 0.1));
+    let error = |name| build(name, problem().unwrap(), &Settings::default()).err().unwrap();
+    assert_eq!(error("obrrt"), BuildError::NoHints { planner: "obrrt" });
+    for planner in ["rrs", "rrs-connect"] {
+        assert_eq!(error(planner), BuildError::NoGradient { planner });
+    }
 }

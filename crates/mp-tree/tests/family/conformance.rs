@@ -23,12 +23,14 @@ fn local<'c, C: Space>(
 }
 
 /// Planners that run others, and what they are told beside the step.
-const WRAPPED: [(&str, &str); 5] = [
+const WRAPPED: [(&str, &str); 7] = [
     ("or-rrt-connect", "runs=2"),
     ("or-rrt", "runs=2"),
     ("shared-rrt", "batch=4"),
     ("restart-rrt-connect", "unit=500"),
     ("or-restart-bi-rrt", "runs=2"),
+    ("shared-rrs", "batch=4"),
+    ("or-rrs-connect", "runs=2"),
 ];
 
 /// Every planner made by name, wrapped or not, and what it is told beside the step.
@@ -72,7 +74,7 @@ where
                 (Box::new(sampled), Box::new(proof(1e-5)))
             };
             let problem = Problem::new(space, local(space, check), verifier, start.clone(), goal.clone())?;
-            Ok(problem.with_hints(robot.clone()))
+            Ok(problem.with_obstacles(knowledge(space, &robot)))
         };
         let settings = Settings::parse([&format!("step={}", self.step), set]).unwrap();
         build_from(name, problem, C::Nn::default(), &settings, &Workers::new(2).unwrap()).unwrap()
@@ -233,7 +235,7 @@ fn thin_walls_are_never_crossed() {
             let check = Certified::new(&space, boxes.clone(), 1e-4).unwrap();
             let verifier = Exact(boxes.clone());
             let problem = Problem::new(&space, local(&space, check), verifier, start, goal).unwrap();
-            let problem = problem.with_hints(boxes.clone());
+            let problem = problem.with_obstacles(knowledge(&space, &boxes));
             let mut planner = build(info.name, problem, &settings(0.2)).unwrap();
             let mut counts = EventCounts::default();
             let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut counts);
@@ -253,7 +255,7 @@ fn coarse<'c>(
     let ends = [[0.1, 0.1].into(), [0.9, 0.1].into()];
     Problem::new(space, local(space, check), Exact(boxes.clone()), ends[0], ends[1])
         .unwrap()
-        .with_hints(boxes.clone())
+        .with_obstacles(knowledge(space, boxes))
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn planner<'c>(
     let verifier = FineDiscrete::new(space, rod.clone(), Resolution::Length(1e-3)).unwrap();
     let start = Se2State::new(0.2, 0.3, 1.0);
     let problem = Problem::new(space, Straight::new(space, check), verifier, start, goals)?;
-    build(name, problem.with_hints(rod.clone()), &Settings::parse(["step=0.3"])?)
+    build(name, problem.with_obstacles(knowledge(space, rod)), &Settings::parse(["step=0.3"])?)
 }
 
 fn solve(planner: &mut dyn Planner<Se2State, Edge = ()>, world: &(Se2, Rod)) -> Se2State {

@@ -6,6 +6,7 @@ mod common;
 mod conformance;
 mod cyclic;
 mod engine;
+mod erased;
 mod goals;
 mod inputs;
 mod obrrt;

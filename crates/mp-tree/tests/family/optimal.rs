@@ -20,7 +20,7 @@ fn wall() -> (Boxes<2>, f64) {
 fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Problem<'c, Rn<2>, Local<'c>> {
     let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-4).unwrap());
     let problem = Problem::new(space, local, Exact(boxes.clone()), START.into(), Point::from(GOAL)).unwrap();
-    problem.with_hints(boxes.clone())
+    problem.with_obstacles(knowledge(space, boxes))
 }
 
 fn improving() -> impl Iterator<Item = &'static PlannerInfo> {
@@ -223,7 +223,7 @@ fn goals_of_every_kind_improve() {
         ];
         for goals in kinds {
             let problem = Problem::new(&space, local(), Exact(boxes.clone()), START.into(), goals).unwrap();
-            let problem = problem.with_hints(boxes.clone());
+            let problem = problem.with_obstacles(knowledge(&space, &boxes));
             let mut planner = build(info.name, problem, &Settings::parse(["step=0.1"]).unwrap()).unwrap();
             let mut lengths = Vec::new();
             improve(&mut *planner, &mut Rng::seed(1), &mut Iterations(3_000), &mut (), |path, _| {

@@ -47,7 +47,7 @@ fn planner<'c>(name: &str, space: &'c Rn<2>, boxes: &Boxes<2>, fuse: &Fuse) -> A
     let verifier = Fragile(Exact(boxes.clone()), fuse.clone());
     let goals = Goals::states([Point::new(0.9, 0.2), Point::new(0.9, 0.9)]);
     let problem = Problem::new(space, local, verifier, Point::new(0.1, 0.2), goals).unwrap();
-    let problem = problem.with_hints(boxes.clone());
+    let problem = problem.with_obstacles(knowledge(space, boxes));
     build_with(name, problem, KdTree::<2>::new(), &Settings::parse(["step=0.1"]).unwrap()).unwrap()
 }
 

@@ -15,7 +15,8 @@ type Made<'c> = Result<Problem<'c, Rn<2>, Local<'c>>, BuildError>;
 fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Made<'c> {
     let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
     let ends = [Point::new(0.1, 0.2), Point::new(0.9, 0.2)];
-    Ok(Problem::new(space, local, Exact(boxes.clone()), ends[0], ends[1])?.with_hints(boxes.clone()))
+    let problem = Problem::new(space, local, Exact(boxes.clone()), ends[0], ends[1])?;
+    Ok(problem.with_obstacles(knowledge(space, boxes)))
 }
 
 fn tuning() -> Tuning {

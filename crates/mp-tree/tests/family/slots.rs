@@ -250,3 +250,60 @@ fn inputs_instead_of_straight_lines() {
     let replayed = path.edges.iter().fold(start, |q, turn| drive(&q, *turn, 1.0));
     assert_eq!(Some(&replayed), path.states.last());
 }
+
+/// Asks for no motion longer than a step, and would rather the planner asked for none.
+#[derive(Clone, Copy)]
+struct OneStep;
+
+impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for OneStep {
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        growing.step(from)
+    }
+    fn leaps(&self) -> bool {
+        false
+    }
+}
+
+/// Refuses motions of any length.
+struct NeverFar<'c>(Local<'c>);
+
+impl LocalPlanner<Point> for NeverFar<'_> {
+    type Edge = ();
+    fn extend(
+        &mut self,
+        from: &Point,
+        toward: &Point,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<Point, ()> {
+        assert_ne!(reach, Reach::Full, "asked to leap");
+        self.0.extend(from, toward, direction, reach)
+    }
+}
+
+/// Where a growth declines, the straight way to the goal is not tried, by any of the loops.
+#[test]
+fn leaps_can_be_declined() {
+    let (space, boxes) = (square(), Boxes::default());
+    let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
+    let problem = || {
+        let local = NeverFar(Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap()));
+        Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap()
+    };
+    fn recipe<G>(space: &Rn<2>, grow: G) -> Recipe<Samples<Uniform<'_, Rn<2>>>, Nearest<Linear>, G, Append> {
+        let (propose, select) = (Samples(Uniform(space)), Nearest(Linear::new()));
+        Recipe { propose, select, grow, attach: Append, tuning: short() }
+    }
+    solves(SingleTree::assemble(problem(), recipe(&space, OneStep)).unwrap(), &boxes);
+    solves(Improving::assemble(problem(), recipe(&space, OneStep)).unwrap(), &boxes);
+    // It is enough that one of the two declines.
+    solves(
+        TwoTrees::assemble("two", problem(), recipe(&space, (OneStep, Connect::default()))).unwrap(),
+        &boxes,
+    );
+    solves(TwoTrees::assemble("two", problem(), recipe(&space, (Extend, OneStep))).unwrap(), &boxes);
+}

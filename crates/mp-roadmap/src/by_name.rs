@@ -1,0 +1,141 @@
+//! What planners by name are made from.
+
+use crate::engine::taken_apart;
+use crate::{Connector, HasRoadmap, NodeGenerator, Query, Recipe, RoadmapPlanner, Steer};
+use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
+use mp_cspace::{BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible, Settings, Space, Workers};
+
+/// A planner chosen at run time.
+pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;
+
+/// A problem, and as many local planners and verifiers for it beside as threads are to build the roadmap.
+#[derive(Debug)]
+pub struct Team<'c, C: Space, L: LocalPlanner<C::State>> {
+    problem: Problem<'c, C, L>,
+    workers: Workers,
+    hands: Vec<Steer<'c, C, L>>,
+}
+
+/// A team for an erased problem.
+pub type AnyTeam<'c, S> = Team<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
+
+impl<'c, C, L> Team<'c, C, L>
+where
+    C: Space + 'c,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    /// `problem` makes the same problem again and again; `hands` is how many work at the same time, best as many as
+    /// `workers` are threads. The roadmap is the same to the bit however many there are. Only generators whose
+    /// attempts are [independent](crate::NodeGenerator::independent) use them.
+    ///
+    /// # Errors
+    /// Those of `problem`.
+    pub fn new(
+        workers: Workers,
+        hands: usize,
+        problem: impl Fn() -> Result<Problem<'c, C, L>, BuildError>,
+    ) -> Result<Self, BuildError> {
+        let more = if hands > 1 { hands } else { 0 };
+        let hands = (0..more).map(|_| Ok(taken_apart(problem()?).0)).collect::<Result<_, BuildError>>()?;
+        Ok(Self { problem: problem()?, workers, hands })
+    }
+
+    /// The planner of a recipe.
+    pub(crate) fn made<G, K, Q, N>(
+        self,
+        index: N,
+        recipe: Recipe<G, K, Q>,
+    ) -> AnyPlanner<'c, C::State, L::Edge>
+    where
+        C::State: 'c,
+        L: Send + 'c,
+        G: NodeGenerator<C, L> + Clone + Send + Sync + 'c,
+        K: Connector<C, L> + Send + Sync + 'c,
+        Q: Query<C, L> + Send + 'c,
+        N: NearestNeighbors<C> + Send + Sync + 'c,
+    {
+        let planner = RoadmapPlanner::assemble(self.problem, index, recipe);
+        match self.hands.is_empty() {
+            true => Box::new(planner),
+            false => Box::new(planner.on(self.workers, self.hands)),
+        }
+    }
+}
+
+/// On the thread of the caller.
+impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for Team<'c, C, L> {
+    fn from(problem: Problem<'c, C, L>) -> Self {
+        Self { problem, workers: Workers::alone(), hands: Vec::new() }
+    }
+}
+
+/// The types that a planner by name is made of, in one: a tuple of space, local planner and index.
+pub(crate) trait Types<'c> {
+    type State: Clone + PartialEq + Send + Sync + std::fmt::Debug + 'c;
+    type Edge: Clone + Reversible + Send + Sync + 'c;
+    type Space: Space<State = Self::State> + Clone + 'c;
+    type Local: LocalPlanner<Self::State, Edge = Self::Edge> + Send + 'c;
+    type Index: NearestNeighbors<Self::Space> + Send + Sync + 'c;
+}
+
+impl<'c, C, L, N> Types<'c> for (C, L, N)
+where
+    C: Space<State: 'c> + Clone + 'c,
+    L: LocalPlanner<C::State, Edge: Reversible + 'c> + Send + 'c,
+    N: NearestNeighbors<C> + Send + Sync + 'c,
+{
+    type State = C::State;
+    type Edge = L::Edge;
+    type Space = C;
+    type Local = L;
+    type Index = N;
+}
+
+/// What a planner by name is made from.
+pub(crate) struct Given<'c, 's, T: Types<'c>> {
+    team: Team<'c, T::Space, T::Local>,
+    /// An empty index.
+    index: T::Index,
+    /// All parameters that are set; the planner has parameters of these names.
+    pub(crate) settings: &'s Settings,
+    /// The space.
+    pub(crate) space: &'c T::Space,
+    geometry: Option<AnyGeometry<'c, T::State>>,
+}
+
+/// A planner by name, or why there is none.
+pub(crate) type Made<'c, T> =
+    Result<AnyPlanner<'c, <T as Types<'c>>::State, <T as Types<'c>>::Edge>, BuildError>;
+
+/// Makes one kind of planner.
+pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
+
+impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
+    /// To make a planner of.
+    pub(crate) fn new(
+        mut team: Team<'c, T::Space, T::Local>,
+        index: T::Index,
+        settings: &'s Settings,
+    ) -> Self {
+        let (space, geometry) = (team.problem.space(), team.problem.take_obstacles().geometry);
+        Self { team, index, settings, space, geometry }
+    }
+
+    /// What obstacles look like, for `planner`, which cannot do without.
+    ///
+    /// # Errors
+    /// When the problem does not know.
+    pub(crate) fn geometry(&self, planner: &'static str) -> Result<AnyGeometry<'c, T::State>, BuildError> {
+        self.geometry.clone().ok_or(BuildError::NoGeometry { planner })
+    }
+
+    /// The planner of a recipe.
+    pub(crate) fn made<G, K, Q>(self, recipe: Recipe<G, K, Q>) -> Made<'c, T>
+    where
+        G: NodeGenerator<T::Space, T::Local> + Clone + Send + Sync + 'c,
+        K: Connector<T::Space, T::Local> + Send + Sync + 'c,
+        Q: Query<T::Space, T::Local> + Send + 'c,
+    {
+        Ok(self.team.made(self.index, recipe))
+    }
+}

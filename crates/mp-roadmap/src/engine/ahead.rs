@@ -1,0 +1,177 @@
+//! Attempts made ahead of their turn, on several threads, without changing what comes of them.
+//!
+//! What takes time is asking the local planner. Its answers do not depend on when it is asked; so threads ask
+//! what the attempts to come will probably ask, of the roadmap as it is, and keep the answers. The attempts are
+//! then made one after the other as ever, and take the answers that are there.
+
+use super::{Builder, Candidate, Connector, NodeGenerator, Roadmap, Steer};
+use mp_cspace::{Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers};
+use std::collections::VecDeque;
+use std::fmt;
+use std::ops::Range;
+
+/// What the local planner answered, by the node that a motion leads from.
+pub(crate) type Answers<S, E> = Vec<(NodeId, Option<Motion<S, E>>)>;
+
+/// The candidates of an attempt, and what was asked about each.
+pub(crate) type Foreseen<S, E> = Vec<(Candidate<S, E>, Answers<S, E>)>;
+
+/// What a connector has to look ahead with: the roadmap as it is, to which candidates are not added.
+#[allow(missing_debug_implementations)] // verifiers need not have any
+pub struct Foreseeing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
+    map: &'a Roadmap<C::State, L::Edge>,
+    index: &'a N,
+    steer: &'a mut Steer<'c, C, L>,
+    q: &'a C::State,
+    answers: Answers<C::State, L::Edge>,
+}
+
+impl<C, L, N> Foreseeing<'_, '_, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+{
+    /// The `k` nodes nearest to the candidate in order of distance, none farther than `radius`.
+    #[must_use]
+    pub fn near(&self, k: usize, radius: f64) -> Vec<Hit> {
+        let mut near = Vec::new();
+        self.index.k_nearest(self.steer.space(), self.map.states(), self.q, k, &mut near);
+        near.retain(|hit| hit.distance <= radius);
+        near
+    }
+
+    /// The component of a node.
+    #[must_use]
+    pub fn component(&self, id: NodeId) -> NodeId {
+        self.map.component_now(id)
+    }
+
+    /// How many nodes there are.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.map.len()
+    }
+
+    /// Asks for the motion from a node to the candidate, and keeps the answer. Whether there is one.
+    pub fn reach(&mut self, from: NodeId) -> bool {
+        let motion = self.steer.reach(self.map.state(from), self.q);
+        let found = motion.is_some();
+        self.answers.push((from, motion));
+        found
+    }
+}
+
+/// What the threads look at: the roadmap and its neighbours, the policies, the seed, and which attempts.
+pub(crate) struct Look<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+    pub(crate) map: &'a Roadmap<C::State, L::Edge>,
+    pub(crate) index: &'a N,
+    pub(crate) generate: &'a G,
+    pub(crate) connect: &'a K,
+    pub(crate) seed: u64,
+    pub(crate) attempts: Range<u64>,
+}
+
+/// What was made of some attempts, in order.
+type Made<C, L> = Vec<Foreseen<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
+
+type Work<'c, C, L, G, K, N> = Box<dyn FnMut(Look<'_, C, L, G, K, N>) -> Made<C, L> + Send + 'c>;
+
+/// Threads that make attempts ahead, and what they have made.
+pub(crate) struct Ahead<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+    pub(crate) ready: VecDeque<Foreseen<C::State, L::Edge>>,
+    pub(crate) work: Option<Work<'c, C, L, G, K, N>>,
+    /// Most attempts made ahead.
+    pub(crate) most: u64,
+}
+
+impl<C: Space, L: LocalPlanner<C::State>, G, K, N> Default for Ahead<'_, C, L, G, K, N> {
+    fn default() -> Self {
+        Self { ready: VecDeque::new(), work: None, most: 0 }
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Ahead<'_, C, L, G, K, N> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Ahead")
+            .field("ready", &self.ready.len())
+            .field("most", &self.most)
+            .finish_non_exhaustive()
+    }
+}
+
+/// One thread's part of the work.
+struct Hand<'c, C: Space, L: LocalPlanner<C::State>, G> {
+    steer: Steer<'c, C, L>,
+    generate: Option<G>,
+    attempts: Range<u64>,
+    made: Vec<Foreseen<C::State, L::Edge>>,
+}
+
+/// Attempts that one hand makes at a time.
+const SHARE: u64 = 16;
+
+impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
+where
+    C: Space,
+    C::State: 'c,
+    L: LocalPlanner<C::State, Edge: Reversible> + Send + 'c,
+    L::Edge: 'c,
+    G: NodeGenerator<C, L> + Clone + Send + Sync + 'c,
+    K: Connector<C, L> + Sync,
+    N: NearestNeighbors<C> + Sync,
+{
+    /// Builds on several threads, where the generator has [independent](NodeGenerator::independent) attempts.
+    /// Each of `hands`, which are like the one that the builder was made with, makes some attempts at a
+    /// time; give at least as many as there are threads. The roadmap is the same to the bit as without,
+    /// whatever their number and that of the threads.
+    #[must_use]
+    pub fn on(mut self, workers: Workers, hands: impl IntoIterator<Item = Steer<'c, C, L>>) -> Self {
+        let none = 0..0;
+        let hands = hands.into_iter().map(|steer| Hand {
+            steer,
+            generate: None::<G>,
+            attempts: none.clone(),
+            made: Vec::new(),
+        });
+        let mut hands: Vec<_> = hands.collect();
+        self.ahead.most = SHARE * hands.len() as u64;
+        self.ahead.work = Some(Box::new(move |look: Look<'_, C, L, G, K, N>| {
+            let mut next = look.attempts.start;
+            for hand in &mut hands {
+                let end = (next + SHARE).min(look.attempts.end);
+                hand.attempts = next..end;
+                hand.generate = Some(look.generate.clone());
+                next = end;
+            }
+            workers.each(&mut hands, |hand| hand.work(&look));
+            hands.iter_mut().flat_map(|hand| hand.made.drain(..)).collect()
+        }));
+        self
+    }
+}
+
+impl<C, L, G> Hand<'_, C, L, G>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    G: NodeGenerator<C, L>,
+{
+    fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, look: &Look<'_, C, L, G, K, N>) {
+        let Some(generate) = &mut self.generate else { return };
+        for attempt in self.attempts.clone() {
+            let mut rng = Rng::stream(look.seed, attempt);
+            let mut candidates = Vec::new();
+            generate.generate(attempt, look.map, &mut self.steer, &mut rng, &mut candidates);
+            let foreseen = candidates.into_iter().map(|candidate| {
+                let (map, index) = (look.map, look.index);
+                let q = &candidate.state;
+                let mut ahead = Foreseeing { map, index, steer: &mut self.steer, q, answers: Vec::new() };
+                look.connect.foresee(&mut ahead);
+                let answers = ahead.answers;
+                (candidate, answers)
+            });
+            self.made.push(foreseen.collect());
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! Many queries to one roadmap.
+
+use super::forest::Forest;
+use super::planner::verify;
+use super::{AStar, Builder, LinkState, Query, Roadmap, Steer, Way};
+use mp_cspace::shortest::shortest_paths;
+use mp_cspace::{
+    BuildError, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible, Space,
+};
+use petgraph::graph::EdgeIndex;
+
+/// Why a query has no answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unanswered {
+    /// An end is outside the space.
+    #[error("the {0} is outside the space")]
+    Outside(Endpoint),
+    /// An end is not free, or too close to something for the local planner.
+    #[error("the {0} is not free")]
+    NotFree(Endpoint),
+    /// No node near an end can be connected to it: the roadmap needs more nodes there.
+    #[error("no node of the roadmap near the {0} can be connected to it")]
+    Unreached(Endpoint),
+    /// Both ends are connected, to different components: the roadmap needs more nodes between.
+    #[error("start and goal are connected to different components of the roadmap")]
+    Apart,
+}
+
+/// A roadmap that answers queries; it does not grow by them.
+///
+/// To answer, start and goal are connected to one of the nodes nearest to them, in order of distance, such
+/// that both are in one component, and a shortest way between is looked for. The path is verified; edges
+/// that passed once are not verified again, and one that fails is blocked for good. A direct motion from
+/// start to goal is tried first.
+#[derive(Debug)]
+pub struct Answers<'c, C: Space, L: LocalPlanner<C::State>, N> {
+    steer: Steer<'c, C, L>,
+    map: Roadmap<C::State, L::Edge>,
+    index: N,
+    star: AStar,
+    forest: Forest,
+    neighbours: usize,
+    near: [Vec<Hit>; 2],
+}
+
+impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    /// What was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
+    #[must_use]
+    pub fn into_answers(self, neighbours: usize) -> Answers<'c, C, L, N> {
+        let Self { steer, map, index, .. } = self;
+        let (star, forest) = (AStar::new(), Forest::default());
+        Answers { steer, map, index, star, forest, neighbours, near: Default::default() }
+    }
+}
+
+/// A motion from one state to another, and the states.
+type Hop<S, E> = (S, Motion<S, E>);
+
+/// Paths and their lengths.
+pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;
+
+/// How the ends of a path hang on the roadmap.
+struct Joined<S, E> {
+    first: Hop<S, E>,
+    last: Hop<S, E>,
+    nodes: [NodeId; 2],
+}
+
+impl<'c, C, L, N> Answers<'c, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+{
+    /// Of a roadmap made before, with an empty index. Each end of a query is connected to one of its
+    /// `neighbours` nearest nodes.
+    ///
+    /// # Errors
+    /// When a node is outside the space, as of a roadmap for another one.
+    pub fn new(
+        steer: Steer<'c, C, L>,
+        map: Roadmap<C::State, L::Edge>,
+        mut index: N,
+        neighbours: usize,
+    ) -> Result<Self, BuildError> {
+        map.fill(steer.space(), &mut index)?;
+        let (star, forest) = (AStar::new(), Forest::default());
+        Ok(Self { steer, map, index, star, forest, neighbours, near: Default::default() })
+    }
+
+    /// Verifies all edges now, in both directions, so that no query waits for it; those that fail are blocked. How many
+    /// did. Edges that were only guessed are checked first.
+    ///
+    /// A planner of one path is better off with the verification of that path; of thousands each edge is on
+    /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
+    pub fn verify(&mut self) -> usize {
+        let before = self.map.blocked();
+        let edges: Vec<EdgeIndex> = self.map.graph().edge_indices().collect();
+        for edge in edges {
+            if self.map.graph()[edge].state == LinkState::Blocked {
+                continue;
+            }
+            let [a, b] = self.map.ends(edge);
+            for nodes in [vec![a, b], vec![b, a]] {
+                let way = Way { nodes, edges: vec![edge], length: self.map.graph()[edge].length };
+                if !self.star.check(&mut self.map, &mut self.steer, &way)
+                    || !verify(&mut self.map, &mut self.steer, &way)
+                {
+                    break;
+                }
+            }
+        }
+        self.map.blocked() - before
+    }
+
+    /// The roadmap.
+    #[must_use]
+    pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
+        &self.map
+    }
+
+    /// The roadmap alone, with what was learnt about its edges.
+    #[must_use]
+    pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
+        self.map
+    }
+
+    /// Motions asked of the local planner so far.
+    #[must_use]
+    pub fn motions(&self) -> u64 {
+        self.steer.motions
+    }
+
+    /// A verified path from `start` to `goal`.
+    ///
+    /// # Errors
+    /// When there is none in the roadmap, with the reason.
+    pub fn answer(
+        &mut self,
+        start: &C::State,
+        goal: &C::State,
+    ) -> Result<Path<C::State, L::Edge>, Unanswered> {
+        self.prepare(start, goal)?;
+        if let Some(motion) = self.steer.reach(start, goal)
+            && self.steer.passes(start, &motion.edge, goal)
+        {
+            return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
+        }
+        loop {
+            let ends = self.join(start, goal)?;
+            let way = self.way(ends.nodes);
+            // Without a way a lazy search has blocked what connected the ends.
+            if let Some(way) = way
+                && verify(&mut self.map, &mut self.steer, &way)
+                && let Some(path) = self.map.path(&way)
+            {
+                return Ok(whole(&ends, path));
+            }
+        }
+    }
+
+    /// A shortest way between two nodes, all of whose edges have motions.
+    fn way(&mut self, [from, to]: [NodeId; 2]) -> Option<Way> {
+        if !self.forest.holds(&mut self.map) {
+            return self.star.search(&mut self.map, &mut self.steer, &[(from, 0.0)], &[(to, 0.0)]);
+        }
+        let way = self.forest.way(&self.map, from, to)?;
+        self.star.check(&mut self.map, &mut self.steer, &way).then_some(way)
+    }
+
+    /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin and
+    /// end with the same motions, and visit no node twice (Yen 1971). A roadmap without cycles has only
+    /// one.
+    ///
+    /// Takes time by the size of the roadmap, and a search for each node of each path.
+    ///
+    /// # Errors
+    /// When there is none in the roadmap, with the reason.
+    pub fn alternatives(
+        &mut self,
+        start: &C::State,
+        goal: &C::State,
+        k: usize,
+    ) -> Result<Listed<C::State, L::Edge>, Unanswered> {
+        self.prepare(start, goal)?;
+        loop {
+            let ends = self.join(start, goal)?;
+            if let Some(ways) = self.ways(ends.nodes, k) {
+                let more = ends.first.1.cost + ends.last.1.cost;
+                let paths = ways.iter().filter_map(|way| Some((self.map.path(way)?, way.length + more)));
+                return Ok(paths.map(|(path, length)| (whole(&ends, path), length)).collect());
+            }
+        }
+    }
+
+    /// The shortest ways between two nodes, all of whose edges are verified; `None` when some edge had to be
+    /// blocked on the way.
+    fn ways(&mut self, [from, to]: [NodeId; 2], k: usize) -> Option<Vec<Way>> {
+        let part = self.map.component(from);
+        let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.map.len()];
+        for node in 0..self.map.len() as NodeId {
+            if self.map.component(node) == part {
+                let out = &mut arcs[node as usize];
+                out.extend(self.map.links(node).map(|(_, end, link)| (end, link.length)));
+                out.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+                out.dedup_by_key(|arc| arc.0);
+            }
+        }
+        let mut ways = Vec::new();
+        for (length, nodes) in shortest_paths(&arcs, from, to, k) {
+            let edges =
+                nodes.windows(2).map(|pair| self.shortest_edge(pair[0], pair[1])).collect::<Option<_>>()?;
+            let way = Way { nodes, edges, length };
+            if !self.star.check(&mut self.map, &mut self.steer, &way) {
+                return None;
+            }
+            if !verify(&mut self.map, &mut self.steer, &way) {
+                return None;
+            }
+            ways.push(way);
+        }
+        Some(ways)
+    }
+
+    fn shortest_edge(&self, from: NodeId, to: NodeId) -> Option<EdgeIndex> {
+        let between = self.map.links(from).filter(|(_, end, _)| *end == to);
+        let shortest = between.min_by(|a, b| a.2.length.total_cmp(&b.2.length).then(a.0.cmp(&b.0)));
+        shortest.map(|(edge, ..)| edge)
+    }
+
+    /// Looks at the ends, and for the nodes nearest to them.
+    fn prepare(&mut self, start: &C::State, goal: &C::State) -> Result<(), Unanswered> {
+        for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
+            if !self.steer.space().contains(q) {
+                return Err(Unanswered::Outside(endpoint));
+            }
+            if !self.steer.admits(q) {
+                return Err(Unanswered::NotFree(endpoint));
+            }
+            let (space, states) = (self.steer.space(), self.map.states());
+            self.index.k_nearest(space, states, q, self.neighbours, &mut self.near[i]);
+        }
+        Ok(())
+    }
+
+    /// Connects both ends to the same component. Neighbours that do not do are dropped for the rest of
+    /// the query.
+    fn join(&mut self, start: &C::State, goal: &C::State) -> Result<Joined<C::State, L::Edge>, Unanswered> {
+        let mut reached = [false; 2];
+        loop {
+            let [from, to] = &self.near;
+            let shares = |hit: &&Hit, map: &mut Roadmap<_, _>| {
+                let part = map.component(hit.id);
+                to.iter().any(|other| map.component(other.id) == part)
+            };
+            let Some(&first) = from.iter().find(|hit| shares(hit, &mut self.map)) else {
+                return Err(self.why(start, goal, reached));
+            };
+            let Some(ahead) = self.hop(start, first.id, false) else {
+                self.near[0].retain(|hit| hit.id != first.id);
+                continue;
+            };
+            reached[0] = true;
+            let part = self.map.component(first.id);
+            while let Some(&last) = self.near[1].iter().find(|hit| self.map.component(hit.id) == part) {
+                if let Some(behind) = self.hop(goal, last.id, true) {
+                    return Ok(Joined { first: ahead, last: behind, nodes: [first.id, last.id] });
+                }
+                self.near[1].retain(|hit| hit.id != last.id);
+            }
+        }
+    }
+
+    /// Why the ends cannot be joined.
+    fn why(&mut self, start: &C::State, goal: &C::State, reached: [bool; 2]) -> Unanswered {
+        for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
+            let near = self.near[i].clone();
+            if !reached[i] && !near.iter().any(|hit| self.hop(q, hit.id, i == 1).is_some()) {
+                return Unanswered::Unreached(endpoint);
+            }
+        }
+        Unanswered::Apart
+    }
+
+    /// A verified motion from an end to a node, or with `back` from the node to it.
+    fn hop(&mut self, q: &C::State, node: NodeId, back: bool) -> Option<Hop<C::State, L::Edge>> {
+        let (from, to) = if back { (self.map.state(node), q) } else { (q, self.map.state(node)) };
+        let motion = self.steer.reach(from, to)?;
+        self.steer.passes(from, &motion.edge, to).then(|| (from.clone(), motion))
+    }
+}
+
+/// A path with what leads to its beginning and on from its end.
+fn whole<S: Clone, E: Clone>(ends: &Joined<S, E>, path: Path<S, E>) -> Path<S, E> {
+    let (mut states, mut edges) = (vec![ends.first.0.clone()], vec![ends.first.1.edge.clone()]);
+    states.extend(path.states);
+    edges.extend(path.edges);
+    states.push(ends.last.1.end.clone());
+    edges.push(ends.last.1.edge.clone());
+    Path { states, edges }
+}

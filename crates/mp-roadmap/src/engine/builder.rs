@@ -1,0 +1,258 @@
+//! The one loop that builds roadmaps.
+
+use super::ahead::{Ahead, Answers, Look};
+use super::{Candidate, Connector, Growing, NodeGenerator, Roadmap, Steer};
+use mp_cspace::{
+    BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
+    Stop, StopReason,
+};
+use rand::RngExt;
+use std::ops::Range;
+
+/// One variant of the family: a policy for each slot.
+#[derive(Clone, Copy, Debug)]
+pub struct Recipe<G, K, Q> {
+    /// What configurations are tried as nodes.
+    pub generate: G,
+    /// Which become nodes, and with which edges.
+    pub connect: K,
+    /// How ways are looked for.
+    pub query: Q,
+    /// When ways are looked for.
+    pub pace: Pace,
+    /// Whether stepping on after a path is found pays: only better ones are returned then.
+    pub improves: bool,
+}
+
+/// When a planner looks for a way, once start and goal are in the same component.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pace {
+    /// Not before there are so many nodes; but straight from start to goal at once.
+    pub first: usize,
+    /// Then whenever there are so many more.
+    pub more: usize,
+}
+
+/// Builds a roadmap: attempt after attempt, generate and connect.
+///
+/// Attempt i draws from stream (seed, i), where the seed is the first number drawn from the generator of
+/// the first step.
+#[derive(Debug)]
+pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+    pub(crate) steer: Steer<'c, C, L>,
+    pub(crate) map: Roadmap<C::State, L::Edge>,
+    pub(crate) index: N,
+    generate: G,
+    connect: K,
+    seed: Option<u64>,
+    attempts: u64,
+    candidates: Vec<Candidate<C::State, L::Edge>>,
+    pub(crate) ahead: Ahead<'c, C, L, G, K, N>,
+}
+
+impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    G: NodeGenerator<C, L>,
+    K: Connector<C, L>,
+    N: NearestNeighbors<C>,
+{
+    /// With no nodes yet; `index` is empty.
+    pub fn new(steer: Steer<'c, C, L>, generate: G, connect: K, index: N) -> Self {
+        let map = Roadmap::new();
+        Self {
+            steer,
+            map,
+            index,
+            generate,
+            connect,
+            seed: None,
+            attempts: 0,
+            candidates: Vec::new(),
+            ahead: Ahead::default(),
+        }
+    }
+
+    /// Goes on with a roadmap there is already, instead of none.
+    ///
+    /// # Errors
+    /// When a state of it is outside the space.
+    pub fn resume(mut self, map: Roadmap<C::State, L::Edge>) -> Result<Self, BuildError> {
+        self.replace(map)?;
+        Ok(self)
+    }
+
+    pub(crate) fn replace(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
+        map.fill(self.steer.space(), &mut self.index)?;
+        self.map = map;
+        self.connect.resumed(&self.map);
+        self.ahead.ready.clear();
+        Ok(())
+    }
+
+    /// Takes in another roadmap of the same space and scene: its nodes and edges as they are, and then an
+    /// edge from each of its nodes to the nearest of the `neighbours` nearest that is in another component
+    /// and can be connected. What was verified of it is verified again when it is used.
+    ///
+    /// # Errors
+    /// When a state of it is outside the space.
+    pub fn merge(
+        &mut self,
+        other: &Roadmap<C::State, L::Edge>,
+        neighbours: usize,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Result<(), BuildError> {
+        other.check_within(self.steer.space())?;
+        let before = self.map.len() as NodeId;
+        self.map.append(other);
+        for id in before..self.map.len() as NodeId {
+            self.index.inserted(self.steer.space(), self.map.states(), id);
+            observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
+        }
+        let mut near = Vec::new();
+        let mut growing = Growing {
+            map: &mut self.map,
+            index: &mut self.index,
+            steer: &mut self.steer,
+            observer,
+            answers: Vec::new(),
+        };
+        for id in before..growing.map.len() as NodeId {
+            let q = growing.map.state(id).clone();
+            growing.near(&q, neighbours.saturating_add(1), f64::INFINITY, &mut near);
+            // At most one edge for each: enough to join all components that can be.
+            for hit in near.iter().filter(|hit| hit.id != id) {
+                if !growing.map.connected(hit.id, id) && growing.try_link(hit.id, id) {
+                    break;
+                }
+            }
+        }
+        self.connect.resumed(&self.map);
+        Ok(())
+    }
+
+    /// The roadmap.
+    #[must_use]
+    pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
+        &self.map
+    }
+
+    /// The roadmap, to ask for its components.
+    pub fn map_mut(&mut self) -> &mut Roadmap<C::State, L::Edge> {
+        &mut self.map
+    }
+
+    /// The connector.
+    #[must_use]
+    pub fn connector(&self) -> &K {
+        &self.connect
+    }
+
+    /// The roadmap alone.
+    #[must_use]
+    pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
+        self.map
+    }
+
+    /// One attempt: generate, and connect what comes of it. The ids of the nodes that were added.
+    pub fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Range<NodeId> {
+        let seed = *self.seed.get_or_insert_with(|| rng.random());
+        let before = self.map.len() as NodeId;
+        self.look_ahead(seed);
+        if let Some(foreseen) = self.ahead.ready.pop_front() {
+            self.attempts += 1;
+            let mut last = None;
+            for (candidate, answers) in foreseen {
+                observer.on(Event::Sampled(&candidate.state));
+                last = self.take(candidate, answers, last, observer);
+            }
+            return before..self.map.len() as NodeId;
+        }
+        let mut candidates = std::mem::take(&mut self.candidates);
+        let mut stream = Rng::stream(seed, self.attempts);
+        self.generate.generate(self.attempts, &self.map, &mut self.steer, &mut stream, &mut candidates);
+        self.attempts += 1;
+        let mut last = None;
+        for candidate in candidates.drain(..) {
+            observer.on(Event::Sampled(&candidate.state));
+            last = self.take(candidate, Vec::new(), last, observer);
+        }
+        self.candidates = candidates;
+        before..self.map.len() as NodeId
+    }
+
+    /// Has the threads make the next attempts, where there are any and none is left from before.
+    fn look_ahead(&mut self, seed: u64) {
+        let Some(work) = &mut self.ahead.work else { return };
+        let most = self.generate.independent(&self.map).min(self.ahead.most);
+        if !self.ahead.ready.is_empty() || most < 2 {
+            return;
+        }
+        self.map.refresh();
+        let attempts = self.attempts..self.attempts + most;
+        let (map, index) = (&self.map, &self.index);
+        let look = Look { map, index, generate: &self.generate, connect: &self.connect, seed, attempts };
+        self.ahead.ready = work(look).into();
+    }
+
+    /// Connects a candidate, of which the local planner has answered some questions already.
+    fn take(
+        &mut self,
+        mut candidate: Candidate<C::State, L::Edge>,
+        answers: Answers<C::State, L::Edge>,
+        last: Option<NodeId>,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<NodeId> {
+        if let Some(came) = &mut candidate.came {
+            came.from = Some(came.from.or(last)?);
+        }
+        let mut growing =
+            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer, answers };
+        self.connect.connect(candidate, &mut growing)
+    }
+
+    /// Adds a configuration whatever the connector thinks of it: an end of a path.
+    pub fn adopt(
+        &mut self,
+        candidate: Candidate<C::State, L::Edge>,
+        observer: &mut dyn Observer<C::State>,
+    ) -> NodeId {
+        let mut growing = Growing {
+            map: &mut self.map,
+            index: &mut self.index,
+            steer: &mut self.steer,
+            observer,
+            answers: Vec::new(),
+        };
+        self.connect.adopt(candidate, &mut growing)
+    }
+
+    /// Builds until stopped. Call again to go on.
+    pub fn build(
+        &mut self,
+        rng: &mut Rng,
+        stop: &mut dyn Stop,
+        observer: &mut dyn Observer<C::State>,
+    ) -> StopReason {
+        loop {
+            let progress = self.progress();
+            if let Some(reason) = stop.check(&progress) {
+                return reason;
+            }
+            if progress.exhausted {
+                return StopReason::Exhausted;
+            }
+            observer.on(Event::Iteration(progress));
+            self.step(rng, observer);
+        }
+    }
+
+    /// What has been done so far.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let mut progress = Progress::new(self.attempts, self.map.len(), self.steer.motions);
+        (progress.rejected, progress.exhausted) = (self.steer.rejected, self.connect.exhausted());
+        progress
+    }
+}

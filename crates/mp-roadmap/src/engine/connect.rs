@@ -1,0 +1,231 @@
+//! How candidates become nodes, and which edges they get.
+
+use super::ahead::{Answers, Foreseeing};
+use super::{Came, Candidate, Roadmap, Steer, Tag};
+use mp_cspace::{
+    BuildError, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible, Space,
+};
+
+/// What a connector works with: the roadmap, the neighbours of a configuration, the local planner.
+#[allow(missing_debug_implementations)] // observers have none
+pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
+    pub(crate) map: &'a mut Roadmap<C::State, L::Edge>,
+    pub(crate) index: &'a mut N,
+    pub(crate) steer: &'a mut Steer<'c, C, L>,
+    pub(crate) observer: &'a mut dyn Observer<C::State>,
+    /// Motions to the candidate that were asked for ahead.
+    pub(crate) answers: Answers<C::State, L::Edge>,
+}
+
+impl<'c, C, L, N> Growing<'_, 'c, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+{
+    /// The space.
+    #[must_use]
+    pub fn space(&self) -> &'c C {
+        self.steer.space()
+    }
+
+    /// The roadmap.
+    pub fn map(&mut self) -> &mut Roadmap<C::State, L::Edge> {
+        self.map
+    }
+
+    /// How it moves.
+    pub fn steer(&mut self) -> &mut Steer<'c, C, L> {
+        self.steer
+    }
+
+    /// The `k` nodes nearest to `q` in order of distance, none farther than `radius`, into `out`.
+    pub fn near(&self, q: &C::State, k: usize, radius: f64, out: &mut Vec<Hit>) {
+        let (space, states) = (self.steer.space(), self.map.states());
+        self.index.k_nearest(space, states, q, k, out);
+        out.retain(|hit| hit.distance <= radius);
+    }
+
+    /// The motion from a node to `q`, if the local planner has one. Counts as an attempt of the node.
+    pub fn reach(&mut self, from: NodeId, q: &C::State) -> Option<Motion<C::State, L::Edge>> {
+        let motion = self.ask(from, q);
+        self.map.tried(from, motion.is_none());
+        motion
+    }
+
+    /// What the local planner says of the motion from a node to the candidate, now or ahead.
+    fn ask(&mut self, from: NodeId, q: &C::State) -> Option<Motion<C::State, L::Edge>> {
+        match self.answers.iter_mut().find(|(node, _)| *node == from) {
+            Some((_, answer)) => {
+                let motion = answer.take();
+                self.steer.answered(self.map.state(from), motion, q)
+            }
+            None => self.steer.reach(self.map.state(from), q),
+        }
+    }
+
+    /// Adds a candidate as a node, with no edge but the one it was [come to](Candidate::came) by.
+    pub fn add(&mut self, candidate: Candidate<C::State, L::Edge>) -> NodeId {
+        let tag = Tag { kind: candidate.kind, obstacle: candidate.obstacle, ..Tag::default() };
+        let id = self.map.add(candidate.state, tag);
+        self.index.inserted(self.steer.space(), self.map.states(), id);
+        self.observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
+        if let Some(Came { from: Some(from), motion }) = candidate.came {
+            self.link(from, id, motion);
+        }
+        id
+    }
+
+    /// Adds the edge of a motion from one node to another.
+    pub fn link(&mut self, from: NodeId, to: NodeId, motion: Motion<C::State, L::Edge>) {
+        self.map.link(from, to, motion.edge, motion.cost);
+        self.observer.on(Event::Linked { from, to });
+    }
+
+    /// Adds an edge between two nodes without asking the local planner.
+    pub fn guess(&mut self, from: NodeId, to: NodeId, length: f64) {
+        self.map.guess(from, to, length);
+        self.observer.on(Event::Linked { from, to });
+    }
+
+    /// Tries to connect a node to another: counts as an attempt of both. Whether there is an edge now.
+    pub fn try_link(&mut self, from: NodeId, to: NodeId) -> bool {
+        let q = self.map.state(to).clone();
+        let motion = self.ask(from, &q);
+        let failed = motion.is_none();
+        self.map.tried(from, failed);
+        self.map.tried(to, failed);
+        if let Some(motion) = motion {
+            self.link(from, to, motion);
+        }
+        !failed
+    }
+}
+
+/// A slot: which candidates become nodes, and with which edges. It may refuse.
+pub trait Connector<C: Space, L: LocalPlanner<C::State>> {
+    /// Takes a candidate in by [`Growing::add`], or refuses it.
+    fn connect<N: NearestNeighbors<C>>(
+        &mut self,
+        candidate: Candidate<C::State, L::Edge>,
+        growing: &mut Growing<'_, '_, C, L, N>,
+    ) -> Option<NodeId>;
+
+    /// Takes in what must not be refused: an end of the path.
+    fn adopt<N: NearestNeighbors<C>>(
+        &mut self,
+        candidate: Candidate<C::State, L::Edge>,
+        growing: &mut Growing<'_, '_, C, L, N>,
+    ) -> NodeId;
+
+    /// Asks for the motions that connecting a candidate will probably ask for. What it does not ask for
+    /// ahead is asked for later; so nothing depends on it but the time.
+    fn foresee<N: NearestNeighbors<C>>(&self, _ahead: &mut Foreseeing<'_, '_, C, L, N>) {}
+
+    /// Goes on with a roadmap that it did not connect, or not all of it.
+    fn resumed(&mut self, _map: &Roadmap<C::State, L::Edge>) {}
+
+    /// Whether nothing more is to be gained.
+    fn exhausted(&self) -> bool {
+        false
+    }
+}
+
+/// How far and how many neighbours are tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reachable {
+    /// At most so many; 1 or more.
+    pub neighbours: usize,
+    /// None farther, in the metric of the space; infinite for no limit.
+    pub radius: f64,
+    /// Also those already connected, which makes cycles: shorter paths, for more motions.
+    pub cycles: bool,
+}
+
+impl Reachable {
+    /// # Errors
+    /// When there are no neighbours, or the radius is not positive.
+    pub fn check(self) -> Result<Self, BuildError> {
+        BuildError::count_within("neighbours", self.neighbours as u64, 1, 1_000_000)?;
+        if self.radius.is_nan() || self.radius <= 0.0 {
+            let range = "positive".to_owned();
+            return Err(BuildError::OutOfRange { name: "radius", value: self.radius, range });
+        }
+        Ok(self)
+    }
+}
+
+/// Every candidate becomes a node, and is connected to its nearest neighbours in order of distance.
+#[derive(Clone, Debug)]
+pub struct Nearest {
+    pub(crate) within: Reachable,
+    near: Vec<Hit>,
+    /// Edges are not checked.
+    lazy: bool,
+}
+
+impl Nearest {
+    /// # Errors
+    /// When there are no neighbours, or the radius is not positive.
+    pub fn new(within: Reachable) -> Result<Self, BuildError> {
+        Ok(Self { within: within.check()?, near: Vec::new(), lazy: false })
+    }
+
+    /// The same, but edges are not checked before a way leads along them, and cycles are kept.
+    ///
+    /// # Errors
+    /// When there are no neighbours, or the radius is not positive.
+    pub fn unchecked(within: Reachable) -> Result<Self, BuildError> {
+        let within = Reachable { cycles: true, ..within }.check()?;
+        Ok(Self { within, near: Vec::new(), lazy: true })
+    }
+}
+
+impl<C, L> Connector<C, L> for Nearest
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    fn connect<N: NearestNeighbors<C>>(
+        &mut self,
+        candidate: Candidate<C::State, L::Edge>,
+        growing: &mut Growing<'_, '_, C, L, N>,
+    ) -> Option<NodeId> {
+        Some(self.adopt(candidate, growing))
+    }
+
+    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Foreseeing<'_, '_, C, L, N>) {
+        if self.lazy {
+            return;
+        }
+        let mut joined = Vec::new();
+        for hit in ahead.near(self.within.neighbours, self.within.radius) {
+            let part = ahead.component(hit.id);
+            if (self.within.cycles || !joined.contains(&part)) && ahead.reach(hit.id) {
+                joined.push(part);
+            }
+        }
+    }
+
+    fn adopt<N: NearestNeighbors<C>>(
+        &mut self,
+        candidate: Candidate<C::State, L::Edge>,
+        growing: &mut Growing<'_, '_, C, L, N>,
+    ) -> NodeId {
+        let Reachable { neighbours, radius, cycles } = self.within;
+        growing.near(&candidate.state, neighbours, radius, &mut self.near);
+        let id = growing.add(candidate);
+        for hit in &self.near {
+            if self.lazy {
+                if !growing.map().has_link(hit.id, id) {
+                    growing.guess(hit.id, id, hit.distance);
+                }
+                continue;
+            }
+            if !growing.map().connected(hit.id, id) || (cycles && !growing.map().has_link(hit.id, id)) {
+                growing.try_link(hit.id, id);
+            }
+        }
+        id
+    }
+}

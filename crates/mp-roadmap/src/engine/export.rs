@@ -1,0 +1,88 @@
+//! Roadmaps for other programs: GraphML and DOT.
+
+use super::{LinkState, Roadmap};
+use mp_cspace::Numbers;
+use petgraph::dot::{Config, Dot};
+use petgraph::visit::EdgeRef;
+use std::fmt::Write;
+
+impl<S: Numbers, E: std::fmt::Debug> Roadmap<S, E> {
+    /// The numbers of a state with a space between them.
+    fn written(&self, index: usize) -> String {
+        let mut numbers = Vec::new();
+        self.states()[index].write(&mut numbers);
+        let mut text = String::new();
+        for (i, x) in numbers.iter().enumerate() {
+            let _ = write!(text, "{}{x}", if i == 0 { "" } else { " " });
+        }
+        text
+    }
+
+    /// The roadmap as GraphML (Brandes et al. 2002), which Gephi, yEd, networkx and igraph read: nodes with
+    /// state, kind and obstacle, edges with length and state.
+    #[must_use]
+    pub fn to_graphml(&self) -> String {
+        let mut text = String::from(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
+             <graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n",
+        );
+        for (id, of, kind) in [
+            ("state", "node", "string"),
+            ("kind", "node", "string"),
+            ("obstacle", "node", "int"),
+            ("length", "edge", "double"),
+            ("checked", "edge", "string"),
+        ] {
+            let _ =
+                writeln!(text, "  <key id=\"{id}\" for=\"{of}\" attr.name=\"{id}\" attr.type=\"{kind}\"/>");
+        }
+        text.push_str("  <graph edgedefault=\"undirected\">\n");
+        for (i, tag) in self.graph().node_weights().enumerate() {
+            let _ = write!(text, "    <node id=\"n{i}\"><data key=\"state\">{}</data>", self.written(i));
+            let _ = write!(text, "<data key=\"kind\">{}</data>", tag.kind.name());
+            if let Some(obstacle) = tag.obstacle {
+                let _ = write!(text, "<data key=\"obstacle\">{obstacle}</data>");
+            }
+            text.push_str("</node>\n");
+        }
+        for edge in self.graph().edge_references() {
+            let (a, b, link) = (edge.source().index(), edge.target().index(), edge.weight());
+            let _ = write!(text, "    <edge source=\"n{a}\" target=\"n{b}\">");
+            let _ = writeln!(
+                text,
+                "<data key=\"length\">{}</data><data key=\"checked\">{}</data></edge>",
+                link.length,
+                word(link.state)
+            );
+        }
+        text.push_str("  </graph>\n</graphml>\n");
+        text
+    }
+
+    /// The roadmap in the DOT language of Graphviz; blocked edges dotted, unchecked ones dashed.
+    #[must_use]
+    pub fn to_dot(&self) -> String {
+        let node = |_, (id, tag): (petgraph::graph::NodeIndex, &crate::engine::Tag)| {
+            let kind = tag.kind.name();
+            format!("label=\"{}\" kind=\"{kind}\" state=\"{}\" ", id.index(), self.written(id.index()))
+        };
+        let edge = |_, edge: petgraph::graph::EdgeReference<'_, crate::engine::Link<E>>| {
+            let style = match edge.weight().state {
+                LinkState::Unchecked => "dashed",
+                LinkState::Free => "solid",
+                LinkState::Blocked => "dotted",
+            };
+            format!("len={} style={style} ", edge.weight().length)
+        };
+        let content = [Config::NodeNoLabel, Config::EdgeNoLabel];
+        format!("{:?}", Dot::with_attr_getters(self.graph(), &content, &edge, &node))
+    }
+}
+
+fn word(state: LinkState) -> &'static str {
+    match state {
+        LinkState::Unchecked => "unchecked",
+        LinkState::Free => "free",
+        LinkState::Blocked => "blocked",
+    }
+}

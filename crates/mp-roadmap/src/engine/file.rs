@@ -1,0 +1,275 @@
+//! Roadmaps in files. `docs/formats/roadmap.md` describes them.
+
+use super::{Kind, Link, LinkState, Roadmap, Tag};
+use mp_cspace::{NodeId, Numbers};
+use petgraph::visit::EdgeRef;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+const MAGIC: [u8; 8] = *b"\x89MPR\r\n\x1a\n";
+const VERSION: u32 = 1;
+/// Where there is no obstacle, or no motion.
+const NONE: u32 = u32::MAX;
+const CHECKSUM: usize = 8;
+
+/// A hash of all numbers that a scene and a robot consist of, the same on any machine: XXH3-64 of them as
+/// little-endian doubles. Meant to notice that something has changed, not to resist forgery.
+pub fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
+    let mut hash = Xxh3::new();
+    numbers.into_iter().for_each(|x| hash.update(&x.to_le_bytes()));
+    hash.digest()
+}
+
+/// Why bytes are no roadmap, or not the one wanted.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RoadmapError {
+    /// The file could not be read or written.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    /// The first eight bytes are not those of the format.
+    #[error("not a roadmap: it does not begin with the bytes 89 4d 50 52 0d 0a 1a 0a")]
+    NotARoadmap,
+    /// A version of the format that this version of the library cannot read.
+    #[error("expected version {VERSION} of the format, found {found}; build the roadmap anew")]
+    Version {
+        /// The version in the file.
+        found: u32,
+    },
+    /// The roadmap of another scene or robot.
+    #[error(
+        "made for another scene or robot: expected the fingerprint {expected:016x}, found {found:016x}; \
+        build the roadmap anew"
+    )]
+    OtherScene {
+        /// The fingerprint of scene and robot.
+        expected: u64,
+        /// The one in the file.
+        found: u64,
+    },
+    /// The bytes end too soon, or are not those that were written.
+    #[error("cut off or damaged: expected the checksum {expected:016x}, found {found:016x}")]
+    Damaged {
+        /// The checksum of the bytes.
+        expected: u64,
+        /// The checksum there is.
+        found: u64,
+    },
+    /// The checksum is right, but no roadmap of such states was ever written so.
+    #[error("byte {at}: expected {expected}")]
+    Invalid {
+        /// Where.
+        at: usize,
+        /// What would have been right.
+        expected: &'static str,
+    },
+}
+
+/// Why a file could not be saved or loaded.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {error}", path.display())]
+pub struct RoadmapFileError {
+    /// The file.
+    pub path: PathBuf,
+    /// Why.
+    pub error: RoadmapError,
+}
+
+/// Roadmaps in files.
+impl<S: Numbers, E: Numbers> Roadmap<S, E> {
+    /// The roadmap as bytes, with the fingerprint of the scene and robot it was made for: the same bytes for
+    /// the same roadmap.
+    #[must_use]
+    pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
+        let mut numbers = Vec::new();
+        if let Some(state) = self.states().first() {
+            state.write(&mut numbers);
+        }
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend(fingerprint.to_le_bytes());
+        for count in [self.len(), self.graph().edge_count(), numbers.len()] {
+            bytes.extend((count as u32).to_le_bytes());
+        }
+        let put = |bytes: &mut Vec<u8>, numbers: &[f64]| {
+            bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+        };
+        for (state, tag) in self.states().iter().zip(self.graph().node_weights()) {
+            numbers.clear();
+            state.write(&mut numbers);
+            put(&mut bytes, &numbers);
+            let kind = Kind::ALL.iter().position(|kind| *kind == tag.kind).unwrap_or(0);
+            bytes.push(kind as u8);
+            for number in [tag.obstacle.unwrap_or(NONE), tag.tried, tag.failed] {
+                bytes.extend(number.to_le_bytes());
+            }
+        }
+        for edge in self.graph().edge_references() {
+            let link = edge.weight();
+            for end in [edge.source(), edge.target()] {
+                bytes.extend((end.index() as u32).to_le_bytes());
+            }
+            bytes.extend(link.length.to_le_bytes());
+            bytes.push(match link.state {
+                LinkState::Unchecked => 0,
+                LinkState::Free => 1,
+                LinkState::Blocked => 2,
+            });
+            numbers.clear();
+            let count = link.edge.as_ref().map_or(NONE, |motion| {
+                motion.write(&mut numbers);
+                numbers.len() as u32
+            });
+            bytes.extend(count.to_le_bytes());
+            put(&mut bytes, &numbers);
+        }
+        bytes.extend(xxh3_64(&bytes).to_le_bytes());
+        bytes
+    }
+
+    /// The roadmap from what [`Roadmap::to_bytes`] gave, for the same scene and robot. Which edges the
+    /// verifier passed is not kept: they are verified again when a path leads along them.
+    ///
+    /// # Errors
+    /// When it was made for another fingerprint, or the bytes are cut off, damaged or no roadmap of
+    /// such states.
+    pub fn from_bytes(bytes: &[u8], fingerprint: u64) -> Result<Self, RoadmapError> {
+        if !bytes.starts_with(&MAGIC) {
+            return Err(RoadmapError::NotARoadmap);
+        }
+        let mut reader = Reader { bytes, at: MAGIC.len() };
+        let version = reader.u32()?;
+        if version != VERSION {
+            return Err(RoadmapError::Version { found: version });
+        }
+        let body = bytes.len().saturating_sub(CHECKSUM).max(reader.at);
+        let found = Reader { bytes, at: body }.u64()?;
+        let expected = xxh3_64(&bytes[..body]);
+        if expected != found {
+            return Err(RoadmapError::Damaged { expected, found });
+        }
+        reader.bytes = &bytes[..body];
+        let found = reader.u64()?;
+        if found != fingerprint {
+            return Err(RoadmapError::OtherScene { expected: fingerprint, found });
+        }
+        let [nodes, edges, width] = [reader.u32()?, reader.u32()?, reader.u32()?];
+        let mut map = Self::new();
+        for _ in 0..nodes {
+            let at = reader.at;
+            let state = S::read(&reader.f64s(width)?);
+            let state = state.ok_or(RoadmapError::Invalid { at, expected: "a state of this space" })?;
+            let kind = Kind::ALL.get(usize::from(reader.u8()?)).copied();
+            let kind = kind.ok_or(RoadmapError::Invalid { at: reader.at - 1, expected: "a kind of node" })?;
+            let obstacle = Some(reader.u32()?).filter(|obstacle| *obstacle != NONE);
+            map.add(state, Tag { kind, obstacle, tried: reader.u32()?, failed: reader.u32()? });
+        }
+        for _ in 0..edges {
+            let (ends, link) = reader.link(nodes)?;
+            map.insert(ends[0], ends[1], link);
+        }
+        match reader.at == body {
+            true => Ok(map),
+            false => Err(RoadmapError::Invalid { at: reader.at, expected: "the checksum" }),
+        }
+    }
+
+    /// Writes [`Roadmap::to_bytes`] to a file, in one step: to a temporary file in the same folder, then
+    /// renamed, so that nobody ever reads half of it.
+    ///
+    /// # Errors
+    /// When that cannot be done.
+    pub fn save(&self, path: impl AsRef<Path>, fingerprint: u64) -> Result<(), RoadmapFileError> {
+        let path = path.as_ref();
+        write(path, &self.to_bytes(fingerprint))
+            .map_err(|error| RoadmapFileError { path: path.to_owned(), error: error.into() })
+    }
+
+    /// Reads what [`Roadmap::save`] wrote for the same fingerprint.
+    ///
+    /// # Errors
+    /// As [`Roadmap::from_bytes`]; [`RoadmapError::Io`] when the file cannot be read.
+    pub fn load(path: impl AsRef<Path>, fingerprint: u64) -> Result<Self, RoadmapFileError> {
+        let path = path.as_ref();
+        let bytes = std::fs::read(path).map_err(RoadmapError::from);
+        bytes
+            .and_then(|bytes| Self::from_bytes(&bytes, fingerprint))
+            .map_err(|error| RoadmapFileError { path: path.to_owned(), error })
+    }
+}
+
+fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = tempfile::Builder::new().prefix(".mp-").suffix(".tmp").tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    file.persist(path)?;
+    Ok(())
+}
+
+/// Reads little-endian numbers one after another.
+struct Reader<'b> {
+    bytes: &'b [u8],
+    at: usize,
+}
+
+impl Reader<'_> {
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], RoadmapError> {
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let Some(head) = rest.first_chunk::<N>() else {
+            return Err(RoadmapError::Invalid { at: self.at, expected: "more: the file is cut off" });
+        };
+        self.at += N;
+        Ok(*head)
+    }
+
+    fn u8(&mut self) -> Result<u8, RoadmapError> {
+        Ok(self.take::<1>()?[0])
+    }
+
+    fn u32(&mut self) -> Result<u32, RoadmapError> {
+        Ok(u32::from_le_bytes(self.take()?))
+    }
+
+    fn u64(&mut self) -> Result<u64, RoadmapError> {
+        Ok(u64::from_le_bytes(self.take()?))
+    }
+
+    fn f64s(&mut self, count: u32) -> Result<Vec<f64>, RoadmapError> {
+        // No more is set aside than the bytes that are left can fill.
+        let left = (self.bytes.len() - self.at) / 8;
+        let mut numbers = Vec::with_capacity((count as usize).min(left));
+        for _ in 0..count {
+            numbers.push(f64::from_le_bytes(self.take()?));
+        }
+        Ok(numbers)
+    }
+
+    fn link<E: Numbers>(&mut self, nodes: u32) -> Result<([NodeId; 2], Link<E>), RoadmapError> {
+        let at = self.at;
+        let wrong = |expected| RoadmapError::Invalid { at, expected };
+        let ends = [self.u32()?, self.u32()?];
+        if ends[0] == ends[1] || ends.iter().any(|end| *end >= nodes) {
+            return Err(wrong("two nodes of the roadmap"));
+        }
+        let length = f64::from_le_bytes(self.take()?);
+        if !(length >= 0.0 && length.is_finite()) {
+            return Err(wrong("an edge of finite length, not negative"));
+        }
+        let state = match self.u8()? {
+            0 => LinkState::Unchecked,
+            1 => LinkState::Free,
+            2 => LinkState::Blocked,
+            _ => return Err(wrong("an edge that is unchecked, free or blocked")),
+        };
+        let edge = match self.u32()? {
+            NONE => None,
+            count => Some(E::read(&self.f64s(count)?).ok_or(wrong("a motion of this local planner"))?),
+        };
+        if edge.is_none() && state == LinkState::Free {
+            return Err(wrong("a free edge with its motion"));
+        }
+        Ok((ends, Link { edge, length, state, verified: [false; 2] }))
+    }
+}

@@ -1,0 +1,202 @@
+//! What the generators that look for obstacles by pairs of states have in common: most attempts look, some are uniform.
+
+use super::settings::{length, reachable};
+use super::{
+    AStar, Candidate, Kind, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Steer,
+};
+use mp_cspace::{
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, Problem, Reversible, Rng, Settings,
+    Space, Step,
+};
+use rand::RngExt;
+use std::fmt::Debug;
+use std::marker::PhantomData;
+
+/// How far apart the states of a pair are, and how often none is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mixing {
+    /// Standard deviation of the distance, in (0, extent of the space].
+    pub sigma: Step,
+    /// Part of the attempts that are uniform samples instead, in \[0, 1\]: where there is nothing to be near to,
+    /// only these find anything.
+    pub uniform: f64,
+}
+
+impl Mixing {
+    pub(crate) fn checked<C: Space>(&self, space: &C) -> Result<(f64, f64), BuildError> {
+        Ok((length(&sigma(""), self.sigma, space)?, part(UNIFORM, self.uniform)?))
+    }
+
+    pub(crate) fn read(self, settings: &Settings) -> Result<Self, BuildError> {
+        Ok(Self {
+            sigma: settings.step(SIGMA)?.unwrap_or(self.sigma),
+            uniform: settings.number(UNIFORM)?.unwrap_or(self.uniform),
+        })
+    }
+}
+
+const SIGMA: &str = "sigma";
+const UNIFORM: &str = "uniform";
+
+pub(crate) const fn sigma(default: &'static str) -> Parameter {
+    Parameter {
+        name: SIGMA,
+        range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
+        default,
+        doc: "standard deviation of the distance between the states of a pair",
+    }
+}
+
+pub(crate) const fn uniform(default: &'static str) -> Parameter {
+    Parameter {
+        name: UNIFORM,
+        range: "in [0, 1]",
+        default,
+        doc: "part of the attempts that are uniform samples instead",
+    }
+}
+
+/// `value` if it is in \[0, 1\].
+pub(crate) fn part(name: &'static str, value: f64) -> Result<f64, BuildError> {
+    if (0.0..=1.0).contains(&value) {
+        return Ok(value);
+    }
+    Err(BuildError::OutOfRange { name, value, range: "in [0, 1]".to_owned() })
+}
+
+/// What is drawn as a pair of states, and what of it is taken.
+pub trait PairRule: Copy + Debug + Send {
+    /// One attempt: a free state, or none. `sigma` is the standard deviation of the distance of the pair, positive and
+    /// in the metric of the space.
+    fn attempt<C: Space>(
+        space: &C,
+        free: impl FnMut(&C::State) -> bool,
+        sigma: f64,
+        rng: &mut Rng,
+    ) -> Option<C::State>;
+}
+
+/// Free states by pairs, and some uniform ones: the generator of Gaussian and of bridge-test PRM.
+#[derive(Clone, Copy, Debug)]
+pub struct Pairs<R> {
+    sigma: f64,
+    uniform: f64,
+    rule: PhantomData<R>,
+}
+
+impl<R: PairRule> Pairs<R> {
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new<C: Space>(space: &C, mixing: Mixing) -> Result<Self, BuildError> {
+        let (sigma, uniform) = mixing.checked(space)?;
+        Ok(Self { sigma, uniform, rule: PhantomData })
+    }
+
+    /// The recipe of the planner that draws these.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn recipe<C: Space>(
+        space: &C,
+        reach: Reachable,
+        mixing: Mixing,
+    ) -> Result<Recipe<Self, Nearest, AStar>, BuildError> {
+        Ok(Recipe {
+            generate: Self::new(space, mixing)?,
+            connect: Nearest::new(reach)?,
+            query: AStar::new(),
+            pace: Pace::default(),
+            improves: false,
+        })
+    }
+
+    pub(crate) fn read<C: Space>(
+        space: &C,
+        settings: &Settings,
+        mixing: Mixing,
+    ) -> Result<Recipe<Self, Nearest, AStar>, BuildError> {
+        Self::recipe(space, reachable(space, settings)?, mixing.read(settings)?)
+    }
+}
+
+impl<R, C, L> NodeGenerator<C, L> for Pairs<R>
+where
+    R: PairRule,
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    fn generate(
+        &mut self,
+        _: u64,
+        _: &Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        rng: &mut Rng,
+        out: &mut Vec<Candidate<C::State, L::Edge>>,
+    ) {
+        if drew_uniform(self.uniform, steer, rng, out) {
+            return;
+        }
+        let space = steer.space();
+        let found = R::attempt(space, |q: &C::State| steer.admits(q), self.sigma, rng);
+        out.extend(found.map(|q| Candidate::new(q, Kind::Near)));
+    }
+
+    fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
+        u64::MAX
+    }
+}
+
+impl<'c, C, L, R, N> RoadmapPlanner<'c, C, L, Pairs<R>, Nearest, AStar, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    R: PairRule,
+    N: NearestNeighbors<C>,
+{
+    /// With the nearest neighbours that suit the space.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, mixing: Mixing) -> Result<Self, BuildError>
+    where
+        C: DefaultNn<Nn = N>,
+        N: Default,
+    {
+        Self::with_index(problem, N::default(), reach, mixing)
+    }
+
+    /// With an empty index of your choice.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn with_index(
+        problem: Problem<'c, C, L>,
+        index: N,
+        reach: Reachable,
+        mixing: Mixing,
+    ) -> Result<Self, BuildError> {
+        let recipe = Pairs::recipe(problem.space(), reach, mixing)?;
+        Ok(Self::assemble(problem, index, recipe))
+    }
+}
+
+/// Whether this attempt is to be a uniform sample; if so, and it is free, it goes into `out`.
+pub(crate) fn drew_uniform<C, L>(
+    probability: f64,
+    steer: &mut Steer<'_, C, L>,
+    rng: &mut Rng,
+    out: &mut Vec<Candidate<C::State, L::Edge>>,
+) -> bool
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    let draw = rng.random::<f64>() < probability;
+    if draw {
+        let q = steer.space().sample_uniform(rng);
+        if steer.admits(&q) {
+            out.push(Candidate::new(q, Kind::Plain));
+        }
+    }
+    draw
+}

@@ -1,0 +1,282 @@
+//! Roadmaps as planners of one path: they grow until start and goal are connected.
+
+use super::{Builder, Candidate, Connector, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap, Steer, Way};
+use mp_cspace::{
+    BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
+    ProblemParts, Progress, Reversible, Rng, Space, Workers,
+};
+
+/// Rejected paths after which each new motion is verified.
+pub const PATIENCE: u64 = 10;
+
+/// Every so many iterations a new goal is drawn, where there is a sampler.
+const GOAL_EVERY: u64 = 16;
+
+/// A planner that grows a roadmap until it connects start and goal.
+///
+/// The first step takes the start and the listed goals in as nodes. Each one makes one attempt of the
+/// generator, and where start and a goal are in the same component looks for a way and verifies it.
+#[derive(Debug)]
+pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
+    builder: Builder<'c, C, L, G, K, N>,
+    query: Q,
+    pace: Pace,
+    improves: bool,
+    start: C::State,
+    goals: Goals<'c, C::State>,
+    /// The node of the start, and those of goals.
+    ends: Option<(NodeId, Vec<NodeId>)>,
+    iterations: u64,
+    /// The length of the last path returned, and how many nodes there were when one was last looked for.
+    best: f64,
+    looked: usize,
+}
+
+impl<'c, C, L, G, K, Q, N> RoadmapPlanner<'c, C, L, G, K, Q, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    G: NodeGenerator<C, L>,
+    K: Connector<C, L>,
+    Q: Query<C, L>,
+    N: NearestNeighbors<C>,
+{
+    /// The planner made by a recipe, with an empty index.
+    pub fn assemble(problem: Problem<'c, C, L>, index: N, recipe: Recipe<G, K, Q>) -> Self {
+        let (steer, start, goals) = taken_apart(problem);
+        Self {
+            builder: Builder::new(steer, recipe.generate, recipe.connect, index),
+            query: recipe.query,
+            pace: recipe.pace,
+            improves: recipe.improves,
+            start,
+            goals,
+            ends: None,
+            iterations: 0,
+            best: f64::INFINITY,
+            looked: 0,
+        }
+    }
+
+    /// Builds on several threads: see [`Builder::on`].
+    #[must_use]
+    pub fn on(self, workers: Workers, hands: impl IntoIterator<Item = Steer<'c, C, L>>) -> Self
+    where
+        C::State: 'c,
+        L: Send + 'c,
+        L::Edge: 'c,
+        G: Clone + Send + Sync + 'c,
+        K: Sync,
+        N: Sync,
+    {
+        Self { builder: self.builder.on(workers, hands), ..self }
+    }
+
+    /// The roadmap; before the first step without start and goal.
+    #[must_use]
+    pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
+        self.builder.map()
+    }
+
+    /// What grows the roadmap.
+    #[must_use]
+    pub fn builder(&self) -> &Builder<'c, C, L, G, K, N> {
+        &self.builder
+    }
+
+    /// The same, to go on with alone.
+    #[must_use]
+    pub fn into_builder(self) -> Builder<'c, C, L, G, K, N> {
+        self.builder
+    }
+
+    fn begin(&mut self, observer: &mut dyn Observer<C::State>) {
+        let start = self.builder.adopt(Candidate::new(self.start.clone(), Kind::End), observer);
+        let mut goals = Vec::new();
+        if self.goals.reached(&self.start) {
+            goals.push(start);
+        }
+        for goal in self.goals.listed() {
+            let same = *goal == self.start;
+            goals.push(if same {
+                start
+            } else {
+                self.builder.adopt(Candidate::new(goal.clone(), Kind::End), observer)
+            });
+        }
+        self.ends = Some((start, goals));
+    }
+
+    /// Draws a goal and takes it in, if it may be one.
+    fn draw_goal(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
+        let Some(goal) = self.goals.sample(rng) else { return };
+        if !self.builder.steer.accepts(&goal) {
+            return;
+        }
+        let id = self.builder.adopt(Candidate::new(goal, Kind::End), observer);
+        self.add_goals([id]);
+    }
+
+    fn add_goals(&mut self, ids: impl IntoIterator<Item = NodeId>) {
+        if let Some((_, goals)) = &mut self.ends {
+            goals.extend(ids);
+        }
+    }
+
+    /// A verified path from the start to a goal, if the roadmap has one.
+    fn answer(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+        let (start, goals) = self.ends.as_ref()?;
+        let (start, goals) = (*start, goals.clone());
+        self.looked = self.builder.map.len();
+        loop {
+            let Builder { map, steer, .. } = &mut self.builder;
+            let near: Vec<_> =
+                goals.iter().filter(|&&goal| map.connected(start, goal)).map(|&goal| (goal, 0.0)).collect();
+            if near.is_empty() {
+                return None;
+            }
+            let way = self.query.search(map, steer, &[(start, 0.0)], &near)?;
+            if self.improves && way.length >= self.best * (1.0 - 1e-9) {
+                return None;
+            }
+            if verify(map, steer, &way) {
+                self.best = way.length;
+                return map.path(&way);
+            }
+            observer.on(Event::Rejected);
+        }
+    }
+
+    /// Whether it is time to look for a way. When a better path is wanted, whenever there are a tenth more
+    /// nodes.
+    fn due(&self) -> bool {
+        let nodes = self.builder.map.len();
+        let better = if self.best.is_finite() && self.improves { self.looked / 10 } else { 0 };
+        nodes >= self.pace.first && nodes - self.looked >= self.pace.more.max(better)
+    }
+}
+
+/// How a problem is moved in, and from where to where.
+pub(crate) fn taken_apart<'c, C, L>(
+    problem: Problem<'c, C, L>,
+) -> (Steer<'c, C, L>, C::State, Goals<'c, C::State>)
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
+    (Steer::boxed(space, local, verify, PATIENCE), start, goals)
+}
+
+/// Verifies the edges of a way that have not passed yet, in the direction in which they are run. Blocks
+/// the first that fails; whether none did.
+pub(crate) fn verify<C, L>(
+    map: &mut Roadmap<C::State, L::Edge>,
+    steer: &mut Steer<'_, C, L>,
+    way: &Way,
+) -> bool
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    for (&edge, ends) in way.edges.iter().zip(way.nodes.windows(2)) {
+        let backward = map.ends(edge)[0] != ends[0];
+        if map.graph()[edge].verified[usize::from(backward)] {
+            continue;
+        }
+        let passes = map
+            .motion(edge, ends[0])
+            .is_some_and(|motion| steer.passes(map.state(ends[0]), &motion.edge, &motion.end));
+        if !passes {
+            map.block(edge);
+            steer.rejected += 1;
+            return false;
+        }
+        map.passed(edge, backward);
+    }
+    true
+}
+
+/// A planner whose roadmap can be looked at, kept, and gone on with.
+pub trait HasRoadmap<S, E>: Planner<S, Edge = E>
+where
+    E: Clone,
+{
+    /// The roadmap; before the first step without start and goal.
+    fn map(&self) -> &Roadmap<S, E>;
+    /// The roadmap, to ask for its components.
+    fn map_mut(&mut self) -> &mut Roadmap<S, E>;
+    /// Goes on with a roadmap there is already, made by a planner of the same kind, instead of its own. Before
+    /// the first step.
+    ///
+    /// # Errors
+    /// When a state of it is outside the space.
+    fn resume(&mut self, map: Roadmap<S, E>) -> Result<(), BuildError>;
+}
+
+impl<C, L, G, K, Q, N> HasRoadmap<C::State, L::Edge> for RoadmapPlanner<'_, C, L, G, K, Q, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    G: NodeGenerator<C, L>,
+    K: Connector<C, L>,
+    Q: Query<C, L>,
+    N: NearestNeighbors<C>,
+{
+    fn map(&self) -> &Roadmap<C::State, L::Edge> {
+        self.builder.map()
+    }
+    fn map_mut(&mut self) -> &mut Roadmap<C::State, L::Edge> {
+        self.builder.map_mut()
+    }
+    fn resume(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
+        (self.ends, self.looked) = (None, 0);
+        self.builder.replace(map)
+    }
+}
+
+impl<C, L, G, K, Q, N> Planner<C::State> for RoadmapPlanner<'_, C, L, G, K, Q, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    G: NodeGenerator<C, L>,
+    K: Connector<C, L>,
+    Q: Query<C, L>,
+    N: NearestNeighbors<C>,
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.iterations += 1;
+        if self.ends.is_none() {
+            self.begin(observer);
+            if let Some(path) = self.answer(observer) {
+                return Some(path);
+            }
+        }
+        let new = self.builder.step(rng, observer);
+        if self.goals.has_region() {
+            let arrived: Vec<_> =
+                new.filter(|&id| self.goals.reached(self.builder.map().state(id))).collect();
+            self.add_goals(arrived);
+        }
+        if self.goals.has_sampler() && self.iterations % GOAL_EVERY == 1 {
+            self.draw_goal(rng, observer);
+        }
+        if self.due() { self.answer(observer) } else { None }
+    }
+
+    fn progress(&self) -> Progress {
+        let mut progress = self.builder.progress();
+        progress.iterations = self.iterations;
+        progress
+    }
+
+    fn improves(&self) -> bool {
+        self.improves
+    }
+}

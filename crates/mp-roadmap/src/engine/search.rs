@@ -1,0 +1,252 @@
+//! Shortest ways through a roadmap.
+
+use super::{LinkState, Roadmap, Steer, Way};
+use mp_cspace::{LocalPlanner, Metric, NodeId, Reversible, Space};
+use petgraph::graph::EdgeIndex;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// A node that a way may begin or end with, and how long it is to there from outside of the roadmap.
+pub type Entry = (NodeId, f64);
+
+/// A slot: how a way through the roadmap is looked for.
+pub trait Query<C: Space, L: LocalPlanner<C::State>> {
+    /// A shortest way from one of `from` to one of `to`, all of whose edges have motions of the local
+    /// planner. It may block edges that turn out to have none.
+    fn search(
+        &mut self,
+        map: &mut Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        from: &[Entry],
+        to: &[Entry],
+    ) -> Option<Way>;
+}
+
+/// A place in the queue: the least estimate first, ties by node.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Open {
+    estimate: f64,
+    length: f64,
+    node: NodeId,
+}
+
+impl Eq for Open {}
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.estimate.total_cmp(&self.estimate).then(other.node.cmp(&self.node))
+    }
+}
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// What is known of a node in the search numbered `search`.
+#[derive(Clone, Copy, Debug)]
+struct Mark {
+    search: u32,
+    length: f64,
+    rest: f64,
+    came: Option<EdgeIndex>,
+}
+
+const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, came: None };
+
+/// A* (Hart, Nilsson and Raphael 1968, *A formal basis for the heuristic determination of minimum cost
+/// paths*), with the distance to the ends as estimate. A value of it keeps its memory from search to
+/// search, so that a search costs only what it visits.
+///
+/// One value goes with one roadmap, as it remembers which of its nodes are free. Ways are shortest where edges are no shorter than the distance of their ends, as those of a metric are. Under a
+/// distance that breaks the triangle inequality nodes are visited again when a shorter way to them shows
+/// up.
+#[derive(Clone, Debug, Default)]
+pub struct AStar {
+    marks: Vec<Mark>,
+    open: BinaryHeap<Open>,
+    search: u32,
+    /// Which nodes with unchecked edges were found free.
+    free: Vec<bool>,
+}
+
+/// More ends than this, and the estimate is not worth its cost.
+const FEW: usize = 8;
+
+impl AStar {
+    /// With nothing remembered.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// A shortest way from one of `from` to one of `to`, each with the length that is added there;
+    /// `None` when there is none. Ties by node.
+    pub fn shortest<S, E>(
+        &mut self,
+        map: &Roadmap<S, E>,
+        metric: &impl Metric<S>,
+        from: &[Entry],
+        to: &[Entry],
+    ) -> Option<Way> {
+        self.marks.resize(self.marks.len().max(map.len()), UNSEEN);
+        self.search = self.search.wrapping_add(1);
+        if self.search == 0 {
+            self.marks.fill(UNSEEN);
+            self.search = 1;
+        }
+        self.open.clear();
+        let estimate = |node: NodeId| {
+            if to.len() > FEW {
+                return 0.0;
+            }
+            let over = |&(end, more): &Entry| metric.distance(map.state(node), map.state(end)) + more;
+            to.iter().map(over).fold(f64::INFINITY, f64::min)
+        };
+        for &(node, length) in from {
+            self.push(node, length, None, estimate);
+        }
+        let mut best: Option<(f64, NodeId)> = None;
+        while let Some(Open { estimate: total, length, node }) = self.open.pop() {
+            if best.is_some_and(|(least, _)| total >= least) {
+                break;
+            }
+            if length > self.marks[node as usize].length {
+                continue;
+            }
+            for &(end, more) in to.iter().filter(|(end, _)| *end == node) {
+                if best.is_none_or(|(least, _)| length + more < least) {
+                    best = Some((length + more, end));
+                }
+            }
+            for (edge, next, link) in map.links(node) {
+                self.push(next, length + link.length, Some(edge), estimate);
+            }
+        }
+        let (length, end) = best?;
+        let mut way = Way { nodes: vec![end], edges: Vec::new(), length };
+        let mut at = end;
+        while let Some(edge) = self.marks[at as usize].came {
+            let [a, b] = map.ends(edge);
+            at = if at == a { b } else { a };
+            way.nodes.push(at);
+            way.edges.push(edge);
+        }
+        way.nodes.reverse();
+        way.edges.reverse();
+        Some(way)
+    }
+
+    #[inline]
+    fn push(&mut self, node: NodeId, length: f64, came: Option<EdgeIndex>, estimate: impl Fn(NodeId) -> f64) {
+        let mark = &mut self.marks[node as usize];
+        if mark.search == self.search {
+            if length >= mark.length {
+                return;
+            }
+            (mark.length, mark.came) = (length, came);
+        } else {
+            *mark = Mark { search: self.search, length, rest: estimate(node), came };
+        }
+        self.open.push(Open { estimate: length + mark.rest, length, node });
+    }
+}
+
+impl<C, L> Query<C, L> for AStar
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    /// Edges not yet checked are checked on the way found, and the search repeated when one is blocked.
+    fn search(
+        &mut self,
+        map: &mut Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        from: &[Entry],
+        to: &[Entry],
+    ) -> Option<Way> {
+        loop {
+            let way = self.shortest(map, steer.space(), from, to)?;
+            if self.check(map, steer, &way) {
+                return Some(way);
+            }
+        }
+    }
+}
+
+/// The numbers below `n` from both ends inward.
+fn inward(n: usize) -> impl Iterator<Item = usize> {
+    (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
+}
+
+impl AStar {
+    /// Checks what is unchecked of a way. Blocks what fails first; whether nothing did.
+    pub(crate) fn check<C, L>(
+        &mut self,
+        map: &mut Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        way: &Way,
+    ) -> bool
+    where
+        C: Space,
+        L: LocalPlanner<C::State, Edge: Reversible>,
+    {
+        self.nodes_pass(map, steer, way) && edges_pass(map, steer, way)
+    }
+
+    /// Checks the nodes at the ends of unchecked edges of a way. Blocks all edges of the first that is not
+    /// admitted; whether there was none.
+    fn nodes_pass<C, L>(
+        &mut self,
+        map: &mut Roadmap<C::State, L::Edge>,
+        steer: &mut Steer<'_, C, L>,
+        way: &Way,
+    ) -> bool
+    where
+        C: Space,
+        L: LocalPlanner<C::State, Edge: Reversible>,
+    {
+        let unchecked = |edge: &EdgeIndex| map.graph()[*edge].state == LinkState::Unchecked;
+        if !way.edges.iter().any(unchecked) {
+            return true;
+        }
+        self.free.resize(self.free.len().max(map.len()), false);
+        for node in inward(way.nodes.len()).map(|i| way.nodes[i]) {
+            if self.free[node as usize] {
+                continue;
+            }
+            if !steer.admits(map.state(node)) {
+                let edges: Vec<EdgeIndex> = map.links(node).map(|(edge, ..)| edge).collect();
+                edges.into_iter().for_each(|edge| map.block(edge));
+                return false;
+            }
+            self.free[node as usize] = true;
+        }
+        true
+    }
+}
+
+/// Checks the unchecked edges of a way, whose nodes are free. Blocks the first that fails; whether none did.
+fn edges_pass<C, L>(map: &mut Roadmap<C::State, L::Edge>, steer: &mut Steer<'_, C, L>, way: &Way) -> bool
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+{
+    for edge in inward(way.edges.len()).map(|i| way.edges[i]) {
+        if map.graph()[edge].state != LinkState::Unchecked {
+            continue;
+        }
+        let [a, b] = map.ends(edge);
+        let motion = steer.reach(map.state(a), map.state(b));
+        let failed = motion.is_none();
+        map.tried(a, failed);
+        map.tried(b, failed);
+        match motion {
+            Some(motion) => map.settle(edge, motion.edge, motion.cost),
+            None => {
+                map.block(edge);
+                return false;
+            }
+        }
+    }
+    true
+}

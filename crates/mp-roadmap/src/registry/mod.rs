@@ -1,0 +1,73 @@
+//! Planners by name, for programs that choose at run time.
+
+mod state;
+
+pub use state::RoadmapState;
+
+use crate::algo;
+use crate::by_name::{AnyPlanner, Given, Team};
+use mp_cspace::{
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, PlannerInfo, Problem, Reversible, Settings, Space,
+    closest,
+};
+
+/// All planners of the crate.
+#[must_use]
+pub fn planners() -> &'static [PlannerInfo] {
+    algo::PLANNERS
+}
+
+/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
+///
+/// # Errors
+/// When there is none, with the names there are.
+pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
+    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
+}
+
+fn unknown(name: &str) -> BuildError {
+    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
+    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
+    let suggestion = closest(name, known.iter().copied().chain(aliases));
+    BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
+}
+
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
+/// from the [problem](Problem::with_obstacles).
+///
+/// # Errors
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem does not know
+/// of obstacles what the planner asks.
+pub fn build<'c, C, L>(
+    name: &str,
+    problem: Problem<'c, C, L>,
+    settings: &Settings,
+) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
+where
+    C: DefaultNn + Clone + 'c,
+    C::Nn: Sync + 'c,
+    C::State: 'c,
+    L: LocalPlanner<C::State, Edge: Reversible + 'c> + Send + 'c,
+{
+    build_with(name, problem, C::Nn::default(), settings)
+}
+
+/// As [`build`], with an empty index of your choice, and for a problem or a [`Team`].
+///
+/// # Errors
+/// As [`build`].
+pub fn build_with<'c, C, L, N>(
+    name: &str,
+    team: impl Into<Team<'c, C, L>>,
+    index: N,
+    settings: &Settings,
+) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
+where
+    C: Space<State: 'c> + Clone + 'c,
+    L: LocalPlanner<C::State, Edge: Reversible + 'c> + Send + 'c,
+    N: NearestNeighbors<C> + Send + Sync + 'c,
+{
+    let (info, make) = algo::find::<(C, L, N)>(name).ok_or_else(|| unknown(name))?;
+    settings.check(info)?;
+    make(Given::new(team.into(), index, settings))
+}

@@ -1,0 +1,76 @@
+//! Planners by name of erased problems: compiled here, for the kinds of state that robots have.
+
+use crate::{AnyIndex, AnyPlanner, AnyTeam, BuildError, Settings};
+use mp_cspace::Se2State;
+use nalgebra::{DVector, Isometry3, Vector2};
+use std::fmt::Debug;
+
+/// A kind of state for which the planners by name are compiled: those of SE(3), SE(2), the plane, and joints, here;
+/// others where [`compile_for`](crate::compile_for) names them. Whoever calls the method compiles no planner.
+///
+/// ```
+/// use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
+/// use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Settings, Straight};
+/// use mp_roadmap::{AnyTeam, RoadmapState};
+/// use nalgebra::Vector2;
+///
+/// let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+/// let any = AnySpace::new(&space);
+/// let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+/// let check: AnyCheck<_> = Box::new(Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+/// let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+/// let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+/// let team = AnyTeam::from(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?);
+///
+/// let mut planner = Vector2::roadmap_planner("prm", team, AnyIndex::of(&space), &Settings::default())?;
+/// let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+/// assert!(matches!(outcome, Outcome::Solved(_)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[diagnostic::on_unimplemented(
+    message = "the roadmap planners are not compiled for the state `{Self}`",
+    label = "not a `RoadmapState`",
+    note = "`mp_roadmap::compile_for!({Self});` compiles them, in the crate of the state"
+)]
+pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
+    /// The planner called `name`, as [`build_with`](crate::build_with) makes it.
+    ///
+    /// # Errors
+    /// As [`build`](crate::build).
+    fn roadmap_planner<'c>(
+        name: &str,
+        team: AnyTeam<'c, Self>,
+        index: AnyIndex<'c, Self>,
+        settings: &Settings,
+    ) -> Result<AnyPlanner<'c, Self, ()>, BuildError>
+    where
+        Self: 'c;
+}
+
+/// Compiles the planners by name for states of your own: implements [`RoadmapState`] for them.
+///
+/// ```
+/// #[derive(Clone, Debug, PartialEq)]
+/// struct Crane { boom: f64, rope: f64 }
+/// mp_roadmap::compile_for!(Crane);
+/// ```
+#[macro_export]
+macro_rules! compile_for {
+    ($($state:ty),+ $(,)?) => {$(
+        impl $crate::RoadmapState for $state {
+            fn roadmap_planner<'c>(
+                name: &str,
+                team: $crate::AnyTeam<'c, Self>,
+                index: $crate::AnyIndex<'c, Self>,
+                settings: &$crate::Settings,
+            ) -> ::core::result::Result<$crate::AnyPlanner<'c, Self, ()>, $crate::BuildError>
+            where
+                Self: 'c,
+            {
+                $crate::build_with(name, team, index, settings)
+            }
+        }
+    )+};
+}
+
+compile_for!(Isometry3<f64>, Se2State, Vector2<f64>, DVector<f64>);

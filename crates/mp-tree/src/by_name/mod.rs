@@ -1,0 +1,53 @@
+//! What planners by name are made from.
+
+mod uniform;
+
+pub(crate) use uniform::moved_by_inputs;
+pub use uniform::{INPUTS, LEVELS};
+
+use crate::{BuildError, Problem, Settings, Tuning};
+use mp_cspace::{MotionValidity, NearestNeighbors, Planner, Space, Straight};
+
+/// A planner chosen at run time.
+pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + Send + 'c>;
+
+/// The types that a planner by name is made of, in one: a tuple of space, motion check and index.
+pub(crate) trait Types<'c> {
+    type State: Clone + PartialEq + Send + Sync + std::fmt::Debug + 'c;
+    type Space: Space<State = Self::State> + 'c;
+    type Check: MotionValidity<Self::State> + Send + 'c;
+    type Index: NearestNeighbors<Self::Space> + Clone + Send + 'c;
+}
+
+impl<'c, C, M, N> Types<'c> for (C, M, N)
+where
+    C: Space<State: 'c> + 'c,
+    M: MotionValidity<C::State> + Send + 'c,
+    N: NearestNeighbors<C> + Clone + Send + 'c,
+{
+    type State = C::State;
+    type Space = C;
+    type Check = M;
+    type Index = N;
+}
+
+/// How planners by name move.
+pub(crate) type Local<'c, T> = Straight<'c, <T as Types<'c>>::Space, <T as Types<'c>>::Check>;
+
+/// What a planner by name is made from.
+pub(crate) struct Given<'c, 's, T: Types<'c>> {
+    /// The problem, with what is known of obstacles.
+    pub(crate) problem: Problem<'c, T::Space, Local<'c, T>>,
+    /// An empty index.
+    pub(crate) index: T::Index,
+    /// The parameters that every planner has.
+    pub(crate) tuning: Tuning,
+    /// All that are set; the planner has parameters of these names.
+    pub(crate) settings: &'s Settings,
+}
+
+/// A planner by name, or why there is none.
+pub(crate) type Made<'c, T> = Result<AnyPlanner<'c, <T as Types<'c>>::State, ()>, BuildError>;
+
+/// Makes one kind of planner.
+pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;

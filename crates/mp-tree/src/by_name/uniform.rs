@@ -1,0 +1,55 @@
+//! Problems moved by a uniform set of inputs, for planners by name.
+
+use crate::{BuildError, Parameter, Problem, Settings, Tuning};
+use mp_cspace::inputs::{Between, InputPlanner, InputSet, Kinematic};
+use mp_cspace::{LocalPlanner, Space};
+
+/// Of planners that move by a set of inputs: how many directions.
+pub const INPUTS: Parameter = Parameter {
+    name: "inputs",
+    range: "a whole number",
+    default: "0",
+    doc: "directions of motion, spread over translation and rotation; 0: both ways along each axis",
+};
+
+/// Of planners that move by a set of inputs: how many lengths of each.
+pub const LEVELS: Parameter = Parameter {
+    name: "levels",
+    range: "a whole number, 1 to 20",
+    default: "3",
+    doc: "lengths of motion: the step, a quarter of it, a quarter of that, and so on",
+};
+
+/// A local planner that moves by velocities, one second each; its motions and edges are those of `L`.
+pub(crate) type ByVelocities<'c, C, L> = InputPlanner<'c, C, Kinematic<'c, C>, Vec<f64>, Between<L>>;
+
+/// The problem moved by [`InputSet::uniform`], one step long. Goals are connected to from within a step;
+/// sampled ones are not known before, so then samples of the space are too.
+pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
+    problem: Problem<'c, C, L>,
+    tuning: &Tuning,
+    settings: &Settings,
+) -> Result<Problem<'c, C, ByVelocities<'c, C, L>>, BuildError> {
+    let space = problem.space();
+    let reach = tuning.step.length_in(space)?;
+    let directions = settings.count(INPUTS.name)?.unwrap_or(0);
+    let directions = in_range(INPUTS.name, directions, 0, 1 << 20)?;
+    let levels = in_range(LEVELS.name, settings.count(LEVELS.name)?.unwrap_or(3), 1, 20)?;
+    let inputs = InputSet::uniform(space, reach, directions as usize, levels)?;
+    let flow = Kinematic::new(space)?;
+    let (goals, sampled) = (problem.goals().listed().to_vec(), problem.goals().has_sampler());
+    problem.try_map_local(|local| {
+        let planner = InputPlanner::new(space, flow, inputs, 1.0, Between(local))?;
+        Ok(if sampled { planner.reaching_all() } else { planner.reaching(goals) })
+    })
+}
+
+fn in_range(name: &'static str, value: u64, least: u32, most: u32) -> Result<u32, BuildError> {
+    match u32::try_from(value) {
+        Ok(count) if (least..=most).contains(&count) => Ok(count),
+        _ => {
+            let range = format!("a whole number from {least} to {most}");
+            Err(BuildError::OutOfRange { name, value: value as f64, range })
+        }
+    }
+}

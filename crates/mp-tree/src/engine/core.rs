@@ -1,0 +1,122 @@
+//! What the loops have in common: the ends of the path, the straight way between them, verified paths.
+
+use super::{Attach, Branch, Grown, Selector, Steer, Tuning};
+use mp_cspace::{
+    BuildError, Goals, LocalPlanner, NodeId, Observer, Path, Problem, ProblemParts, Progress, Rng, Space,
+};
+use rand::RngExt;
+
+/// What a planner of the family has beside its trees: the ends of the problem, how it moves, and what it has done. The
+/// loops here are made of it, and yours may be.
+#[derive(Debug)]
+pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
+    /// Where paths begin.
+    pub start: C::State,
+    /// Where they end.
+    pub goals: Goals<'c, C::State>,
+    /// How trees move, and the verifier.
+    pub steer: Steer<'c, C, L>,
+    /// The probability of aiming at a goal; zero where there is none to aim at.
+    pub goal_bias: f64,
+    /// Iterations so far.
+    pub iterations: u64,
+    /// How many listed goal states have been tried straight from the start.
+    tried: usize,
+}
+
+impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
+    /// A problem to be planned.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn new(problem: Problem<'c, C, L>, tuning: &Tuning) -> Result<Self, BuildError> {
+        let goal_bias = tuning.checked_bias()?;
+        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
+        Ok(Self {
+            steer: Steer::new(space, local, verify, tuning)?,
+            start,
+            goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
+            goals,
+            iterations: 0,
+            tried: 0,
+        })
+    }
+
+    /// Plants the root of the first tree at the start, if there is none. The root, where that is in the goal.
+    pub fn plant<Se: Selector<C>, A: Attach<C, L>>(
+        &self,
+        branch: &mut Branch<C, L, Se, A>,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<NodeId> {
+        if !branch.tree().is_empty() {
+            return None;
+        }
+        let arrived = self.goals.reached(&self.start);
+        let root = branch.add_root(self.steer.space(), self.start.clone(), observer);
+        arrived.then_some(root)
+    }
+
+    /// Tries to go straight from the start to the next listed goal state; `None` when all have been tried. What a
+    /// panic of the user's code interrupts is not tried again.
+    pub fn leap<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        branch: &mut Branch<C, L, Se, A>,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Grown> {
+        let goal = self.goals.listed().get(self.tried)?;
+        self.tried += 1;
+        Some(branch.leap(0, goal, &mut self.steer, rng, observer))
+    }
+
+    /// A goal to aim at instead of exploring, now and then.
+    pub fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
+        if self.goal_bias > 0.0 && rng.random_bool(self.goal_bias) { self.goals.aim(rng) } else { None }
+    }
+
+    /// Roots the tree from the goal at a new sample of the goal, now and then, and always where it has no root.
+    pub fn sample_goal<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        branch: &mut Branch<C, L, Se, A>,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) {
+        let wanted = branch.tree().is_empty() || rng.random_bool(self.goal_bias);
+        let space = self.steer.space();
+        if wanted
+            && let Some(goal) = self.goals.sample(rng)
+            && !branch.knows(space, &goal)
+            && self.steer.accepts(&goal)
+        {
+            branch.add_root(space, goal, observer);
+        }
+    }
+
+    /// The path from the root to `id`, if it passes verification; otherwise its bad part is pruned, of which `pruned`
+    /// is told as by [`Branch::verify`].
+    pub fn path<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        branch: &mut Branch<C, L, Se, A>,
+        id: NodeId,
+        observer: &mut dyn Observer<C::State>,
+        pruned: impl FnMut(&[NodeId]),
+    ) -> Option<Path<C::State, L::Edge>> {
+        let passed = branch.verify(id, &mut self.steer, observer, pruned);
+        passed.then(|| branch.tree().path(id))
+    }
+
+    /// What has been done, with so many nodes.
+    #[must_use]
+    pub fn progress(&self, nodes: usize) -> Progress {
+        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
+        progress.rejected = self.steer.rejected();
+        progress
+    }
+}
+
+/// The path through two nodes with the same state, one of a tree from the start and one of a tree from the goal.
+pub(crate) fn joined<S, E>([mut path, rest]: [Path<S, E>; 2]) -> Path<S, E> {
+    path.states.extend(rest.states.into_iter().skip(1));
+    path.edges.extend(rest.edges);
+    path
+}

@@ -1,0 +1,91 @@
+//! Slot: how far to grow in one iteration.
+
+use super::{Attach, Growing, Selector};
+use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
+
+/// What became of growing toward a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Grown {
+    /// Nothing gained.
+    Trapped,
+    /// The tree now ends at this node, nearer to the target.
+    Advanced(NodeId),
+    /// This node is the target, whether new or there before.
+    Reached(NodeId),
+}
+
+/// Grows a tree from a selected node toward the target. Implementations decide which steps are
+/// made; [`Growing`] makes them.
+pub trait Growth<C: Space, L: LocalPlanner<C::State>> {
+    /// Grows from `from`.
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown;
+    /// Whether a planner may try the straight way from the start to a goal, in one motion of any length, before it asks
+    /// this growth for the first time. Variants that must see every motion decline: those that refuse motions free of
+    /// collision, or promise to make none longer than a step. With two growths both must agree.
+    fn leaps(&self) -> bool {
+        true
+    }
+    /// Nodes of the tree that grows in `direction` were removed: node `i` was `survivors[i]`.
+    fn pruned(&mut self, _direction: Direction, _survivors: &[NodeId]) {}
+}
+
+/// One step (LaValle 1998; EXTEND of Kuffner and LaValle 2000).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Extend;
+
+impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Extend {
+    #[inline]
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        growing.step(from)
+    }
+}
+
+/// Step after step until the target is reached or a step fails (CONNECT of Kuffner and LaValle
+/// 2000). Each step becomes a node.
+///
+/// Local planners whose steps need not come nearer would go on for ever: it ends as well where a
+/// step comes no nearer, and after `limit` steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Connect {
+    /// Most steps at a time, so that a tiny step cannot keep a planner from looking at its stop.
+    pub limit: u32,
+}
+
+impl Default for Connect {
+    fn default() -> Self {
+        Self { limit: 10_000 }
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Connect {
+    #[inline]
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        let mut grown = growing.step(from);
+        let mut distance = f64::INFINITY;
+        for _ in 1..self.limit {
+            let Grown::Advanced(id) = grown else { break };
+            let nearer = growing.distance(id);
+            if nearer >= distance {
+                break;
+            }
+            distance = nearer;
+            match growing.step(id) {
+                Grown::Trapped => break,
+                next => grown = next,
+            }
+        }
+        grown
+    }
+}

@@ -1,0 +1,215 @@
+//! The loop with one tree that goes on after a solution, for better ones.
+
+use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Tree};
+use mp_cspace::{
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
+    Space, Stop, StopReason,
+};
+
+/// The least part of its cost by which a path must be better than the one before: less than that
+/// may be rounding.
+const GAIN: f64 = 1e-9;
+
+/// A planner that grows one tree from the start and returns ever cheaper verified paths.
+///
+/// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever
+/// the cheapest way to any of them costs less than what was returned last, be it by a new node or
+/// because the tree was rewired, that path is verified and returned. It no longer aims at listed
+/// goal states that it has reached.
+#[derive(Debug)]
+pub struct Improving<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
+    core: Core<'c, C, L>,
+    branch: Branch<C, L, Se, A>,
+    propose: P,
+    growth: G,
+    /// The nodes in the goal, in the order in which they were found.
+    arrived: Vec<NodeId>,
+    /// How many nodes have been tested for lying in the region.
+    tested: NodeId,
+    best: f64,
+}
+
+impl<'c, C, L, P, Se, G, A> Improving<'c, C, L, P, Se, G, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    G: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    /// The planner made by a recipe.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
+        Ok(Self {
+            core: Core::new(problem, &recipe.tuning)?,
+            branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
+            propose: recipe.propose,
+            growth: recipe.grow,
+            arrived: Vec::new(),
+            tested: 0,
+            best: f64::INFINITY,
+        })
+    }
+
+    /// The tree; empty before the first step.
+    #[must_use]
+    pub fn tree(&self) -> &Tree<C::State, L::Edge> {
+        self.branch.tree()
+    }
+
+    /// The cost of the path returned last; infinite before there is one.
+    #[must_use]
+    pub fn best(&self) -> f64 {
+        self.best
+    }
+
+    /// Plants the root and tries the straight ways.
+    fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
+        // A start in the goal is found with the other nodes that are.
+        self.core.plant(&mut self.branch, observer);
+        while self.growth.leaps()
+            && let Some(grown) = self.core.leap(&mut self.branch, rng, observer)
+        {
+            if !self.core.goals.has_region() {
+                self.note(grown);
+            }
+        }
+    }
+
+    /// Notes that a state aimed at is reached.
+    fn note(&mut self, grown: Grown) {
+        if let Grown::Reached(id) = grown
+            && !self.arrived.contains(&id)
+        {
+            self.arrived.push(id);
+        }
+    }
+
+    /// A goal to aim at instead of exploring, now and then.
+    fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
+        let goal = self.core.aim(rng)?;
+        let known = |&id: &NodeId| *self.branch.tree().state(id) == goal;
+        if self.core.goals.has_region() || !self.arrived.iter().any(known) { Some(goal) } else { None }
+    }
+
+    /// The cheapest path, if it is better than what was returned last and passes verification.
+    fn better(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+        while self.core.goals.has_region() && (self.tested as usize) < self.branch.tree().len() {
+            let reached = self.core.goals.reached(self.branch.tree().state(self.tested));
+            self.arrived.extend(reached.then_some(self.tested));
+            self.tested += 1;
+        }
+        loop {
+            let tree = self.branch.tree();
+            let costs = self.arrived.iter().map(|&id| (tree.cost(id), id));
+            let (cost, id) = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
+            if self.best < f64::INFINITY && cost >= self.best - GAIN * self.best.abs() {
+                return None;
+            }
+            let pruned = |survivors: &[NodeId]| {
+                self.growth.pruned(Direction::Forward, survivors);
+                self.tested = survivors.partition_point(|&id| id < self.tested) as NodeId;
+                let renamed = |id: &NodeId| survivors.binary_search(id).ok().map(|new| new as NodeId);
+                self.arrived = self.arrived.iter().filter_map(renamed).collect();
+            };
+            if let Some(path) = self.core.path(&mut self.branch, id, observer, pruned) {
+                self.best = cost;
+                self.propose.improved(cost);
+                return Some(path);
+            }
+        }
+    }
+}
+
+impl<C, L, P, Se, G, A> Planner<C::State> for Improving<'_, C, L, P, Se, G, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    G: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.core.iterations += 1;
+        self.begin(rng, observer);
+        if let Some(path) = self.better(observer) {
+            return Some(path);
+        }
+        let (target, why) = match self.aim(rng) {
+            Some(goal) => (goal, Purpose::Join),
+            None => {
+                let (points, select) = self.branch.parts();
+                (self.propose.propose(rng, self.core.steer.space(), points, select), Purpose::Explore)
+            }
+        };
+        observer.on(Event::Sampled(&target));
+        let grown = self.branch.toward(&target, why, &mut self.core.steer, &mut self.growth, rng, observer);
+        if why == Purpose::Join && !self.core.goals.has_region() {
+            self.note(grown);
+        }
+        self.better(observer)
+    }
+
+    fn progress(&self) -> Progress {
+        self.core.progress(self.branch.tree().len())
+    }
+
+    fn improves(&self) -> bool {
+        true
+    }
+}
+
+/// Runs a planner until it is stopped, and returns the last path it found with the reason. Each
+/// path is shown to `found` as it comes, with what had been done until then. A planner that does
+/// not [improve](Planner::improves) ends with its first.
+///
+/// ```
+/// # use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};
+/// # use mp_tree::{Problem, RrtStar, Tuning, improve};
+/// # use nalgebra::Vector2;
+/// # let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
+/// # let free = |q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3;
+/// # let local = Straight::new(&space, Discrete::new(&space, free, Resolution::Fraction(0.01))?);
+/// # let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
+/// # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
+/// # let problem = Problem::new(&space, local, verifier, start, goal)?;
+/// let mut planner = RrtStar::new(problem, Tuning::default())?;
+/// let mut lengths = Vec::new();
+/// let (best, _) = improve(&mut planner, &mut Rng::seed(1), &mut Iterations(3_000), &mut (), |path, _| {
+///     lengths.push(path.length(&space));
+/// });
+/// assert!(lengths.len() > 1 && lengths.is_sorted_by(|a, b| a > b));
+/// assert_eq!(best.unwrap().length(&space), *lengths.last().unwrap());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn improve<S, P: Planner<S> + ?Sized>(
+    planner: &mut P,
+    rng: &mut Rng,
+    stop: &mut dyn Stop,
+    observer: &mut dyn Observer<S>,
+    mut found: impl FnMut(&Path<S, P::Edge>, Progress),
+) -> (Option<Path<S, P::Edge>>, Option<StopReason>) {
+    let mut best = None;
+    loop {
+        match planner.solve(rng, stop, observer) {
+            mp_cspace::Outcome::Stopped(reason) => return (best, Some(reason)),
+            mp_cspace::Outcome::Solved(path) => {
+                found(&path, planner.progress());
+                best = Some(path);
+                if !planner.improves() {
+                    return (best, None);
+                }
+            }
+        }
+    }
+}

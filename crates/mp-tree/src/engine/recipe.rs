@@ -1,0 +1,112 @@
+//! What makes one variant of the family differ from another.
+
+use super::settings::{GOAL_BIAS, PATIENCE, STEP};
+use mp_cspace::{BuildError, PlannerInfo, Settings, Step};
+
+/// The parameters every planner of the family has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Longest step, in (0, extent of the space]; default a twentieth of the extent.
+    pub step: Step,
+    /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; default 0.05. Planners
+    /// that grow a tree from the goal use it for sampling new goal states, where there is a
+    /// sampler.
+    pub goal_bias: f64,
+    /// After this many rejected candidate paths the local planner is no longer believed: each
+    /// new edge is verified as it grows. Default 10; 0 verifies every edge.
+    pub patience: u64,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self { step: Step::Fraction(0.05), goal_bias: 0.05, patience: 10 }
+    }
+}
+
+impl Tuning {
+    /// The parameters that are set, the others by default. Their range is checked when the planner is
+    /// made.
+    ///
+    /// # Errors
+    /// When `planner` has no parameter of a name that is set, or a value cannot be read.
+    pub fn read(settings: &Settings, planner: &PlannerInfo) -> Result<Self, BuildError> {
+        settings.check(planner)?;
+        let default = Self::default();
+        Ok(Self {
+            step: settings.step(STEP.name)?.unwrap_or(default.step),
+            goal_bias: settings.number(GOAL_BIAS.name)?.unwrap_or(default.goal_bias),
+            patience: settings.count(PATIENCE.name)?.unwrap_or(default.patience),
+        })
+    }
+
+    /// The goal bias.
+    ///
+    /// # Errors
+    /// When it is out of range.
+    pub fn checked_bias(&self) -> Result<f64, BuildError> {
+        if (0.0..=1.0).contains(&self.goal_bias) {
+            return Ok(self.goal_bias);
+        }
+        let range = "in [0, 1], a probability".to_owned();
+        Err(BuildError::OutOfRange { name: "goal-bias", value: self.goal_bias, range })
+    }
+}
+
+/// One variant of the family: a policy for each slot of the engine, and the parameters.
+///
+/// Planners with two trees have a pair of growths: one for exploring, one for joining.
+#[derive(Clone, Copy, Debug)]
+pub struct Recipe<P, Se, G, A> {
+    /// What to grow toward next.
+    pub propose: P,
+    /// Which nodes to grow from.
+    pub select: Se,
+    /// How far to grow in one iteration.
+    pub grow: G,
+    /// How a new motion joins the tree.
+    pub attach: A,
+    /// The parameters.
+    pub tuning: Tuning,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const INFO: PlannerInfo = PlannerInfo {
+        name: "p",
+        summary: "",
+        citation: "",
+        parameters: &[STEP, GOAL_BIAS, PATIENCE],
+        aliases: &[],
+        cannot: &[],
+    };
+
+    #[test]
+    fn reads_what_is_set() {
+        let settings = Settings::parse(["step = 2.5", "patience=3", "step=10%"]).unwrap();
+        let tuning = Tuning::read(&settings, &INFO).unwrap();
+        assert_eq!(tuning, Tuning { step: Step::Fraction(0.1), patience: 3, ..Tuning::default() });
+        assert_eq!(Tuning::read(&Settings::default(), &INFO).unwrap(), Tuning::default());
+    }
+
+    #[test]
+    fn the_tables_defaults_are_the_defaults() {
+        let settings =
+            Settings::parse(INFO.parameters.iter().map(|p| format!("{}={}", p.name, p.default))).unwrap();
+        assert_eq!(Tuning::read(&settings, &INFO).unwrap(), Tuning::default());
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_read() {
+        for text in ["step=far", "step=%", "goal-bias=", "patience=-1", "patience=1.5"] {
+            let error = Tuning::read(&Settings::parse([text]).unwrap(), &INFO).unwrap_err();
+            assert!(matches!(error, BuildError::Malformed { .. }), "{text}: {error}");
+        }
+        let error = Tuning::read(&Settings::parse(["stepp=1"]).unwrap(), &INFO).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "p has no parameter `stepp` (did you mean `step`?); it has: step, goal-bias, patience"
+        );
+    }
+}

@@ -1,0 +1,169 @@
+//! Attach by the cheapest way: what makes RRT* of RRT.
+
+use super::{Attach, Attached, Selector, Steer, Tree};
+use mp_cspace::{BuildError, Direction, Hit, LocalPlanner, Motion, NodeId, Space};
+
+/// Which nodes of a tree of n nodes, in a space of dimension d, count as near a new one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Near {
+    /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; any factor above 1 makes the best path
+    /// converge to an optimal one (k-nearest RRT*).
+    Nearest {
+        /// In (0, 1000]; 1.1 is customary.
+        factor: f64,
+    },
+    /// All within r = min(γ · (ln n / n)^(1/d), step). Convergence needs
+    /// γ > 2 · ((1 + 1/d) · μ / ζ)^(1/d), where μ is the volume of the free space and ζ that of the
+    /// unit ball.
+    Radius {
+        /// Above zero, in the unit of the metric.
+        gamma: f64,
+    },
+}
+
+impl Default for Near {
+    fn default() -> Self {
+        Self::Nearest { factor: 1.1 }
+    }
+}
+
+impl Near {
+    fn find<C: Space, Se: Selector<C>>(
+        self,
+        (space, step): (&C, f64),
+        points: &[C::State],
+        select: &Se,
+        q: &C::State,
+        out: &mut Vec<Hit>,
+    ) {
+        let (n, d) = (points.len() as f64 + 1.0, space.dim() as f64);
+        match self {
+            Self::Nearest { factor } => {
+                let k = (factor * std::f64::consts::E * (1.0 + 1.0 / d) * n.ln()).ceil();
+                select.k_nearest(space, points, q, k as usize, out);
+            }
+            Self::Radius { gamma } => {
+                let radius = (gamma * (n.ln() / n).powf(1.0 / d)).min(step);
+                select.near(space, points, q, radius, out);
+            }
+        }
+    }
+}
+
+/// Under the near node through which the root is reached at least cost; then every near node that
+/// is reached at less cost through the new one is hung on that (Karaman and Frazzoli 2011).
+///
+/// Candidates are tried in order of the cost they promise, which is that of the near node and the
+/// distance; the first motion found free is taken, so that few are checked. Costs are those of the
+/// local planner, which must be able to reach a state exactly and should ask no less than the
+/// distance: where it cannot, this attaches as [`Append`](crate::Append).
+#[derive(Clone, Debug, Default)]
+pub struct Rewire {
+    near: Near,
+    hits: Vec<Hit>,
+    promises: Vec<(f64, NodeId)>,
+    rewired: Vec<NodeId>,
+}
+
+impl Rewire {
+    /// Rewires the nodes that are `near`.
+    ///
+    /// # Errors
+    /// When a number in `near` is out of range.
+    pub fn new(near: Near) -> Result<Self, BuildError> {
+        let (name, value, most) = match near {
+            Near::Nearest { factor } => ("near", factor, 1000.0),
+            Near::Radius { gamma } => ("gamma", gamma, f64::MAX),
+        };
+        if value > 0.0 && value <= most {
+            return Ok(Self { near, ..Self::default() });
+        }
+        let range = match near {
+            Near::Nearest { .. } => "in (0, 1000]",
+            Near::Radius { .. } => "a finite number above zero",
+        };
+        Err(BuildError::OutOfRange { name, value, range: range.to_owned() })
+    }
+}
+
+/// How far it is from a state nearer to the root to one farther away, in forward time.
+fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: &C::State) -> f64 {
+    match direction {
+        Direction::Forward => space.distance(upper, lower),
+        Direction::Backward => space.distance(lower, upper),
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State>> Attach<C, L> for Rewire {
+    fn attach<Se: Selector<C>>(
+        &mut self,
+        steer: &mut Steer<'_, C, L>,
+        tree: &mut Tree<C::State, L::Edge>,
+        select: &mut Se,
+        from: NodeId,
+        motion: Motion<C::State, L::Edge>,
+    ) -> Attached {
+        self.rewired.clear();
+        if motion.end == *tree.state(from) {
+            return Attached::Known(from);
+        }
+        let (space, direction) = (steer.space(), tree.direction());
+        self.near.find((space, steer.step()), tree.states(), select, &motion.end, &mut self.hits);
+        if let Some(hit) = self.hits.iter().find(|hit| *tree.state(hit.id) == motion.end) {
+            return Attached::Known(hit.id);
+        }
+
+        // All that asks the user's code comes first, so that a panic finds the tree as it was.
+        let mut best = (from, motion);
+        let mut cost = tree.cost(from) + best.1.cost;
+        self.promises.clear();
+        for &Hit { id, .. } in &self.hits {
+            let promise = tree.cost(id) + distance(space, direction, tree.state(id), &best.1.end);
+            if id != from && promise < cost {
+                self.promises.push((promise, id));
+            }
+        }
+        self.promises.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for &(promise, id) in &self.promises {
+            if promise >= cost {
+                break;
+            }
+            let Some(way) = steer.reach(tree.state(id), &best.1.end, direction) else { continue };
+            if tree.cost(id) + way.cost < cost {
+                cost = tree.cost(id) + way.cost;
+                best = (id, way);
+            }
+        }
+        let (parent, motion) = best;
+        let verified = steer.distrusts();
+        let mut better = Vec::new();
+        for &Hit { id, .. } in &self.hits {
+            let promise = cost + distance(space, direction, &motion.end, tree.state(id));
+            if id != parent
+                && promise < tree.cost(id)
+                && let Some(way) = steer.reach(&motion.end, tree.state(id), direction)
+            {
+                better.push((id, way));
+            }
+        }
+
+        let new = tree.push(parent, motion);
+        if verified {
+            tree.set_verified(new);
+        }
+        for (id, way) in better {
+            // One rewired before may have made it cheaper than this.
+            if cost + way.cost < tree.cost(id) && tree.reparent(id, new, way.edge, way.cost) {
+                self.rewired.push(id);
+                if verified {
+                    tree.set_verified(id);
+                }
+            }
+        }
+        Attached::New(new)
+    }
+
+    fn rewired(&self) -> &[NodeId] {
+        &self.rewired
+    }
+}

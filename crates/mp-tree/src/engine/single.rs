@@ -1,0 +1,157 @@
+//! The loop with one tree, grown from the start.
+
+use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Steer, Tree};
+use mp_cspace::{
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
+    Space,
+};
+
+/// A planner that grows one tree from the start until it enters the goal.
+///
+/// The first iteration tries to go straight from the start to each listed goal state, unless the growth
+/// [declines](Growth::leaps). Each one
+/// then proposes a target (with probability [`goal_bias`](crate::Tuning::goal_bias) a goal),
+/// grows the tree toward it, and verifies the path to what entered the goal. Stepping on after a
+/// solution grows the same tree on; the same path may be found again.
+#[derive(Debug)]
+pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
+    core: Core<'c, C, L>,
+    branch: Branch<C, L, Se, A>,
+    propose: P,
+    growth: G,
+}
+
+/// A tree, how it moves and how it grows.
+type Parts<'a, 'c, C, L, G> = (
+    &'a Tree<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>,
+    &'a mut Steer<'c, C, L>,
+    &'a mut G,
+);
+
+impl<'c, C, L, P, Se, G, A> SingleTree<'c, C, L, P, Se, G, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    G: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    /// The planner made by a recipe.
+    ///
+    /// # Errors
+    /// When a parameter is out of range.
+    pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
+        Ok(Self {
+            core: Core::new(problem, &recipe.tuning)?,
+            branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
+            propose: recipe.propose,
+            growth: recipe.grow,
+        })
+    }
+
+    /// The tree; empty before the first step.
+    #[must_use]
+    pub fn tree(&self) -> &Tree<C::State, L::Edge> {
+        self.branch.tree()
+    }
+
+    /// How it grows.
+    #[must_use]
+    pub fn growth(&self) -> &G {
+        &self.growth
+    }
+
+    /// The tree, how it moves and how it grows.
+    pub(crate) fn parts(&mut self) -> Parts<'_, 'c, C, L, G> {
+        (self.branch.tree(), &mut self.core.steer, &mut self.growth)
+    }
+
+    /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the
+    /// next step takes up behind the place.
+    fn begin(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        if let Some(root) = self.core.plant(&mut self.branch, observer) {
+            return self.candidate(root, observer);
+        }
+        while self.growth.leaps()
+            && let Some(grown) = self.core.leap(&mut self.branch, rng, observer)
+        {
+            let Grown::Reached(id) = grown else { continue };
+            if let Some(path) = self.candidate(id, observer) {
+                return Some(path);
+            }
+        }
+        None
+    }
+
+    /// Grows toward `target`, which is a goal when the purpose is to join.
+    fn grow(
+        &mut self,
+        target: &C::State,
+        why: Purpose,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        observer.on(Event::Sampled(target));
+        let before = self.branch.tree().len();
+        let grown = self.branch.toward(target, why, &mut self.core.steer, &mut self.growth, rng, observer);
+        if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
+            return self.candidate(id, observer);
+        }
+        if self.core.goals.has_region() {
+            let mut new = before as NodeId..self.branch.tree().len() as NodeId;
+            let entered = new.find(|&id| self.core.goals.reached(self.branch.tree().state(id)))?;
+            return self.candidate(entered, observer);
+        }
+        None
+    }
+
+    /// The path to `id` if it passes verification; otherwise its bad part is pruned.
+    fn candidate(
+        &mut self,
+        id: NodeId,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        let pruned = |survivors: &[NodeId]| self.growth.pruned(Direction::Forward, survivors);
+        self.core.path(&mut self.branch, id, observer, pruned)
+    }
+}
+
+impl<C, L, P, Se, G, A> Planner<C::State> for SingleTree<'_, C, L, P, Se, G, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    G: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.core.iterations += 1;
+        if let Some(path) = self.begin(rng, observer) {
+            return Some(path);
+        }
+        if let Some(goal) = self.core.aim(rng) {
+            return self.grow(&goal, Purpose::Join, rng, observer);
+        }
+        let (points, select) = self.branch.parts();
+        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
+        self.grow(&target, Purpose::Explore, rng, observer)
+    }
+
+    fn progress(&self) -> Progress {
+        let mut progress = self.core.progress(self.branch.tree().len());
+        progress.exhausted = self.branch.is_exhausted();
+        progress
+    }
+}

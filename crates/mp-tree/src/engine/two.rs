@@ -1,0 +1,178 @@
+//! The loop with two trees, grown from the start and from the goal.
+
+use super::core::joined;
+use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Tree};
+use mp_cspace::{
+    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
+    Space,
+};
+
+/// A planner that grows one tree from the start and one from the goal until they meet.
+///
+/// The first iteration tries to go straight from the start to each listed goal state, unless one of the growths
+/// [declines](Growth::leaps). Each one
+/// then grows one tree toward a proposed target, and the other toward what was reached; the trees
+/// take turns. Where they meet, the path is verified. The goal tree has a root for each listed
+/// goal state; where goals come from a sampler, a root is added with probability
+/// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in each one until there is any.
+/// Stepping on after a solution grows the same trees on.
+#[derive(Debug)]
+pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
+    core: Core<'c, C, L>,
+    trees: [Branch<C, L, Se, A>; 2],
+    /// How many listed goal states have been looked at, how many roots that gave, and how many of
+    /// those have been tried straight from the start.
+    planted: usize,
+    roots: NodeId,
+    tried: NodeId,
+    propose: P,
+    explore: GA,
+    join: GB,
+    turn: usize,
+}
+
+impl<'c, C, L, P, Se, GA, GB, A> TwoTrees<'c, C, L, P, Se, GA, GB, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    GA: Growth<C, L>,
+    GB: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    /// The planner made by a recipe. `planner` names it in errors.
+    ///
+    /// # Errors
+    /// When a parameter is out of range, or there is nothing to root the goal tree at.
+    pub fn assemble(
+        planner: &'static str,
+        problem: Problem<'c, C, L>,
+        recipe: Recipe<P, Se, (GA, GB), A>,
+    ) -> Result<Self, BuildError>
+    where
+        Se: Clone,
+        A: Clone,
+    {
+        if !problem.goals().can_aim() {
+            return Err(BuildError::NoGoalState { planner });
+        }
+        let forward = Branch::new(0, Direction::Forward, recipe.select.clone(), recipe.attach.clone());
+        let backward = Branch::new(1, Direction::Backward, recipe.select, recipe.attach);
+        Ok(Self {
+            core: Core::new(problem, &recipe.tuning)?,
+            trees: [forward, backward],
+            planted: 0,
+            roots: 0,
+            tried: 0,
+            propose: recipe.propose,
+            explore: recipe.grow.0,
+            join: recipe.grow.1,
+            turn: 0,
+        })
+    }
+
+    /// The trees from the start and from the goal; empty before the first step.
+    #[must_use]
+    pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
+        [self.trees[0].tree(), self.trees[1].tree()]
+    }
+
+    /// Plants the roots and tries the straight way. What a panic of the user's code interrupts,
+    /// the next step takes up behind the place.
+    fn begin(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        if let Some(root) = self.core.plant(&mut self.trees[0], observer) {
+            return Some(self.trees[0].tree().path(root));
+        }
+        let space = self.core.steer.space();
+        while let Some(goal) = self.core.goals.listed().get(self.planted) {
+            self.planted += 1;
+            if !self.trees[1].knows(space, goal) {
+                self.trees[1].add_root(space, goal.clone(), observer);
+            }
+            self.roots = self.trees[1].tree().len() as NodeId;
+        }
+        while self.explore.leaps() && self.join.leaps() && self.tried < self.roots {
+            let goal_root = self.tried;
+            self.tried += 1;
+            let [forward, backward] = &mut self.trees;
+            let goal = backward.tree().state(goal_root);
+            let grown = forward.leap(0, goal, &mut self.core.steer, rng, observer);
+            let Grown::Reached(id) = grown else { continue };
+            if let Some(path) = self.candidate([id, goal_root], observer) {
+                return Some(path);
+            }
+        }
+        None
+    }
+
+    /// The path through two nodes with the same state, if it passes verification; otherwise its
+    /// bad part is pruned.
+    fn candidate(
+        &mut self,
+        meeting: [NodeId; 2],
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        for (tree, id) in self.trees.iter_mut().zip(meeting) {
+            let direction = tree.tree().direction();
+            let pruned = |survivors: &[NodeId]| {
+                self.explore.pruned(direction, survivors);
+                self.join.pruned(direction, survivors);
+            };
+            if !tree.verify(id, &mut self.core.steer, observer, pruned) {
+                return None;
+            }
+        }
+        Some(joined([0, 1].map(|i| self.trees[i].tree().path(meeting[i]))))
+    }
+}
+
+impl<C, L, P, Se, GA, GB, A> Planner<C::State> for TwoTrees<'_, C, L, P, Se, GA, GB, A>
+where
+    C: Space,
+    L: LocalPlanner<C::State>,
+    P: Propose<C>,
+    Se: Selector<C>,
+    GA: Growth<C, L>,
+    GB: Growth<C, L>,
+    A: Attach<C, L>,
+{
+    type Edge = L::Edge;
+
+    fn step(
+        &mut self,
+        rng: &mut Rng,
+        observer: &mut dyn Observer<C::State>,
+    ) -> Option<Path<C::State, L::Edge>> {
+        self.core.iterations += 1;
+        if let Some(path) = self.begin(rng, observer) {
+            return Some(path);
+        }
+        if self.core.goals.has_sampler() {
+            self.core.sample_goal(&mut self.trees[1], rng, observer);
+        }
+        let turn = self.turn;
+        self.turn ^= 1;
+        let [forward, backward] = &mut self.trees;
+        let (a, b) = if turn == 0 { (forward, backward) } else { (backward, forward) };
+        let (points, select) = a.parts();
+        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
+        observer.on(Event::Sampled(&target));
+        let grown =
+            a.toward(&target, Purpose::Explore, &mut self.core.steer, &mut self.explore, rng, observer);
+        let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
+        let joined =
+            b.toward(a.tree().state(i), Purpose::Join, &mut self.core.steer, &mut self.join, rng, observer);
+        let Grown::Reached(j) = joined else { return None };
+        self.candidate(if turn == 0 { [i, j] } else { [j, i] }, observer)
+    }
+
+    fn progress(&self) -> Progress {
+        let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
+        self.core.progress(nodes)
+    }
+}

@@ -1,0 +1,58 @@
+//! Slot: growth by inputs none of which is tried twice at the same node.
+
+use super::{Attach, Growing, Grown, Growth, Selector};
+use mp_cspace::inputs::EachOnce;
+use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
+
+/// Grows by the inputs that have not been tried at a node, the most promising first: one at a time, or
+/// until one leads to a new node. A node from which the latter fails is exhausted.
+#[derive(Clone, Debug, Default)]
+pub struct Untried {
+    one: bool,
+    tried: Vec<Vec<bool>>,
+}
+
+impl Untried {
+    /// One input each time, whether it leads anywhere or not.
+    #[must_use]
+    pub fn one() -> Self {
+        Self { one: true, tried: Vec::new() }
+    }
+
+    /// As many inputs as it takes.
+    #[must_use]
+    pub fn until_new() -> Self {
+        Self::default()
+    }
+}
+
+impl<C: Space, L: LocalPlanner<C::State> + EachOnce> Growth<C, L> for Untried {
+    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+        &mut self,
+        from: NodeId,
+        growing: &mut Growing<'_, '_, C, L, Se, A>,
+    ) -> Grown {
+        let node = from as usize;
+        if self.tried.len() <= node {
+            self.tried.resize_with(node + 1, Vec::new);
+        }
+        let count = growing.steer().local().count();
+        let (most, rounds) = if self.one { (1, 1) } else { (count, count) };
+        // More than one round only where a successor is free but in the tree already.
+        for _ in 0..rounds {
+            let tried = std::mem::take(&mut self.tried[node]);
+            growing.steer().local().lend_tried(tried, most);
+            let grown = growing.step(from);
+            self.tried[node] = growing.steer().local().take_tried();
+            if grown != Grown::Trapped || self.tried[node].iter().all(|tried| *tried) {
+                return grown;
+            }
+        }
+        Grown::Trapped
+    }
+
+    fn pruned(&mut self, _: Direction, survivors: &[NodeId]) {
+        let keep = |&id: &NodeId| self.tried.get_mut(id as usize).map(std::mem::take).unwrap_or_default();
+        self.tried = survivors.iter().map(keep).collect();
+    }
+}

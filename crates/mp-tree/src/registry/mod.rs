@@ -1,0 +1,99 @@
+//! Planners by name, for programs that choose at run time.
+
+mod state;
+mod wrap;
+
+pub use state::{ProblemFactory, TreeState};
+pub use wrap::{Named, Wrapper, build_from, wrappers};
+
+use crate::algo;
+use crate::by_name::{AnyPlanner, Given};
+use crate::{BuildError, PlannerInfo, Problem, Settings, Tuning, closest};
+use mp_cspace::{DefaultNn, MotionValidity, NearestNeighbors, Space, Straight};
+
+/// All planners of the crate.
+#[must_use]
+pub fn planners() -> &'static [PlannerInfo] {
+    algo::PLANNERS
+}
+
+/// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
+///
+/// # Errors
+/// When there is none, with the names there are.
+pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
+    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
+}
+
+fn unknown(name: &str) -> BuildError {
+    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
+    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
+    let suggestion = closest(name, known.iter().copied().chain(aliases));
+    BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
+}
+
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
+/// from the [problem](Problem::with_obstacles).
+///
+/// # Errors
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem does not know
+/// of obstacles what the planner asks.
+pub fn build<'c, C, M>(
+    name: &str,
+    problem: Problem<'c, C, Straight<'c, C, M>>,
+    settings: &Settings,
+) -> Result<AnyPlanner<'c, C::State, ()>, BuildError>
+where
+    C: DefaultNn<State: 'c, Nn: 'c>,
+    M: MotionValidity<C::State> + Send + 'c,
+{
+    build_with(name, problem, C::Nn::default(), settings)
+}
+
+/// As [`build`], with an empty index of your choice.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_with<'c, C, M, N>(
+    name: &str,
+    problem: Problem<'c, C, Straight<'c, C, M>>,
+    index: N,
+    settings: &Settings,
+) -> Result<AnyPlanner<'c, C::State, ()>, BuildError>
+where
+    C: Space<State: 'c> + 'c,
+    M: MotionValidity<C::State> + Send + 'c,
+    N: NearestNeighbors<C> + Clone + Send + 'c,
+{
+    let (info, make) = algo::find::<(C, M, N)>(name).ok_or_else(|| unknown(name))?;
+    let tuning = Tuning::read(settings, info)?;
+    make(Given { problem, index, tuning, settings })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_and_unique() {
+        let mut names: Vec<&str> =
+            planners().iter().flat_map(|p| [p.name].into_iter().chain(p.aliases.iter().copied())).collect();
+        for name in &names {
+            assert!(planner(name).is_ok_and(|info| info.is_called(name)));
+        }
+        let count = names.len();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), count, "two planners share a name");
+        for (known, alias) in [
+            ("bi-rrt", "rrt-ext-ext"),
+            ("rrt-connect", "rrt-ext-con"),
+            ("rrt-con-ext", "rrt-con-ext"),
+            ("rrt-con-con", "rrt-con-con"),
+        ] {
+            assert_eq!(planner(alias).unwrap().name, known);
+        }
+        let message = planner("rrt-ext-cno").unwrap_err().to_string();
+        assert!(message.contains("did you mean `rrt-ext-con`?"), "{message}");
+    }
+}

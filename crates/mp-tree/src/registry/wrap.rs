@@ -1,0 +1,225 @@
+//! Planners that run other planners, by name.
+
+use crate::algo::or_parallel::{RUNS, SLICE};
+use crate::algo::restarts::{SCHEDULE, UNIT};
+use crate::algo::rrs::{self, Plain, bent};
+use crate::algo::rrt;
+use crate::algo::shared_tree::BATCH;
+use crate::{
+    AnyPlanner, BuildError, OrParallel, Parameter, PlannerInfo, Problem, Restarts, Schedule, Settings,
+    SharedTree, Tuning, Workers, build_with, planner,
+};
+use mp_cspace::{MotionValidity, NearestNeighbors, Space, Straight};
+use std::fmt;
+use std::sync::Arc;
+
+/// A way to run another planner, named by what is put before that one's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wrapper {
+    /// Before the name of the planner it runs.
+    pub prefix: &'static str,
+    /// What it is and when to use it, in a line.
+    pub summary: &'static str,
+    /// Its paper.
+    pub citation: &'static str,
+    /// Its parameters; there are those of the planner it runs beside them.
+    pub parameters: &'static [Parameter],
+    /// The planners it can run, not wrapped themselves; `None`: any, wrapped or not.
+    pub around: Option<&'static [&'static str]>,
+}
+
+const OR: Wrapper = Wrapper {
+    prefix: "or-",
+    summary: "independent runs on all threads, of which the one with the fewest iterations wins",
+    citation: "Carpin and Pagello 2002",
+    parameters: &[RUNS, SLICE],
+    around: None,
+};
+
+const SHARED: Wrapper = Wrapper {
+    prefix: "shared-",
+    summary: "one tree grown by all threads, many samples at a time",
+    citation: "Carpin and Pagello 2002",
+    parameters: &[BATCH],
+    around: Some(&[rrt::INFO.name, rrs::INFO.name]),
+};
+
+const RESTART: Wrapper = Wrapper {
+    prefix: "restart-",
+    summary: "begins anew when it takes too long: fewer very long runs",
+    citation: "Luby, Sinclair and Zuckerman 1993; Amato, Ashur and Har-Peled 2025",
+    parameters: &[SCHEDULE, UNIT],
+    around: None,
+};
+
+/// All wrappers of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
+/// that restart.
+#[must_use]
+pub fn wrappers() -> &'static [Wrapper] {
+    &[OR, SHARED, RESTART]
+}
+
+/// A planner by name, with what it is wrapped in: `rrt`, `or-rrt-connect`, `restart-rrt`, …
+///
+/// ```
+/// use mp_tree::{Named, Settings};
+/// let named = Named::new("restart-rrt-connect")?;
+/// assert_eq!(named.to_string(), "restart-rrt-connect");
+/// assert!(named.check(&Settings::parse(["unit=500", "step=10%"])?).is_ok());
+/// assert!(named.check(&Settings::parse(["runs=2"])?).is_err());
+/// assert!(Named::new("or-dijkstra").is_err());
+/// # Ok::<(), mp_tree::BuildError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Named {
+    /// The wrappers, the outermost first.
+    pub wrappers: Vec<&'static Wrapper>,
+    /// The planner inside.
+    pub planner: &'static PlannerInfo,
+}
+
+impl Named {
+    /// Most wrappers around one planner.
+    const DEEPEST: usize = 4;
+
+    /// The planner called `name`.
+    ///
+    /// # Errors
+    /// When there is none, with the names there are.
+    pub fn new(name: &str) -> Result<Self, BuildError> {
+        let mut rest = name;
+        let mut wrappers = Vec::new();
+        loop {
+            if let Ok(inner) = planner(rest) {
+                let innermost = wrappers.len().wrapping_sub(1);
+                let runs = |(i, wrapper): (usize, &&Wrapper)| {
+                    wrapper.around.is_none_or(|names| i == innermost && names.contains(&inner.name))
+                };
+                if !wrappers.iter().enumerate().all(runs) {
+                    planner(name).map(|_| ())?;
+                }
+                return Ok(Self { wrappers, planner: inner });
+            }
+            let outer = self::wrappers().iter().find_map(|w| Some((w, rest.strip_prefix(w.prefix)?)));
+            match outer {
+                Some((wrapper, inner)) if wrappers.len() < Self::DEEPEST => {
+                    wrappers.push(wrapper);
+                    rest = inner;
+                }
+                _ => planner(rest).map(|_| ())?,
+            }
+        }
+    }
+
+    /// Refuses settings that neither the planner nor a wrapper has, and values that cannot be read.
+    /// The range of the planner's own parameters is checked when it is made.
+    ///
+    /// # Errors
+    /// When there is one.
+    pub fn check(&self, settings: &Settings) -> Result<(), BuildError> {
+        let own = self.wrappers.iter().flat_map(|wrapper| wrapper.parameters);
+        settings.check_among(self.planner.name, own.chain(self.planner.parameters))?;
+        Tuning::read(&self.planner_settings(settings), self.planner)?;
+        Schedule::of(settings)?;
+        [RUNS, SLICE, UNIT, BATCH].iter().try_for_each(|parameter| settings.count(parameter.name).map(|_| ()))
+    }
+
+    fn planner_settings(&self, settings: &Settings) -> Settings {
+        settings.only(self.planner.parameters)
+    }
+}
+
+impl fmt::Display for Named {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.wrappers.iter().try_for_each(|wrapper| f.write_str(wrapper.prefix))?;
+        f.write_str(self.planner.name)
+    }
+}
+
+/// As [`build_with`](crate::build_with), also of planners that run others. `make` makes the problem, as often as there
+/// are runs; they use `workers`.
+///
+/// # Errors
+/// As [`build`](crate::build), and when `make` fails.
+pub fn build_from<'c, C, M, N>(
+    name: &str,
+    make: impl Fn() -> Result<Problem<'c, C, Straight<'c, C, M>>, BuildError> + Send + Sync + 'c,
+    index: N,
+    settings: &Settings,
+    workers: &Workers,
+) -> Result<AnyPlanner<'c, C::State, ()>, BuildError>
+where
+    C: Space<State: 'c> + 'c,
+    M: MotionValidity<C::State> + Send + 'c,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
+{
+    let named = Named::new(name)?;
+    named.check(settings)?;
+    let factory =
+        Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), named };
+    factory.planner(0)
+}
+
+type Make<'c, C, M> = dyn Fn() -> Result<Problem<'c, C, Straight<'c, C, M>>, BuildError> + Send + Sync + 'c;
+
+/// All that is needed to make a planner any number of times.
+struct Factory<'c, C: Space, M: MotionValidity<C::State>, N> {
+    make: Arc<Make<'c, C, M>>,
+    index: N,
+    settings: Settings,
+    workers: Workers,
+    named: Named,
+}
+
+impl<'c, C: Space, M: MotionValidity<C::State>, N: Clone> Clone for Factory<'c, C, M, N> {
+    fn clone(&self) -> Self {
+        let Self { make, index, settings, workers, named } = self;
+        Self {
+            make: Arc::clone(make),
+            index: index.clone(),
+            settings: settings.clone(),
+            workers: workers.clone(),
+            named: named.clone(),
+        }
+    }
+}
+
+impl<'c, C, M, N> Factory<'c, C, M, N>
+where
+    C: Space<State: 'c> + 'c,
+    M: MotionValidity<C::State> + Send + 'c,
+    N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
+{
+    /// The planner inside the wrappers before `depth`.
+    fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, ()>, BuildError> {
+        let count = |parameter: Parameter| self.settings.count_of(&parameter);
+        match self.named.wrappers.get(depth) {
+            None => {
+                let settings = self.named.planner_settings(&self.settings);
+                build_with(self.named.planner.name, (self.make)()?, self.index.clone(), &settings)
+            }
+            Some(wrapper) if **wrapper == OR => {
+                let workers = self.workers.clone();
+                Ok(Box::new(OrParallel::new(count(RUNS)?, count(SLICE)?, workers, |_| {
+                    self.planner(depth + 1)
+                })?))
+            }
+            Some(wrapper) if **wrapper == SHARED => {
+                let (info, settings) = (self.named.planner, self.named.planner_settings(&self.settings));
+                let tuning = Tuning::read(&settings, info)?;
+                let (batch, workers, index) = (count(BATCH)?, self.workers.clone(), self.index.clone());
+                Ok(if info.name == rrs::INFO.name {
+                    let make = |_| bent(info.name, (self.make)()?, &settings);
+                    Box::new(Plain(SharedTree::with_index(batch, workers, index, tuning, make)?))
+                } else {
+                    Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| (self.make)())?)
+                })
+            }
+            Some(_) => {
+                let inner = self.clone();
+                let attempt = move |_| inner.planner(depth + 1);
+                Ok(Box::new(Restarts::new(Schedule::of(&self.settings)?, count(UNIT)?, attempt)?))
+            }
+        }
+    }
+}
