@@ -1,6 +1,6 @@
 //! The one random number generator of the workspace.
 
-use rand::{SeedableRng, TryRng};
+use rand::{RngExt, SeedableRng, TryRng};
 use std::convert::Infallible;
 
 /// A seeded PCG-64 generator (O'Neill 2014, *PCG*).
@@ -33,6 +33,12 @@ impl Rng {
         let state =
             u128::from(seed) ^ (u128::from(i).wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835));
         Self(rand_pcg::Pcg64::new(state, u128::from(i)))
+    }
+
+    /// A number drawn uniformly from \[0, 1): all that a space of your own needs to be sampled. For other
+    /// distributions there is the crate `rand`, whose generators this is one of.
+    pub fn unit(&mut self) -> f64 {
+        self.random()
     }
 }
 
