@@ -130,6 +130,7 @@ impl RobotProblem {
             return Err(format!("{name} names no file: write package://PACKAGE/FILE"));
         }
         let start = self.packages.as_deref().unwrap_or(folder);
+        // The folder of a bare file name.
         let start = if start.as_os_str().is_empty() { Path::new(".") } else { start };
         let absolute = std::fs::canonicalize(start).map_err(|e| {
             let whose = if self.packages.is_some() { "`packages` of the problem" } else { "of the URDF" };
@@ -145,7 +146,7 @@ impl RobotProblem {
             "" => (rest.to_owned(), rest.split('/').next().unwrap_or(rest)),
             _ => (format!("{package}/{rest}"), package),
         };
-        let start = start.display();
+        let start = absolute.display();
         Err(match self.packages {
             Some(_) => format!(
                 "{name} is not there: {file} and share/{file} were sought in {start}, the folder `packages` of the \
