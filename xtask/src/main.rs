@@ -25,7 +25,7 @@ fn main() -> ExitCode {
     let command = arguments.first().map(|c| c.to_string_lossy().into_owned()).unwrap_or_default();
     match command.as_str() {
         "plan" | "check" | "info" | "render" | "scenes" | "completions" | "man" | "--version" => {
-            start("mp-cli", "mp", &arguments)
+            start("mp-motion-cli", "mp", &arguments)
         }
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
         "assets" => start("mp-bench", "mp-bench", &arguments),
