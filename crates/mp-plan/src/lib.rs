@@ -63,6 +63,7 @@ mod picture;
 mod planners;
 mod report;
 mod request;
+mod roadmaps;
 mod robot;
 mod scene;
 mod search;
@@ -80,6 +81,7 @@ pub use picture::{PICTURE_SIZE, PictureKind};
 pub use planners::{planners, wrappers};
 pub use report::{Medians, REPORT_VERSION, Report, Runs, StoppedBy, median, medians};
 pub use request::{Budget, Finish, Length, Metric, MotionCheck, Request};
+pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
     PlanarScene, RigidMotion, RigidScene, RobotKind, Touch,

@@ -21,6 +21,13 @@ pub fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
+/// A hash of the bits of numbers (XXH3): the one that roadmaps are kept with.
+pub(crate) fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
+    let mut hash = xxhash_rust::xxh3::Xxh3::new();
+    numbers.into_iter().for_each(|x| hash.update(&x.to_le_bytes()));
+    hash.digest()
+}
+
 /// A number as a scene file has it: nine decimals, none that are zero, no negative zero.
 pub(crate) fn plain(v: f64) -> String {
     ((v * 1e9).round() / 1e9 + 0.0).to_string()

@@ -1,13 +1,13 @@
 //! Planners by name: trees, wrapped or not, and roadmaps.
 
-use crate::Error;
+use crate::{Error, roadmaps};
 use mp_cspace::{PlannerInfo, Settings};
 use std::fmt;
 
 /// All planners by name, trees first. Before the name of a tree may stand `or-`, `restart-` and, before `rrt`,
 /// `shared-`: see [`wrappers`].
 pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
-    mp_tree::planners().iter().chain(mp_roadmap::planners())
+    mp_tree::planners().iter().chain(roadmaps::planners())
 }
 
 /// What may stand before the name of a planner.
@@ -28,7 +28,7 @@ pub(crate) enum Named {
 impl Named {
     /// The planner called `name`.
     pub(crate) fn new(name: &str) -> Result<Self, Error> {
-        if let Ok(info) = mp_roadmap::planner(name) {
+        if let Some(info) = roadmaps::planner(name) {
             return Ok(Self::Roadmap(info));
         }
         mp_tree::Named::new(name).map(Self::Tree).map_err(|error| {

@@ -10,6 +10,7 @@ pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidMotion, RigidScene};
 
 use crate::numbers::plain;
+use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{
@@ -17,7 +18,6 @@ use mp_cspace::{
     Validity,
 };
 use mp_geom::TriMesh;
-use mp_roadmap::RoadmapState;
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use serde::{Deserialize, Serialize};

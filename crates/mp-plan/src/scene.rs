@@ -502,7 +502,7 @@ fn plan<K: RobotKind>(kind: &K, request: &Request, control: &mut Control<'_>) ->
     report.path_length = Some(finished.length);
     report.clearance = Some(finished.clearance);
     let numbers = finished.path.rows.iter().flatten().copied();
-    report.fingerprint = Some(format!("{:016x}", mp_roadmap::fingerprint(numbers)));
+    report.fingerprint = Some(format!("{:016x}", crate::numbers::fingerprint(numbers)));
     report.path = Some(finished.path.rows);
     Ok(report)
 }

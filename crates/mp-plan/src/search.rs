@@ -2,6 +2,7 @@
 
 use crate::counted::{Counted, QueryBudget};
 use crate::planners::Named;
+use crate::roadmaps::{self, Roadmap};
 use crate::watch::{Events, Telling};
 use crate::{Control, Error, Finish, Length, Measured, MotionCheck, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::AnyCheck;
@@ -11,7 +12,6 @@ use mp_cspace::{
     Path, Planner, Problem, Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Workers,
     verify_path,
 };
-use mp_roadmap::{Roadmap, RoadmapState, Team};
 use mp_snake::{Params, Repulsion, relax};
 use mp_tree::{TreeState, improve};
 use std::sync::Arc;
@@ -45,14 +45,14 @@ pub struct Search<S> {
 /// A planner made by name.
 enum Made<'p, S> {
     Tree(mp_tree::AnyPlanner<'p, S, ()>),
-    Roadmap(mp_roadmap::AnyPlanner<'p, S, ()>),
+    Roadmap(roadmaps::Made<'p, S>),
 }
 
-impl<'p, S: 'p> Made<'p, S> {
+impl<'p, S: roadmaps::RoadmapState + mp_cspace::Numbers + 'static> Made<'p, S> {
     fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
         match self {
             Self::Tree(planner) => &mut **planner,
-            Self::Roadmap(planner) => &mut **planner,
+            Self::Roadmap(made) => made.planner(),
         }
     }
 }
@@ -105,16 +105,7 @@ pub fn search<K: RobotKind>(
             Made::Tree(TreeState::tree_planner(&name, Arc::new(&problem), index, &settings, &workers)?)
         }
         Named::Roadmap(info) => {
-            let team = Team::new(workers, request.threads, &problem)?;
-            let mut made = RoadmapState::roadmap_planner(info.name, team, index, &settings)?;
-            if let (Some(file), Some(fingerprint)) = (&request.roadmap, fingerprint)
-                && file.exists()
-            {
-                let map = Roadmap::load(file, fingerprint).map_err(|e| {
-                    Error::new(e.to_string()).help("name another file, or delete it to begin anew")
-                })?;
-                made.resume(map)?;
-            }
+            let made = roadmaps::Made::new(info, &problem, index, request, &settings, workers, fingerprint)?;
             Made::Roadmap(made)
         }
     };
@@ -164,12 +155,9 @@ pub fn search<K: RobotKind>(
     let progress = made.planner().progress();
     let (map, roadmap) = match &mut made {
         Made::Tree(_) => (None, None),
-        Made::Roadmap(planner) => {
-            if let (Some(file), Some(fingerprint)) = (&request.roadmap, fingerprint) {
-                mp_io::write_atomic(file, &planner.map().to_bytes(fingerprint))?;
-            }
-            let map = [planner.map().edges(), planner.map_mut().components()];
-            (Some(map), control.keep_roadmap.then(|| planner.map().clone()))
+        Made::Roadmap(made) => {
+            let (map, roadmap) = made.keep(request, fingerprint, control.keep_roadmap)?;
+            (Some(map), roadmap)
         }
     };
     // What the checkers have counted and not told yet.

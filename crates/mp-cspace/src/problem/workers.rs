@@ -1,13 +1,20 @@
 //! Threads for planners that work in parallel.
 
 use super::BuildError;
+#[cfg(feature = "parallel")]
 use rayon::prelude::*;
 use std::sync::Arc;
 
+#[cfg(feature = "parallel")]
+type Pool = rayon::ThreadPool;
+/// No pool can be made.
+#[cfg(not(feature = "parallel"))]
+type Pool = std::convert::Infallible;
+
 /// A pool of threads that belongs to whoever holds it; clones share it. Nothing computed depends
-/// on how many there are.
+/// on how many there are. Without the feature `parallel` there is only the caller's own.
 #[derive(Clone, Debug)]
-pub struct Workers(Option<Arc<rayon::ThreadPool>>);
+pub struct Workers(Option<Arc<Pool>>);
 
 impl Workers {
     /// The most threads a pool may have.
@@ -25,11 +32,12 @@ impl Workers {
     /// When that is none or more than [`MOST`](Self::MOST), or the system refuses them.
     pub fn new(threads: usize) -> Result<Self, BuildError> {
         match Self::checked(threads)? {
-            1 => Ok(Self::alone()),
-            _ => match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+            #[cfg(feature = "parallel")]
+            2.. => match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => Ok(Self(Some(Arc::new(pool)))),
                 Err(error) => Err(Self::refused(threads, format!("fewer: {error}"))),
             },
+            _ => Ok(Self::alone()),
         }
     }
 
@@ -52,7 +60,10 @@ impl Workers {
     pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Send + Sync) {
         match &self.0 {
             None => items.iter_mut().for_each(work),
+            #[cfg(feature = "parallel")]
             Some(pool) => pool.install(|| items.par_iter_mut().with_max_len(1).for_each(work)),
+            #[cfg(not(feature = "parallel"))]
+            Some(pool) => match **pool {},
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Robots of the plane among polygons: a disc, or a polygon that turns.
 
 use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, RobotKind, Touch, no_metric};
+use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::{
     ClearanceGradient, DefaultNn, Factored, MotionValidity, Numbers, ObstacleHints, ObstacleKnowledge, Rn,
@@ -8,7 +9,6 @@ use mp_cspace::{
 };
 use mp_geom::flat::FlatWorld;
 use mp_io::{FlatBody, FlatPart, FlatProblem};
-use mp_roadmap::RoadmapState;
 use mp_robot::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
 use mp_tree::TreeState;
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, Translation3, UnitQuaternion, Vector2, Vector3};

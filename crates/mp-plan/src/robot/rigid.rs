@@ -3,7 +3,8 @@
 use super::{
     Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, RobotKind, Touch, tuples,
 };
-use crate::numbers::plain;
+use crate::numbers::{fingerprint, plain};
+use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace};
@@ -14,7 +15,6 @@ use mp_cspace::{
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{Problem, SpaceKind};
-use mp_roadmap::RoadmapState;
 use mp_robot::{Placement, Planar, RigidBody, Spatial, Verifier};
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
@@ -360,6 +360,6 @@ impl<M: RigidMotion> RobotKind for RigidScene<M> {
         };
         mesh(&problem.robot.mesh, &Isometry3::identity());
         problem.obstacles.iter().for_each(|o| mesh(&o.mesh, &o.pose));
-        Some(mp_roadmap::fingerprint(numbers))
+        Some(fingerprint(numbers))
     }
 }
