@@ -1,4 +1,4 @@
-//! What is shipped. Written by `cargo xtask assets`.
+//! What is shipped. Written by `mp-bench assets`.
 
 use crate::File;
 

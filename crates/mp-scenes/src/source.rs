@@ -1,5 +1,5 @@
-//! `cargo xtask assets`: regenerates `assets/`, bit for bit. Every scene and mesh the project ships is made
-//! here, from constants.
+//! The code that makes the shipped files, bit for bit: every scene and mesh is made here, from constants. `mp-bench
+//! assets` writes them.
 //!
 //! A family of scenes is a file; `shape` has the solids they are made of, `scene` turns them into files.
 
@@ -7,7 +7,7 @@ mod alpha;
 mod apartment;
 mod arm;
 mod bugtrap;
-pub(crate) mod courses;
+pub mod courses;
 mod cubicles;
 mod flat;
 mod furniture;
@@ -19,46 +19,32 @@ mod shape;
 mod tests;
 mod windows;
 
-use crate::output;
-use clap::Args;
-use miette::{IntoDiagnostic, Result, WrapErr};
-use scene::Files;
+pub use scene::Files;
+use std::fmt;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// What to do with the assets.
-#[derive(Clone, Debug, Args)]
-pub(crate) struct AssetsArgs {
-    /// Write nothing; exit 0 only if every file is there and identical.
-    #[arg(long)]
-    check: bool,
-    /// The folder to write or check [default: `assets` of the workspace].
-    #[arg(long, value_name = "DIR")]
-    dir: Option<PathBuf>,
-}
+/// What is wrong, in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error(String);
 
-/// Writes all assets, or checks them: true when nothing differs.
-///
-/// # Errors
-/// When a file cannot be read or written.
-pub(crate) fn run(args: &AssetsArgs) -> Result<bool> {
-    let folder = args.dir.clone().unwrap_or_else(|| crate::scenes::root().join("assets"));
-    let files = generate();
-    let stale = stale(&folder, &files)?;
-    for (path, bytes) in files.iter().filter(|(path, _)| stale.contains(path)) {
-        if args.check {
-            output::note(&format!("{} is missing or differs", folder.join(path).display()));
-        } else {
-            output::write(&folder.join(path), bytes)?;
-        }
+impl Error {
+    fn new(message: impl fmt::Display) -> Self {
+        Self(message.to_string())
     }
-    let done = if args.check { "differ" } else { "written" };
-    output::note(&format!("{} of {} files {done}", stale.len(), files.len()));
-    Ok(!args.check || stale.is_empty())
 }
 
-/// Every asset, by path relative to the assets folder.
-fn generate() -> Files {
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Every shipped file, by path relative to the folder of the scenes.
+#[must_use]
+pub fn generate() -> Files {
     let mut files = Files::new();
     gempa::add(&mut files);
     windows::add(&mut files);
@@ -72,20 +58,42 @@ fn generate() -> Files {
     files
 }
 
+/// The text of `src/files.rs`, which has `files` in the crate.
+#[must_use]
+pub fn files_rs(files: &Files) -> String {
+    const HEAD: &str = "\
+//! What is shipped. Written by `mp-bench assets`.
+
+use crate::File;
+
+/// All files, in the order of their paths.
+pub const FILES: &[File] = &[
+";
+    let entry = |path: &String| {
+        let bytes = format!("include_bytes!(\"../assets/{path}\")");
+        let line = format!("    File {{ path: \"{path}\", bytes: {bytes} }},\n");
+        // As rustfmt breaks lines.
+        match line.trim_end().len() {
+            0..=110 => line,
+            _ => format!("    File {{\n        path: \"{path}\",\n        bytes: {bytes},\n    }},\n"),
+        }
+    };
+    HEAD.to_owned() + &files.keys().map(entry).collect::<String>() + "];\n"
+}
+
 /// The paths of `files` that are missing in `folder` or differ there.
-fn stale<'a>(folder: &Path, files: &'a Files) -> Result<Vec<&'a String>> {
+///
+/// # Errors
+/// When a file cannot be read.
+pub fn stale<'a>(folder: &Path, files: &'a Files) -> Result<Vec<&'a str>, Error> {
     let mut stale = Vec::new();
     for (path, bytes) in files {
         let on_disk = folder.join(path);
         match std::fs::read(&on_disk) {
             Ok(found) if found == *bytes => {}
-            Ok(_) => stale.push(path),
+            Ok(_) => stale.push(path.as_str()),
             Err(e) if e.kind() == ErrorKind::NotFound => stale.push(path),
-            Err(e) => {
-                return Err(e)
-                    .into_diagnostic()
-                    .wrap_err_with(|| format!("cannot read {}", on_disk.display()));
-            }
+            Err(e) => return Err(Error::new(format!("cannot read {}: {e}", on_disk.display()))),
         }
     }
     Ok(stale)

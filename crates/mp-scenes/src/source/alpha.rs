@@ -6,7 +6,7 @@
 
 use super::scene::{Files, HOME, Scene, Six, configurations};
 use super::shape::{on_grid, shifted, tube};
-use mp::geom::TriMesh;
+use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4, PI, SQRT_2};
 

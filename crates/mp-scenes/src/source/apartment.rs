@@ -7,7 +7,7 @@ use super::furniture::{
 use super::piano::{RAISE, piano};
 use super::scene::{Files, HOME, QUARTER, Scene, Six};
 use super::shape::{block, cells};
-use mp::geom::TriMesh;
+use mp_geom::TriMesh;
 
 /// Adds the scene.
 pub(super) fn add(files: &mut Files) {

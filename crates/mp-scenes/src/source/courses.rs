@@ -2,11 +2,11 @@
 //! rebuilt. The paper gives their sizes, the numbers of obstacles and pictures that are too small to measure; what is
 //! in them here was chosen to fit what it says about them.
 
+use super::Error;
 use super::scene::Files;
-use miette::{IntoDiagnostic, Result, miette};
-use mp::cspace::{Clearance, MotionValidity, Rng, Validity};
-use mp::geom::flat::{FlatWorld, Polygon};
-use mp::robot::DiscRobot;
+use mp_cspace::{Clearance, MotionValidity, Rng, Validity};
+use mp_geom::flat::{FlatWorld, Polygon};
+use mp_robot::DiscRobot;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use std::collections::VecDeque;
@@ -14,25 +14,31 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 /// The radius of the robot, metres: that of a Khepera III.
-pub(crate) const RADIUS: f64 = 0.065;
+pub const RADIUS: f64 = 0.065;
 
 /// A walled world, a start and a goal; numbers to a tenth of a millimetre.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Course {
-    pub(crate) size: [f64; 2],
-    pub(crate) obstacles: Vec<Vec<[f64; 2]>>,
-    pub(crate) start: [f64; 2],
-    pub(crate) goal: [f64; 2],
+pub struct Course {
+    /// Width and height of the walled room, metres; a corner is the origin.
+    pub size: [f64; 2],
+    /// The corners of each obstacle.
+    pub obstacles: Vec<Vec<[f64; 2]>>,
+    /// Where the robot starts.
+    pub start: [f64; 2],
+    /// Where it is to go.
+    pub goal: [f64; 2],
 }
 
 impl Course {
     /// The robot in its world.
-    pub(crate) fn robot(&self) -> Result<DiscRobot> {
-        let polygons =
-            self.obstacles.iter().map(|ring| Polygon::outlined(ring.iter().copied()).into_diagnostic());
-        let polygons = polygons.collect::<Result<Vec<_>>>()?;
-        let world = FlatWorld::new(polygons, Some([[0.0; 2], self.size])).into_diagnostic()?;
-        DiscRobot::new(Arc::new(world), RADIUS).into_diagnostic()
+    ///
+    /// # Errors
+    /// When an obstacle is no polygon, or the room has no size.
+    pub fn robot(&self) -> Result<DiscRobot, Error> {
+        let polygons = self.obstacles.iter().map(|ring| Polygon::outlined(ring.iter().copied()));
+        let polygons = polygons.collect::<Result<Vec<_>, _>>().map_err(Error::new)?;
+        let world = FlatWorld::new(polygons, Some([[0.0; 2], self.size])).map_err(Error::new)?;
+        DiscRobot::new(Arc::new(world), RADIUS).map_err(Error::new)
     }
 
     /// As a file; `about` is its first line.
@@ -70,7 +76,7 @@ fn bar(low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
 }
 
 /// Three walls with a gap at alternate ends, and a spur.
-pub(crate) fn maze() -> Course {
+fn maze() -> Course {
     let obstacles = vec![
         bar([0.0, 0.72], [2.4, 0.78]),
         bar([0.6, 1.47], [3.0, 1.53]),
@@ -81,25 +87,25 @@ pub(crate) fn maze() -> Course {
 }
 
 /// Scattered bars and blocks with room to pass between any two.
-pub(crate) fn low() -> Course {
+fn low() -> Course {
     let course = Course { size: [4.0, 3.0], obstacles: vec![], start: [0.25, 0.25], goal: [3.75, 2.75] };
     scattered(course, 17, [0.18, 0.42], 2.6 * RADIUS, 11)
 }
 
 /// The same, more of them.
-pub(crate) fn high() -> Course {
+fn high() -> Course {
     let course = Course { size: [7.0, 4.0], obstacles: vec![], start: [0.25, 0.25], goal: [6.75, 3.75] };
     scattered(course, 48, [0.15, 0.4], 2.4 * RADIUS, 12)
 }
 
 /// 5 × 2 m with a few obstacles.
-pub(crate) fn follow() -> Course {
+pub fn follow() -> Course {
     let course = Course { size: [5.0, 2.0], obstacles: vec![], start: [0.3, 1.0], goal: [4.7, 1.0] };
     scattered(course, 9, [0.15, 0.35], 4.0 * RADIUS, 13)
 }
 
 /// 50 to 80 obstacles that may touch each other, start and goal free and surely connected, and at least 3 m apart.
-pub(crate) fn random(trial: u64) -> Course {
+fn random(trial: u64) -> Course {
     let mut attempt = 0;
     loop {
         attempt += 1;
@@ -202,19 +208,22 @@ fn connected(course: &Course) -> bool {
     false
 }
 
-/// A course by name, and of random ones which.
-pub(crate) fn course(name: &str, trial: u64) -> Result<Course> {
+/// A course by name: `maze`, `low`, `high`, or `random`, of which `trial` tells one from another.
+///
+/// # Errors
+/// When there is no such course.
+pub fn course(name: &str, trial: u64) -> Result<Course, Error> {
     let course = match name {
         "maze" => maze(),
         "low" => low(),
         "high" => high(),
         "random" => random(trial),
-        _ => return Err(miette!("there is no course `{name}`")),
+        _ => return Err(Error::new(format!("there is no course `{name}`"))),
     };
     let mut robot = course.robot()?;
     match [course.start, course.goal].iter().all(|q| robot.is_valid(&(*q).into())) {
         true => Ok(course),
-        false => Err(miette!("start or goal of the course `{name}` is not free")),
+        false => Err(Error::new(format!("start or goal of the course `{name}` is not free"))),
     }
 }
 
@@ -244,7 +253,7 @@ mod tests {
     #[test]
     fn files_read_back() {
         let course = high();
-        let file = mp::io::FlatFile::parse("high.toml", course.text("48").as_bytes()).unwrap();
+        let file = mp_io::FlatFile::parse("high.toml", course.text("48").as_bytes()).unwrap();
         let rings = |p: &Polygon| p.rings()[0].iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
         assert_eq!(file.obstacles.iter().map(|o| rings(&o.polygon)).collect::<Vec<_>>(), course.obstacles);
         assert_eq!((file.walls, file.start), (Some([[0.0; 2], course.size]), course.start.to_vec()));

@@ -1,7 +1,7 @@
 //! Furniture of the apartment. Each piece stands on z = 0 about the z axis and faces -y.
 
 use super::shape::{block, cells, cushion, cylinder, lathe, mapped, shifted, tube, turned, union};
-use mp::geom::TriMesh;
+use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 use std::f64::consts::{FRAC_PI_2, TAU};
 

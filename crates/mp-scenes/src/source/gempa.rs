@@ -5,7 +5,7 @@
 
 use super::scene::{Files, HOME, QUARTER, Scene};
 use super::shape::{ball, block, cells, cylinder, lathe, mesh, plan};
-use mp::geom::TriMesh;
+use mp_geom::TriMesh;
 use nalgebra::Point3;
 
 /// Adds the four scenes.

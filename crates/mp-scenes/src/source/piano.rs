@@ -1,7 +1,7 @@
 //! A baby grand piano, the origin in the middle of its case.
 
 use super::shape::{block, cushion, lathe, shifted, tube, union};
-use mp::geom::{TriMesh, primitives::prism};
+use mp_geom::{TriMesh, primitives::prism};
 use nalgebra::{Point2, Point3, Vector3};
 use std::f64::consts::FRAC_PI_2;
 

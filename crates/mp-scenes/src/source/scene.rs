@@ -1,12 +1,12 @@
 //! A scene under construction, and the files it becomes.
 
 use super::shape::{mapped, on_grid};
-use mp::geom::TriMesh;
-use mp::io::{Environment, Obstacle, PathFile, SpaceKind, gempa_mesh_text, off_text};
+use mp_geom::TriMesh;
+use mp_io::{Environment, Obstacle, PathFile, SpaceKind, gempa_mesh_text, off_text};
 use std::collections::BTreeMap;
 
 /// Files to be, by path relative to the assets folder.
-pub(super) type Files = BTreeMap<String, Vec<u8>>;
+pub type Files = BTreeMap<String, Vec<u8>>;
 
 /// Position and angles as GEMPA files give them: x, y, z, then yaw α, pitch β, roll γ in radians.
 pub(super) type Six = [f64; 6];

@@ -1,7 +1,7 @@
 //! The solids the scenes are made of, beyond the primitives of `mp-geom`. All are closed, oriented
 //! manifolds with outward normals.
 
-use mp::geom::TriMesh;
+use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,15 +1,16 @@
 //! What is shipped is what is made here, and every scene is a sound problem.
 
-use super::generate;
-use mp::cspace::{Clearance, MotionValidity, Se2, Se2State, Se3, Space, Validity};
-use mp::geom::six_from_pose;
-use mp::io::{PathFile, Problem, SpaceKind};
-use mp::robot::{FreeFlyer, PlanarFlyer, Verifier};
+use super::{files_rs, generate, stale};
+use mp_cspace::{Clearance, MotionValidity, Se2, Se2State, Se3, Space, Validity};
+use mp_geom::six_from_pose;
+use mp_io::{PathFile, Problem, RobotProblem, SpaceKind};
+use mp_plan::{ArmScene, RobotKind};
+use mp_robot::{FreeFlyer, PlanarFlyer, Verifier};
 use nalgebra::Isometry3;
 use std::path::PathBuf;
 
 fn assets() -> PathBuf {
-    crate::scenes::root().join("assets")
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")
 }
 
 fn scenes() -> Vec<Problem> {
@@ -18,7 +19,7 @@ fn scenes() -> Vec<Problem> {
     scenes.map(|path| Problem::load(assets().join(path)).expect(path)).collect()
 }
 
-fn obstacles(p: &Problem) -> Vec<(String, mp::geom::TriMesh, Isometry3<f64>)> {
+fn obstacles(p: &Problem) -> Vec<(String, mp_geom::TriMesh, Isometry3<f64>)> {
     p.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose)).collect()
 }
 
@@ -33,8 +34,11 @@ fn committed_files_are_regenerated_bit_for_bit() {
     assert_eq!(files, generate());
     for (path, bytes) in &files {
         let found = std::fs::read(assets().join(path)).expect(path);
-        assert!(found == *bytes, "{path} differs: run `cargo xtask assets`");
+        assert!(found == *bytes, "{path} differs: run `mp-bench assets`");
     }
+    assert!(stale(&assets(), &files).unwrap().is_empty());
+    let table = std::fs::read_to_string(assets().join("../src/files.rs")).unwrap();
+    assert_eq!(table, files_rs(&files), "run `mp-bench assets`");
     let total: usize = files.values().map(Vec::len).sum();
     assert!(total < 6_000_000, "{total} bytes");
 }
@@ -132,20 +136,19 @@ fn the_alphas_come_apart() {
 /// Start and goals of the arm are free, and the straight way from one to the other is not.
 #[test]
 fn the_arm_has_something_to_do() {
-    let task = crate::arm::Task::load(&assets().join("scenes/arm.toml")).unwrap();
-    task.check_ends().unwrap();
-    assert!(task.overlaps().is_empty() && task.arm.dof() == 6);
-    let mut verifier = task.verifier().unwrap();
-    for goal in &task.goals {
+    let scene =
+        ArmScene::from_problem(RobotProblem::load(assets().join("scenes/arm.toml")).unwrap()).unwrap();
+    assert!(scene.lint().is_empty() && scene.arm().dof() == 6);
+    let mut verifier = scene.verifier().unwrap();
+    for goal in scene.goals() {
         assert!(verifier.check_motion(goal, goal).is_free());
-        assert!(!verifier.check_motion(&task.start, goal).is_free());
+        assert!(!verifier.check_motion(scene.start(), goal).is_free());
     }
 }
 
 #[test]
 fn worlds_in_the_plane_are_sound() {
     for file in generate().keys().filter(|path| path.contains("/rrs-")) {
-        let task = crate::flat::AnyTask::load(&assets().join(file)).expect(file);
-        task.check_ends().expect(file);
+        mp_plan::Scene::load(assets().join(file)).unwrap().check_ends().expect(file);
     }
 }

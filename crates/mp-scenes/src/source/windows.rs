@@ -2,7 +2,7 @@
 
 use super::scene::{Files, HOME, Scene, Six};
 use super::shape::cells;
-use mp::geom::TriMesh;
+use mp_geom::TriMesh;
 
 /// Adds both scenes.
 pub(super) fn add(files: &mut Files) {

@@ -1,0 +1,56 @@
+//! `assets`: writes the shipped scenes and the table of them, bit for bit, or checks them.
+
+use crate::error::{IntoError, Result};
+use crate::output::{note, write};
+use clap::Args;
+use mp_scenes::source::{Files, files_rs, generate, stale};
+use std::path::{Path, PathBuf};
+
+/// What only `assets` has.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Of `assets`")]
+pub(crate) struct Options {
+    /// Write nothing; exit 0 only if every file is there and identical.
+    #[arg(long)]
+    check: bool,
+    /// The folder of the crate to write or check: scenes go to `assets`, their table to `src/files.rs` [default: the
+    /// crate mp-scenes of the workspace].
+    #[arg(long, value_name = "DIR")]
+    dir: Option<PathBuf>,
+}
+
+/// Writes all files, or checks them: true when nothing differs.
+pub(crate) fn run(options: &Options) -> Result<bool> {
+    let own = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../mp-scenes");
+    let folder = options.dir.clone().unwrap_or_else(own);
+    let made = generate();
+    let table = ("src/files.rs".to_owned(), files_rs(&made).into_bytes());
+    let files: Files =
+        made.into_iter().map(|(path, bytes)| (format!("assets/{path}"), bytes)).chain([table]).collect();
+    let stale = stale(&folder, &files).into_error()?;
+    for path in &stale {
+        match options.check {
+            true => note(&format!("{} is missing or differs", folder.join(path).display())),
+            false => write(&folder.join(path), &files[*path])?,
+        }
+    }
+    let done = if options.check { "differ" } else { "written" };
+    note(&format!("{} of {} files {done}", stale.len(), files.len()));
+    Ok(!options.check || stale.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_written_is_the_same_when_checked() {
+        let folder = tempfile::tempdir().unwrap();
+        let dir = Some(folder.path().to_owned());
+        assert!(!run(&Options { check: true, dir: dir.clone() }).unwrap());
+        assert!(run(&Options { check: false, dir: dir.clone() }).unwrap());
+        assert!(run(&Options { check: true, dir: dir.clone() }).unwrap());
+        std::fs::write(folder.path().join("src/files.rs"), "").unwrap();
+        assert!(!run(&Options { check: true, dir }).unwrap());
+    }
+}

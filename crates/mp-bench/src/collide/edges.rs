@@ -1,0 +1,165 @@
+//! What a planner's edges cost when they are certified, beside discrete checks.
+
+use super::pairs::scene;
+use crate::clock::nanoseconds;
+use crate::error::{IntoError, Result};
+use crate::experiment::Table;
+use crate::scenes::Rigid;
+use mp_cspace::{Certified, Discrete, KnownFree, MotionValidity, Resolution, Rng, Space};
+use mp_plan::RobotKind;
+use nalgebra::Isometry3;
+
+/// The pairs in whose scenes edges are checked.
+pub(crate) const CHECKED: [&str; 2] = ["cubicles", "piano"];
+/// The longest steps of the trees that make the edges, and the resolution of discrete checks, all parts of the extent.
+const LONGEST: [f64; 2] = [0.2, 0.05];
+const RESOLUTION: f64 = 0.01;
+/// The greedy tree takes no more steps than this toward a sample.
+const STEPS: usize = 5;
+
+/// What the edges of a scene cost.
+#[derive(Clone, Debug)]
+pub(crate) struct Costs {
+    scene: &'static str,
+    /// The longest step, as part of the extent.
+    step: f64,
+    discrete: Checked,
+    certified: Checked,
+}
+
+/// One kind of check of all edges.
+#[derive(Clone, Debug)]
+struct Checked {
+    /// Microseconds per edge, the fastest pass.
+    each: f64,
+    free: Vec<bool>,
+}
+
+type Edge = (Isometry3<f64>, Isometry3<f64>);
+
+impl Costs {
+    /// Checks `count` edges that a greedy RRT makes in the scene of a pair with steps of each length, `passes` times in
+    /// turn; nothing for a pair that is of no scene in space.
+    pub(crate) fn measure(pair: &str, count: usize, passes: usize) -> Result<Vec<Self>> {
+        let Some(scene) = scene(pair) else { return Ok(Vec::new()) };
+        let Rigid::Space(setting) = Rigid::load(scene)? else {
+            return Ok(Vec::new());
+        };
+        let (space, robot) = (setting.space(), setting.robot());
+        let resolution = Resolution::Fraction(RESOLUTION);
+        let mut discrete = Discrete::new(space, robot.clone(), resolution).into_error()?;
+        let mut certified = Certified::new(space, robot.clone(), setting.tolerance()).into_error()?;
+        let measure = |step| {
+            let edges = edges(space, &mut discrete, [*setting.start(), setting.goals()[0]], step, count);
+            let mut costs = Self { scene, step, discrete: Checked::none(), certified: Checked::none() };
+            for _ in 0..passes {
+                costs.discrete.pass(&edges, &mut discrete);
+                costs.certified.pass(&edges, &mut certified);
+            }
+            costs
+        };
+        Ok(LONGEST.map(measure).into())
+    }
+
+    /// Whether no edge was certified in which the discrete check found a collision.
+    pub(crate) fn consistent(&self) -> bool {
+        let mut both = self.certified.free.iter().zip(&self.discrete.free);
+        both.all(|(certified, discrete)| !certified || *discrete)
+    }
+}
+
+impl Checked {
+    fn none() -> Self {
+        Self { each: f64::INFINITY, free: Vec::new() }
+    }
+
+    fn pass(&mut self, edges: &[Edge], check: &mut impl MotionValidity<Isometry3<f64>>) {
+        let begin = nanoseconds();
+        let free = edges.iter().map(|(a, b)| check.check_extension(a, b, KnownFree::From).is_free());
+        self.free = free.collect();
+        self.each = self.each.min((nanoseconds() - begin) * 1e-3 / edges.len().max(1) as f64);
+    }
+}
+
+/// Edges of a tree with two roots that grows toward samples, step after step until one is blocked: those too.
+fn edges<C: Space<State = Isometry3<f64>>>(
+    space: &C,
+    check: &mut impl MotionValidity<Isometry3<f64>>,
+    roots: [Isometry3<f64>; 2],
+    step: f64,
+    count: usize,
+) -> Vec<Edge> {
+    let (mut rng, mut edges, mut nodes) = (Rng::seed(1), Vec::new(), roots.to_vec());
+    let step = step * space.extent();
+    while edges.len() < count {
+        let to = space.sample_uniform(&mut rng);
+        let away = |q: &Isometry3<f64>| space.distance(q, &to);
+        let nearest = nodes.iter().min_by(|x, y| away(x).total_cmp(&away(y)));
+        let mut at = nearest.copied().unwrap_or(to);
+        for _ in 0..STEPS {
+            let distance = space.distance(&at, &to);
+            if distance <= 0.0 || edges.len() == count {
+                break;
+            }
+            let end = if distance <= step { to } else { space.interpolate(&at, &to, step / distance) };
+            edges.push((at, end));
+            if !check.check_extension(&at, &end, KnownFree::From).is_free() {
+                break;
+            }
+            nodes.push(end);
+            at = end;
+        }
+    }
+    edges
+}
+
+/// A row for each scene.
+pub(crate) fn table(all: &[Costs]) -> Table {
+    let mut table = Table::new([
+        "scene",
+        "step",
+        "edges",
+        "free by discrete checks",
+        "certified free",
+        "discrete, µs",
+        "certified, µs",
+        "ratio",
+    ]);
+    for costs in all {
+        let (discrete, certified) = (&costs.discrete, &costs.certified);
+        let free = |checked: &Checked| checked.free.iter().filter(|free| **free).count().to_string();
+        table.rows.push(vec![
+            costs.scene.to_owned(),
+            format!("{:.0}%", 100.0 * costs.step),
+            discrete.free.len().to_string(),
+            free(discrete),
+            free(certified),
+            format!("{:.1}", discrete.each),
+            format!("{:.1}", certified.each),
+            format!("{:.2}", certified.each / discrete.each),
+        ]);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_are_made_and_checked_both_ways() {
+        let all = Costs::measure("cubicles", 60, 1).unwrap();
+        for (costs, step) in all.iter().zip(["20%", "5%"]) {
+            assert!(costs.consistent());
+            let row = &table(std::slice::from_ref(costs)).rows[0];
+            assert_eq!(row[..3], ["cubicles", step, "60"]);
+            let free = costs.discrete.free.iter().filter(|free| **free).count();
+            assert!((1..60).contains(&free), "{free}");
+        }
+        assert_eq!(all.len(), 2);
+        let mut wrong = all[0].clone();
+        wrong.certified.free = wrong.discrete.free.iter().map(|free| !free).collect();
+        assert!(!wrong.consistent());
+        assert!(Costs::measure("large", 1, 1).unwrap().is_empty());
+    }
+}

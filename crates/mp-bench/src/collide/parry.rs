@@ -1,0 +1,70 @@
+//! The answers of parry3d in double precision, in the same process.
+
+use super::ours::Build;
+use super::pairs::Pair;
+use super::poses::Poses;
+use super::record::{Record, What, timed_once};
+use crate::clock::nanoseconds;
+use crate::error::{IntoError, Result};
+use mp_geom::TriMesh;
+use nalgebra::Isometry3;
+use parry3d_f64::math::{Pose, Rotation, Vector};
+use parry3d_f64::query::{distance, intersection_test};
+use parry3d_f64::shape;
+
+const PARRY: &str = "parry";
+
+/// The meshes of a pair.
+#[derive(Clone, Debug)]
+pub(crate) struct Parry {
+    a: shape::TriMesh,
+    b: shape::TriMesh,
+}
+
+impl Parry {
+    /// Builds its trees.
+    pub(crate) fn new(pair: &Pair) -> Result<(Self, Build)> {
+        let begin = nanoseconds();
+        let parry = Self { a: mesh(&pair.a)?, b: mesh(&pair.b)? };
+        let ms = (nanoseconds() - begin) * 1e-6;
+        // It does not tell its memory.
+        Ok((parry, Build { lib: PARRY.to_owned(), ms, bytes: 0 }))
+    }
+
+    /// Asks until `cap` seconds are used up, for each set and kind of query.
+    pub(crate) fn ask(&self, poses: &Poses, distances: usize, cap: f64) -> Result<Vec<Record>> {
+        let here = Pose::identity();
+        let mut all = Vec::new();
+        for (set, poses) in [("uniform", &poses.uniform), ("near", &poses.near)] {
+            let poses: Vec<Pose> = poses.iter().map(placed).collect();
+            let mut failed = None;
+            let mut checked = |answer: std::result::Result<f64, parry3d_f64::query::Unsupported>| {
+                answer.unwrap_or_else(|e| {
+                    failed = Some(e);
+                    f64::NAN
+                })
+            };
+            all.push(timed_once(What::new(PARRY, set, "collide"), &poses, cap * 1e9, |pose| {
+                checked(
+                    intersection_test(&here, &self.a, pose, &self.b).map(|told| f64::from(told.intersecting)),
+                )
+            }));
+            let some = &poses[..distances.min(poses.len())];
+            all.push(timed_once(What::new(PARRY, set, "distance"), some, cap * 1e9, |pose| {
+                checked(distance(&here, &self.a, pose, &self.b).map(|d| d.distance))
+            }));
+            failed.map_or(Ok(()), Err).into_error()?;
+        }
+        Ok(all)
+    }
+}
+
+fn mesh(mesh: &TriMesh) -> Result<shape::TriMesh> {
+    let points = mesh.vertices().iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
+    shape::TriMesh::new(points, mesh.triangles().to_vec()).into_error()
+}
+
+fn placed(pose: &Isometry3<f64>) -> Pose {
+    let (t, q) = (pose.translation.vector, pose.rotation.quaternion());
+    Pose::from_parts(Vector::new(t.x, t.y, t.z), Rotation::from_xyzw(q.i, q.j, q.k, q.w))
+}

@@ -1,0 +1,285 @@
+//! What was measured, as tables.
+
+use super::ours::{Build, OURS};
+use super::pairs::Pair;
+use super::record::Record;
+use crate::experiment::{Table, geometric_mean};
+
+/// What was measured on one pair.
+#[derive(Clone, Debug)]
+pub(crate) struct Measured {
+    pub(crate) pair: String,
+    /// Triangles of both meshes.
+    pub(crate) triangles: usize,
+    /// Of coordinates, metres.
+    pub(crate) size: f64,
+    /// The fastest of each library.
+    pub(crate) builds: Vec<Build>,
+    pub(crate) records: Vec<Record>,
+}
+
+impl Measured {
+    /// Nothing yet.
+    pub(crate) fn new(pair: &Pair) -> Self {
+        Self {
+            pair: pair.name.clone(),
+            triangles: pair.a.triangles().len() + pair.b.triangles().len(),
+            size: pair.a.aabb().diagonal() + pair.radius(),
+            builds: Vec::new(),
+            records: Vec::new(),
+        }
+    }
+
+    /// Keeps `build` when it is the first or the fastest of its library.
+    pub(crate) fn built(&mut self, build: Build) {
+        match self.builds.iter_mut().find(|b| b.lib == build.lib) {
+            Some(known) => known.ms = known.ms.min(build.ms),
+            None => self.builds.push(build),
+        }
+    }
+
+    pub(crate) fn record(&self, lib: &str, set: &str, query: &str) -> Option<&Record> {
+        self.records.iter().find(|r| r.what.lib == lib && r.what.set == set && r.what.query == query)
+    }
+
+    /// Answers that differ from ours, of how many, and the largest difference of distances, relative.
+    fn differences(&self, of: &Record) -> Option<(usize, usize, f64)> {
+        let ours = self.record(OURS, &of.what.set, &of.what.query)?;
+        let both = ours.answers.iter().zip(&of.answers);
+        let (mut count, mut differ, mut largest) = (0, 0, 0.0_f64);
+        for (&own, &other) in both {
+            count += 1;
+            if of.what.query == "distance" {
+                // Distances of triangles are right to a part of the coordinates.
+                let off = (own - other.max(0.0)).abs();
+                let tolerated = if own == 0.0 { 0.0 } else { RELATIVE * own + ROUNDING * self.size };
+                differ += usize::from(off.is_nan() || off > tolerated);
+                largest = if own > 0.0 { largest.max(off / own) } else { largest };
+            } else {
+                differ += usize::from(own != other);
+            }
+        }
+        Some((count, differ, largest))
+    }
+}
+
+/// Distances that differ by more than this part, and the rounding of coordinates, are different.
+const RELATIVE: f64 = 1e-12;
+/// The rounding of coordinates, a part of their size.
+const ROUNDING: f64 = 1e-14;
+
+/// Nanoseconds per query of each library, and how many times ours that is.
+pub(crate) fn speed(all: &[Measured], query: &str, chosen: impl Fn(&str) -> bool) -> Table {
+    let records = all.iter().flat_map(|m| &m.records).filter(|r| r.what.query == query);
+    let (mut libs, mut sets): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    for what in records.map(|r| &r.what) {
+        if !libs.contains(&&*what.lib) && what.lib != OURS && chosen(&what.lib) {
+            libs.push(&what.lib);
+        }
+        if !sets.contains(&&*what.set) {
+            sets.push(&what.set);
+        }
+    }
+    let mut table = Table::new(["pair", "poses", OURS].into_iter().chain(libs.iter().copied()));
+    let mut ratios = vec![Vec::new(); libs.len()];
+    for m in all {
+        for set in &sets {
+            let Some(ours) = m.record(OURS, set, query) else { continue };
+            let mut row = vec![m.pair.clone(), (*set).to_owned(), digits(ours.least)];
+            for (lib, ratios) in libs.iter().zip(&mut ratios) {
+                row.push(m.record(lib, set, query).map_or("–".into(), |r| {
+                    let ratio = r.least / ours.least;
+                    ratios.push(ratio);
+                    format!("{} ({ratio:.1}×)", digits(r.least))
+                }));
+            }
+            table.rows.push(row);
+        }
+    }
+    if !libs.is_empty() {
+        let means = ratios.iter().map(|r| geometric_mean(r.iter().copied()));
+        table.rows.push(last_row("geometric mean", means));
+        table.rows.push(last_row("least", ratios.iter().map(|r| r.iter().copied().reduce(f64::min))));
+    }
+    table
+}
+
+fn last_row(name: &str, ratios: impl Iterator<Item = Option<f64>>) -> Vec<String> {
+    let row = [name.to_owned(), String::new(), String::new()];
+    row.into_iter().chain(ratios.map(|r| r.map_or("–".into(), |r| format!("{r:.1}×")))).collect()
+}
+
+/// Milliseconds to build both trees.
+pub(crate) fn build_times(all: &[Measured]) -> Table {
+    builds(all, |b, own, _| {
+        format!(
+            "{:.2}{}",
+            b.ms,
+            if b.lib == OURS { String::new() } else { format!(" ({:.1}×)", b.ms / own.ms) }
+        )
+    })
+}
+
+/// Bytes per triangle of both trees.
+pub(crate) fn memory(all: &[Measured]) -> Table {
+    builds(all, |b, _, triangles| match b.bytes {
+        0 => "–".into(),
+        bytes => format!("{:.0}", bytes as f64 / triangles as f64),
+    })
+}
+
+/// What `cell` says of each library's trees, of ours, and of the number of triangles.
+fn builds(all: &[Measured], cell: impl Fn(&Build, &Build, usize) -> String) -> Table {
+    let mut libs: Vec<&str> = vec![OURS];
+    for build in all.iter().flat_map(|m| &m.builds) {
+        if !libs.contains(&&*build.lib) {
+            libs.push(&build.lib);
+        }
+    }
+    let mut table = Table::new(["pair", "triangles"].into_iter().chain(libs.iter().copied()));
+    for m in all {
+        let of = |lib: &str| m.builds.iter().find(|b| b.lib == lib);
+        let Some(own) = of(OURS) else { continue };
+        let mut row = vec![m.pair.clone(), m.triangles.to_string()];
+        row.extend(libs.iter().map(|lib| of(lib).map_or("–".into(), |b| cell(b, own, m.triangles))));
+        table.rows.push(row);
+    }
+    table
+}
+
+/// How many answers of each library differ from ours.
+pub(crate) fn agreement(all: &[Measured]) -> Table {
+    let mut table = Table::new([
+        "library",
+        "query",
+        "answers",
+        "differ from ours",
+        "largest relative difference",
+        "where",
+    ]);
+    let mut kinds: Vec<(&str, &str)> = Vec::new();
+    for what in all.iter().flat_map(|m| &m.records).map(|r| &r.what) {
+        if what.lib != OURS && !kinds.contains(&(&what.lib, &what.query)) {
+            kinds.push((&what.lib, &what.query));
+        }
+    }
+    for (lib, query) in kinds {
+        let (mut count, mut differ, mut largest, mut places) = (0, 0, 0.0_f64, Vec::new());
+        for m in all {
+            for record in m.records.iter().filter(|r| r.what.lib == lib && r.what.query == query) {
+                let Some((n, d, l)) = m.differences(record) else { continue };
+                (count, differ, largest) = (count + n, differ + d, largest.max(l));
+                if d > 0 {
+                    places.push(format!("{} {}: {d}", m.pair, record.what.set));
+                }
+            }
+        }
+        let largest = if query == "distance" { format!("{largest:.1e}") } else { "–".into() };
+        let row =
+            [lib.into(), query.into(), count.to_string(), differ.to_string(), largest, places.join(", ")];
+        table.rows.push(row.to_vec());
+    }
+    table
+}
+
+/// A line for every library, pair, set and query.
+pub(crate) fn each(all: &[Measured]) -> Table {
+    let head =
+        ["lib", "pair", "set", "query", "answers", "median_ns", "least_ns", "differ", "relative_difference"];
+    let mut table = Table::new(head);
+    for m in all {
+        for r in &m.records {
+            let (_, differ, largest) = m.differences(r).unwrap_or((0, 0, 0.0));
+            let what = &r.what;
+            let mut row = vec![what.lib.clone(), m.pair.clone(), what.set.clone(), what.query.clone()];
+            row.extend([
+                r.answers.len().to_string(),
+                format!("{:.1}", r.median()),
+                format!("{:.1}", r.least),
+            ]);
+            row.extend([differ.to_string(), format!("{largest:.1e}")]);
+            table.rows.push(row);
+        }
+    }
+    table
+}
+
+/// Whether each of our own instruction sets gives the same answers.
+pub(crate) fn consistent(all: &[Measured]) -> bool {
+    all.iter().all(|m| {
+        let own = m.records.iter().filter(|r| is_ours(&r.what.lib));
+        own.filter_map(|r| m.differences(r)).all(|(_, differ, _)| differ == 0)
+    })
+}
+
+/// Whether this is ours, on any instruction set.
+pub(crate) fn is_ours(lib: &str) -> bool {
+    lib.strip_prefix(OURS).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+}
+
+fn digits(ns: f64) -> String {
+    if ns < 100.0 { format!("{ns:.1}") } else { format!("{ns:.0}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::record::What;
+    use super::*;
+
+    fn record(lib: &str, set: &str, query: &str, ns: f64, answers: &[f64]) -> Record {
+        Record { what: What::new(lib, set, query), medians: vec![ns], least: ns, answers: answers.to_vec() }
+    }
+
+    fn measured() -> Measured {
+        let records = vec![
+            record("mp", "near", "collide", 50.0, &[1.0, 0.0, 1.0]),
+            record("mp_scalar", "near", "collide", 200.0, &[1.0, 0.0, 1.0]),
+            record("x", "near", "collide", 500.0, &[1.0, 1.0]),
+            record("mp", "uniform", "collide", 100.0, &[0.0]),
+            record("x", "uniform", "collide", 4000.0, &[0.0]),
+            record("mp", "near", "distance", 1.0, &[0.0, 1.0, 2.0]),
+            record("x", "near", "distance", 1.0, &[-1.0, 1.0 + 5e-13, 2.1]),
+        ];
+        let (pair, builds) = ("p".to_owned(), Vec::new());
+        let mut m = Measured { pair, triangles: 10, size: 1.0, builds, records };
+        for (lib, ms, bytes) in [("mp", 2.0, 1000), ("mp", 1.0, 1000), ("x", 3.0, 0)] {
+            m.built(Build { lib: lib.into(), ms, bytes });
+        }
+        m
+    }
+
+    #[test]
+    fn ratios_and_their_geometric_mean() {
+        let table = speed(&[measured()], "collide", |lib| !is_ours(lib));
+        assert_eq!(table.head, ["pair", "poses", "mp", "x"]);
+        assert_eq!(table.rows[0], ["p", "near", "50.0", "500 (10.0×)"]);
+        assert_eq!(table.rows[1], ["p", "uniform", "100", "4000 (40.0×)"]);
+        assert_eq!(table.rows[2], ["geometric mean", "", "", "20.0×"]);
+        assert_eq!(table.rows[3], ["least", "", "", "10.0×"]);
+        let table = speed(&[measured()], "collide", is_ours);
+        assert_eq!(table.rows[1], ["p", "uniform", "100", "–"]);
+        assert!(speed(&[measured()], "motion", |_| true).rows.is_empty());
+    }
+
+    #[test]
+    fn differences_are_counted() {
+        let table = agreement(&[measured()]);
+        let row = |i: usize| table.rows[i].join(" ");
+        assert_eq!(row(0), "mp_scalar collide 3 0 – ");
+        assert_eq!(row(1), "x collide 3 1 – p near: 1");
+        assert_eq!(row(2), "x distance 3 1 5.0e-2 p near: 1");
+        assert!(consistent(&[measured()]));
+        let mut wrong = measured();
+        wrong.records[1].answers[0] = 0.0;
+        assert!(!consistent(&[wrong]));
+        assert_eq!(each(&[measured()]).rows.len(), 7);
+    }
+
+    #[test]
+    fn builds_keep_the_fastest() {
+        let table = build_times(&[measured()]);
+        assert_eq!(table.head, ["pair", "triangles", "mp", "x"]);
+        assert_eq!(table.rows, [["p", "10", "1.00", "3.00 (3.0×)"]]);
+        assert_eq!(memory(&[measured()]).rows, [["p", "10", "100", "–"]]);
+    }
+}

@@ -1,0 +1,11 @@
+//! What experiments share: cases that are run once each, the log of what came of them, summaries and tables.
+
+mod lab;
+mod log;
+mod stats;
+mod table;
+
+pub(crate) use lab::Lab;
+pub(crate) use log::Log;
+pub(crate) use stats::{Median, geometric_mean, mean, ratio, seconds, short, wilson};
+pub(crate) use table::{Table, sections};

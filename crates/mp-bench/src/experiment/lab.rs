@@ -1,0 +1,250 @@
+//! Runs, side by side.
+
+use super::log::{Case, Log, Record};
+use super::table::Table;
+use crate::error::{IntoError, Result};
+use crate::options::Common;
+use crate::output::{note, print, write};
+use indicatif::{ProgressBar, ProgressStyle};
+use mp_cspace::Cancel;
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+use std::sync::atomic::Ordering;
+
+/// Where results go and how runs are made: what all experiments share.
+#[derive(Debug)]
+pub(crate) struct Lab {
+    out: PathBuf,
+    quick: bool,
+    fresh: bool,
+    pool: rayon::ThreadPool,
+    /// Ends all runs. Those that are finished are kept.
+    pub(crate) cancel: Cancel,
+}
+
+impl Lab {
+    /// With as many runs at once as the options say. Ctrl-C ends them.
+    pub(crate) fn new(options: &Common) -> Result<Self> {
+        Self::with(options, options.threads.map_or(0, usize::from), interrupt())
+    }
+
+    /// With one run after the other, for times that other runs would disturb.
+    pub(crate) fn one_at_a_time(options: &Common) -> Result<Self> {
+        Self::with(options, 1, interrupt())
+    }
+
+    fn with(options: &Common, threads: usize, cancel: Cancel) -> Result<Self> {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().into_error()?;
+        Ok(Self { out: options.out.clone(), quick: options.quick, fresh: options.fresh, pool, cancel })
+    }
+
+    /// One for tests, which nobody interrupts.
+    #[cfg(test)]
+    pub(crate) fn test(out: &std::path::Path, threads: usize) -> Self {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        Self { out: out.to_owned(), quick: true, fresh: false, pool, cancel: Cancel::new() }
+    }
+
+    /// The name of an experiment in files: that of a short run is another.
+    pub(crate) fn name(&self, name: &str) -> String {
+        if self.quick { format!("{name}-quick") } else { name.to_owned() }
+    }
+
+    /// A file of the folder for results.
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
+        self.out.join(name)
+    }
+
+    /// The log of the experiment called `name`, of runs that could take so much.
+    pub(crate) fn log<K: Case, R: Record>(&self, name: &str, cap: f64) -> Result<Log<K, R>> {
+        Log::open(&self.file(&format!("{name}-runs.jsonl")), cap, self.fresh)
+    }
+
+    fn interrupted(&self) -> bool {
+        self.cancel.0.load(Ordering::Relaxed)
+    }
+
+    /// Does all jobs; what comes of them is in their order. A job that is interrupted gives nothing; those that were
+    /// not begun by then are left out. `None` when there are such.
+    pub(crate) fn all<J: Sync, R: Send>(
+        &self,
+        what: &str,
+        jobs: &[J],
+        job: impl Fn(&J) -> Result<Option<R>> + Sync,
+    ) -> Result<Option<Vec<R>>> {
+        let bar = bar(what, jobs.len(), 0);
+        let done = self.parallel(jobs, |one| {
+            let done = job(one)?;
+            bar.inc(1);
+            Ok(done)
+        });
+        bar.finish_and_clear();
+        Ok(done?.into_iter().collect())
+    }
+
+    /// Runs the cases that are not in the log. False when it was interrupted: what is finished is kept.
+    pub(crate) fn measure<K: Case, R: Record>(
+        &self,
+        log: &mut Log<K, R>,
+        what: &str,
+        cases: &[K],
+        run: impl Fn(&K) -> Result<Option<R>> + Sync,
+    ) -> Result<bool> {
+        self.measure_in(log, what, cases, |_, _| false, |_| Ok(()), |(), case| run(case))
+    }
+
+    /// The same, where cases that are `together` are run one after the other in a place that is made once.
+    pub(crate) fn measure_in<K: Case, R: Record, P>(
+        &self,
+        log: &mut Log<K, R>,
+        what: &str,
+        cases: &[K],
+        together: impl Fn(&K, &K) -> bool,
+        place: impl Fn(&K) -> Result<P> + Sync,
+        run: impl Fn(&P, &K) -> Result<Option<R>> + Sync,
+    ) -> Result<bool> {
+        let open: Vec<K> = cases.iter().filter(|case| log.get(case).is_none()).cloned().collect();
+        let known = cases.len() - open.len();
+        if known > 0 {
+            note(&format!(
+                "{what}: {known} of {} runs are known already; --fresh measures anew",
+                cases.len()
+            ));
+        }
+        let groups: Vec<&[K]> = open.chunk_by(together).collect();
+        let bar = bar(what, cases.len(), known);
+        let shared = &*log;
+        let group = |cases: &&[K]| -> Result<Option<Vec<(K, R)>>> {
+            let place = place(&cases[0])?;
+            let mut done = Vec::new();
+            for case in *cases {
+                if self.interrupted() {
+                    break;
+                }
+                let Some(run) = run(&place, case)? else { break };
+                shared.write(case, &run)?;
+                done.push((case.clone(), run));
+                bar.inc(1);
+            }
+            Ok(Some(done))
+        };
+        let done = self.parallel(&groups, group);
+        bar.finish_and_clear();
+        log.learn(done?.into_iter().flatten().flatten());
+        if self.interrupted() {
+            note("interrupted: the same command goes on from here");
+        }
+        Ok(!self.interrupted())
+    }
+
+    /// `None` of those that were interrupted or not begun.
+    fn parallel<J: Sync, R: Send>(
+        &self,
+        jobs: &[J],
+        job: impl Fn(&J) -> Result<Option<R>> + Sync,
+    ) -> Result<Vec<Option<R>>> {
+        let one = |one: &J| if self.interrupted() { Ok(None) } else { job(one) };
+        self.pool.install(|| jobs.par_iter().with_max_len(1).map(one).collect())
+    }
+
+    /// Writes a file of the folder for results.
+    pub(crate) fn write(&self, name: &str, text: &str) -> Result<()> {
+        write(&self.file(name), text.as_bytes())
+    }
+
+    /// Prints `summary` and writes it with `each`, one line per run.
+    pub(crate) fn report(&self, name: &str, summary: &Table, each: &Table) -> Result<()> {
+        self.report_text(name, &(summary.markdown() + "\n"), each)
+    }
+
+    /// The same of a text.
+    pub(crate) fn report_text(&self, name: &str, text: &str, each: &Table) -> Result<()> {
+        print(text.trim_end())?;
+        let (markdown, csv) = (format!("{name}.md"), format!("{name}.csv"));
+        self.write(&markdown, text)?;
+        self.write(&csv, &each.csv())?;
+        note(&format!("written: {}, {}", self.file(&markdown).display(), self.file(&csv).display()));
+        Ok(())
+    }
+}
+
+/// A line that counts finished runs. It is not there when nobody watches (no terminal).
+fn bar(what: &str, total: usize, known: usize) -> ProgressBar {
+    let bar = ProgressBar::new(total as u64).with_position(known as u64).with_message(what.to_owned());
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {elapsed} {msg}") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// What Ctrl-C raises: the first asks politely, the second ends the program at once.
+fn interrupt() -> Cancel {
+    static RAISED: OnceLock<Cancel> = OnceLock::new();
+    let raised = RAISED.get_or_init(|| {
+        let raised = Cancel::new();
+        let shared = raised.clone();
+        let handler = ctrlc::set_handler(move || {
+            if shared.0.swap(true, Ordering::SeqCst) {
+                std::process::exit(130);
+            }
+        });
+        if let Err(e) = handler {
+            tracing::warn!("Ctrl-C will end the program at once: {e}");
+        }
+        raised
+    });
+    raised.clone()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_run_twice_and_places_are_made_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let lab = Lab::test(folder.path(), 2);
+        let cases: Vec<(u32, u32)> = (0..3).flat_map(|a| (0..4).map(move |b| (a, b))).collect();
+        let made = std::sync::atomic::AtomicUsize::new(0);
+        let mut measure = |lab: &Lab, fails: u32| {
+            let mut log: Log<(u32, u32), f64> = lab.log("x", 1.0).unwrap();
+            let complete = lab.measure_in(
+                &mut log,
+                "x",
+                &cases,
+                |a, b| a.0 == b.0,
+                |case| {
+                    made.fetch_add(1, Ordering::Relaxed);
+                    Ok(case.0)
+                },
+                |place, case| {
+                    assert_eq!(*place, case.0);
+                    if case.1 == fails {
+                        lab.cancel.cancel();
+                        return Ok(None);
+                    }
+                    Ok(Some(f64::from(10 * case.0 + case.1)))
+                },
+            );
+            (complete.unwrap(), log.all().len())
+        };
+        let (complete, known) = measure(&lab, 2);
+        assert!(!complete && (2..=4).contains(&known), "{known}");
+        let lab = Lab::test(folder.path(), 2);
+        assert_eq!(measure(&lab, 9), (true, 12));
+        let before = made.load(Ordering::Relaxed);
+        assert_eq!(measure(&lab, 0), (true, 12));
+        assert_eq!(made.load(Ordering::Relaxed), before);
+    }
+
+    #[test]
+    fn results_are_in_order_and_an_interrupted_whole_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let lab = Lab::test(folder.path(), 3);
+        let jobs: Vec<u32> = (0..50).collect();
+        assert_eq!(lab.all("x", &jobs, |i| Ok(Some(2 * i))).unwrap().unwrap()[49], 98);
+        assert!(lab.all("x", &jobs, |i| Ok((*i != 7).then_some(()))).unwrap().is_none());
+        assert!(lab.all("x", &jobs, |_| -> Result<Option<()>> { Err(mp_plan::Error::new("no")) }).is_err());
+    }
+}

@@ -1,0 +1,153 @@
+//! Finished runs, one line of JSON each: a measurement that was interrupted goes on where it was.
+
+use crate::error::{IntoError, Result};
+use mp_plan::Error;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::fs::File;
+use std::hash::Hash;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+#[derive(Serialize, Deserialize)]
+struct Line<K, R> {
+    /// What a run might take: seconds, iterations or queries.
+    cap: f64,
+    case: K,
+    run: R,
+}
+
+/// The runs there are, and the file that grows by each new one.
+#[derive(Debug)]
+pub(crate) struct Log<K, R> {
+    path: PathBuf,
+    cap: f64,
+    runs: HashMap<K, R>,
+    file: Mutex<File>,
+}
+
+/// What was run.
+pub(crate) trait Case: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync {}
+impl<K: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync> Case for K {}
+
+/// What came of it.
+pub(crate) trait Record: Clone + Serialize + DeserializeOwned + Send + Sync {}
+impl<R: Clone + Serialize + DeserializeOwned + Send + Sync> Record for R {}
+
+impl<K: Case, R: Record> Log<K, R> {
+    /// Opens the log at `path`, or begins it; `fresh` forgets what is in it. Only runs of the same cap count.
+    /// A last line that was cut off is left out.
+    pub(crate) fn open(path: &Path, cap: f64, fresh: bool) -> Result<Self> {
+        let failed = || format!("cannot use {}", path.display());
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).doing(failed)?;
+        }
+        let text = match path.exists() && !fresh {
+            true => std::fs::read_to_string(path).doing(failed)?,
+            false => String::new(),
+        };
+        let (mut runs, mut kept) = (HashMap::new(), String::new());
+        let lines: Vec<&str> = text.lines().collect();
+        for (i, line) in lines.iter().enumerate() {
+            match serde_json::from_str::<Line<K, R>>(line) {
+                Ok(known) => {
+                    kept.push_str(line);
+                    kept.push('\n');
+                    if known.cap == cap {
+                        runs.insert(known.case, known.run);
+                    }
+                }
+                Err(_) if i + 1 == lines.len() => {}
+                Err(e) => {
+                    let message = format!("{}, line {}: {e}", path.display(), i + 1);
+                    return Err(Error::new(message).help("delete it to measure anew"));
+                }
+            }
+        }
+        crate::output::write(path, kept.as_bytes())?;
+        let file = File::options().append(true).open(path).doing(failed)?;
+        Ok(Self { path: path.to_owned(), cap, runs, file: Mutex::new(file) })
+    }
+
+    /// What is known of `case`.
+    pub(crate) fn get(&self, case: &K) -> Option<&R> {
+        self.runs.get(case)
+    }
+
+    /// Appends a finished run to the file. [`learn`](Self::learn) makes it known.
+    pub(crate) fn write(&self, case: &K, run: &R) -> Result<()> {
+        let line = Line { cap: self.cap, case: case.clone(), run: run.clone() };
+        let text = serde_json::to_string(&line).into_error()? + "\n";
+        let mut file = self.file.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        file.write_all(text.as_bytes()).doing(|| format!("cannot write to {}", self.path.display()))
+    }
+
+    /// Makes finished runs known.
+    pub(crate) fn learn(&mut self, runs: impl IntoIterator<Item = (K, R)>) {
+        self.runs.extend(runs);
+    }
+
+    /// What is known of `cases`, in their order.
+    pub(crate) fn runs(&self, cases: impl IntoIterator<Item = K>) -> Vec<&R> {
+        cases.into_iter().filter_map(|case| self.get(&case)).collect()
+    }
+
+    /// What is known of `cases`, in groups of neighbours for which `key` gives the same.
+    pub(crate) fn groups<'c, G: PartialEq>(
+        &self,
+        cases: &'c [K],
+        key: impl Fn(&'c K) -> G,
+    ) -> Vec<(G, Vec<(&'c K, &R)>)> {
+        let mut groups: Vec<(G, Vec<(&K, &R)>)> = Vec::new();
+        for case in cases {
+            let Some(run) = self.get(case) else { continue };
+            let key = key(case);
+            match groups.last_mut() {
+                Some((last, runs)) if *last == key => runs.push((case, run)),
+                _ => groups.push((key, vec![(case, run)])),
+            }
+        }
+        groups
+    }
+
+    /// All runs, sorted.
+    pub(crate) fn all(&self) -> Vec<(&K, &R)> {
+        let mut all: Vec<_> = self.runs.iter().collect();
+        all.sort_by_key(|(case, _)| *case);
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn case(obstacles: usize) -> (String, usize) {
+        ("rsrt".to_owned(), obstacles)
+    }
+
+    #[test]
+    fn what_was_interrupted_goes_on() {
+        let run = (true, 0.1);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a/runs.jsonl");
+        let open = |cap, fresh| Log::<(String, usize), (bool, f64)>::open(&path, cap, fresh);
+        let log = open(6.0, false).unwrap();
+        log.write(&case(2), &run).unwrap();
+        log.write(&case(4), &run).unwrap();
+        std::fs::write(&path, std::fs::read_to_string(&path).unwrap() + "{\"cap\":6").unwrap();
+        let mut log = open(6.0, false).unwrap();
+        assert_eq!(log.get(&case(4)), Some(&run));
+        assert_eq!(log.get(&case(8)), None);
+        log.write(&case(8), &run).unwrap();
+        log.learn([(case(8), run)]);
+        assert_eq!(log.all().len(), 3);
+        assert_eq!(open(6.0, false).unwrap().all().len(), 3);
+        assert_eq!(open(7.0, false).unwrap().all().len(), 0, "another cap");
+        assert_eq!(open(6.0, true).unwrap().all().len(), 0, "afresh");
+        std::fs::write(&path, "nonsense\nnonsense\n").unwrap();
+        assert!(open(6.0, false).unwrap_err().to_string().contains("line 1"));
+    }
+}

@@ -1,0 +1,71 @@
+//! Tables, as Markdown, as comma-separated values and as JSON.
+
+/// A table, to be printed and written.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    pub(crate) head: Vec<String>,
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// With these headings and no rows.
+    pub(crate) fn new(head: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        Self { head: head.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    }
+
+    /// In Markdown.
+    pub(crate) fn markdown(&self) -> String {
+        let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
+        let rule: Vec<String> = self.head.iter().map(|_| "---".to_owned()).collect();
+        let mut lines = vec![line(&self.head), line(&rule)];
+        lines.extend(self.rows.iter().map(|row| line(row)));
+        lines.join("\n")
+    }
+
+    /// As comma-separated values.
+    pub(crate) fn csv(&self) -> String {
+        let quote = |cell: &str| match cell.contains([',', '"', '\n']) {
+            true => format!("\"{}\"", cell.replace('"', "\"\"")),
+            false => cell.to_owned(),
+        };
+        let line = |cells: &[String]| cells.iter().map(|cell| quote(cell)).collect::<Vec<_>>().join(",");
+        let lines = std::iter::once(&self.head).chain(&self.rows).map(|row| line(row) + "\n");
+        lines.collect()
+    }
+
+    /// As a list of objects, one of each row; what reads as a number is one.
+    pub(crate) fn json(&self) -> serde_json::Value {
+        let value = |cell: &String| -> serde_json::Value {
+            match cell.parse::<f64>() {
+                Ok(number) if number.is_finite() => number.into(),
+                _ => cell.as_str().into(),
+            }
+        };
+        let row = |row: &Vec<String>| -> serde_json::Value {
+            self.head.iter().cloned().zip(row.iter().map(value)).collect()
+        };
+        self.rows.iter().map(row).collect()
+    }
+}
+
+/// Tables under headings of this many `#`.
+pub(crate) fn sections(level: usize, parts: &[(&str, Table)]) -> String {
+    let part =
+        |(title, table): &(&str, Table)| format!("{} {title}\n\n{}\n", "#".repeat(level), table.markdown());
+    parts.iter().map(part).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables() {
+        let mut table = Table::new(["a", "b"]);
+        table.rows.push(vec!["1,5".into(), "x".into()]);
+        assert_eq!(table.csv(), "a,b\n\"1,5\",x\n");
+        assert_eq!(table.json(), serde_json::json!([{ "a": "1,5", "b": "x" }]));
+        assert_eq!(table.markdown(), "| a | b |\n| --- | --- |\n| 1,5 | x |");
+        assert_eq!(sections(2, &[("T", table)]), "## T\n\n| a | b |\n| --- | --- |\n| 1,5 | x |\n");
+    }
+}

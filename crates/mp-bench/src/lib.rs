@@ -1,0 +1,104 @@
+//! Measurements of the planners, beside other programs where they are given.
+//!
+//! A suite is a folder. Most suites are experiments: a list of cases, each of which is run once, with what came of it
+//! kept in a log, so that a measurement that was interrupted goes on where it was; then tables and charts of the log.
+//! `experiment` has what they share. Results are Markdown on standard output, and files in a folder.
+
+mod assets;
+mod clock;
+mod collide;
+mod error;
+mod experiment;
+mod options;
+mod output;
+mod planners;
+mod plot;
+mod rigid;
+mod roadmaps;
+mod rrs;
+mod rsrt;
+mod scaling;
+mod scenes;
+
+use clap::{Parser, ValueEnum};
+pub use mp_plan::Error;
+
+/// What to measure, and how: the command line.
+///
+/// Exit code: 0 measured completely and as it should be, 1 not so, 2 bad input.
+#[derive(Clone, Debug, Parser)]
+#[command(
+    name = "mp-bench",
+    version,
+    max_term_width = 110,
+    about = "Measure, beside other programs where they are given"
+)]
+pub struct Options {
+    /// What to measure.
+    #[arg(value_name = "SUITE")]
+    suite: Suite,
+    #[command(flatten)]
+    common: options::Common,
+    #[command(flatten)]
+    rigid: rigid::Options,
+    #[command(flatten)]
+    collide: collide::Options,
+    #[command(flatten)]
+    rsrt: rsrt::Options,
+    #[command(flatten)]
+    roadmaps: roadmaps::Options,
+    #[command(flatten)]
+    rrs: rrs::Options,
+    #[command(flatten)]
+    assets: assets::Options,
+}
+
+/// A suite of measurements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Suite {
+    /// RRT-Connect on rigid bodies, to the first solution.
+    Rigid,
+    /// Every planner on shipped scenes, to the first solution.
+    Planners,
+    /// Queries between two meshes.
+    Collide,
+    /// The experiment of Baizid et al.: RRT and RRS, whose blocked edges are bent by snakes, in four worlds.
+    Rrs,
+    /// Experiments of Jouandeau et al. 2008: natural expansion; RSRT and RRT in growing clutter.
+    Rsrt,
+    /// Roadmaps: corridors that shrink, shipped scenes, many queries, growth, pictures.
+    Roadmaps,
+    /// Growth of an RRT where nothing is in the way, against its size.
+    Scaling,
+    /// No measurement: write the shipped scenes again, or check that they are as made.
+    Assets,
+}
+
+/// Runs a suite. True when it could be measured completely.
+///
+/// # Errors
+/// When a scene or a file makes no sense, cannot be read or cannot be written.
+pub fn run(options: &Options) -> Result<bool, Error> {
+    let common = &options.common;
+    match options.suite {
+        Suite::Collide => collide::run(common, &options.collide),
+        Suite::Planners => planners::run(common),
+        Suite::Rigid => rigid::run(common, &options.rigid),
+        Suite::Rrs => rrs::run(common, &options.rrs),
+        Suite::Rsrt => rsrt::run(common, &options.rsrt),
+        Suite::Roadmaps => roadmaps::run(common, &options.roadmaps),
+        Suite::Scaling => scaling::run(common),
+        Suite::Assets => assets::run(&options.assets),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Options::command().debug_assert();
+    }
+}

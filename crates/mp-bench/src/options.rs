@@ -1,0 +1,57 @@
+//! Options that several suites have.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// What several suites have.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Common {
+    /// A shorter run.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Runs (seeds) of each case.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) runs: Option<u32>,
+    /// Scenes to measure on (default: those of the suite); of `roadmaps` these alone.
+    #[arg(long = "scene", value_name = "SCENE")]
+    pub(crate) scenes: Vec<String>,
+    /// Seconds a run may take.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    pub(crate) time: f64,
+    /// Another program to measure beside ours, in turn; how it is called is in docs/benchmarks.md.
+    #[arg(long, value_name = "PROGRAM")]
+    pub(crate) peer: Option<PathBuf>,
+    /// The folder for results.
+    #[arg(long, value_name = "DIR", default_value = "out/bench")]
+    pub(crate) out: PathBuf,
+    /// How many runs at once, where what is found does not depend on it [default: one for each core].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Measure anew what was measured before and is in the folder for results.
+    #[arg(long)]
+    pub(crate) fresh: bool,
+}
+
+impl Common {
+    /// The scenes given, or those of the suite.
+    pub(crate) fn scenes_or(&self, own: &[&str]) -> Vec<String> {
+        match self.scenes.as_slice() {
+            [] => own.iter().map(|name| (*name).to_owned()).collect(),
+            given => given.to_vec(),
+        }
+    }
+
+    /// As many runs of each case as given, else as a short or a full run has.
+    pub(crate) fn runs_or(&self, quick: u32, full: u32) -> u32 {
+        self.runs.unwrap_or(if self.quick { quick } else { full })
+    }
+}
+
+/// A finite number above zero.
+pub(crate) fn positive(s: &str) -> Result<f64, String> {
+    match s.trim().parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(_) => Err("must be a finite number above zero".into()),
+        Err(_) => Err("not a number".into()),
+    }
+}

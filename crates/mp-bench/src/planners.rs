@@ -1,0 +1,77 @@
+//! Every planner on shipped scenes, to the first verified path: what `docs/choosing-a-planner.md` is made of.
+
+use crate::error::Result;
+use crate::experiment::{Lab, Table};
+use crate::options::Common;
+use crate::scenes::{Planned, Rigid, bare};
+use mp_plan::median;
+use serde::{Deserialize, Serialize};
+
+/// Open and crowded rooms, traps and narrow passages, in the plane and in space.
+const SCENES: [&str; 6] = ["maze", "planar-bugtrap", "easy", "cubicles", "twisty", "bugtrap"];
+
+/// What was run.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+struct Case {
+    scene: String,
+    planner: String,
+    seed: u64,
+}
+
+/// Measures. True: a planner that does not solve a scene in time is a result.
+pub(crate) fn run(common: &Common) -> Result<bool> {
+    let lab = Lab::one_at_a_time(common)?;
+    let scenes = common.scenes_or(&SCENES);
+    let seeds = common.runs_or(2, 10);
+    let cap = if common.quick { common.time.min(2.0) } else { common.time };
+    let mut log = lab.log("planners", cap)?;
+    let case = |scene: &String, planner: &str, seed: u32| Case {
+        scene: scene.clone(),
+        planner: planner.to_owned(),
+        seed: u64::from(seed),
+    };
+    let of = |scene: &String, planner: &str| {
+        (1..=seeds).map(|seed| case(scene, planner, seed)).collect::<Vec<_>>()
+    };
+    let planners = || mp_tree::planners().iter().map(|info| info.name);
+    let cases: Vec<Case> =
+        scenes.iter().flat_map(|s| planners().flat_map(|p| of(s, p)).collect::<Vec<_>>()).collect();
+    let complete = lab.measure_in(
+        &mut log,
+        "planners",
+        &cases,
+        |a, b| a.scene == b.scene,
+        |case| Rigid::load(&case.scene),
+        |scene, case| scene.plan(&bare(&case.planner).time(cap).seed(case.seed), &lab.cancel),
+    )?;
+    if !complete {
+        return Ok(false);
+    }
+    let mut each = Table::new(["scene", "planner", "seed", "solved", "s", "checks", "iterations"]);
+    let mut summary = Table::new(["planner".to_owned()].into_iter().chain(scenes.clone()));
+    for planner in planners() {
+        let mut row = vec![planner.to_owned()];
+        for scene in &scenes {
+            let runs: Vec<&Planned> = log.runs(of(scene, planner));
+            let solved = runs.iter().filter(|run| run.solved).count();
+            let seconds = runs.iter().map(|run| if run.solved { run.seconds } else { f64::INFINITY });
+            let time = median(seconds).filter(|s| s.is_finite());
+            let time = time.map_or(format!("> {cap}"), |s| format!("{s:.3}"));
+            row.push(if solved == runs.len() { time } else { format!("{time} ({solved}/{seeds})") });
+            for (seed, run) in (1..).zip(runs) {
+                each.rows.push(vec![
+                    scene.clone(),
+                    planner.to_owned(),
+                    u64::to_string(&seed),
+                    u8::from(run.solved).to_string(),
+                    format!("{:.6}", run.seconds),
+                    run.queries.to_string(),
+                    run.iterations.to_string(),
+                ]);
+            }
+        }
+        summary.rows.push(row);
+    }
+    lab.report("planners", &summary, &each)?;
+    Ok(true)
+}

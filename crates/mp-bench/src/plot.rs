@@ -1,0 +1,267 @@
+//! Charts of curves, as SVG and as PNG.
+
+use crate::error::{IntoError, Result};
+use crate::output::{note, write};
+use mp_plan::Error;
+use mp_render::{Drawing, Series};
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
+use plotters::prelude::*;
+use std::ops::Range;
+use std::path::Path;
+
+/// A named curve, with a range about each point where there is one.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Curve {
+    pub(crate) name: String,
+    /// Index of its colour: curves of the same kind in several charts have the same.
+    pub(crate) colour: usize,
+    /// x and y of each point; points that are not positive and finite are left out.
+    pub(crate) points: Vec<(f64, f64)>,
+    /// The x of a point, and from where to where its y may reach.
+    pub(crate) ranges: Vec<(f64, f64, f64)>,
+    /// Drawn thin, as a companion of another.
+    pub(crate) thin: bool,
+}
+
+impl Curve {
+    /// A curve without ranges.
+    pub(crate) fn new(name: impl Into<String>, colour: usize, points: Vec<(f64, f64)>) -> Self {
+        Self { name: name.into(), colour, points, ranges: Vec::new(), thin: false }
+    }
+
+    /// Drawn thin.
+    pub(crate) fn thin(self) -> Self {
+        Self { thin: true, ..self }
+    }
+}
+
+/// What a chart is called, and what its axes are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Labels<'a> {
+    pub(crate) title: &'a str,
+    pub(crate) x: &'a str,
+    pub(crate) y: &'a str,
+}
+
+/// Width of a chart, and what of it is for the names of the curves, pixels.
+const WIDTH: u32 = 1100;
+const LEGEND: u32 = 250;
+
+const COLOURS: [RGBColor; 10] = [
+    RGBColor(0x1f, 0x77, 0xb4),
+    RGBColor(0xd6, 0x27, 0x28),
+    RGBColor(0x2c, 0xa0, 0x2c),
+    RGBColor(0x94, 0x67, 0xbd),
+    RGBColor(0xe0, 0x82, 0x14),
+    RGBColor(0x55, 0x55, 0x55),
+    RGBColor(0x17, 0xa2, 0xb8),
+    RGBColor(0xb0, 0x59, 0x8a),
+    RGBColor(0x8c, 0x56, 0x4b),
+    RGBColor(0xbc, 0xbd, 0x22),
+];
+
+/// How an axis is divided.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Axis<'a> {
+    /// Logarithmic, with a mark at each of these places, or where it suits.
+    Log(&'a [f64]),
+    /// Even, as far as the curves go.
+    Even,
+    /// Even, from zero to this, or as far as the curves go.
+    FromZero(Option<f64>),
+}
+
+impl Axis<'_> {
+    fn shows(&self, v: f64) -> bool {
+        v.is_finite() && (v > 0.0 || !matches!(self, Self::Log(_)))
+    }
+
+    /// From where to where it goes for these values, with some room at the ends.
+    fn range(&self, values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |b, v| (b.0.min(v), b.1.max(v)));
+        match self {
+            Self::Log(_) => low * (1.0 - room)..high / (1.0 - room),
+            Self::Even if high > low => low - 0.4 * room * (high - low)..high + 0.4 * room * (high - low),
+            Self::Even => low - 1.0..high + 1.0,
+            Self::FromZero(Some(top)) => 0.0..*top,
+            Self::FromZero(None) if high > 0.0 => 0.0..1.05 * high,
+            Self::FromZero(None) => 0.0..1.0,
+        }
+    }
+}
+
+/// A chart as SVG.
+///
+/// # Errors
+/// When no curve has a point that the axes show.
+pub(crate) fn chart(labels: Labels<'_>, [x, y]: [Axis<'_>; 2], curves: &[Curve]) -> Result<String> {
+    let shown = |p: &(f64, f64)| x.shows(p.0) && y.shows(p.1);
+    let ends =
+        |c: &Curve| c.ranges.iter().flat_map(|&(x, low, high)| [(x, low), (x, high)]).collect::<Vec<_>>();
+    let points: Vec<(f64, f64)> =
+        curves.iter().flat_map(|c| c.points.iter().copied().chain(ends(c))).filter(shown).collect();
+    if points.is_empty() {
+        return Err(Error::new(format!("nothing to draw in the chart `{}`", labels.title)));
+    }
+    let (xs, ys) = (x.range(points.iter().map(|p| p.0), 0.05), y.range(points.iter().map(|p| p.1), 0.2));
+    match (x, y) {
+        (Axis::Log(marks), Axis::Log(_)) => {
+            let xs = xs.log_scale().with_key_points(marks.to_vec());
+            drawn(labels, 600, (xs, ys.log_scale()), curves, shown)
+        }
+        (Axis::Log(marks), _) => {
+            drawn(labels, 480, (xs.log_scale().with_key_points(marks.to_vec()), ys), curves, shown)
+        }
+        (_, Axis::Log(_)) => drawn(labels, 480, (xs, ys.log_scale()), curves, shown),
+        _ => drawn(labels, 480, (xs, ys), curves, shown),
+    }
+}
+
+/// Draws curves over axes of any kind.
+fn drawn<X, Y>(
+    labels: Labels<'_>,
+    height: u32,
+    (xs, ys): (X, Y),
+    curves: &[Curve],
+    shown: impl Fn(&(f64, f64)) -> bool,
+) -> Result<String>
+where
+    X: AsRangedCoord<Value = f64, CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>>,
+    Y: AsRangedCoord<Value = f64, CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>>,
+{
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (WIDTH, height)).into_drawing_area();
+        let drawn = || -> std::result::Result<(), DrawingAreaErrorKind<_>> {
+            area.fill(&WHITE)?;
+            let mut chart = builder(&area, labels).build_cartesian_2d(xs, ys)?;
+            fill(&area, &mut chart, labels, curves, shown)?;
+            area.present()
+        };
+        drawn().doing(|| format!("cannot draw the chart `{}`", labels.title))?;
+    }
+    Ok(text)
+}
+
+/// A chart with room for its labels and the names of its curves.
+fn builder<'a, 'b, DB: DrawingBackend>(
+    area: &'a DrawingArea<DB, plotters::coord::Shift>,
+    labels: Labels<'_>,
+) -> ChartBuilder<'a, 'b, DB> {
+    let mut builder = ChartBuilder::on(area);
+    builder
+        .caption(labels.title, ("sans-serif", 20))
+        .margin(16)
+        .margin_right(LEGEND)
+        .x_label_area_size(48)
+        .y_label_area_size(72);
+    builder
+}
+
+/// The mesh, the curves and their names.
+fn fill<DB, X, Y>(
+    area: &DrawingArea<DB, plotters::coord::Shift>,
+    chart: &mut ChartContext<'_, DB, Cartesian2d<X, Y>>,
+    labels: Labels<'_>,
+    curves: &[Curve],
+    shown: impl Fn(&(f64, f64)) -> bool,
+) -> std::result::Result<(), DrawingAreaErrorKind<DB::ErrorType>>
+where
+    DB: DrawingBackend,
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    chart
+        .configure_mesh()
+        .light_line_style(RGBColor(0xf0, 0xf2, 0xf4))
+        .bold_line_style(RGBColor(0xdd, 0xe1, 0xe6))
+        .x_desc(labels.x)
+        .y_desc(labels.y)
+        .x_label_formatter(&|v| number(*v))
+        .y_label_formatter(&|v| number(*v))
+        .draw()?;
+    for (i, curve) in curves.iter().enumerate() {
+        let colour = COLOURS[curve.colour % COLOURS.len()];
+        let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
+        let points: Vec<_> = curve.points.iter().copied().filter(&shown).collect();
+        chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
+        // Beside the curves, where it hides none.
+        let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
+        area.draw(&PathElement::new([(x, y), (x + 18, y)], style))?;
+        area.draw(&Text::new(curve.name.clone(), (x + 24, y - 6), ("sans-serif", 12)))?;
+        if points.len() <= 40 && !curve.thin {
+            chart.draw_series(points.iter().map(|p| Circle::new(*p, 3, colour.filled())))?;
+        }
+        let ranges = curve.ranges.iter().filter(|r| shown(&(r.0, r.1)) && shown(&(r.0, r.2)));
+        chart.draw_series(ranges.map(|&(x, low, high)| {
+            PathElement::new([(x, low), (x, high)], colour.mix(0.5).stroke_width(1))
+        }))?;
+    }
+    Ok(())
+}
+
+/// Writes a drawing as SVG and as PNG.
+pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize)) -> Result<()> {
+    write(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
+    write(&stem.with_extension("png"), &drawing.pixels(size).into_error()?.to_png())?;
+    note(&format!("written: {}.svg and .png", stem.display()));
+    Ok(())
+}
+
+/// Writes curves over a logarithmic axis as PNG.
+pub(crate) fn save_series(file: &Path, title: &str, axes: [&str; 2], series: &[Series]) -> Result<()> {
+    let picture = mp_render::plot(title, axes, series, (960, 600)).into_error()?;
+    write(file, &picture.to_png())?;
+    note(&format!("written: {}", file.display()));
+    Ok(())
+}
+
+/// Three digits, or a power of ten when it is far from one.
+fn number(v: f64) -> String {
+    if v == 0.0 {
+        return "0".into();
+    }
+    if (1e-3..1e5).contains(&v) {
+        let digits = (2 - v.log10().floor() as i32).max(0) as usize;
+        let text = format!("{v:.digits$}");
+        return if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').into()
+        } else {
+            text
+        };
+    }
+    format!("{v:.0e}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(
+            [0.25, 8.15, 2.0, 512.0, 0.001, 1e-6, 1e6].map(number),
+            ["0.25", "8.15", "2", "512", "0.001", "1e-6", "1e6"]
+        );
+    }
+
+    #[test]
+    fn charts_have_curves_and_names() {
+        let curve = Curve {
+            ranges: vec![(2.0, 0.5, 4.0), (4.0, 0.0, 1.0)],
+            ..Curve::new("RSRT", 0, vec![(2.0, 1.0), (4.0, 8.0), (8.0, f64::INFINITY)])
+        };
+        let labels = Labels { title: "Time", x: "obstacles", y: "s" };
+        let text = chart(labels, [Axis::Log(&[2.0, 4.0]), Axis::Log(&[])], &[curve]).unwrap();
+        assert!(text.contains("RSRT") && text.contains("obstacles") && text.contains("<polyline"));
+        assert!(chart(labels, [Axis::Log(&[]); 2], &[]).is_err());
+        let text = chart(
+            labels,
+            [Axis::Even, Axis::FromZero(None)],
+            &[Curve::new("RRS", 1, vec![(30.0, 0.0), (60.0, 2.0)])],
+        )
+        .unwrap();
+        assert!(text.contains("RRS") && text.contains("<polyline"));
+        assert!(chart(labels, [Axis::Even, Axis::FromZero(None)], &[]).is_err());
+    }
+}

@@ -1,0 +1,232 @@
+//! How many nodes it takes to see as much of the free space: Visib-PRM against PRM.
+
+use super::queries::{local, steer};
+use crate::clock::{nanoseconds, seconds_since};
+use crate::error::{IntoError, Result};
+use crate::experiment::{Lab, Median, Table, short};
+use crate::scenes::{Rigid, either};
+use mp_cspace::{
+    DefaultNn, Direction, Extension, Iterations, LocalPlanner, Metric, NodeId, Nodes, Reach, Rng, Space,
+    Validity,
+};
+use mp_plan::{RigidMotion, RigidScene, RobotKind};
+use mp_roadmap::algo::{prm, visibility_prm};
+use mp_roadmap::{Builder, Learning, Reachable, Roadmap};
+use serde::{Deserialize, Serialize};
+use std::collections::{HashMap, HashSet};
+
+const SCENES: [&str; 5] = ["maze", "planar-bugtrap", "easy", "gempa-1", "gempa-3"];
+const FAILURES: u64 = 1_000;
+/// Free samples of which as many as can be connected to a node are seen.
+const SAMPLES: usize = 500;
+/// PRM has at most so many nodes.
+const MOST: usize = 20_000;
+const SEEDS: u64 = 10;
+
+/// What was run.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+struct Case {
+    scene: String,
+    seed: u64,
+}
+
+/// Measures. None when it was interrupted.
+pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<Table>> {
+    let mut table = Table::new([
+        "scene",
+        "Visib-PRM nodes (95%)",
+        "of these guards",
+        "estimate",
+        "seen",
+        "seen from the largest component",
+        "components",
+        "s",
+        "PRM nodes to see as much (95%)",
+        "components",
+        "s",
+        "PRM nodes to see as much from the largest component (95%)",
+        "components",
+        "s",
+        "nodes PRM : Visib-PRM, seen",
+        "connected",
+    ]);
+    let (scenes, seeds) = if quick { (&SCENES[..1], 2) } else { (&SCENES[..], SEEDS) };
+    let case = |scene: &str, seed| Case { scene: scene.to_owned(), seed };
+    let cases: Vec<Case> =
+        scenes.iter().flat_map(|scene| (1..=seeds).map(move |seed| case(scene, seed))).collect();
+    let ready: Vec<Rigid> = scenes.iter().map(|name| Rigid::load(name)).collect::<Result<_>>()?;
+    let mut log = lab.log("roadmaps-coverage", FAILURES as f64)?;
+    let complete = lab.measure(&mut log, "coverage", &cases, |case| {
+        let i = scenes.iter().position(|scene| *scene == case.scene).unwrap_or(0);
+        Ok(Some(either!(&ready[i], scene => on(scene, case.seed))?))
+    })?;
+    for (scene, runs) in log.groups(&cases, |case| &case.scene) {
+        let runs: Vec<&Measured> = runs.into_iter().map(|(_, run)| run).collect();
+        table.rows.push([scene.clone()].into_iter().chain(row(&runs)).collect());
+    }
+    Ok(complete.then_some(table))
+}
+
+/// Parts of the free samples: with a motion from a node, and from one of the largest component.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Seen {
+    any: f64,
+    largest: f64,
+}
+
+/// A sample, and what is known of the nodes of a roadmap that grows: of none twice whether there is a motion.
+struct Sample<S> {
+    q: S,
+    seen_by: Vec<NodeId>,
+    unseen_by: HashSet<NodeId>,
+}
+
+fn fresh<S: Clone>(samples: &[S]) -> Vec<Sample<S>> {
+    let one = |q: &S| Sample { q: q.clone(), seen_by: Vec::new(), unseen_by: HashSet::new() };
+    samples.iter().map(one).collect()
+}
+
+/// What is seen, by nodes tried in order of distance.
+fn seen<M: RigidMotion>(
+    scene: &RigidScene<M>,
+    map: &mut Roadmap<M::State>,
+    samples: &mut [Sample<M::State>],
+) -> Result<Seen> {
+    let (space, mut local) = (scene.space(), local(scene)?);
+    let parts: Vec<NodeId> = (0..map.len() as NodeId).map(|id| map.component(id)).collect();
+    let mut sizes = HashMap::new();
+    parts.iter().for_each(|part| *sizes.entry(*part).or_insert(0) += 1);
+    // Of equal ones that which is named first.
+    let largest =
+        sizes.iter().max_by_key(|(part, size)| (**size, std::cmp::Reverse(**part))).map(|(part, _)| *part);
+    let counts = |id: &NodeId| Some(parts[*id as usize]) == largest;
+    let mut order: Vec<(f64, NodeId)> = Vec::new();
+    let mut count = [0; 2];
+    for sample in samples.iter_mut() {
+        let mut by_largest = sample.seen_by.iter().any(counts);
+        order.clear();
+        if !by_largest {
+            let unknown = (0..map.len() as NodeId).filter(|id| !sample.unseen_by.contains(id));
+            let distance = |id| (space.distance(map.state(id), &sample.q), id);
+            order.extend(unknown.map(distance));
+            order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        for (_, id) in &order {
+            // Of the others one is enough.
+            if !sample.seen_by.is_empty() && !counts(id) {
+                continue;
+            }
+            let motion = local.extend(map.state(*id), &sample.q, Direction::Forward, Reach::Full);
+            if !matches!(motion, Extension::Reached(_)) {
+                sample.unseen_by.insert(*id);
+                continue;
+            }
+            sample.seen_by.push(*id);
+            if counts(id) {
+                by_largest = true;
+                break;
+            }
+        }
+        count[0] += usize::from(!sample.seen_by.is_empty());
+        count[1] += usize::from(by_largest);
+    }
+    let [any, largest] = count.map(|n| n as f64 / samples.len() as f64);
+    Ok(Seen { any, largest })
+}
+
+/// How large PRM's roadmap had to be.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Needed {
+    nodes: f64,
+    components: f64,
+    seconds: f64,
+}
+
+/// What came of a seed.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Measured {
+    few: Needed,
+    guards: f64,
+    estimate: f64,
+    seen: Seen,
+    /// To see as much, and to see as much from the largest component; none when no size was enough.
+    many: [Option<Needed>; 2],
+}
+
+fn on<M: RigidMotion>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
+    let space = scene.space();
+    let mut robot = scene.robot().clone();
+    let verifier = scene.verifier()?;
+    let mut rng = Rng::stream(seed, 7);
+    let mut samples = Vec::new();
+    while samples.len() < SAMPLES {
+        let q = space.sample_uniform(&mut rng);
+        if robot.is_valid(&q) {
+            samples.push(q);
+        }
+    }
+    let index = <M::Space as DefaultNn>::Nn::default();
+    let recipe = visibility_prm::recipe(space, FAILURES).into_error()?;
+    let mut few = Builder::new(steer(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
+    let began = nanoseconds();
+    few.build(&mut Rng::seed(seed), &mut Iterations(10_000_000), &mut ());
+    let seconds = seconds_since(began);
+    let guards = few.map().graph().node_weights().filter(|tag| tag.kind == mp_roadmap::Kind::Guard);
+    let (guards, estimate) = (guards.count() as f64, few.connector().coverage());
+    let aim = seen(scene, few.map_mut(), &mut fresh(&samples))?;
+    let (nodes, components) = (few.map().len() as f64, few.map_mut().components() as f64);
+
+    let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
+    let learning = Learning { expand: 0.0, ..Learning::default() };
+    let recipe = prm::recipe(space, reach, learning).into_error()?;
+    let index = <M::Space as DefaultNn>::Nn::default();
+    let mut many = Builder::new(steer(scene, verifier)?, recipe.generate, recipe.connect, index);
+    let (mut size, mut spent, mut rng) = (4, 0.0, Rng::seed(seed));
+    let mut needed: [Option<Needed>; 2] = [None; 2];
+    let mut samples = fresh(&samples);
+    while needed.iter().any(Option::is_none) && size < MOST {
+        let began = nanoseconds();
+        many.build(&mut rng, &mut Nodes(size), &mut ());
+        spent += seconds_since(began);
+        let now = seen(scene, many.map_mut(), &mut samples)?;
+        let enough = [now.any >= aim.any, now.any >= aim.any && now.largest >= aim.largest];
+        for (needed, enough) in needed.iter_mut().zip(enough) {
+            if needed.is_none() && enough {
+                let components = many.map_mut().components() as f64;
+                *needed = Some(Needed { nodes: size as f64, components, seconds: spent });
+            }
+        }
+        size += size / 4 + 1;
+    }
+    let few = Needed { nodes, components, seconds };
+    Ok(Measured { few, guards, estimate, seen: aim, many: needed })
+}
+
+fn row(found: &[&Measured]) -> Vec<String> {
+    let median = |value: &dyn Fn(&Measured) -> f64| {
+        Median::of(found.iter().map(|run| value(run))).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
+    };
+    let count = |v: f64| format!("{v:.0}");
+    let percent = |v: f64| format!("{:.1}%", 100.0 * v);
+    let many = |i: usize, value: fn(&Needed) -> f64| {
+        median(&move |m| m.many[i].as_ref().map_or(f64::INFINITY, value))
+    };
+    let few = median(&|m| m.few.nodes);
+    let mut cells = vec![
+        few.cell("–", count),
+        count(median(&|m| m.guards).median),
+        percent(median(&|m| m.estimate).median),
+        percent(median(&|m| m.seen.any).median),
+        percent(median(&|m| m.seen.largest).median),
+        count(median(&|m| m.few.components).median),
+        short(median(&|m| m.few.seconds).median),
+    ];
+    let sizes = [0, 1].map(|i| many(i, |m| m.nodes));
+    for (i, nodes) in sizes.iter().enumerate() {
+        cells.push(nodes.cell(&format!("> {MOST}"), count));
+        cells.push(count(many(i, |m| m.components).median));
+        cells.push(short(many(i, |m| m.seconds).median));
+    }
+    cells.extend(sizes.map(|nodes| short(nodes.median / few.median)));
+    cells
+}

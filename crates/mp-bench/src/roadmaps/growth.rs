@@ -1,0 +1,61 @@
+//! How long it takes to build a roadmap of so many nodes.
+
+use super::queries::steer;
+use crate::clock::{nanoseconds, seconds_since};
+use crate::error::{IntoError, Result};
+use crate::experiment::{Table, short};
+use crate::output::note;
+use crate::scenes::{Rigid, either};
+use mp_cspace::{DefaultNn, Nodes, Rng};
+use mp_plan::{RigidMotion, RigidScene, RobotKind};
+use mp_roadmap::algo::prm;
+use mp_roadmap::{Builder, Learning, Reachable};
+
+const SIZES: [usize; 7] = [100, 316, 1_000, 3_162, 10_000, 31_623, 100_000];
+
+/// Measures on the scene `cubicles`, a free-flyer.
+pub(super) fn measure(quick: bool) -> Result<Table> {
+    either!(Rigid::load("cubicles")?, scene => on(&scene, quick))
+}
+
+fn on<M: RigidMotion>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
+    let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
+    let learning = Learning { expand: 0.0, ..Learning::default() };
+    let recipe = prm::recipe(scene.space(), reach, learning).into_error()?;
+    let index = <M::Space as DefaultNn>::Nn::default();
+    let steer = steer(scene, scene.verifier()?)?;
+    let mut builder = Builder::new(steer, recipe.generate, recipe.connect, index);
+    let mut table = Table::new([
+        "nodes",
+        "build s",
+        "µs per node",
+        "growth: exponent",
+        "components",
+        "largest",
+        "motions per node",
+    ]);
+    let sizes = if quick { &SIZES[..4] } else { &SIZES[..] };
+    let mut rng = Rng::seed(1);
+    let (mut seconds, mut before) = (0.0, None::<(f64, f64)>);
+    for &size in sizes {
+        let began = nanoseconds();
+        builder.build(&mut rng, &mut Nodes(size), &mut ());
+        seconds += seconds_since(began);
+        let n = size as f64;
+        let exponent = before.map(|(m, s)| (seconds / s).ln() / (n / m).ln());
+        before = Some((n, seconds));
+        let motions = builder.progress().motions;
+        let sizes = builder.map_mut().component_sizes();
+        table.rows.push(vec![
+            size.to_string(),
+            short(seconds),
+            short(1e6 * seconds / n),
+            exponent.map_or_else(|| "–".to_owned(), |e| format!("{e:.2}")),
+            sizes.len().to_string(),
+            format!("{:.1}%", 100.0 * sizes.first().copied().unwrap_or(0) as f64 / n),
+            short(motions as f64 / n),
+        ]);
+        note(&format!("{size} nodes in {seconds:.3} s"));
+    }
+    Ok(table)
+}

@@ -1,0 +1,244 @@
+//! Pictures of roadmaps, as SVG: the coverage of whole scenes; what each algorithm needed to get through a corridor; and
+//! where around an obstacle the configurations of obstacle-geometry PRM and OBPRM are.
+
+use super::drawing::{Drawing, View};
+use super::queries::{Local, steer};
+use super::world::CORRIDORS;
+use crate::error::{IntoError, Result};
+use crate::experiment::Lab;
+use crate::output::note;
+use crate::scenes::{Rigid, bare, either};
+use mp_cspace::{DefaultNn, Iterations, Nodes, ObstacleGeometry, Outcome, Rng, Stop};
+use mp_geom::Aabb;
+use mp_geom::primitives::cuboid;
+use mp_io::{Body, PlacedBody, Problem, SpaceKind};
+use mp_plan::{Control, Error, RigidMotion, RigidScene, RobotKind, search};
+use mp_roadmap::algo::{prm, visibility_prm};
+use mp_roadmap::{
+    AroundObstacles, Builder, ByGeometry, Candidate, Connector, Kind, Learning, LinkState, NodeGenerator,
+    OnObstacles, OnSurfaces, Reachable, Roadmap, Strategy,
+};
+use mp_robot::Spatial;
+use nalgebra::{Isometry3, Point3, Vector3};
+use petgraph::visit::EdgeRef;
+use std::path::PathBuf;
+
+const SCENES: [&str; 3] = ["maze", "planar-bugtrap", "gempa-3"];
+/// Nodes of PRM's.
+const NODES: usize = 400;
+/// The corridor of the small pictures: which of the planar ones.
+const CORRIDOR: usize = 0;
+
+const OBSTACLE: &str = "#b4bdc9";
+const GREEN: &str = "#2f9e6e";
+const BLUE: &str = "#2c6fb0";
+const RED: &str = "#d1495b";
+const PURPLE: &str = "#8f5bb8";
+const ORANGE: &str = "#e6892d";
+
+/// The colour of nodes; black and white of guards and connections.
+fn colour(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Guard | Kind::End => "#000",
+        Kind::Connection => "#fff",
+        Kind::Expanded => ORANGE,
+        Kind::Near | Kind::Contact => RED,
+        Kind::Far => GREEN,
+        Kind::Salvaged => PURPLE,
+        _ => BLUE,
+    }
+}
+
+/// Draws all of them.
+pub(super) fn draw(lab: &Lab) -> Result<()> {
+    for name in SCENES {
+        either!(Rigid::load(name)?, scene => covered(&scene, lab)?);
+    }
+    let (_, rigid) = CORRIDORS[0].ready()?.swap_remove(CORRIDOR);
+    for info in mp_roadmap::planners() {
+        either!(&rigid, scene => passed(scene, info.name, lab)?);
+    }
+    around(&RigidScene::<Spatial>::new(pillar()?)?, lab)
+}
+
+fn save(drawing: Drawing, lab: &Lab, name: &str) -> Result<()> {
+    let name = format!("roadmap-{name}.svg");
+    lab.write(&name, &drawing.finish())?;
+    note(&format!("drawn: {}", lab.file(&name).display()));
+    Ok(())
+}
+
+/// PRM's and Visib-PRM's roadmaps of a whole scene.
+fn covered<M: RigidMotion>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
+    let (space, name) = (scene.space(), &scene.problem().name);
+    let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
+    let learning = Learning { learn: NODES * 2 / 3, ..Learning::default() };
+    let recipe = prm::recipe(space, reach, learning).into_error()?;
+    let prm = built(scene, recipe.generate, recipe.connect, Nodes(NODES))?;
+    let recipe = visibility_prm::recipe(space, 1_000).into_error()?;
+    let visible = built(scene, recipe.generate, recipe.connect, Iterations(1_000_000))?;
+    for (planner, map) in [("prm", prm), ("visibility-prm", visible)] {
+        let mut drawing = Drawing::new(&scene.problem().position_bounds(), View::Above, 900.0, &[]);
+        obstacles(&mut drawing, scene.problem());
+        roadmap::<M>(&mut drawing, &map, 3.0);
+        save(drawing, lab, &format!("{name}-{planner}"))?;
+    }
+    Ok(())
+}
+
+fn built<'c, M: RigidMotion, G, K>(
+    scene: &'c RigidScene<M>,
+    generate: G,
+    connect: K,
+    mut stop: impl Stop,
+) -> Result<Roadmap<M::State>>
+where
+    G: NodeGenerator<M::Space, Local<'c, M>>,
+    K: Connector<M::Space, Local<'c, M>>,
+{
+    let index = <M::Space as DefaultNn>::Nn::default();
+    let mut builder = Builder::new(steer(scene, scene.verifier()?)?, generate, connect, index);
+    builder.build(&mut Rng::seed(1), &mut stop, &mut ());
+    Ok(builder.into_map())
+}
+
+fn obstacles(drawing: &mut Drawing, problem: &Problem) {
+    drawing.silhouette(problem.obstacles.iter().map(|o| (&o.mesh, o.pose)), OBSTACLE, 0.6);
+}
+
+fn place<M: RigidMotion>(q: &M::State) -> Point3<f64> {
+    Point3::from(M::pose(q).translation.vector)
+}
+
+/// Edges, those not checked lighter; and nodes of this radius, pixels.
+fn roadmap<M: RigidMotion>(drawing: &mut Drawing, map: &Roadmap<M::State>, radius: f64) {
+    for (state, colour) in [(LinkState::Unchecked, "#d5dde8"), (LinkState::Free, "#5b7fa8")] {
+        let edges = map.graph().edge_references().filter(|edge| edge.weight().state == state);
+        let ends = edges.map(|e| [e.source(), e.target()].map(|end| place::<M>(&map.states()[end.index()])));
+        drawing.lines(ends, colour, 0.8);
+    }
+    for kind in Kind::ALL {
+        let tagged = map.states().iter().zip(map.graph().node_weights());
+        let places: Vec<_> = tagged.filter(|(_, tag)| tag.kind == kind).map(|(q, _)| place::<M>(q)).collect();
+        let radius = if matches!(kind, Kind::Guard | Kind::Connection) { radius * 1.7 } else { radius };
+        if !places.is_empty() {
+            drawing.dots(places.iter().copied(), "#000", radius + 0.7);
+            drawing.dots(places, colour(kind), radius);
+        }
+    }
+}
+
+/// The roadmap of a planner when it had found a path, and the path.
+fn passed<M: RigidMotion>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Result<()> {
+    let mut request = bare(planner);
+    request.budget.queries = Some(1_000_000);
+    let done = search(scene, &request, &mut Control { keep_roadmap: true, ..Control::default() })?;
+    let (Some(map), Outcome::Solved(path)) = (done.roadmap, done.outcome) else {
+        let what = format!("{planner} did not get through the corridor of the picture");
+        return Err(Error::new(what));
+    };
+    let caption = format!("{planner}: {} nodes, {} queries", map.len(), done.queries);
+    let mut drawing = Drawing::new(&scene.problem().position_bounds(), View::Above, 480.0, &[caption]);
+    obstacles(&mut drawing, scene.problem());
+    roadmap::<M>(&mut drawing, &map, 2.0);
+    let robot = &scene.problem().robot.mesh;
+    let steps = path.resampled(scene.space(), 0.02 * path.length(scene.space())).into_error()?;
+    drawing.silhouette(steps.states.iter().map(|q| (robot, M::pose(q))), ORANGE, 0.25);
+    drawing.silhouette(path.states.iter().map(|q| (robot, M::pose(q))), ORANGE, 0.8);
+    save(drawing, lab, &format!("corridor-{planner}"))
+}
+
+/// One long block, and a rod about it.
+fn pillar() -> Result<Problem> {
+    let mesh = cuboid(1.4, 0.45, 0.45).into_error()?;
+    let rod = cuboid(0.5, 0.06, 0.06).into_error()?;
+    let high = Point3::new(1.5, 1.3, 1.1);
+    Ok(Problem {
+        name: "pillar".to_owned(),
+        space: SpaceKind::Se3,
+        robot: Body { name: "rod".to_owned(), file: PathBuf::new(), mesh: rod },
+        obstacles: vec![PlacedBody {
+            name: "block".to_owned(),
+            file: PathBuf::new(),
+            mesh,
+            pose: Isometry3::identity(),
+        }],
+        start: Isometry3::translation(-1.2, 0.0, 0.0),
+        goal: Isometry3::translation(1.2, 0.0, 0.0),
+        bounds: Some(Aabb { min: -high, max: high }),
+    })
+}
+
+/// The configurations that obstacle-geometry PRM and OBPRM propose around one obstacle.
+fn around<M: RigidMotion>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
+    let robot = scene.robot();
+    let Some(block) = robot.obstacles().first().copied() else { return Err(Error::new("no obstacle")) };
+    let along = |q: &M::State| {
+        let axis: Vector3<f64> = M::pose(q).rotation * robot.robot().axis;
+        axis.dot(&block.axis).abs() > 0.9
+    };
+    let geometry = |far| AroundObstacles::new(robot.clone(), ByGeometry { far, bands: 20 }).into_error();
+    let far = candidates(scene, geometry(1_000)?, 0..60)?;
+    let near = candidates(scene, geometry(0)?, 0..60)?;
+    let near: Vec<_> = near.into_iter().filter(|c| c.kind == Kind::Near).collect();
+    let (parallel, across): (Vec<_>, Vec<_>) = near.into_iter().map(|c| c.state).partition(along);
+    let far = far.into_iter().map(|c| c.state).collect::<Vec<_>>();
+    let caption = format!("far, by spheres alone: {} green; near, by the elastic band:", far.len());
+    let more = format!("{} parallel, blue; {} perpendicular, orange", parallel.len(), across.len());
+    shown(
+        scene,
+        [(&far, GREEN), (&parallel, BLUE), (&across, ORANGE)],
+        [caption, more],
+        (lab, "far-and-near"),
+    )?;
+
+    let on = |strategy| {
+        let with = OnSurfaces {
+            strategy,
+            uniform: 0.0,
+            gap: mp_cspace::Step::Length(0.25),
+            ..OnSurfaces::default()
+        };
+        let all =
+            candidates(scene, OnObstacles::new(scene.space(), robot.clone(), with).into_error()?, 0..45)?;
+        Ok::<_, Error>(all.into_iter().map(|c| c.state).collect::<Vec<_>>())
+    };
+    let (contact, free) = (on(Strategy::Contact)?, on(Strategy::Free)?);
+    let caption = format!("OBPRM: {} contact configurations, red;", contact.len());
+    let more = format!("{} free ones near contact, green", free.len());
+    shown(scene, [(&contact, RED), (&free, GREEN), (&vec![], BLUE)], [caption, more], (lab, "obprm-contact"))
+}
+
+fn candidates<'c, M: RigidMotion, G: NodeGenerator<M::Space, Local<'c, M>>>(
+    scene: &'c RigidScene<M>,
+    mut generate: G,
+    attempts: std::ops::Range<u64>,
+) -> Result<Vec<Candidate<M::State, ()>>> {
+    let mut steer = steer(scene, scene.verifier()?)?;
+    let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
+    for attempt in attempts {
+        generate.generate(attempt, &map, &mut steer, &mut Rng::stream(1, attempt), &mut out);
+        all.append(&mut out);
+    }
+    Ok(all)
+}
+
+/// Robots in their colours around the obstacles, with the spheres around these.
+fn shown<M: RigidMotion>(
+    scene: &RigidScene<M>,
+    robots: [(&Vec<M::State>, &str); 3],
+    captions: [String; 2],
+    (lab, name): (&Lab, &str),
+) -> Result<()> {
+    let problem = scene.problem();
+    let mut drawing = Drawing::new(&problem.position_bounds(), View::Aslant, 620.0, &captions);
+    for outline in scene.robot().obstacles() {
+        drawing.sphere(&Point3::from(outline.center), outline.radius, "#8a94a3");
+    }
+    let bodies = problem.obstacles.iter().map(|o| (&o.mesh, o.pose, OBSTACLE));
+    let placed = robots
+        .into_iter()
+        .flat_map(|(states, colour)| states.iter().map(move |q| (&problem.robot.mesh, M::pose(q), colour)));
+    drawing.solids(bodies.chain(placed));
+    save(drawing, lab, name)
+}

@@ -1,0 +1,139 @@
+//! Many queries to one roadmap, and each by RRT-Connect.
+
+use crate::clock::{Processor, nanoseconds, seconds_since};
+use crate::error::{IntoError, Result};
+use crate::experiment::{Median, Table, mean, short};
+use crate::output::note;
+use crate::scenes::{Rigid, either};
+use mp_cspace::{Certified, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity};
+use mp_plan::{RigidMotion, RigidScene, RobotKind};
+use mp_roadmap::algo::prm;
+use mp_roadmap::{Answers, Builder, Learning, PATIENCE, Reachable, Steer};
+use mp_robot::{RigidBody, Verifier};
+use mp_tree::{RrtConnect, Tuning};
+
+/// Nodes of the roadmaps.
+const SIZES: [usize; 3] = [500, 2_000, 8_000];
+const QUERIES: usize = 1_000;
+/// Neighbours that an end is connected to.
+const NEIGHBOURS: usize = 10;
+/// Seconds of processor time that RRT-Connect may take for one query.
+const CAP: f64 = 2.0;
+
+pub(super) type Local<'c, M> =
+    Straight<'c, <M as RigidMotion>::Space, Certified<'c, <M as RigidMotion>::Space, RigidBody<M>>>;
+
+/// Straight motions, proved.
+pub(super) fn local<M: RigidMotion>(scene: &RigidScene<M>) -> Result<Local<'_, M>> {
+    let check = Certified::new(scene.space(), scene.robot().clone(), scene.tolerance()).into_error()?;
+    Ok(Straight::new(scene.space(), check))
+}
+
+/// How roadmaps of the setting move.
+pub(super) fn steer<'c, M: RigidMotion>(
+    scene: &'c RigidScene<M>,
+    verifier: Verifier<'c, M::Space, M>,
+) -> Result<Steer<'c, M::Space, Local<'c, M>>> {
+    Ok(Steer::new(scene.space(), local(scene)?, verifier, PATIENCE))
+}
+
+/// Measures on the scene `cubicles`.
+pub(super) fn measure(quick: bool) -> Result<Table> {
+    either!(Rigid::load("cubicles")?, scene => on(&scene, quick))
+}
+
+fn on<M: RigidMotion>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
+    let (sizes, count) = if quick { (&SIZES[..1], 100) } else { (&SIZES[..], QUERIES) };
+    let space = scene.space();
+    let mut robot = scene.robot().clone();
+    let mut rng = Rng::stream(1, 99);
+    let mut free = || loop {
+        let q = space.sample_uniform(&mut rng);
+        if robot.is_valid(&q) {
+            return q;
+        }
+    };
+    let pairs: Vec<_> = (0..count).map(|_| [free(), free()]).collect();
+    let verifier = scene.verifier()?;
+
+    let mut alone = Vec::new();
+    for (seed, [start, goal]) in (1..).zip(&pairs) {
+        let began = nanoseconds();
+        let problem = Problem::new(space, local(scene)?, verifier.clone(), start.clone(), goal.clone());
+        let solved = match problem {
+            Err(_) => false,
+            Ok(problem) => {
+                let mut planner = RrtConnect::new(problem, Tuning::default()).into_error()?;
+                let mut stop = Processor { until: began + CAP * 1e9 };
+                matches!(planner.solve(&mut Rng::seed(seed), &mut stop, &mut ()), Outcome::Solved(_))
+            }
+        };
+        let seconds = seconds_since(began);
+        alone.push(if solved { seconds } else { f64::INFINITY });
+    }
+    let mut table = Table::new([
+        "",
+        "nodes",
+        "components",
+        "build s",
+        "answered",
+        "median ms (95%)",
+        "mean ms",
+        "queries per s",
+        "RRT-Connect : this, medians",
+        "means",
+    ]);
+    let of = |times: &[f64]| {
+        Median::of(times.iter().copied()).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
+    };
+    let mean = |times: &[f64]| mean(times.iter().copied().filter(|t| t.is_finite())).unwrap_or(0.0);
+    let connect = (of(&alone), mean(&alone));
+    let mut row = |what: &str, map: [String; 3], times: &[f64]| {
+        let (median, mean) = (of(times), mean(times));
+        let answered = times.iter().filter(|t| t.is_finite()).count();
+        let mut cells = vec![what.to_owned()];
+        cells.extend(map);
+        cells.extend([
+            format!("{:.1}%", 100.0 * answered as f64 / times.len() as f64),
+            median.cell("–", |s| short(1e3 * s)),
+            short(1e3 * mean),
+            format!("{:.0}", 1.0 / mean),
+            format!("{:.1}", connect.0.median / median.median),
+            format!("{:.1}", connect.1 / mean),
+        ]);
+        note(&cells.join(" | "));
+        table.rows.push(cells);
+    };
+    row("RRT-Connect", [const { String::new() }; 3], &alone);
+    for &size in sizes {
+        let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
+        let recipe = prm::recipe(space, reach, Learning::default()).into_error()?;
+        let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
+        let mut builder =
+            Builder::new(steer(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
+        let began = nanoseconds();
+        builder.build(&mut Rng::seed(1), &mut Nodes(size), &mut ());
+        let build = seconds_since(began);
+        let components = builder.map_mut().components();
+        let mut ask = |what: &str, build: f64, answers: &mut Answers<'_, _, _, _>| {
+            let mut times = Vec::new();
+            for [start, goal] in &pairs {
+                let began = nanoseconds();
+                let solved = answers.answer(start, goal).is_ok();
+                let seconds = seconds_since(began);
+                times.push(if solved { seconds } else { f64::INFINITY });
+            }
+            row(what, [size.to_string(), components.to_string(), short(build)], &times);
+        };
+        let map = builder.map().clone();
+        ask("roadmap", build, &mut builder.into_answers(NEIGHBOURS));
+        let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
+        let mut answers =
+            Answers::new(steer(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
+        let began = nanoseconds();
+        answers.verify();
+        let verified = seconds_since(began);
+        ask("roadmap, edges verified when built", build + verified, &mut answers);
+    }
+    Ok(table)
+}

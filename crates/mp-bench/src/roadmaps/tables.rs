@@ -1,0 +1,206 @@
+//! What was found, as tables and a chart.
+
+use super::runs::{BESIDE, Case, Plan, Run, planners};
+use super::world::Corridors;
+use crate::error::Result;
+use crate::experiment::{Log, Median, Table, short, wilson};
+use crate::plot::{Axis, Curve, Labels, chart};
+
+/// The runs, to be summed up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<'a> {
+    pub(super) log: &'a Log<Case, Run>,
+    pub(super) plan: &'a Plan,
+}
+
+/// Where a share falls under one half, going down from the widest: between two widths by the logarithm of the width.
+/// Infinite if it is under half at the widest already, zero if it never is.
+fn falls(points: &[(f64, f64)]) -> f64 {
+    let Some(i) = points.iter().position(|(_, share)| *share < 0.5) else { return 0.0 };
+    let Some(before) = i.checked_sub(1) else { return f64::INFINITY };
+    let [(wide, high), (narrow, low)] = [points[before], points[i]];
+    let t = (high - 0.5) / (high - low);
+    (wide.ln() + t * (narrow.ln() - wide.ln())).exp()
+}
+
+/// In thousands.
+fn thousands(v: f64) -> String {
+    if v < 10_000.0 { format!("{:.1}k", 1e-3 * v) } else { format!("{:.0}k", 1e-3 * v) }
+}
+
+impl Found<'_> {
+    fn runs(&self, scene: &str, planner: &str) -> Vec<&Run> {
+        self.log.runs(self.plan.cases(scene, planner))
+    }
+
+    /// How many of how many runs were solved by so many queries.
+    fn share(&self, scene: &str, planner: &str, budget: u64) -> (usize, usize) {
+        let runs = self.runs(scene, planner);
+        (runs.iter().filter(|run| run.solved_within(budget)).count(), runs.len())
+    }
+
+    /// The whole budget and smaller ones: a run that needed less would have been solved by them.
+    fn budgets(&self) -> [u64; 3] {
+        [self.plan.budget / 10, self.plan.budget * 3 / 10, self.plan.budget]
+    }
+
+    /// A row for each scene and planner: medians over all runs, solved or not; of queries and time that is not solved
+    /// counts as beyond the budget.
+    pub(super) fn summary(&self, scenes: &[String]) -> Table {
+        let [few, some, all] = self.budgets();
+        let mut head: Vec<String> = ["scene", "planner"].map(str::to_owned).to_vec();
+        head.extend([few, some].map(|budget| format!("by {}", thousands(budget as f64))));
+        head.push(format!("solved by {}", thousands(all as f64)));
+        let rest = ["95%", "queries (95%)", "build s", "query ms", "nodes", "edges", "components", "motions"];
+        let mut table = Table::new(head.into_iter().chain(rest.map(str::to_owned)));
+        for scene in scenes {
+            for planner in planners() {
+                let runs = self.runs(scene, planner);
+                if runs.is_empty() {
+                    continue;
+                }
+                let [first, second, (solved, of)] =
+                    self.budgets().map(|budget| self.share(scene, planner, budget));
+                let (low, high) = wilson(solved, of);
+                let median = |value: &dyn Fn(&Run) -> f64| {
+                    let values = runs.iter().map(|run| value(run));
+                    Median::of(values).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
+                };
+                let count = |value: &dyn Fn(&Run) -> f64| format!("{:.0}", median(value).median);
+                let of_map = |cell: String| if planner == BESIDE { "–".to_owned() } else { cell };
+                let queries = median(&|run| if run.solved { run.checks as f64 } else { f64::INFINITY });
+                let again = runs.iter().filter_map(|run| run.again);
+                table.rows.push(vec![
+                    scene.clone(),
+                    planner.to_owned(),
+                    first.0.to_string(),
+                    second.0.to_string(),
+                    format!("{solved}/{of}"),
+                    format!("{:.0}–{:.0}%", 100.0 * low, 100.0 * high),
+                    queries.cell(&format!("> {}", thousands(all as f64)), thousands),
+                    short(median(&|run| run.seconds).median),
+                    Median::of(again).map_or_else(|| "–".to_owned(), |m| short(1e3 * m.median)),
+                    count(&|run| run.nodes as f64),
+                    of_map(count(&|run| run.edges as f64)),
+                    of_map(count(&|run| run.components as f64)),
+                    count(&|run| run.motions as f64),
+                ]);
+            }
+        }
+        table
+    }
+
+    /// The width at which the planner falls under half by so many queries, and from where to where it may be: where the
+    /// ends of the intervals of the shares do.
+    fn width(&self, corridors: &Corridors, planner: &str, budget: u64) -> [f64; 3] {
+        let seeds = self.plan.seeds as usize;
+        let points = |end: fn(usize, usize) -> f64| -> Vec<(f64, f64)> {
+            // What was not run, as nothing was solved where it is wider, would not be solved.
+            let share = |slack: f64| end(self.share(&corridors.scene(slack), planner, budget).0, seeds);
+            corridors.slacks.iter().map(|&slack| (slack, share(slack))).collect()
+        };
+        [
+            falls(&points(|k, n| k as f64 / n as f64)),
+            falls(&points(|k, n| wilson(k, n).1)),
+            falls(&points(|k, n| wilson(k, n).0)),
+        ]
+    }
+
+    /// Success in each corridor, and the width at which a planner falls under half.
+    pub(super) fn corridor(&self, corridors: &Corridors) -> Table {
+        let [few, _, all] = self.budgets();
+        let mut head = vec!["planner".to_owned()];
+        head.extend(corridors.slacks.iter().map(|slack| format!("{slack} m")));
+        head.push(format!("half by {} (95%)", thousands(all as f64)));
+        head.push(format!("half by {}", thousands(few as f64)));
+        let mut table = Table::new(head);
+        let [widest, narrowest] = [corridors.slacks[0], corridors.slacks[corridors.slacks.len() - 1]];
+        let metres = |v: f64| match v {
+            0.0 => format!("< {narrowest}"),
+            v if v.is_infinite() => format!("> {widest}"),
+            v => format!("{v:.3}"),
+        };
+        for planner in planners() {
+            let mut row = vec![planner.to_owned()];
+            row.extend(corridors.slacks.iter().map(|&slack| {
+                match self.share(&corridors.scene(slack), planner, all) {
+                    (_, 0) => "–".to_owned(),
+                    (solved, _) => solved.to_string(),
+                }
+            }));
+            let [half, low, high] = self.width(corridors, planner, all).map(metres);
+            row.push(format!("{half} ({low} – {high})"));
+            row.push(metres(self.width(corridors, planner, few)[0]));
+            table.rows.push(row);
+        }
+        table
+    }
+
+    /// The share of solved runs against the width of the corridor.
+    pub(super) fn chart(&self, corridors: &Corridors) -> Result<String> {
+        let curve = |(i, planner): (usize, &'static str)| {
+            let share = |slack: f64| self.share(&corridors.scene(slack), planner, self.plan.budget);
+            let shares = corridors.slacks.iter().map(|&slack| (slack, share(slack)));
+            let points = shares.map(|(slack, (k, n))| (slack, k as f64 / n.max(1) as f64));
+            Curve::new(planner, i, points.collect())
+        };
+        let curves: Vec<Curve> = planners().into_iter().enumerate().map(curve).collect();
+        let labels = Labels {
+            title: corridors.title,
+            x: "width of the corridor less that of the robot, m",
+            y: "share of runs solved",
+        };
+        chart(labels, [Axis::Log(&[]), Axis::FromZero(Some(1.02))], &curves)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::roadmaps::world::CORRIDORS;
+
+    #[test]
+    fn success_falls_between_two_widths() {
+        let half = falls(&[(0.8, 1.0), (0.4, 0.75), (0.1, 0.25), (0.05, 0.6)]);
+        assert!((half - 0.2).abs() < 1e-12, "halfway in the logarithm: {half}");
+        assert_eq!(falls(&[(0.8, 0.4), (0.4, 1.0)]), f64::INFINITY);
+        assert_eq!(falls(&[(0.8, 0.9), (0.4, 0.5)]), 0.0);
+    }
+
+    #[test]
+    fn smaller_budgets_are_in_the_log_of_the_larger() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut log = Log::open(&folder.path().join("runs.jsonl"), 1e4, false).unwrap();
+        let corridors = CORRIDORS[0];
+        for (i, &slack) in corridors.slacks.iter().enumerate() {
+            for seed in 1..=2 {
+                let case = Case { scene: corridors.scene(slack), planner: "prm".to_owned(), seed };
+                let checks = if i < 2 { 900 } else { 9_000 };
+                let (solved, seconds, again) = (i < 4, 0.1, Some(1e-3));
+                let run =
+                    Run { solved, seconds, again, nodes: 5, edges: 4, components: 1, checks, motions: 9 };
+                log.learn([(case, run)]);
+            }
+        }
+        let plan = Plan { budget: 10_000, seeds: 2 };
+        let found = Found { log: &log, plan: &plan };
+        let table = found.corridor(&corridors);
+        let row = &table.rows[0];
+        assert_eq!((&*row[0], &*row[1], &*row[4], &*row[5]), ("prm", "2", "2", "0"));
+        let between = |text: &str, [low, high]: [f64; 2]| {
+            let v: f64 = text.split(' ').next().unwrap().parse().unwrap();
+            assert!((low..high).contains(&v), "{text}");
+        };
+        let slacks = corridors.slacks;
+        between(&row[slacks.len() + 1], [slacks[4], slacks[3]]);
+        between(&row[slacks.len() + 2], [slacks[2], slacks[1]]);
+        let summary = found.summary(&[corridors.scene(slacks[3])]);
+        assert_eq!(summary.rows.len(), 1, "only what was run");
+        assert_eq!(
+            summary.rows[0][2..5],
+            ["0", "0", "2/2"].map(str::to_owned),
+            "9,000 of 1,000, 3,000, 10,000"
+        );
+        assert!(found.chart(&corridors).unwrap().contains("<polyline"));
+    }
+}

@@ -1,0 +1,78 @@
+//! RRT against RRS for a body that flies, with the same steps.
+
+use crate::error::Result;
+use crate::experiment::{Lab, Table, mean};
+use crate::options::Common;
+use crate::scenes::{Rigid, bare};
+use mp_plan::median;
+use serde::{Deserialize, Serialize};
+
+const SCENE: &str = "gempa-3";
+/// Longest steps, of the extent of the space, and those of a short run.
+const STEPS: [&str; 3] = ["5%", "10%", "20%"];
+const PLANNERS: [&str; 2] = ["rrt", "rrs"];
+/// Seeds, and those of a short run; iterations a run may take.
+const SEEDS: u32 = 10;
+const QUICK: u32 = 2;
+const ITERATIONS: u64 = 20_000;
+
+/// What was run.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+struct Case {
+    scene: String,
+    step: String,
+    planner: String,
+    seed: u64,
+}
+
+/// Plans in each scene with each step, the same seeds for both planners. True when it was measured completely.
+pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
+    let seeds = u64::from(common.runs_or(QUICK, SEEDS));
+    let most = if common.quick { ITERATIONS / 10 } else { ITERATIONS };
+    let mut cases = Vec::new();
+    for scene in common.scenes_or(&[SCENE]) {
+        for (step, planner) in STEPS.iter().flat_map(|step| PLANNERS.map(|planner| (*step, planner))) {
+            let [step, planner] = [step, planner].map(str::to_owned);
+            let case =
+                |seed| Case { scene: scene.clone(), step: step.clone(), planner: planner.clone(), seed };
+            cases.extend((1..=seeds).map(case));
+        }
+    }
+    let name = lab.name("rrs-flying");
+    let mut log = lab.log(&name, most as f64)?;
+    let scenes = common.scenes_or(&[SCENE]).into_iter().map(|name| Ok((Rigid::load(&name)?, name)));
+    let scenes: Vec<(Rigid, String)> = scenes.collect::<Result<_>>()?;
+    let complete = lab.measure(&mut log, "rrs, flying", &cases, |case| {
+        let Some((scene, _)) = scenes.iter().find(|(_, name)| *name == case.scene) else { return Ok(None) };
+        let request = bare(&case.planner).set("step", &case.step).iterations(most).seed(case.seed);
+        scene.plan(&request, &lab.cancel)
+    })?;
+    if !complete {
+        return Ok(false);
+    }
+    let mut each = Table::new(["scene", "step", "planner", "seed", "solved", "iterations", "s"]);
+    let mut summary =
+        Table::new(["scene", "step", "planner", "solved", "mean iterations", "median", "mean s"]);
+    for (head, runs) in log.groups(&cases, |case| [&case.scene, &case.step, &case.planner]) {
+        let head = head.map(String::clone);
+        // A run that was not solved took all iterations.
+        let iterations = || runs.iter().map(|(_, run)| if run.solved { run.iterations } else { most } as f64);
+        let solved = runs.iter().filter(|(_, run)| run.solved).count();
+        for (case, run) in &runs {
+            let tail = [case.seed.to_string(), u8::from(run.solved).to_string(), run.iterations.to_string()];
+            each.rows.push(head.iter().cloned().chain(tail).chain([format!("{:.4}", run.seconds)]).collect());
+        }
+        summary.rows.push(
+            head.into_iter()
+                .chain([
+                    format!("{solved} of {seeds}"),
+                    format!("{:.0}", mean(iterations()).unwrap_or(f64::NAN)),
+                    format!("{:.0}", median(iterations()).unwrap_or(f64::NAN)),
+                    format!("{:.2}", mean(runs.iter().map(|(_, run)| run.seconds)).unwrap_or(f64::NAN)),
+                ])
+                .collect(),
+        );
+    }
+    lab.report(&name, &summary, &each)?;
+    Ok(true)
+}

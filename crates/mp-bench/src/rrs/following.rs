@@ -1,0 +1,98 @@
+//! The tables and the picture of §6.
+
+use super::follow::{Followed, KINDS, planned_and_followed};
+use crate::error::{IntoError, Result};
+use crate::experiment::{Lab, Table, mean};
+use crate::options::Common;
+use crate::plot::save_drawing;
+use mp_render::{Drawing, Item};
+use mp_scenes::source::courses::{Course, RADIUS, follow};
+use nalgebra::Point2;
+
+/// Trials, and those of a short run.
+const TRIALS: u32 = 100;
+const QUICK: u32 = 10;
+const COLOURS: [u32; 3] = [0xb0598a, 0x1f77b4, 0x2c8a2c];
+
+/// Plans and follows paths of each kind. True when nobody interrupted it.
+pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
+    let trials = common.runs_or(QUICK, TRIALS);
+    let course = follow();
+    let jobs: Vec<(&str, u64)> =
+        KINDS.iter().flat_map(|kind| (0..u64::from(trials)).map(move |trial| (*kind, trial))).collect();
+    let done = lab.all("rrs, following", &jobs, |&(kind, trial)| {
+        Ok(Some(planned_and_followed(&course, kind, trial)?))
+    })?;
+    let Some(done) = done else { return Ok(false) };
+    let of = |kind: usize| &done[kind * trials as usize..(kind + 1) * trials as usize];
+    let mut summary = Table::new([
+        "path",
+        "followed",
+        "collisions",
+        "arrived",
+        "length, cm",
+        "clearance planned, cm",
+        "executed, cm",
+        "least tenth below, cm",
+    ]);
+    let mut each = Table::new(["path", "trial", "arrived", "length_m", "planned_m", "executed_m"]);
+    for (k, kind) in KINDS.iter().enumerate() {
+        let all: Vec<&Followed> = of(k).iter().flatten().collect();
+        for (trial, one) in of(k).iter().enumerate() {
+            let Some(f) = one else { continue };
+            let numbers = [f.length, f.planned, f.executed].map(|v| format!("{v:.4}"));
+            let head = [(*kind).to_owned(), trial.to_string(), u8::from(f.arrived).to_string()];
+            each.rows.push(head.into_iter().chain(numbers).collect());
+        }
+        summary.rows.push(row(kind, &all));
+    }
+    let name = lab.name("rrs-follow");
+    lab.report(&name, &summary, &each)?;
+    // The first trial of which all paths were found.
+    let shown = (0..trials as usize).find(|&t| (0..KINDS.len()).all(|k| of(k)[t].is_some()));
+    if let Some(trial) = shown {
+        for (k, kind) in KINDS.iter().enumerate() {
+            let Some(followed) = &of(k)[trial] else { continue };
+            let drawing = picture(&course, kind, followed, COLOURS[k])?;
+            let stem = lab.file(&format!("{name}-{}", kind.replace(' ', "-")));
+            save_drawing(&stem, &drawing, (1100, 520))?;
+        }
+    }
+    Ok(true)
+}
+
+fn row(kind: &str, all: &[&Followed]) -> Vec<String> {
+    let mean = |of: &dyn Fn(&Followed) -> f64| mean(all.iter().map(|f| of(f))).unwrap_or(0.0);
+    let mut executed: Vec<f64> = all.iter().map(|f| f.executed).collect();
+    executed.sort_by(f64::total_cmp);
+    let tenth = executed.get(executed.len() / 10).copied().unwrap_or(f64::NAN);
+    let count = |of: &dyn Fn(&Followed) -> bool| all.iter().filter(|f| of(f)).count().to_string();
+    let numbers = [mean(&|f| f.length), mean(&|f| f.planned), mean(&|f| f.executed.max(0.0)), tenth.max(0.0)];
+    [kind.to_owned(), all.len().to_string(), count(&|f| f.executed <= 0.0), count(&|f| f.arrived)]
+        .into_iter()
+        .chain(numbers.map(|v| format!("{:.2}", 100.0 * v)))
+        .collect()
+}
+
+/// The path, dark, and where the robot went, with the robot at places.
+fn picture(course: &Course, kind: &str, followed: &Followed, colour: u32) -> Result<Drawing> {
+    let robot = course.robot().into_error()?;
+    let subtitle = format!(
+        "least distance from an obstacle: {:.1} cm planned, {:.1} cm driven",
+        100.0 * followed.planned,
+        100.0 * followed.executed.max(0.0)
+    );
+    let title = format!("A robot follows a path of {}", kind.to_uppercase());
+    let corners = [[0.0; 2], course.size].map(Point2::from);
+    let mut drawing = Drawing::of_world(robot.world(), corners, title, subtitle);
+    for place in followed.driven.iter().step_by(15) {
+        let corner = |i: u32| {
+            let (s, c) = (f64::from(i) * std::f64::consts::TAU / 40.0).sin_cos();
+            place + nalgebra::Vector2::new(c, s) * RADIUS
+        };
+        drawing.items.push(Item::area(vec![(0..40).map(corner).collect()], colour).faint(0.12));
+    }
+    drawing.items.push(Item::lines(vec![followed.path.clone()], 0x2b3440, 2.0));
+    drawing.items.push(Item::lines(vec![followed.driven.clone()], colour, 2.5));
+    Ok(drawing)
+}

@@ -1,0 +1,84 @@
+//! All trials, side by side.
+
+use super::solve::{Case, Place, Run, one};
+use crate::error::{IntoError, Result};
+use crate::experiment::{Lab, Log};
+use crate::options::Common;
+use mp_scenes::source::courses::course;
+
+/// The worlds, by name.
+pub(super) const WORLDS: [&str; 4] = ["maze", "low", "high", "random"];
+
+/// The planners: `rrt` and `rrs` take steps of exactly Δq, as the paper's algorithm says; those with `-upto` steps of
+/// at most Δq, as is customary, and RRT-Connect too.
+pub(super) const PLANNERS: [&str; 5] = ["rrt", "rrs", "rrt-upto", "rrs-upto", "rrt-connect"];
+
+/// What to measure.
+#[derive(Clone, Debug)]
+pub(super) struct Plan {
+    pub(super) trials: u64,
+    /// Δq, centimetres.
+    pub(super) steps: Vec<u32>,
+}
+
+impl Plan {
+    pub(super) fn new(common: &Common) -> Self {
+        let apart = if common.quick { 30 } else { 5 };
+        Self { trials: u64::from(common.runs_or(8, 100)), steps: (30..=150).step_by(apart).collect() }
+    }
+
+    /// Every trial, those of one world together.
+    pub(super) fn cases(&self) -> Vec<Case> {
+        let mut cases = Vec::new();
+        for world in WORLDS {
+            for trial in 0..self.trials {
+                for &step in &self.steps {
+                    let case =
+                        |planner: &str| Case { world: world.into(), planner: planner.into(), step, trial };
+                    cases.extend(PLANNERS.map(case));
+                }
+            }
+        }
+        cases
+    }
+}
+
+/// Measures what is not known yet. False when it was interrupted.
+pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Result<bool> {
+    lab.measure_in(
+        log,
+        "rrs",
+        &plan.cases(),
+        // A world is made once for all that is tried in it.
+        |a, b| (&a.world, a.trial) == (&b.world, b.trial),
+        |case| Place::new(course(&case.world, case.trial).into_error()?),
+        |place, case| one(place, case, &lab.cancel),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All planners solve what is easy, the same way each time; nothing is run twice.
+    #[test]
+    fn trials_are_reproducible() {
+        let plan = Plan { trials: 1, steps: vec![40] };
+        let folder = tempfile::tempdir().unwrap();
+        let lab = Lab::test(folder.path(), 2);
+        let mut log = lab.log("a", 1.0).unwrap();
+        assert!(measure(&plan, &lab, &mut log).unwrap());
+        assert_eq!(log.all().len(), plan.cases().len());
+        let solved = log.all().iter().filter(|(_, run)| run.solved).count();
+        assert!(solved * 2 > log.all().len(), "{solved} solved");
+        let text = || std::fs::read_to_string(lab.file("a-runs.jsonl")).unwrap();
+        let before = text();
+        assert!(measure(&plan, &lab, &mut lab.log("a", 1.0).unwrap()).unwrap());
+        assert_eq!(before, text());
+        let mut alone = lab.log("b", 1.0).unwrap();
+        assert!(measure(&plan, &Lab::test(folder.path(), 1), &mut alone).unwrap());
+        for ((case, a), (_, b)) in log.all().iter().zip(alone.all()) {
+            assert_eq!((a.iterations, a.nodes, a.length), (b.iterations, b.nodes, b.length), "{case:?}");
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! One trial.
+
+use crate::clock::{nanoseconds, seconds_since};
+use crate::error::{IntoError, Result};
+use mp_cspace::{
+    Cancel, DefaultNn, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner, Reach, Rn,
+    Rng, Space, Stop, StopReason, Straight, least_clearance,
+};
+use mp_plan::Error;
+use mp_robot::{DiscRobot, DiscVerifier};
+use mp_scenes::source::courses::Course;
+use mp_snake::{Grid, Pieces, SnakePlanner, unbent};
+use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// Iterations a trial may take (§4).
+pub(super) const ITERATIONS: u64 = 5000;
+/// How far obstacles push snakes, metres.
+pub(super) const RANGE: f64 = 0.15;
+/// The size of a cell of the clearance map, metres.
+const CELL: f64 = 0.06;
+/// How well the safety of a path is known, metres.
+const ACCURACY: f64 = 1e-4;
+
+type Point = Vector2<f64>;
+
+/// What was run.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) struct Case {
+    pub(super) world: String,
+    pub(super) planner: String,
+    /// Δq, centimetres.
+    pub(super) step: u32,
+    pub(super) trial: u64,
+}
+
+/// What came of it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Run {
+    pub(super) solved: bool,
+    /// Processor time, with the verification of candidate paths.
+    pub(super) seconds: f64,
+    pub(super) iterations: u64,
+    pub(super) nodes: usize,
+    /// Of the path, metres; zero when there is none.
+    pub(super) length: f64,
+    /// Its least distance from an obstacle, metres.
+    pub(super) safety: f64,
+}
+
+/// Steps of Δq, as NEW_CONF of the paper takes them: exactly that long, whether the sample is nearer or farther, but for
+/// those toward the goal, which end at it; or at most that long, as is customary. None is longer: a planner that tries
+/// the whole way from start to goal first would have a snake solve the problem.
+#[derive(Clone, Debug)]
+pub(super) struct Steps<'c, L> {
+    space: &'c Rn<2>,
+    goal: Point,
+    step: f64,
+    exactly: bool,
+    local: L,
+}
+
+impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
+    type Edge = L::Edge;
+
+    fn extend(
+        &mut self,
+        from: &Point,
+        toward: &Point,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<Point, L::Edge> {
+        let distance = (toward - from).norm();
+        if reach == Reach::Full && distance > self.step {
+            return Extension::Trapped;
+        }
+        if !self.exactly || reach == Reach::Full || *toward == self.goal || distance == 0.0 {
+            return self.local.extend(from, toward, direction, reach);
+        }
+        let end = from + (toward - from) * (self.step / distance);
+        if !self.space.contains(&end) {
+            return Extension::Trapped;
+        }
+        match self.local.extend(from, &end, direction, Reach::Full) {
+            Extension::Reached(motion) if end != *toward => Extension::Advanced(motion),
+            other => other,
+        }
+    }
+
+    fn admits(&mut self, q: &Point) -> bool {
+        self.local.admits(q)
+    }
+}
+
+/// A course with what is made of it once for all that is tried in it.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    pub(super) course: Course,
+    pub(super) robot: DiscRobot,
+    /// The signed clearance of the robot; snakes are guided by it, and by nothing else.
+    pub(super) map: Arc<Grid>,
+}
+
+impl Place {
+    pub(super) fn new(course: Course) -> Result<Self> {
+        let robot = course.robot().into_error()?;
+        let cells = course.size.map(|s| (s / CELL).round() as usize);
+        let map = Grid::from_fn([0.0; 2], CELL, cells.into(), |p| robot.signed_clearance(&p));
+        Ok(Self { course, robot, map: Arc::new(map.into_error()?) })
+    }
+}
+
+/// Runs `case` in its world. `None` when it was cancelled.
+pub(super) fn one(place: &Place, case: &Case, cancel: &Cancel) -> Result<Option<Run>> {
+    Ok(planned(place, case, cancel)?.map(|(run, _)| run))
+}
+
+/// What came of a trial, and the path it found.
+type Planned = (Run, Option<Path<Point>>);
+
+/// As [`one`], with the path.
+pub(super) fn planned(place: &Place, case: &Case, cancel: &Cancel) -> Result<Option<Planned>> {
+    let Place { course, robot, .. } = place;
+    let space = Rn::<2>::new([0.0; 2], course.size).into_error()?;
+    let step = f64::from(case.step) / 100.0;
+    let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
+    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let verifier = DiscVerifier::new(robot);
+    let how = How { seed: case.trial + 1, cancel, space: &space, robot };
+    let exactly = matches!(case.planner.as_str(), "rrt" | "rrs");
+    match case.planner.as_str() {
+        "rrt" | "rrt-upto" | "rrt-connect" => {
+            let local = Straight::new(&space, robot.clone());
+            let local = Steps { space: &space, goal, step, exactly, local };
+            let problem = Problem::new(&space, local, verifier, start, goal).into_error()?;
+            match case.planner.as_str() {
+                "rrt-connect" => how.run(RrtConnect::new(problem, tuning), |path| path),
+                _ => how.run(Rrt::new(problem, tuning), |path| path),
+            }
+        }
+        "rrs" | "rrs-upto" => how.run(rrs(place, &space, step, exactly), |path| unbent(&path)),
+        other => Err(Error::new(format!("there is no planner `{other}` here"))),
+    }
+}
+
+/// RRS as it is measured.
+pub(super) fn rrs<'a>(
+    place: &'a Place,
+    space: &'a Rn<2>,
+    step: f64,
+    exactly: bool,
+) -> std::result::Result<Rrs<'a>, BuildError> {
+    let Place { course, robot, map } = place;
+    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let snakes = SnakePlanner::new(space, robot.clone(), &**map, RANGE);
+    let local = snakes.map_err(|e| BuildError::Unmade { reason: e.to_string() })?;
+    let local = Steps { space, goal, step, exactly, local };
+    let problem = Problem::new(space, local, Pieces(DiscVerifier::new(robot)), start, goal)?;
+    Rrt::new(problem, Tuning { step: Step::Length(step), ..Tuning::default() })
+}
+
+pub(super) type Rrs<'a> =
+    Rrt<'a, Rn<2>, Steps<'a, SnakePlanner<'a, Rn<2>, DiscRobot, &'a Grid>>, <Rn<2> as DefaultNn>::Nn>;
+
+struct How<'a> {
+    seed: u64,
+    cancel: &'a Cancel,
+    space: &'a Rn<2>,
+    robot: &'a DiscRobot,
+}
+
+impl How<'_> {
+    fn run<E: Clone>(
+        &self,
+        planner: std::result::Result<impl Planner<Point, Edge = E>, BuildError>,
+        plain: impl Fn(Path<Point, E>) -> Path<Point>,
+    ) -> Result<Option<Planned>> {
+        let mut planner = planner.into_error()?;
+        let began = nanoseconds();
+        let mut stop = Iterations(ITERATIONS).or(self.cancel.clone());
+        let outcome = planner.solve(&mut Rng::seed(self.seed), &mut stop, &mut ());
+        let seconds = seconds_since(began);
+        let progress = planner.progress();
+        let (iterations, nodes) = (progress.iterations, progress.nodes);
+        let none = Run { solved: false, seconds, iterations, nodes, length: 0.0, safety: 0.0 };
+        let path = match outcome {
+            Outcome::Solved(path) => plain(path),
+            Outcome::Stopped(StopReason::Cancelled) => return Ok(None),
+            Outcome::Stopped(_) => return Ok(Some((none, None))),
+        };
+        let safety = least_clearance(self.space, &mut self.robot.clone(), &path, ACCURACY);
+        let safety = safety.map_or(0.0, |tightest| tightest.found);
+        Ok(Some((Run { solved: true, length: path.length(self.space), safety, ..none }, Some(path))))
+    }
+}

@@ -1,0 +1,295 @@
+//! The six measures of §4, tables and charts of them, and what the paper says beside.
+
+use super::series::{PLANNERS, Plan, WORLDS};
+use super::solve::{Case, ITERATIONS, Run};
+use crate::error::Result;
+use crate::experiment::{Log, Table, mean};
+use crate::plot::{Axis, Curve, Labels, chart};
+
+/// All runs, to be summed up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<'a> {
+    log: &'a Log<Case, Run>,
+    plan: &'a Plan,
+}
+
+/// The measures of one planner in one world at one step; those of paths over the solved trials.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Six {
+    /// Nodes added per sample, percent, over all trials.
+    accepted: f64,
+    /// Iterations as percent of the most there may be; trials not solved took all.
+    iterations: f64,
+    /// Trials solved, percent.
+    converged: f64,
+    /// Mean length of paths, centimetres; NaN where none was found.
+    length: f64,
+    /// Mean processor time of all trials, milliseconds.
+    time: f64,
+    /// Mean least distance from obstacles, centimetres.
+    safety: f64,
+    /// Processor time per iteration, microseconds.
+    per_iteration: f64,
+    /// Iterations of all trials.
+    all_iterations: f64,
+}
+
+/// Name in files, title, axis and value of each measure.
+type Measure = (&'static str, &'static str, &'static str, fn(&Six) -> f64);
+const MEASURES: [Measure; 6] = [
+    ("accepted", "accepted samples", "% of samples", |s| s.accepted),
+    ("iterations", "iterations", "% of 5,000", |s| s.iterations),
+    ("converged", "trials solved", "%", |s| s.converged),
+    ("length", "length of the path", "cm", |s| s.length),
+    ("time", "time", "ms of processor time", |s| s.time),
+    ("safety", "safety", "cm from the nearest obstacle", |s| s.safety),
+];
+
+/// The mean of the finite ones; NaN where there are none.
+fn finite_mean(values: impl Iterator<Item = f64>) -> f64 {
+    mean(values.filter(|v| v.is_finite())).unwrap_or(f64::NAN)
+}
+
+impl<'a> Found<'a> {
+    pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
+        Self { log, plan }
+    }
+
+    fn six(&self, world: &str, planner: &str, step: u32) -> Option<Six> {
+        let case = |trial| Case { world: world.into(), planner: planner.into(), step, trial };
+        let runs = self.log.runs((0..self.plan.trials).map(case));
+        if runs.is_empty() {
+            return None;
+        }
+        let solved = || runs.iter().filter(|r| r.solved);
+        let total = |value: &dyn Fn(&Run) -> f64| runs.iter().map(|r| value(r)).sum::<f64>();
+        let iterations = total(&|r| r.iterations as f64);
+        // The start is a node that was no sample; RRT-Connect has two of them, and may add many for one sample.
+        let roots = if planner == "rrt-connect" { 2.0 } else { 1.0 };
+        Some(Six {
+            accepted: 100.0 * total(&|r| r.nodes as f64 - roots) / iterations.max(1.0),
+            iterations: 100.0
+                * finite_mean(
+                    runs.iter().map(|r| if r.solved { r.iterations as f64 } else { ITERATIONS as f64 }),
+                )
+                / ITERATIONS as f64,
+            converged: 100.0 * solved().count() as f64 / runs.len() as f64,
+            length: 100.0 * finite_mean(solved().map(|r| r.length)),
+            time: 1e3 * finite_mean(runs.iter().map(|r| r.seconds)),
+            safety: 100.0 * finite_mean(solved().map(|r| r.safety)),
+            per_iteration: 1e6 * total(&|r| r.seconds) / iterations.max(1.0),
+            all_iterations: iterations,
+        })
+    }
+
+    /// A measure over all steps in some worlds.
+    fn over(&self, worlds: &[&str], planner: &str, of: impl Fn(&Six) -> f64) -> Vec<f64> {
+        let at = worlds.iter().flat_map(|world| self.plan.steps.iter().map(move |step| (world, *step)));
+        at.filter_map(|(world, step)| self.six(world, planner, step).map(|s| of(&s))).collect()
+    }
+
+    /// Microseconds of all trials at all steps in these worlds together, by all their iterations.
+    fn per_iteration(&self, worlds: &[&str], planner: &str) -> f64 {
+        let sum = |of: fn(&Six) -> f64| self.over(worlds, planner, of).iter().sum::<f64>();
+        sum(|s| s.per_iteration * s.all_iterations) / sum(|s| s.all_iterations)
+    }
+
+    /// A row for each world and planner: means over all steps, with the least and greatest.
+    pub(super) fn summary(&self) -> Table {
+        let heads = MEASURES.iter().map(|m| format!("{}, {}", m.1, m.2));
+        let mut table = Table::new(
+            ["world".into(), "planner".into()].into_iter().chain(heads).chain(["µs per iteration".into()]),
+        );
+        for world in WORLDS {
+            for planner in PLANNERS {
+                let mut row = vec![world.to_owned(), planner.to_owned()];
+                row.extend(MEASURES.iter().map(|m| spread(&self.over(&[world], planner, m.3))));
+                row.push(spread(&self.over(&[world], planner, |s| s.per_iteration)));
+                table.rows.push(row);
+            }
+        }
+        table
+    }
+
+    /// A row for each world, step and planner.
+    pub(super) fn each(&self) -> Table {
+        let heads = ["world", "planner", "step_cm"].into_iter().chain(MEASURES.iter().map(|m| m.0));
+        let mut table = Table::new(heads.chain(["us_per_iteration"]));
+        for world in WORLDS {
+            for planner in PLANNERS {
+                for &step in &self.plan.steps {
+                    let Some(six) = self.six(world, planner, step) else { continue };
+                    let mut row = vec![world.to_owned(), planner.to_owned(), step.to_string()];
+                    row.extend(MEASURES.iter().map(|m| format!("{:.4}", (m.3)(&six))));
+                    row.push(format!("{:.4}", six.per_iteration));
+                    table.rows.push(row);
+                }
+            }
+        }
+        table
+    }
+
+    /// What the paper says, and what was measured.
+    pub(super) fn markdown(&self) -> String {
+        let heads =
+            ["world", "measure", "paper: RRS", "RRS", "RRS up to Δq", "paper: RRT", "RRT", "RRT up to Δq"];
+        let mut table = Table::new(heads.into_iter().chain(["RRT-Connect"]));
+        for (world, measure, rrs, rrt) in PAPER {
+            let Some(m) = MEASURES.iter().find(|m| m.0 == *measure) else { continue };
+            let cell = |planner| spread(&self.over(&[*world], planner, m.3));
+            table.rows.push(vec![
+                (*world).into(),
+                format!("{}, {}", m.1, m.2),
+                (*rrs).into(),
+                cell("rrs"),
+                cell("rrs-upto"),
+                (*rrt).into(),
+                cell("rrt"),
+                cell("rrt-upto"),
+                cell("rrt-connect"),
+            ]);
+        }
+        let heads = ["time of an iteration", "mean of those at each Δq", "time of a trial"];
+        let heads = heads.iter().flat_map(|h| [format!("{h}, RRS : RRT"), format!("{h}, up to Δq")]);
+        let mut ratios = Table::new(["world".to_owned()].into_iter().chain(heads));
+        let each = WORLDS.iter().map(|world| (*world, std::slice::from_ref(world)));
+        for (name, worlds) in each.chain([("all together", &WORLDS[..])]) {
+            let mean_of =
+                |of: fn(&Six) -> f64| move |p: &str| finite_mean(self.over(worlds, p, of).into_iter());
+            let pairs = [("rrs", "rrt"), ("rrs-upto", "rrt-upto")];
+            let mut row = vec![name.to_owned()];
+            let mut put = |of: &dyn Fn(&str) -> f64| {
+                row.extend(pairs.map(|(a, b)| format!("{:.2}", of(a) / of(b))));
+            };
+            put(&|p| self.per_iteration(worlds, p));
+            put(&mean_of(|s| s.per_iteration));
+            put(&mean_of(|s| s.time));
+            ratios.rows.push(row);
+        }
+        format!("{}\n\n{}\n", table.markdown(), ratios.markdown())
+    }
+
+    /// Figures 5 to 9: each measure against the step, for each world.
+    pub(super) fn charts(&self) -> Vec<(String, Result<String>)> {
+        let mut charts = Vec::new();
+        for world in WORLDS {
+            for (file, title, y, of) in MEASURES {
+                let curve = |(i, planner): (usize, &&str)| {
+                    let at = |&step: &u32| Some((f64::from(step), of(&self.six(world, planner, step)?)));
+                    Curve::new(name(planner), i, self.plan.steps.iter().filter_map(at).collect())
+                };
+                // A sample of RRT-Connect may add many nodes.
+                let shown =
+                    PLANNERS.iter().enumerate().filter(|(_, p)| file != "accepted" || **p != "rrt-connect");
+                let curves: Vec<Curve> = shown.map(curve).collect();
+                let title = format!("{world}: {title}");
+                charts.push((
+                    format!("{world}-{file}"),
+                    chart(
+                        Labels { title: &title, x: "Δq, cm", y },
+                        [Axis::Even, Axis::FromZero(None)],
+                        &curves,
+                    ),
+                ));
+            }
+        }
+        charts
+    }
+}
+
+/// What a planner is called in charts.
+fn name(planner: &str) -> &'static str {
+    match planner {
+        "rrt" => "RRT",
+        "rrs" => "RRS",
+        "rrt-upto" => "RRT, up to Δq",
+        "rrs-upto" => "RRS, up to Δq",
+        _ => "RRT-Connect, up to Δq",
+    }
+}
+
+/// The mean, with the least and the greatest.
+fn spread(values: &[f64]) -> String {
+    let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    if known.is_empty() {
+        return "–".into();
+    }
+    let show = |v: f64| {
+        format!(
+            "{v:.*}",
+            if v.abs() < 9.95 {
+                2
+            } else if v.abs() < 99.5 {
+                1
+            } else {
+                0
+            }
+        )
+    };
+    let (low, high) =
+        known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    format!("{} ({} – {})", show(finite_mean(known.into_iter())), show(low), show(high))
+}
+
+/// What §5 says of RRS and of RRT.
+const PAPER: &[(&str, &str, &str, &str)] = &[
+    ("maze", "accepted", "65 at 30 cm", "below 50 at 30 cm"),
+    ("maze", "iterations", "about 8 up to 100 cm", "double, more beyond"),
+    ("maze", "converged", "96 – 100", "down to 70"),
+    ("maze", "length", "slightly shorter", ""),
+    ("low", "accepted", "mean 67.1, above 50", "best 18.8"),
+    ("low", "iterations", "mean 2", "mean 52"),
+    ("low", "converged", "100", "100 down to 5"),
+    ("low", "length", "mean 555", "mean 733"),
+    ("high", "accepted", "above 50", "best 13.2"),
+    ("high", "iterations", "3.4 – 18.5", "42.0 – 99.6"),
+    ("high", "converged", "97 – 100", "down to 1 beyond 65 cm"),
+    ("high", "length", "best 1087", "best 1229"),
+    ("random", "accepted", "above 40 at some Δq", "below 5"),
+    ("random", "iterations", "below 70 mostly", "above 70"),
+    ("random", "converged", "75 – 82", "below 44"),
+    ("random", "length", "shorter, stable", ""),
+    ("maze", "safety", "greater", ""),
+    ("low", "safety", "greater", ""),
+    ("high", "safety", "greater", ""),
+    ("random", "safety", "greater", ""),
+    ("maze", "time", "less", ""),
+    ("low", "time", "less", ""),
+    ("high", "time", "less", ""),
+    ("random", "time", "less", ""),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_are_summed_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut log = Log::open(&folder.path().join("runs.jsonl"), 5000.0, false).unwrap();
+        let plan = Plan { trials: 2, steps: vec![30, 60] };
+        for case in plan.cases() {
+            let solved = case.trial == 0 || case.planner == "rrs";
+            let iterations = if solved { 1000 } else { 5000 };
+            let seconds = if case.planner == "rrs" { 2e-3 } else { 4e-3 };
+            let run = Run { solved, seconds, iterations, nodes: 501, length: 5.0, safety: 0.02 };
+            log.learn([(case, run)]);
+        }
+        let found = Found::new(&log, &plan);
+        let six = found.six("low", "rrs", 30).unwrap();
+        assert_eq!((six.accepted, six.iterations, six.converged), (50.0, 20.0, 100.0));
+        assert_eq!((six.length, six.safety, six.time, six.per_iteration), (500.0, 2.0, 2.0, 2.0));
+        let six = found.six("low", "rrt", 30).unwrap();
+        assert_eq!((six.iterations, six.converged), (60.0, 50.0));
+        assert!((six.accepted - 100.0 / 6.0).abs() < 1e-9);
+        assert_eq!(found.summary().rows.len(), 4 * 5);
+        assert_eq!(found.each().rows.len(), 4 * 5 * 2);
+        let text = found.markdown();
+        // 2 µs by 4 ms in 3,000 iterations.
+        assert!((found.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);
+        assert!(text.contains("| low | 1.50 | 1.00 |"), "{text}");
+        assert!(text.contains("mean 67.1") && text.contains("50.0 (50.0 – 50.0)"), "{text}");
+        assert_eq!(found.charts().len(), 24);
+        assert!(found.charts().iter().all(|(_, chart)| chart.is_ok()));
+    }
+}

@@ -1,0 +1,244 @@
+//! Natural expansion (Jouandeau et al. 2008, §2.4, Figures 1–4): the Delaunay triangles of the nodes of an RRT
+//! that grows in a free square, and of its corners.
+//!
+//! With the root alone there are four triangles of a quarter of the square each; n nodes make 2n + 2
+//! triangles, so the mean area is known and what is measured is how far the largest, the smallest and the
+//! spread are from it.
+
+use crate::error::{IntoError, Result};
+use crate::experiment::{Lab, Table, mean};
+use crate::plot::{Axis, Curve, Labels, chart};
+use mp_cspace::inputs::{Between, InputPlanner, InputSet, Kinematic};
+use mp_cspace::{KnownFree, MotionCheck, MotionValidity, Planner, Rn, Rng, Straight};
+use mp_tree::{Goals, Problem, Rrt, RrtInputs, Step, Tuning};
+use nalgebra::Vector2;
+use spade::{DelaunayTriangulation, Point2, Triangulation};
+
+/// How the tree moves, as parts of the side. The paper does not give its own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Moves {
+    /// Straight toward the sample, at most so far.
+    Straight(f64),
+    /// By one of four inputs (ALG. 4): so far along an axis. The nodes are those of a lattice, which fills up.
+    Axes(f64),
+}
+
+impl std::fmt::Display for Moves {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Straight(step) => write!(f, "straight, step {step}"),
+            Self::Axes(step) => write!(f, "four inputs, step {step}"),
+        }
+    }
+}
+
+const MOVES: [Moves; 6] = [
+    Moves::Straight(0.02),
+    Moves::Straight(0.05),
+    Moves::Straight(0.1),
+    Moves::Straight(0.2),
+    Moves::Axes(1.0 / 16.0),
+    Moves::Axes(1.0 / 32.0),
+];
+/// Where the paper sees the largest triangle fall from 8.15 times the mean.
+const THRESHOLD: usize = 353;
+/// The paper's figures end below this.
+const NODES: usize = 3_000;
+
+/// Areas of the triangles at one number of nodes, as parts of the square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Areas {
+    nodes: usize,
+    mean: f64,
+    least: f64,
+    most: f64,
+    deviation: f64,
+}
+
+/// Every motion is free.
+#[derive(Clone, Copy, Debug)]
+struct Free;
+
+impl MotionValidity<Vector2<f64>> for Free {
+    fn check_motion(&mut self, _: &Vector2<f64>, _: &Vector2<f64>) -> MotionCheck {
+        MotionCheck::Free { clearance: 0.0 }
+    }
+    fn check_extension(&mut self, a: &Vector2<f64>, b: &Vector2<f64>, _: KnownFree) -> MotionCheck {
+        self.check_motion(a, b)
+    }
+}
+
+/// Measures one growth, at every number of nodes up to `nodes`, or as many as there is room for.
+fn grow(moves: Moves, nodes: usize, seed: u64) -> Result<Vec<Areas>> {
+    let space = Rn::<2>::new([0.0; 2], [1.0; 2]).into_error()?;
+    let start = Vector2::new(0.5, 0.5);
+    let nowhere = Goals::region(|_: &Vector2<f64>| false);
+    let straight = Straight::new(&space, Free);
+    match moves {
+        Moves::Straight(step) => {
+            let problem = Problem::new(&space, straight, Free, start, nowhere).into_error()?;
+            let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
+            let mut planner = Rrt::new(problem, tuning).into_error()?;
+            follow(nodes, seed, |rng, known| {
+                planner.step(rng, &mut ());
+                planner.tree().states()[known..].to_vec()
+            })
+        }
+        Moves::Axes(step) => {
+            let flow = Kinematic::new(&space).into_error()?;
+            let inputs = InputSet::axes([step; 2]).into_error()?;
+            let local = InputPlanner::new(&space, flow, inputs, 1.0, Between(straight)).into_error()?;
+            let problem = Problem::new(&space, local, Free, start, nowhere).into_error()?;
+            let mut planner = RrtInputs::new(problem, Tuning::default()).into_error()?;
+            follow(nodes, seed, |rng, known| {
+                planner.step(rng, &mut ());
+                planner.tree().states()[known..].to_vec()
+            })
+        }
+    }
+}
+
+/// Iterations without a new node after which a tree counts as grown.
+const PATIENCE: usize = 5_000;
+
+/// Triangulates the nodes that come with each `step`, which is told how many are known.
+fn follow(
+    nodes: usize,
+    seed: u64,
+    mut step: impl FnMut(&mut Rng, usize) -> Vec<Vector2<f64>>,
+) -> Result<Vec<Areas>> {
+    let mut triangles = DelaunayTriangulation::<Point2<f64>>::new();
+    let insert = |x: f64, y: f64, triangles: &mut DelaunayTriangulation<_>| {
+        triangles.insert(Point2::new(x, y)).map(|_| ()).doing(|| "cannot triangulate".to_owned())
+    };
+    for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)] {
+        insert(x, y, &mut triangles)?;
+    }
+    let (mut rng, mut all, mut idle) = (Rng::seed(seed), Vec::new(), 0);
+    while all.len() < nodes && idle < PATIENCE {
+        idle += 1;
+        for q in step(&mut rng, all.len()) {
+            insert(q.x, q.y, &mut triangles)?;
+            all.push(areas(all.len() + 1, &triangles));
+            idle = 0;
+        }
+    }
+    all.truncate(nodes);
+    Ok(all)
+}
+
+/// The areas of the triangles there are.
+fn areas(nodes: usize, triangles: &DelaunayTriangulation<Point2<f64>>) -> Areas {
+    let (mut sum, mut squares, mut least, mut most) = (0.0, 0.0, f64::INFINITY, 0.0_f64);
+    for face in triangles.inner_faces() {
+        let area = face.area();
+        sum += area;
+        squares += area * area;
+        least = least.min(area);
+        most = most.max(area);
+    }
+    let count = triangles.num_inner_faces().max(1) as f64;
+    let mean = sum / count;
+    Areas { nodes, mean, least, most, deviation: (squares / count - mean * mean).max(0.0).sqrt() }
+}
+
+/// Measures and reports. The same seed gives the same numbers. False when it was interrupted.
+pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
+    let seeds = if quick { 5 } else { 20 };
+    let nodes = if quick { 1_000 } else { NODES };
+    let jobs: Vec<(Moves, u64)> =
+        MOVES.iter().flat_map(|&moves| (0..seeds).map(move |s| (moves, seed + s))).collect();
+    let grown = lab.all("expansion", &jobs, |&(moves, seed)| Ok(Some(grow(moves, nodes, seed)?)))?;
+    let Some(grown) = grown else { return Ok(false) };
+    let mut each = Table::new(["moves", "seed", "nodes", "mean", "least", "most", "deviation"]);
+    let mut summary = Table::new([
+        "moves, of the side".to_owned(),
+        "most / mean at 25".into(),
+        format!("at {THRESHOLD} (paper: 8.15 until there)"),
+        "at 775".into(),
+        format!("at {nodes} (paper: about 2)"),
+        "deviation / mean at 353".into(),
+        format!("at {nodes}"),
+    ]);
+    let (mut size, mut spread) = (Vec::new(), Vec::new());
+    for (i, (&moves, runs)) in MOVES.iter().zip(grown.chunks(seeds as usize)).enumerate() {
+        for (s, run) in runs.iter().enumerate() {
+            for a in run.iter().filter(|a| a.nodes < 30 || a.nodes.is_multiple_of(25) || a.nodes == THRESHOLD)
+            {
+                each.rows.push(vec![
+                    moves.to_string(),
+                    (seed + s as u64).to_string(),
+                    a.nodes.to_string(),
+                    format!("{:e}", a.mean),
+                    format!("{:e}", a.least),
+                    format!("{:e}", a.most),
+                    format!("{:e}", a.deviation),
+                ]);
+            }
+        }
+        // A tree that is full stays as it is.
+        let over = |n: usize, of: &dyn Fn(&Areas) -> f64| {
+            let at = |run: &Vec<Areas>| of(&run[n.min(run.len()) - 1]);
+            mean(runs.iter().map(at)).unwrap_or(f64::NAN)
+        };
+        let full = runs.iter().map(Vec::len).max().unwrap_or(1);
+        let ratio = |n: usize| format!("{:.2}", over(n, &|a| a.most / a.mean));
+        let relative = |n: usize| format!("{:.2}", over(n, &|a| a.deviation / a.mean));
+        summary.rows.push(vec![
+            moves.to_string(),
+            ratio(25),
+            ratio(THRESHOLD),
+            ratio(775),
+            ratio(nodes),
+            relative(THRESHOLD),
+            relative(nodes),
+        ]);
+        let curve = |name: String, of: &dyn Fn(&Areas) -> f64| {
+            let points = (1..=full).filter(|n| *n < 40 || n.is_multiple_of(10) || *n == full);
+            Curve::new(name, i, points.map(|n| (n as f64, over(n, of))).collect())
+        };
+        size.push(curve(format!("largest, {moves}"), &|a| 100.0 * a.most));
+        size.push(curve(format!("smallest, {moves}"), &|a| 100.0 * a.least).thin());
+        spread.push(curve(moves.to_string(), &|a| 100.0 * a.deviation));
+    }
+    let points = (1..=nodes).filter(|n| *n < 40 || n.is_multiple_of(10));
+    let means = points.map(|n| (n as f64, 100.0 / (2 * n + 2) as f64)).collect();
+    size.push(Curve::new("mean", 6, means));
+    let marks = [1.0, 10.0, 25.0, 100.0, 353.0, 1_000.0, 3_000.0];
+    let labels = Labels {
+        title: "Delaunay triangles of an RRT in a free square: areas",
+        x: "configurations",
+        y: "% of the square",
+    };
+    let axes = [Axis::Log(&marks), Axis::Log(&[])];
+    lab.write("rsrt-expansion-area.svg", &chart(labels, axes, &size)?)?;
+    let labels = Labels { title: "Delaunay triangles of an RRT in a free square: deviation", ..labels };
+    lab.write("rsrt-expansion-deviation.svg", &chart(labels, axes, &spread)?)?;
+    lab.report("rsrt-expansion", &summary, &each)?;
+    Ok(true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_alone_makes_four_quarters() {
+        let all = grow(Moves::Straight(0.1), 50, 1).unwrap();
+        let first = Areas { nodes: 1, mean: 0.25, least: 0.25, most: 0.25, deviation: 0.0 };
+        assert_eq!(all[0], first);
+        for a in &all {
+            assert!((a.mean * (2 * a.nodes + 2) as f64 - 1.0).abs() < 1e-9, "{a:?}");
+            assert!(a.least <= a.mean && a.mean <= a.most);
+        }
+        assert_eq!(grow(Moves::Straight(0.1), 50, 1).unwrap(), all);
+    }
+
+    /// Seventeen by seventeen nodes, half a cell each triangle.
+    #[test]
+    fn a_lattice_fills_up() {
+        let all = grow(Moves::Axes(1.0 / 16.0), 1_000, 1).unwrap();
+        let last = all[all.len() - 1];
+        assert_eq!((last.nodes, last.least, last.most), (289, 1.0 / 512.0, 1.0 / 512.0));
+    }
+}

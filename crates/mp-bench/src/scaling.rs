@@ -1,0 +1,105 @@
+//! Tree growth beside another program, space by space in turn.
+//!
+//! The other program is called as `PEER rrt SPACE gnat NODES SECONDS` and prints, at 10³, 10⁴, … nodes, a
+//! line of JSON with `nodes` and `avg_nodes_per_s` (since it began, processor time).
+
+mod growth;
+
+use crate::error::{IntoError, Result};
+use crate::experiment::{Lab, Table};
+use crate::options::Common;
+use growth::{Growing, Row, SPACES};
+use mp_plan::Error;
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Numbers of nodes at which the clock is read; a short run leaves the last out.
+const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
+
+/// What was run: all sizes in one space.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+struct Case {
+    space: String,
+    sizes: Vec<usize>,
+    repeats: usize,
+    peer: Option<PathBuf>,
+}
+
+/// What came of it. Sizes that were not reached in time are missing.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Run {
+    ours: Vec<Row>,
+    theirs: Vec<Theirs>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Theirs {
+    nodes: usize,
+    avg_nodes_per_s: f64,
+}
+
+/// Measures. True when every size was reached.
+pub(crate) fn run(common: &Common) -> Result<bool> {
+    let lab = Lab::one_at_a_time(common)?;
+    let mut log = lab.log("scaling", common.time)?;
+    let sizes = if common.quick { &SIZES[..3] } else { &SIZES[..] };
+    let repeats = common.runs_or(1, 3) as usize;
+    let case = |space| Case { space, sizes: sizes.to_vec(), repeats, peer: common.peer.clone() };
+    let spaces = common.scenes_or(&SPACES);
+    if let Some(unknown) = spaces.iter().find(|space| !SPACES.contains(&space.as_str())) {
+        let help = format!("there are: {}", SPACES.join(", "));
+        return Err(Error::new(format!("there is no space `{unknown}`")).help(help));
+    }
+    let cases: Vec<Case> = spaces.into_iter().map(case).collect();
+    let complete = lab.measure(&mut log, "scaling", &cases, |case| {
+        let growing = Growing { sizes: &case.sizes, cap: common.time, repeats, ..Growing::default() };
+        let ours = growing.measure(&case.space)?;
+        let ask = |peer: &PathBuf| ask(peer, &case.space, sizes[sizes.len() - 1], common.time);
+        Ok(Some(Run { ours, theirs: case.peer.as_ref().map(ask).transpose()?.unwrap_or_default() }))
+    })?;
+    if !complete {
+        return Ok(false);
+    }
+    let mut table = Table::new(["space", "nodes", "nodes/s", "bare loop nodes/s", "peer nodes/s", "ratio"]);
+    let mut reached = true;
+    for (space, runs) in log.groups(&cases, |case| &case.space) {
+        for (_, run) in runs {
+            reached &= run.ours.len() == sizes.len();
+            table.rows.extend(run.ours.iter().map(|row| cells(space, row, &run.theirs)));
+        }
+    }
+    lab.report("scaling", &table, &table)?;
+    Ok(reached)
+}
+
+/// A line of one size.
+fn cells(space: &str, row: &Row, theirs: &[Theirs]) -> Vec<String> {
+    // Where it ran out of time, its rate at the size it reached: no less than it would be here.
+    let peer = theirs.iter().find(|t| t.nodes >= row.nodes).or(theirs.last());
+    vec![
+        space.to_owned(),
+        row.nodes.to_string(),
+        format!("{:.0}", row.rate()),
+        format!("{:.0}", row.nodes as f64 / row.bare),
+        peer.map_or("–".into(), |p| match p.nodes < row.nodes {
+            true => format!("{:.0} (at {})", p.avg_nodes_per_s, p.nodes),
+            false => format!("{:.0}", p.avg_nodes_per_s),
+        }),
+        peer.map_or("–".into(), |p| format!("{:.1}", row.rate() / p.avg_nodes_per_s)),
+    ]
+}
+
+/// What the other program says of one space; sizes it does not reach in time are missing.
+fn ask(program: &Path, space: &str, nodes: usize, seconds: f64) -> Result<Vec<Theirs>> {
+    let (nodes, seconds) = (nodes.to_string(), seconds.to_string());
+    let done = Command::new(program)
+        .args(["rrt", space, "gnat", &nodes, &seconds])
+        .output()
+        .doing(|| format!("cannot run {}", program.display()))?;
+    let text = String::from_utf8_lossy(&done.stdout);
+    let lines = text.lines().filter(|line| line.starts_with('{')).map(serde_json::from_str);
+    lines
+        .collect::<std::result::Result<_, _>>()
+        .doing(|| format!("cannot read what {} printed", program.display()))
+}

@@ -1,0 +1,131 @@
+//! Scenes of rigid bodies by name, and bare runs of planners in them.
+
+use crate::error::Result;
+use crate::output::note;
+use mp_cspace::{Cancel, Outcome, Space, StopReason};
+use mp_io::{Problem, SpaceKind};
+use mp_plan::{Budget, Control, Error, Finish, Request, RigidScene, RobotKind, Scene, search};
+use mp_robot::{Planar, Spatial};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// The problem of a shipped scene, or of a file. To be replaced when mp-plan finds scenes by name.
+pub(crate) fn problem(name: &str) -> Result<Problem> {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../mp-scenes/assets");
+    let file = match mp_scenes::scene(name) {
+        Some(scene) => shipped.join(scene.path),
+        None => PathBuf::from(name),
+    };
+    if !file.is_file() {
+        let names = mp_scenes::names().collect::<Vec<_>>().join(", ");
+        let help = format!("name a scene file, or one of the shipped scenes: {names}");
+        return Err(Error::new(format!("there is no scene {name}")).help(help));
+    }
+    Ok(Problem::load(file)?)
+}
+
+/// A scene of a rigid body, in space or in the plane.
+#[derive(Clone, Debug)]
+pub(crate) enum Rigid {
+    Space(Box<RigidScene<Spatial>>),
+    Plane(Box<RigidScene<Planar>>),
+}
+
+/// Does the same with a scene of either kind.
+macro_rules! either {
+    ($rigid:expr, $scene:ident => $body:expr) => {
+        match $rigid {
+            $crate::scenes::Rigid::Space($scene) => $body,
+            $crate::scenes::Rigid::Plane($scene) => $body,
+        }
+    };
+}
+pub(crate) use either;
+
+/// What a bare run of a planner came to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Planned {
+    pub(crate) solved: bool,
+    /// On the wall.
+    pub(crate) seconds: f64,
+    /// Collision and clearance queries.
+    pub(crate) queries: u64,
+    pub(crate) iterations: u64,
+}
+
+/// A request for the first path of a planner with its defaults, which stays as it is found; without a limit of time.
+pub(crate) fn bare(planner: &str) -> Request {
+    Request {
+        first_only: true,
+        finish: Finish::AsFound,
+        budget: Budget { time_s: None, ..Budget::default() },
+        ..Request::new(planner)
+    }
+}
+
+impl Rigid {
+    /// The scene called `name`, with a start and a goal that are free.
+    pub(crate) fn load(name: &str) -> Result<Self> {
+        let rigid = Self::new(problem(name)?)?;
+        for odd in either!(&rigid, scene => Scene::new((**scene).clone())).check_ends()? {
+            note(&format!("warning: {name}: {odd}"));
+        }
+        Ok(rigid)
+    }
+
+    /// Makes `problem` ready.
+    pub(crate) fn new(problem: Problem) -> Result<Self> {
+        Ok(match problem.space {
+            SpaceKind::Se3 => Self::Space(Box::new(RigidScene::new(problem)?)),
+            SpaceKind::Se2 => Self::Plane(Box::new(RigidScene::new(problem)?)),
+        })
+    }
+
+    pub(crate) fn problem(&self) -> &Problem {
+        either!(self, scene => scene.problem())
+    }
+
+    /// The largest distance in the space, in its own metric.
+    pub(crate) fn extent(&self) -> f64 {
+        either!(self, scene => scene.space().extent())
+    }
+
+    /// A bare run; none when it was interrupted.
+    pub(crate) fn plan(&self, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
+        fn on<K: RobotKind>(scene: &K, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
+            let mut control = Control { cancel: cancel.clone(), ..Control::default() };
+            let found = search(scene, request, &mut control)?;
+            Ok(Some(Planned {
+                solved: match found.outcome {
+                    Outcome::Solved(_) => true,
+                    Outcome::Stopped(StopReason::Cancelled) => return Ok(None),
+                    Outcome::Stopped(_) => false,
+                },
+                seconds: found.time.as_secs_f64(),
+                queries: found.queries,
+                iterations: found.progress.iterations,
+            }))
+        }
+        either!(self, scene => on(&**scene, request, cancel))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_are_found_by_name_and_planned_in() {
+        let scene = Rigid::load("maze").unwrap();
+        assert!(matches!(scene, Rigid::Plane(_)) && scene.extent() > 10.0);
+        let request = bare("rrt-connect").iterations(20_000);
+        let planned = scene.plan(&request, &Cancel::new()).unwrap().unwrap();
+        assert!(planned.solved && planned.queries > 0);
+        let again = scene.plan(&request, &Cancel::new()).unwrap().unwrap();
+        assert_eq!((planned.queries, planned.iterations), (again.queries, again.iterations));
+        let cancel = Cancel::new();
+        cancel.cancel();
+        assert_eq!(scene.plan(&request, &cancel).unwrap(), None);
+        assert!(Rigid::load("cubicels").unwrap_err().remedy().unwrap().contains("cubicles"));
+    }
+}
