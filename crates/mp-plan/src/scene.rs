@@ -111,9 +111,11 @@ impl Scene {
     /// As [`load`](Self::load).
     pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self, Error> {
         let begins = |what: &str| text.lines().any(|line| line.trim_start().starts_with(what));
-        let ending = match text {
+        let first = text.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
+        let ending = match first {
             _ if begins("[problem]") => "cfg",
-            _ if begins("[world]") || begins("[robot]") || begins("world.") || begins("robot.") => "toml",
+            _ if first.eq_ignore_ascii_case("robot") => "env",
+            _ if first.starts_with(['[', '#']) || first.contains('=') => "toml",
             _ => "env",
         };
         let file = folder.join(format!("{name}.{ending}"));

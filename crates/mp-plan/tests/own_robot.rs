@@ -183,8 +183,8 @@ fn a_robot_of_ones_own_is_planned_for_by_every_planner_that_needs_no_more() {
         let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
         let verdict = scene.check(&path).unwrap();
         assert!(verdict.free, "{planner}: {verdict:?}");
-        // It had to draw the load in to pass inside of the posts.
-        assert!(path.rows.iter().any(|row| row[1] < 1.6), "{planner}");
+        // It had to move the load in or out to pass the posts.
+        assert!(path.rows.iter().any(|row| row[1] < 1.6 || row[1] > 4.4), "{planner}");
     }
     for (planner, lacks) in [("rrs", "gradient"), ("obrrt", "hints"), ("obprm", "obstacles")] {
         let error = scene.plan(&Request::new(planner).iterations(10)).unwrap_err();

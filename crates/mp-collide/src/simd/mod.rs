@@ -6,19 +6,27 @@
 
 #[cfg(target_arch = "aarch64")]
 mod arm;
+#[cfg(any(feature = "scalar", not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 use std::ops::{BitAnd, BitOr};
 
+/// The lanes that every CPU of this architecture has, with vectors where there are any.
+#[cfg(all(not(feature = "scalar"), target_arch = "aarch64"))]
+use arm::Neon as Scalar;
+#[cfg(any(feature = "scalar", not(any(target_arch = "x86_64", target_arch = "aarch64"))))]
 use scalar::Scalar;
+#[cfg(all(not(feature = "scalar"), target_arch = "x86_64"))]
+use x86::Sse2 as Scalar;
 
 /// An instruction set a kernel can run on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Isa {
-    /// Plain arrays, on any CPU.
+    /// Plain arrays, on any CPU. On x86-64 and aarch64 compiled only with the feature `scalar`; without it this is what
+    /// every such CPU has, which answers the same.
     Scalar,
     /// Two 128-bit registers (every x86-64).
     Sse2,
@@ -58,10 +66,11 @@ impl Isa {
         }
     }
 
-    /// Every instruction set this CPU has, scalar first.
+    /// Every instruction set this CPU has, scalar first where it is compiled.
     #[must_use]
     pub fn available() -> Vec<Self> {
-        let mut all = vec![Self::Scalar];
+        let plain = cfg!(any(feature = "scalar", not(any(target_arch = "x86_64", target_arch = "aarch64"))));
+        let mut all: Vec<Self> = plain.then_some(Self::Scalar).into_iter().collect();
         match Self::detect() {
             Self::Scalar => {}
             Self::Sse2 => all.push(Self::Sse2),
@@ -136,13 +145,16 @@ pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
         Isa::Avx512 if supported(isa) => return unsafe { x86::avx512(kernel) },
         // SAFETY: as above.
         Isa::Avx2 if supported(isa) => return unsafe { x86::avx2(kernel) },
+        #[cfg(feature = "scalar")]
         Isa::Sse2 => return kernel.run::<x86::Sse2>(),
         _ => {}
     }
-    #[cfg(target_arch = "aarch64")]
+    #[cfg(all(feature = "scalar", target_arch = "aarch64"))]
     if isa == Isa::Neon {
         return kernel.run::<arm::Neon>();
     }
+    #[cfg(all(not(feature = "scalar"), target_arch = "aarch64"))]
+    let _ = isa;
     kernel.run::<Scalar>()
 }
 
