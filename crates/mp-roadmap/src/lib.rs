@@ -44,7 +44,7 @@
 //! - A path is returned only after the verifier has passed each of its edges, in the direction in which it
 //!   is run. An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
 //! - On several threads ([`Builder::on`], [`Team`]) the roadmap is the same to the bit as on one.
-//! - Bad input is a [`BuildError`](mp_cspace::BuildError) before planning begins.
+//! - Bad input is a [`BuildError`] before planning begins.
 //! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
 //!   and going on changes nothing.
 

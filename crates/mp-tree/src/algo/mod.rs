@@ -20,6 +20,7 @@
 //! | [`MvbRrt`](crate::MvbRrt) | [`mvb_rrt`] | from start and goal | as RRT-Connect, toward the mean of the samples nearest to one node |
 //! | [`UtilityRrt`](crate::UtilityRrt) | [`utility_rrt`] | from start and goal | as RRT-Connect, the most promising of several expansions |
 //! | [`Obrrt`](crate::Obrrt) | [`obrrt`] | from the start | one step toward a sample or along an obstacle, by hints |
+//! | [`TRrt`](crate::TRrt) | [`t_rrt`] | from the start | one step toward a sample, if its end does not cost too much more |
 //! | [`Rrs`](crate::Rrs) | [`rrs`] | from the start, of edges that bend | one step toward a sample, around obstacles by a snake |
 //! | [`RrsConnect`](crate::RrsConnect) | [`rrs_connect`] | from start and goal, of edges that bend | as RRT-Connect, around obstacles by snakes |
 
@@ -45,6 +46,7 @@ pub mod rrt_inputs;
 pub mod rrt_star;
 pub mod rsrt;
 pub mod shared_tree;
+pub mod t_rrt;
 pub mod utility_rrt;
 
 use crate::by_name::{Maker, Types};
@@ -93,4 +95,5 @@ planners! {
     cyclic_rrt: Cyclic, CyclicRrt, Listed;
     rrs: Rrs;
     rrs_connect: RrsConnect;
+    t_rrt: TRrt, Temperature, Transition;
 }

@@ -38,7 +38,7 @@
 //! try [RRT-Connect](super::rrt_connect) first; its loop takes these growth methods too:
 //! [`ObstacleGuided`] as the first of its two growths in a [`Recipe`] for
 //! [`TwoTrees`](crate::TwoTrees). Made [by name](crate::build) it takes the hints
-//! [of the problem](Problem::with_hints).
+//! [of the problem](crate::Problem::with_obstacles).
 //!
 //! | parameter | range | default |
 //! |---|---|---|

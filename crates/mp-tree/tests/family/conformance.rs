@@ -37,7 +37,8 @@ const WRAPPED: [(&str, &str); 7] = [
 fn all() -> Vec<(&'static str, &'static str)> {
     let mut all = WRAPPED.to_vec();
     for info in planners() {
-        all.push((info.name, "patience=10"));
+        // Narrow passages are entered by refining.
+        all.push((info.name, if info.name == "t-rrt" { "refine=1" } else { "patience=10" }));
     }
     all
 }
@@ -130,7 +131,8 @@ fn empty_space_takes_one_motion() {
     let space = cube();
     let (start, goal) = ([0.1; 3].into(), [0.9; 3].into());
     let world = World { space: &space, robot: Boxes::default(), ends: [start, goal], step: 0.3 };
-    for info in planners() {
+    // T-RRT makes no motion longer than a step.
+    for info in planners().iter().filter(|info| info.name != "t-rrt") {
         let mut planner = world.planner((info.name, "patience=10"), true);
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
         assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] }, "{}", info.name);
@@ -273,7 +275,9 @@ fn a_too_coarse_check_is_found_out_and_the_way_around_found() {
                 assert!(!path.states.windows(2).any(|pair| boxes.hit(&pair[0], &pair[1])));
                 let rejected = planner.progress().rejected;
                 assert_eq!(rejected, counts.rejected);
-                assert_eq!(rejected == 0, patience == "0", "{}", info.name);
+                // T-RRT keeps away from the wall, so it may never be refused.
+                let refused = rejected > 0 || (patience != "0" && info.name == "t-rrt");
+                assert_eq!(refused, patience != "0", "{}", info.name);
             }
         }
     }

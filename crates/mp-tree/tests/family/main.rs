@@ -15,3 +15,4 @@ mod panics;
 mod repeated;
 mod shared_tree;
 mod slots;
+mod t_rrt;
