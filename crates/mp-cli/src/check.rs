@@ -7,14 +7,12 @@ use std::path::Path;
 
 /// Verifies a path, or explains a configuration. True when it is free.
 pub(crate) fn run(args: &Check) -> Result<bool, Error> {
+    once(&args.scene, args.path.as_deref())?;
     let scene = scene(&args.scene)?;
     if let Some(numbers) = &args.at {
         return explain(&scene, numbers, args.json);
     }
     let Some(file) = &args.path else { return Err(Error::new("name a path")) };
-    if is_standard(&args.scene) && is_standard(file) {
-        return Err(Error::new("scene and path cannot both come from standard input").help("name a file"));
-    }
     let mut verdict = scene.check(&path(&scene, file)?)?;
     (verdict.scene, verdict.path) = (shown(&scene, &args.scene), file.display().to_string());
     match args.json {
@@ -22,6 +20,14 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
         false => print(&verdict.summary())?,
     }
     Ok(verdict.free)
+}
+
+/// Refuses a scene and a path that both come from standard input.
+pub(crate) fn once(scene: &Path, path: Option<&Path>) -> Result<(), Error> {
+    match is_standard(scene) && path.is_some_and(is_standard) {
+        true => Err(Error::new("scene and path cannot both come from standard input").help("name a file")),
+        false => Ok(()),
+    }
 }
 
 /// The scene meant by an argument; `-` is standard input.

@@ -2,7 +2,8 @@
 
 use crate::numbers::brief;
 use crate::{End, Error, PathRows, RobotKind, Touch};
-use mp_cspace::{Clearance, MotionCheck, Path, PathFault, Space, least_clearance, verify_path};
+use mp_cspace::erased::AnyCheck;
+use mp_cspace::{Clearance, MotionCheck, Path, PathFault, PathReport, Space, least_clearance, verify_path};
 use serde::{Deserialize, Serialize};
 
 /// What the check of a path found. Its JSON form is what `mp check --json` prints.
@@ -62,6 +63,18 @@ pub(crate) fn states<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Vec<K::S
     }
 }
 
+/// Verifies a path, edge by edge.
+pub(crate) fn verified<K: RobotKind>(kind: &K, path: &Path<K::State>) -> Result<PathReport, Error> {
+    let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
+    Ok(verify_path(kind.space(), path, &mut verifier))
+}
+
+/// A lower bound on the clearance (m) along a path that is free, so accurate.
+pub(crate) fn clearance<K: RobotKind>(kind: &K, path: &Path<K::State>, accuracy: f64) -> Option<f64> {
+    let mut checker = kind.checker().clone();
+    least_clearance(kind.space(), &mut checker, path, accuracy).map(|tightest| tightest.clearance)
+}
+
 /// Verifies a path from the start to a goal.
 pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, Error> {
     let _span = tracing::info_span!("check", scene = kind.name()).entered();
@@ -81,13 +94,12 @@ pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, 
         faults.push(format!("does not end at {which}: {}{} off", brief(goal.off), goal.unit));
     }
     faults.extend(kind.odd_rows(&path.rows));
-    let report = verify_path(kind.space(), &states, &mut kind.verifier()?);
+    let report = verified(kind, &states)?;
     faults.extend(report.fault.map(|fault| told(kind, &states, fault)));
     let clearance = match faults.is_empty() {
         true => {
-            let accuracy = 0.1 * kind.accuracy();
-            let tightest = least_clearance(kind.space(), &mut kind.checker().clone(), &states, accuracy);
-            tightest.map_or(report.clearance, |t| t.clearance.max(report.clearance))
+            let found = clearance(kind, &states, 0.1 * kind.accuracy());
+            found.map_or(report.clearance, |c| c.max(report.clearance))
         }
         false => 0.0,
     };

@@ -1,10 +1,10 @@
 //! From a path of states to one that is written down: shortened, verified as it reads back.
 
+use crate::check::{clearance, verified};
 use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage};
+use mp_cspace::erased::AnyCheck;
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{
-    Cancel, Certified, KnownFree, MotionCheck, MotionValidity, Path, Rng, least_clearance, verify_path,
-};
+use mp_cspace::{Cancel, Certified, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::Ordering;
 
 /// Which stream of random numbers shortening draws from: planning draws from another.
@@ -22,9 +22,9 @@ pub(crate) struct Finished {
 }
 
 /// A check that finds nothing free any more once the flag is raised: whatever shortens with it comes to an end.
-struct Until<'a, V>(V, &'a Cancel);
+struct Until<'a, S>(AnyCheck<'a, S>, &'a Cancel);
 
-impl<S, V: MotionValidity<S>> MotionValidity<S> for Until<'_, V> {
+impl<S> MotionValidity<S> for Until<'_, S> {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
         self.check_extension(from, to, KnownFree::Neither)
     }
@@ -48,9 +48,19 @@ pub fn shorten<K: RobotKind>(
     cancel: &Cancel,
 ) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("shorten").entered();
-    let certified = Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?;
-    let mut rng = Rng::stream(seed, STREAM);
-    Ok(simplify(kind.space(), &mut Until(certified, cancel), path, Effort::default(), &mut rng))
+    let certified: AnyCheck<'_, K::State> =
+        Box::new(Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?);
+    Ok(shortened(kind.space(), Until(certified, cancel), path, seed))
+}
+
+/// The same behind a pointer: compiled for each space, not for each robot.
+fn shortened<C: Factored>(
+    space: &C,
+    mut check: Until<'_, C::State>,
+    path: &Path<C::State>,
+    seed: u64,
+) -> Path<C::State> {
+    simplify(space, &mut check, path, Effort::default(), &mut Rng::stream(seed, STREAM))
 }
 
 /// Shortens `found` if asked to, and verifies what will be written. Falls back to `found` itself; `None` when
@@ -82,12 +92,12 @@ fn written<K: RobotKind>(
     let rows = PathRows { format: kind.path_format(), columns: kind.columns(), rows: kind.rows(path) };
     let rows = rows.read_back()?;
     let read = Path::straight(rows.rows.iter().map(|row| kind.state(row)).collect());
-    let report = verify_path(kind.space(), &read, &mut kind.verifier()?);
+    let report = verified(kind, &read)?;
     if let Some(fault) = report.fault {
         tracing::info!("{fault}");
         return Ok(None);
     }
-    let tightest = least_clearance(kind.space(), &mut kind.checker().clone(), &read, kind.accuracy());
-    let clearance = tightest.map_or(report.clearance, |t| t.clearance.max(report.clearance));
+    let clearance =
+        clearance(kind, &read, kind.accuracy()).map_or(report.clearance, |c| c.max(report.clearance));
     Ok(Some(Finished { path: rows, length: path.length(kind.space()), clearance, shortened }))
 }

@@ -5,12 +5,11 @@ use crate::planners::Named;
 use crate::roadmaps::{self, Roadmap};
 use crate::watch::{Events, Telling};
 use crate::{Control, Error, Finish, Length, Measured, MotionCheck, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::erased::AnyCheck;
+use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
 use mp_cspace::{
-    BuildError, Certified, ClearanceGradient, Deadline, Discrete, Goals, Iterations, Outcome, ParameterError,
-    Path, Planner, Problem, Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Workers,
-    verify_path,
+    BuildError, Certified, Deadline, Discrete, Goals, Iterations, Outcome, ParameterError, Path, Planner,
+    Problem, Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Workers, verify_path,
 };
 use mp_snake::{Params, Repulsion, relax};
 use mp_tree::{TreeState, improve};
@@ -96,7 +95,8 @@ pub fn search<K: RobotKind>(
         };
         let goals = Goals::states(kind.goals().iter().cloned());
         let local = Straight::new(&space, check);
-        let problem = Problem::new(&space, local, verifier.clone(), kind.start().clone(), goals)?;
+        let verifier: AnyCheck<'_, K::State> = Box::new(verifier.clone());
+        let problem = Problem::new(&space, local, verifier, kind.start().clone(), goals)?;
         Ok(problem.with_obstacles(kind.obstacles(&counted)))
     };
     let mut made = match &planner {
@@ -121,25 +121,8 @@ pub fn search<K: RobotKind>(
         .or(request.budget.queries.map(|most| QueryBudget { queries: &queries, most }))
         .or(control.stop.as_deref_mut())
         .or(&telling);
-    let mut observer = Events { kind, telling: &telling, wanted };
-    let mut rng = Rng::seed(request.seed);
-    let mut first = None;
-    let improves = made.planner().improves();
-    let (best, reason) = match request.first_only {
-        true => match made.planner().solve(&mut rng, &mut stop, &mut observer) {
-            Outcome::Solved(path) => (Some(path), None),
-            Outcome::Stopped(reason) => (None, Some(reason)),
-        },
-        false => improve(made.planner(), &mut rng, &mut stop, &mut observer, |path, _| {
-            let length = path.length(&space);
-            if let Some(watch) = &mut *telling.watch.borrow_mut() {
-                watch.found(length);
-            }
-            if improves && first.is_none() {
-                first = Some((began.elapsed(), length, path.clone()));
-            }
-        }),
-    };
+    let mut events = Events { row: &|q| kind.row(q), telling: &telling, wanted };
+    let (best, reason, first) = solved(made.planner(), request, &space, &mut stop, &mut events, began);
     drop(stop);
     let outcome = match (best, reason) {
         (Some(path), _) if request.finish == Finish::Relax => {
@@ -175,6 +158,39 @@ pub fn search<K: RobotKind>(
     Ok(Search { outcome, progress, queries: queries.load(Ordering::Relaxed), time, first, map, roadmap })
 }
 
+/// The last path found and why it is not the end, and the first of a planner that keeps improving.
+type Solved<S> = (Option<Path<S>>, Option<StopReason>, Option<(Duration, f64, Path<S>)>);
+
+/// Runs the planner. Compiled for each kind of state, not of robot.
+fn solved<S: TreeState>(
+    planner: &mut dyn Planner<S, Edge = ()>,
+    request: &Request,
+    space: &AnySpace<'_, S>,
+    stop: &mut dyn Stop,
+    events: &mut Events<'_, '_, '_, S>,
+    began: Instant,
+) -> Solved<S> {
+    let mut rng = Rng::seed(request.seed);
+    if request.first_only {
+        return match planner.solve(&mut rng, stop, events) {
+            Outcome::Solved(path) => (Some(path), None, None),
+            Outcome::Stopped(reason) => (None, Some(reason), None),
+        };
+    }
+    let (improves, telling) = (planner.improves(), events.telling);
+    let mut first = None;
+    let (best, reason) = improve(planner, &mut rng, stop, events, |path, _| {
+        let length = path.length(space);
+        if let Some(watch) = &mut *telling.watch.borrow_mut() {
+            watch.found(length);
+        }
+        if improves && first.is_none() {
+            first = Some((began.elapsed(), length, path.clone()));
+        }
+    });
+    (best, reason, first)
+}
+
 fn unmade<T>(made: Result<T, ParameterError>) -> Result<T, BuildError> {
     made.map_err(|e| BuildError::Unmade { reason: e.to_string() })
 }
@@ -190,24 +206,33 @@ fn resolution(length: Length) -> Resolution {
 /// itself. In the own metric of the space it is no longer than the path.
 fn relaxed<K: RobotKind>(kind: &K, path: Path<K::State>) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("relax").entered();
-    let space = kind.space();
-    let range = RELAX_RANGE * space.extent();
     let unused = AtomicU64::new(0);
     let knowledge = kind.obstacles(&|| Counted::new(kind.checker().clone(), &unused));
-    let Some(mut gradient) = knowledge.gradient else {
+    let Some(gradient) = knowledge.gradient else {
         return Err(Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
             .help("leave relaxing out: shortening needs none"));
     };
-    let mut check = Certified::new(space, kind.checker().clone(), kind.tolerance())?;
-    let field = |q: &K::State, reach: f64, out: &mut [f64]| gradient.clearance_gradient(q, reach, out);
-    let mut field = Repulsion::new(field, range)?;
+    let check = Box::new(Certified::new(kind.space(), kind.checker().clone(), kind.tolerance())?);
+    relaxed_by(&AnySpace::new(kind.space()), check, Box::new(kind.verifier()?), gradient, path)
+}
+
+/// The same behind pointers: compiled for each kind of state, not of robot.
+fn relaxed_by<S: TreeState>(
+    space: &AnySpace<'_, S>,
+    mut check: AnyCheck<'_, S>,
+    mut verifier: AnyCheck<'_, S>,
+    gradient: AnyGradient<'_, S>,
+    path: Path<S>,
+) -> Result<Path<S>, Error> {
+    let range = RELAX_RANGE * space.extent();
+    let mut field = Repulsion::new(gradient, range)?;
     let short = reduce(space, &mut check, &path);
     let [found, least] = [&path, &short].map(|path| path.length(space));
     let params = Params { straighten: 0.5, iterations: 200, ..Params::for_range(range)? };
     // Safety may cost some length, of what was saved.
     let stretch = if least > 0.0 { (found / least).clamp(1.0, MOST_STRETCH) } else { 1.0 };
     let relaxed = relax(space, &mut check, &mut field, &short, params, stretch)?.path;
-    let verified = verify_path(space, &relaxed, &mut kind.verifier()?);
+    let verified = verify_path(space, &relaxed, &mut verifier);
     if let Some(fault) = verified.fault {
         tracing::info!("the relaxed path does not pass the verifier: {fault}");
         return Ok(path);

@@ -1,6 +1,5 @@
 //! Watching a run and stopping it.
 
-use crate::RobotKind;
 use mp_cspace::{Cancel, Event, NodeId, Observer, Progress, Stop, StopReason};
 use std::time::{Duration, Instant};
 
@@ -157,18 +156,18 @@ impl Stop for &Telling<'_, '_> {
 }
 
 /// Translates the states of events to rows.
-pub(crate) struct Events<'t, 'w, 'a, K> {
-    pub(crate) kind: &'t K,
+pub(crate) struct Events<'t, 'w, 'a, S> {
+    pub(crate) row: &'t dyn Fn(&S) -> Vec<f64>,
     pub(crate) telling: &'t Telling<'w, 'a>,
     pub(crate) wanted: bool,
 }
 
-impl<K: RobotKind> Observer<K::State> for Events<'_, '_, '_, K> {
-    fn on(&mut self, event: Event<'_, K::State>) {
+impl<S> Observer<S> for Events<'_, '_, '_, S> {
+    fn on(&mut self, event: Event<'_, S>) {
         if !self.wanted {
             return;
         }
-        let row = |state| self.kind.row(state);
+        let row = self.row;
         let event = match event {
             Event::Sampled(state) => SearchEvent::Sampled { row: row(state) },
             Event::Rooted { tree, id, state } => SearchEvent::Rooted { tree, id, row: row(state) },

@@ -1,0 +1,157 @@
+//! What the pointers of planners by name cost: the same planner, seeds and paths, once made by type and once by name, in
+//! turn. `cargo run --release -p mp-plan --example erased`
+//!
+//! Scenes: RRT-Connect with certified edges until it is solved. Empty space: an RRT grown to so many nodes, without
+//! obstacles and checks, so that nothing hides the pointers.
+
+use mp_cspace::erased::{AnyIndex, AnySpace};
+use mp_cspace::{
+    Cancel, Certified, DefaultNn, Goals, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes, Outcome,
+    Path, Planner, Problem, Rn, Rng, Se3, Settings, Stop, Straight, Workers,
+};
+use mp_plan::{RigidScene, RobotKind};
+use mp_robot::Spatial;
+use mp_tree::{AnyPlanner, Rrt, RrtConnect, TreeState, Tuning};
+use nalgebra::{DVector, Isometry3};
+use std::error::Error;
+use std::io::Write;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Rounds of each pair, of which the least time counts.
+const ROUNDS: usize = 9;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "| what | by type, ms | by name, ms | ratio |\n|---|---|---|---|")?;
+    for (scene, seeds) in [("cubicles", 40), ("twisty", 20), ("apartment", 4)] {
+        let file = mp_scenes::scene(scene).ok_or("no such scene")?;
+        let files = mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes));
+        let problem = mp_io::Problem::load_from(&files, std::path::Path::new(file.path))?;
+        let scene_of = RigidScene::<Spatial>::new(problem)?;
+        let times = in_turn(&|by_name| seeded(seeds, &|seed| solve(&scene_of, seed, by_name)))?;
+        report(&mut out, &format!("{scene}, {seeds} seeds"), times)?;
+    }
+    for nodes in [1_000, 10_000, 100_000] {
+        let plane = Rn::<2>::new([0.0; 2], [1.0; 2])?;
+        let space = Se3::new([0.0; 3], [1.0; 3])?;
+        let times = in_turn(&|by_name| grow(&plane, nodes, by_name))?;
+        report(&mut out, &format!("empty R², {nodes} nodes"), times)?;
+        let times = in_turn(&|by_name| grow(&space, nodes, by_name))?;
+        report(&mut out, &format!("empty SE(3), {nodes} nodes"), times)?;
+        let joints = mp_cspace::Joints::<DVector<f64>>::new(vec![
+            mp_cspace::JointRange::Interval {
+                low: -3.0,
+                high: 3.0
+            };
+            6
+        ])?;
+        let times = in_turn(&|by_name| grow(&joints, nodes, by_name))?;
+        report(&mut out, &format!("empty space of 6 joints, {nodes} nodes"), times)?;
+    }
+    Ok(())
+}
+
+type Timed = Result<f64, Box<dyn Error>>;
+
+/// The least times (ms) of both ways, taken in turn.
+fn in_turn(run: &dyn Fn(bool) -> Timed) -> Result<[f64; 2], Box<dyn Error>> {
+    let mut least = [f64::INFINITY; 2];
+    for _ in 0..ROUNDS {
+        for (i, by_name) in [false, true].into_iter().enumerate() {
+            least[i] = least[i].min(run(by_name)?);
+        }
+    }
+    Ok(least)
+}
+
+fn report(out: &mut impl Write, what: &str, [one, other]: [f64; 2]) -> std::io::Result<()> {
+    writeln!(out, "| {what} | {one:.2} | {other:.2} | {:.3} |", other / one)
+}
+
+/// The time (ms) of a run for each seed.
+fn seeded(seeds: u64, run: &dyn Fn(u64) -> Result<(), Box<dyn Error>>) -> Timed {
+    let began = Instant::now();
+    (1..=seeds).try_for_each(run)?;
+    Ok(1e3 * began.elapsed().as_secs_f64())
+}
+
+/// RRT-Connect on a scene, by type or by name.
+fn solve(scene: &RigidScene<Spatial>, seed: u64, by_name: bool) -> Result<(), Box<dyn Error>> {
+    let (space, verifier) = (scene.space(), scene.verifier()?);
+    let (start, goal) = (*scene.start(), scene.goals().to_vec());
+    let check = || Certified::new(space, scene.checker().clone(), scene.tolerance());
+    let mut stop = Iterations(20_000).or(Cancel::new());
+    let mut rng = Rng::seed(seed);
+    let outcome = match by_name {
+        false => {
+            let problem =
+                Problem::new(space, Straight::new(space, check()?), verifier, start, Goals::states(goal))?;
+            RrtConnect::new(problem, Tuning::default())?.solve(&mut rng, &mut stop, &mut ())
+        }
+        true => {
+            let any = AnySpace::new(space);
+            let make = || {
+                let check = check().map_err(|e| mp_cspace::BuildError::Unmade { reason: e.to_string() })?;
+                let local = Straight::new(&any, Box::new(check) as _);
+                Problem::new(&any, local, verifier.clone(), start, Goals::states(goal.clone()))
+            };
+            let (index, settings) = (AnyIndex::of(space), Settings::default());
+            let mut planner: AnyPlanner<'_, Isometry3<f64>, ()> =
+                TreeState::tree_planner("rrt-connect", Arc::new(make), index, &settings, &Workers::alone())?;
+            planner.solve(&mut rng, &mut stop, &mut ())
+        }
+    };
+    std::hint::black_box(path_of(outcome));
+    Ok(())
+}
+
+fn path_of<S>(outcome: Outcome<Path<S>>) -> usize {
+    match outcome {
+        Outcome::Solved(path) => path.states.len(),
+        Outcome::Stopped(_) => 0,
+    }
+}
+
+/// Nothing is in the way.
+#[derive(Clone)]
+struct Free;
+
+impl<S> MotionValidity<S> for Free {
+    fn check_motion(&mut self, _: &S, _: &S) -> MotionCheck {
+        MotionCheck::Free { clearance: 0.0 }
+    }
+    fn check_extension(&mut self, _: &S, _: &S, _: KnownFree) -> MotionCheck {
+        MotionCheck::Free { clearance: 0.0 }
+    }
+}
+
+/// The time (ms) in which an RRT grows to so many nodes where nothing is in the way, toward a goal that is never met.
+fn grow<C>(space: &C, nodes: usize, by_name: bool) -> Timed
+where
+    C: DefaultNn<State: TreeState, Nn: 'static> + Clone + Send + 'static,
+{
+    let start = space.sample_uniform(&mut Rng::seed(9));
+    let never = || Goals::region(|_: &C::State| false);
+    let (mut rng, mut stop) = (Rng::seed(1), Nodes(nodes));
+    let began = Instant::now();
+    match by_name {
+        false => {
+            let problem = Problem::new(space, Straight::new(space, Free), Free, start, never())?;
+            Rrt::new(problem, Tuning::default())?.solve(&mut rng, &mut stop, &mut ());
+        }
+        true => {
+            let any = AnySpace::new(space);
+            let make = || {
+                let local = Straight::new(&any, Box::new(Free) as _);
+                Problem::new(&any, local, Free, start.clone(), never())
+            };
+            let index = AnyIndex::of(space);
+            let settings = Settings::default();
+            let mut planner =
+                TreeState::tree_planner("rrt", Arc::new(make), index, &settings, &Workers::alone())?;
+            planner.solve(&mut rng, &mut stop, &mut ());
+        }
+    }
+    Ok(1e3 * began.elapsed().as_secs_f64())
+}
