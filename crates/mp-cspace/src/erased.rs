@@ -17,7 +17,7 @@ mod index;
 mod space;
 
 pub use geometry::AnyGeometry;
-pub use index::AnyIndex;
+pub use index::{AnyIndex, CompiledIndex};
 pub use space::AnySpace;
 
 use crate::{MotionValidity, Problem, Straight};

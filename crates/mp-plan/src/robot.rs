@@ -12,10 +12,10 @@ pub use rigid::{RigidMotion, RigidScene};
 use crate::numbers::plain;
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
-use mp_cspace::erased::{AnyIndex, AnySpace};
+use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::{
-    Clearance, DefaultNn, Factored, Metric as _, MotionBound, MotionValidity, Numbers, ObstacleKnowledge,
-    Validity,
+    Clearance, DefaultNn, Embed, Factored, Metric as _, MotionBound, MotionValidity, Numbers,
+    ObstacleKnowledge, Validity,
 };
 use mp_geom::TriMesh;
 use mp_tree::TreeState;
@@ -136,6 +136,19 @@ impl<'c, S> Measured<'c, S> {
     /// A copy of `space` with the index that suits it.
     pub fn new<C: DefaultNn<State = S, Nn: 'static> + Clone + Send + 'static>(space: &C) -> Self {
         Self { space: AnySpace::new(space), index: AnyIndex::of(space) }
+    }
+
+    /// The same of a space whose index mp-cspace has compiled.
+    pub fn compiled<C: CompiledIndex<State = S>>(space: &C) -> Self {
+        Self { space: AnySpace::new(space), index: space.compiled_index() }
+    }
+
+    /// A copy of `space` with an index by coordinates that is compiled once for all spaces of these states.
+    pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self
+    where
+        S: Clone + fmt::Debug + PartialEq + Send + Sync + 'static,
+    {
+        Self { space: AnySpace::new(space), index: AnyIndex::by_coordinates(space) }
     }
 }
 

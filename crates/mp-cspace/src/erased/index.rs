@@ -1,7 +1,10 @@
 //! Nearest neighbours behind a pointer.
 
 use super::AnySpace;
-use crate::{DefaultNn, Hit, NearestNeighbors, NodeId, Space};
+use crate::{
+    DefaultNn, Embed, Hit, Joints, KdTree, Layout, Metric, NearestNeighbors, NodeId, Rn, Rng, Se2, Se3, Space,
+};
+use nalgebra::DVector;
 use std::fmt::{self, Debug};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -66,6 +69,98 @@ impl<S> AnyIndex<'_, S> {
         Self::new(space, C::Nn::default())
     }
 }
+
+impl<S: Clone + Debug + PartialEq + Send + Sync + 'static> AnyIndex<'_, S> {
+    /// A [`KdTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: a little
+    /// slower than [`of`](Self::of), compiled once.
+    pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self {
+        let (space, layout) = (AnySpace::new(space), AnyEmbed(Arc::new(space.clone())));
+        Self(
+            Box::new(Searching { space: Arc::new(Embedded { space, layout }), index: <KdTree>::default() }),
+            PhantomData,
+        )
+    }
+}
+
+/// What of coordinates goes behind the pointer.
+trait ErasedEmbed<S>: Send + Sync {
+    fn layout(&self) -> Layout;
+    fn embed(&self, state: &S, out: &mut [f64]) -> usize;
+}
+
+impl<S, C: Embed<State = S> + Send> ErasedEmbed<S> for C {
+    fn layout(&self) -> Layout {
+        Embed::layout(self)
+    }
+    fn embed(&self, state: &S, out: &mut [f64]) -> usize {
+        Embed::embed(self, state, out)
+    }
+}
+
+struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
+
+/// An erased space with coordinates.
+struct Embedded<S> {
+    space: AnySpace<'static, S>,
+    layout: AnyEmbed<S>,
+}
+
+impl<S> Metric<S> for Embedded<S> {
+    #[inline]
+    fn distance(&self, from: &S, to: &S) -> f64 {
+        self.space.distance(from, to)
+    }
+}
+
+/// Of the space an index asks distances and coordinates only; the rest is there because a space has it.
+impl<S: Clone + Debug + PartialEq + Send + Sync> Space for Embedded<S> {
+    type State = S;
+    fn dim(&self) -> usize {
+        self.space.dim()
+    }
+    fn extent(&self) -> f64 {
+        self.space.extent()
+    }
+    fn interpolate_into(&self, from: &S, to: &S, t: f64, out: &mut S) {
+        self.space.interpolate_into(from, to, t, out);
+    }
+    fn unit_cube_to_state(&self, u: &[f64]) -> S {
+        self.space.unit_cube_to_state(u)
+    }
+    fn sample_uniform(&self, rng: &mut Rng) -> S {
+        self.space.sample_uniform(rng)
+    }
+    fn contains(&self, q: &S) -> bool {
+        self.space.contains(q)
+    }
+}
+
+impl<S: Clone + Debug + PartialEq + Send + Sync> Embed for Embedded<S> {
+    fn layout(&self) -> Layout {
+        self.layout.0.layout()
+    }
+    #[inline]
+    fn embed(&self, state: &S, out: &mut [f64]) -> usize {
+        self.layout.0.embed(state, out)
+    }
+}
+
+/// A space whose own index is compiled in this crate, for states of robots.
+pub trait CompiledIndex: Space + Clone + Send + 'static {
+    /// The [index that suits](DefaultNn) the space, empty and erased.
+    fn compiled_index(&self) -> AnyIndex<'static, Self::State>;
+}
+
+macro_rules! compiled {
+    ($($space:ty),*) => {
+        $(impl CompiledIndex for $space {
+            fn compiled_index(&self) -> AnyIndex<'static, Self::State> {
+                AnyIndex::of(self)
+            }
+        })*
+    };
+}
+compiled!(Se3, Se2, Rn<2>, Joints<DVector<f64>>);
 
 impl<S> Clone for AnyIndex<'_, S> {
     fn clone(&self) -> Self {

@@ -225,8 +225,10 @@ impl RobotKind for ArmScene {
     fn measured(&self, metric: Metric) -> Result<Measured<'_, Configuration>, Error> {
         match metric {
             // The metric of the space is the Euclidean one.
-            Metric::Default | Metric::Euclidean => Ok(Measured::new(&self.space)),
-            Metric::Manhattan => Ok(Measured::new(&WithMetric::new(self.space.clone(), Manhattan))),
+            Metric::Default | Metric::Euclidean => Ok(Measured::compiled(&self.space)),
+            Metric::Manhattan => {
+                Ok(Measured::by_coordinates(&WithMetric::new(self.space.clone(), Manhattan)))
+            }
             _ => Err(no_metric(metric, "an arm", &[Metric::Default, Metric::Euclidean, Metric::Manhattan])),
         }
     }

@@ -3,9 +3,10 @@
 use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, RobotKind, Touch, no_metric};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
+use mp_cspace::erased::CompiledIndex;
 use mp_cspace::{
-    ClearanceGradient, DefaultNn, Factored, MotionValidity, Numbers, ObstacleHints, ObstacleKnowledge, Rn,
-    Se2, Se2State, Space,
+    ClearanceGradient, Factored, MotionValidity, Numbers, ObstacleHints, ObstacleKnowledge, Rn, Se2,
+    Se2State, Space,
 };
 use mp_geom::flat::FlatWorld;
 use mp_io::{FlatBody, FlatPart, FlatProblem};
@@ -30,7 +31,7 @@ pub trait PlanarBody:
     /// A configuration.
     type State: TreeState + RoadmapState + Numbers + 'static;
     /// The space of configurations.
-    type Space: Factored<State = Self::State> + DefaultNn<Nn: 'static> + Clone + Send + Debug + 'static;
+    type Space: Factored + CompiledIndex + Space<State = Self::State> + Debug;
     /// The independent checker.
     type Verifier<'c>: MotionValidity<Self::State> + Clone + Send + Sync
     where
@@ -272,7 +273,7 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     }
     fn measured(&self, metric: Metric) -> Result<Measured<'_, B::State>, Error> {
         match metric {
-            Metric::Default => Ok(Measured::new(&self.space)),
+            Metric::Default => Ok(Measured::compiled(&self.space)),
             _ => Err(no_metric(metric, "a robot of the plane", &[Metric::Default])),
         }
     }

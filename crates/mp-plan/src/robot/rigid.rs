@@ -7,11 +7,11 @@ use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_collide::Query;
-use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace};
+use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex};
 use mp_cspace::{
-    ClearanceGradient, DefaultNn, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn,
-    MetricTree, NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume,
-    TrueMetricOn, WithMetric,
+    ClearanceGradient, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn, MetricTree,
+    NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume, TrueMetricOn,
+    WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{Problem, SpaceKind};
@@ -31,7 +31,7 @@ const PICTURE_SPACING: f64 = 0.55;
 /// How a rigid body moves: [`Spatial`], in SE(3), or [`Planar`], in SE(2).
 pub trait RigidMotion: Placement<State: TreeState + RoadmapState + Numbers + PartialEq + 'static> {
     /// The space of its configurations.
-    type Space: EmbedFactors + DefaultNn<State = Self::State, Nn: 'static> + Clone + Debug + Send + 'static;
+    type Space: EmbedFactors + CompiledIndex + Space<State = Self::State> + Debug;
     /// The metric of the farthest moving point.
     type Displacement: TrueMetricOn<Self::Space> + NnOn<Self::Space> + Clone + Send + 'static;
     /// The metric of the swept volume.
@@ -202,12 +202,12 @@ impl<M: RigidMotion> RobotKind for RigidScene<M> {
         let space = self.space.clone();
         let robot = &self.problem.robot.mesh;
         Ok(match metric {
-            Metric::Default => Measured::new(&space),
-            Metric::Euclidean => Measured::new(&WithMetric::new(space, Euclidean)),
-            Metric::Manhattan => Measured::new(&WithMetric::new(space, Manhattan)),
+            Metric::Default => Measured::compiled(&space),
+            Metric::Euclidean => Measured::by_coordinates(&WithMetric::new(space, Euclidean)),
+            Metric::Manhattan => Measured::by_coordinates(&WithMetric::new(space, Manhattan)),
             Metric::Scaled => {
                 let metric = M::scaled(&space, self.radius)?;
-                Measured::new(&WithMetric::new(space, metric))
+                Measured::by_coordinates(&WithMetric::new(space, metric))
             }
             Metric::MaxDisplacement => {
                 let space = WithMetric::new(space, M::displacement(robot)?);
