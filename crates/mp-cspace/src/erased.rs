@@ -5,7 +5,7 @@
 //! |---|---|
 //! | a [`Space`](crate::Space) | [`AnySpace`] |
 //! | [`NearestNeighbors`](crate::NearestNeighbors) of that space | [`AnyIndex`], which keeps the space it was made for: the search inside is not erased |
-//! | a [`MotionValidity`](crate::MotionValidity) | [`AnyCheck`] |
+//! | a [`MotionValidity`] | [`AnyCheck`] |
 //! | [`ObstacleGeometry`](crate::ObstacleGeometry) | [`AnyGeometry`] |
 //! | [`ClearanceGradient`](crate::ClearanceGradient) | [`AnyGradient`] |
 //!
