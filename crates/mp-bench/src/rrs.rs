@@ -21,6 +21,7 @@ use tables::Found;
 
 /// What only the suite `rrs` has.
 #[derive(Clone, Copy, Debug, Default, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of the suite `rrs`")]
 pub(crate) struct Options {
     /// Let a robot with noisy wheels and a noisy laser follow the paths instead.

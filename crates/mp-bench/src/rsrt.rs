@@ -28,6 +28,7 @@ const INSTANCES: u32 = 10;
 
 /// What only the suite `rsrt` has.
 #[derive(Clone, Copy, Debug, Default, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of the suite `rsrt`")]
 pub(crate) struct Options {
     /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6; 0.25 with --quick].

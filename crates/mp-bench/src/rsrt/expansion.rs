@@ -150,7 +150,19 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
         MOVES.iter().flat_map(|&moves| (0..seeds).map(move |s| (moves, seed + s))).collect();
     let grown = lab.all("expansion", &jobs, |&(moves, seed)| Ok(Some(grow(moves, nodes, seed)?)))?;
     let Some(grown) = grown else { return Ok(false) };
-    let mut each = Table::new(["moves", "seed", "nodes", "mean", "least", "most", "deviation"]);
+    let shown = |a: &&Areas| a.nodes < 30 || a.nodes.is_multiple_of(25) || a.nodes == THRESHOLD;
+    let each = Table::of(
+        jobs.iter().zip(&grown).flat_map(|(job, run)| run.iter().filter(shown).map(move |a| (job, a))),
+        &[
+            ("moves", &|((moves, _), _)| moves.to_string()),
+            ("seed", &|((_, seed), _)| seed.to_string()),
+            ("nodes", &|(_, a)| a.nodes.to_string()),
+            ("mean", &|(_, a)| format!("{:e}", a.mean)),
+            ("least", &|(_, a)| format!("{:e}", a.least)),
+            ("most", &|(_, a)| format!("{:e}", a.most)),
+            ("deviation", &|(_, a)| format!("{:e}", a.deviation)),
+        ],
+    );
     let mut summary = Table::new([
         "moves, of the side".to_owned(),
         "most / mean at 25".into(),
@@ -162,20 +174,6 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
     ]);
     let (mut size, mut spread) = (Vec::new(), Vec::new());
     for (i, (&moves, runs)) in MOVES.iter().zip(grown.chunks(seeds as usize)).enumerate() {
-        for (s, run) in runs.iter().enumerate() {
-            for a in run.iter().filter(|a| a.nodes < 30 || a.nodes.is_multiple_of(25) || a.nodes == THRESHOLD)
-            {
-                each.rows.push(vec![
-                    moves.to_string(),
-                    (seed + s as u64).to_string(),
-                    a.nodes.to_string(),
-                    format!("{:e}", a.mean),
-                    format!("{:e}", a.least),
-                    format!("{:e}", a.most),
-                    format!("{:e}", a.deviation),
-                ]);
-            }
-        }
         // A tree that is full stays as it is.
         let over = |n: usize, of: &dyn Fn(&Areas) -> f64| {
             let at = |run: &Vec<Areas>| of(&run[n.min(run.len()) - 1]);
