@@ -47,8 +47,10 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     if !complete {
         return Ok(false);
     }
+    let by_planner: Vec<Case> =
+        planners().flat_map(|planner| scenes.iter().flat_map(move |scene| of(scene, planner))).collect();
     let each = Table::of(
-        log.each(&cases),
+        log.each(&by_planner),
         &[
             ("scene", &|(case, _)| case.scene.clone()),
             ("planner", &|(case, _)| case.planner.clone()),

@@ -76,13 +76,13 @@ impl Axis<'_> {
         v.is_finite() && (v > 0.0 || !matches!(self, Self::Log(_)))
     }
 
-    /// From where to where it goes for these values, with some room at the ends.
-    fn range(&self, values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
+    /// From where to where it goes for these values; a logarithmic one goes beyond them by these factors.
+    fn range(&self, values: impl Iterator<Item = f64>, [below, above]: [f64; 2]) -> Range<f64> {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |b, v| (b.0.min(v), b.1.max(v)));
+        let side = if high > low { 0.02 * (high - low) } else { 1.0 };
         match self {
-            Self::Log(_) => low * (1.0 - room)..high / (1.0 - room),
-            Self::Even if high > low => low - 0.4 * room * (high - low)..high + 0.4 * room * (high - low),
-            Self::Even => low - 1.0..high + 1.0,
+            Self::Log(_) => low * below..high * above,
+            Self::Even => low - side..high + side,
             Self::FromZero(Some(top)) => 0.0..*top,
             Self::FromZero(None) if high > 0.0 => 0.0..1.05 * high,
             Self::FromZero(None) => 0.0..1.0,
@@ -103,7 +103,8 @@ pub(crate) fn chart(labels: Labels<'_>, [x, y]: [Axis<'_>; 2], curves: &[Curve])
     if points.is_empty() {
         return Err(Error::new(format!("nothing to draw in the chart `{}`", labels.title)));
     }
-    let (xs, ys) = (x.range(points.iter().map(|p| p.0), 0.05), y.range(points.iter().map(|p| p.1), 0.2));
+    let (xs, ys) =
+        (x.range(points.iter().map(|p| p.0), [0.95, 1.05]), y.range(points.iter().map(|p| p.1), [0.8, 1.25]));
     match (x, y) {
         (Axis::Log(marks), Axis::Log(_)) => {
             let xs = xs.log_scale().with_key_points(marks.to_vec());

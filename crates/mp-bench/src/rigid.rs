@@ -133,7 +133,9 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let solved = groups.iter().all(|group| group.runs.iter().all(|(_, run)| run.ours.solved));
     // A run that was not solved counts with the time it was given.
     let summary = Table::of(
-        groups.iter().map(|group| (group, group.runs.iter().filter_map(|(_, run)| run.theirs).collect())),
+        groups
+            .iter()
+            .map(|group| (group, group.runs.iter().filter_map(|(_, r)| r.theirs).collect::<Vec<_>>())),
         &[
             ("scene", &|(g, _)| g.key.clone()),
             ("solved", &|(g, _)| share(g.count(|r| r.ours.solved), g.runs.len())),
@@ -148,8 +150,8 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
                 share(solutions(p).filter(|r| r.valid_at_20x_finer == 0).count(), solutions(p).count())
             }),
             ("ratio of medians", &|(g, p)| {
-                let both = median(p.iter().map(|r| r.time)).zip(median(g.values(|r| r.ours.seconds)));
-                show(both.map(|(theirs, ours)| theirs / ours), 1)
+                let medians = median(p.iter().map(|r| r.time)).zip(median(g.values(|r| r.ours.seconds)));
+                show(medians.map(|(theirs, ours)| theirs / ours), 1)
             }),
         ],
     );
@@ -158,7 +160,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
 }
 
 /// The runs that the other program solved.
-fn solutions(theirs: &Vec<Theirs>) -> impl Iterator<Item = &Theirs> {
+fn solutions(theirs: &[Theirs]) -> impl Iterator<Item = &Theirs> {
     theirs.iter().filter(|run| run.solved == 1)
 }
 

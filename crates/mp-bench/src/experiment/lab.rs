@@ -207,7 +207,7 @@ mod tests {
         let lab = Lab::test(folder.path(), 2);
         let cases: Vec<(u32, u32)> = (0..3).flat_map(|a| (0..4).map(move |b| (a, b))).collect();
         let made = std::sync::atomic::AtomicUsize::new(0);
-        let mut measure = |lab: &Lab, fails: u32| {
+        let measure = |lab: &Lab, fails: u32| {
             let mut log: Log<(u32, u32), f64> = lab.log("x", 1.0).unwrap();
             let complete = lab.measure_in(
                 &mut log,

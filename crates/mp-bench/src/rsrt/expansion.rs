@@ -142,6 +142,11 @@ fn areas(nodes: usize, triangles: &DelaunayTriangulation<Point2<f64>>) -> Areas 
     Areas { nodes, mean, least, most, deviation: (squares / count - mean * mean).max(0.0).sqrt() }
 }
 
+/// The mean of all runs at a number of nodes. A tree that is full stays as it is.
+fn over(runs: &[Vec<Areas>], nodes: usize, of: &dyn Fn(&Areas) -> f64) -> f64 {
+    mean(runs.iter().map(|run| of(&run[nodes.min(run.len()) - 1]))).unwrap_or(f64::NAN)
+}
+
 /// Measures and reports. The same seed gives the same numbers. False when it was interrupted.
 pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
     let seeds = if quick { 5 } else { 20 };
@@ -163,37 +168,32 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
             ("deviation", &|(_, a)| format!("{:e}", a.deviation)),
         ],
     );
-    let mut summary = Table::new([
-        "moves, of the side".to_owned(),
-        "most / mean at 25".into(),
+    let by_moves = || MOVES.iter().zip(grown.chunks(seeds as usize));
+    let ratio = |runs: &[Vec<Areas>], n: usize| format!("{:.2}", over(runs, n, &|a| a.most / a.mean));
+    let relative = |runs: &[Vec<Areas>], n: usize| format!("{:.2}", over(runs, n, &|a| a.deviation / a.mean));
+    let [at_threshold, at_end, deviation_at_end] = [
         format!("at {THRESHOLD} (paper: 8.15 until there)"),
-        "at 775".into(),
         format!("at {nodes} (paper: about 2)"),
-        "deviation / mean at 353".into(),
         format!("at {nodes}"),
-    ]);
+    ];
+    let summary = Table::of(
+        by_moves(),
+        &[
+            ("moves, of the side", &|(moves, _)| moves.to_string()),
+            ("most / mean at 25", &|(_, runs)| ratio(runs, 25)),
+            (&at_threshold, &|(_, runs)| ratio(runs, THRESHOLD)),
+            ("at 775", &|(_, runs)| ratio(runs, 775)),
+            (&at_end, &|(_, runs)| ratio(runs, nodes)),
+            ("deviation / mean at 353", &|(_, runs)| relative(runs, THRESHOLD)),
+            (&deviation_at_end, &|(_, runs)| relative(runs, nodes)),
+        ],
+    );
     let (mut size, mut spread) = (Vec::new(), Vec::new());
-    for (i, (&moves, runs)) in MOVES.iter().zip(grown.chunks(seeds as usize)).enumerate() {
-        // A tree that is full stays as it is.
-        let over = |n: usize, of: &dyn Fn(&Areas) -> f64| {
-            let at = |run: &Vec<Areas>| of(&run[n.min(run.len()) - 1]);
-            mean(runs.iter().map(at)).unwrap_or(f64::NAN)
-        };
+    for (i, (moves, runs)) in by_moves().enumerate() {
         let full = runs.iter().map(Vec::len).max().unwrap_or(1);
-        let ratio = |n: usize| format!("{:.2}", over(n, &|a| a.most / a.mean));
-        let relative = |n: usize| format!("{:.2}", over(n, &|a| a.deviation / a.mean));
-        summary.rows.push(vec![
-            moves.to_string(),
-            ratio(25),
-            ratio(THRESHOLD),
-            ratio(775),
-            ratio(nodes),
-            relative(THRESHOLD),
-            relative(nodes),
-        ]);
         let curve = |name: String, of: &dyn Fn(&Areas) -> f64| {
             let points = (1..=full).filter(|n| *n < 40 || n.is_multiple_of(10) || *n == full);
-            Curve::new(name, i, points.map(|n| (n as f64, over(n, of))).collect())
+            Curve::new(name, i, points.map(|n| (n as f64, over(runs, n, of))).collect())
         };
         size.push(curve(format!("largest, {moves}"), &|a| 100.0 * a.most));
         size.push(curve(format!("smallest, {moves}"), &|a| 100.0 * a.least).thin());
