@@ -154,7 +154,7 @@ impl Found<'_> {
             x: "width of the corridor less that of the robot, m",
             y: "share of runs solved",
         };
-        chart(labels, [Axis::Log(&[]), Axis::FromZero(Some(1.02))], &curves)
+        chart(labels, [Axis::Log, Axis::FromZero(Some(1.02))], &curves)
     }
 }
 

@@ -208,7 +208,7 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
         x: "configurations",
         y: "% of the square",
     };
-    let axes = [Axis::Log(&marks), Axis::Log(&[])];
+    let axes = [Axis::LogAt(&marks), Axis::Log];
     lab.write("rsrt-expansion-area.svg", &chart(labels, axes, &size)?)?;
     let labels = Labels { title: "Delaunay triangles of an RRT in a free square: deviation", ..labels };
     lab.write("rsrt-expansion-deviation.svg", &chart(labels, axes, &spread)?)?;

@@ -280,7 +280,7 @@ impl<'a> Found<'a> {
                 let labels = Labels { title: &title, x: "obstacles", y: "s of processor time" };
                 let marks: Vec<f64> = self.plan.levels.iter().map(|l| *l as f64).collect();
                 let name = format!("{}-{model}", mover.replace(' ', "-").to_lowercase());
-                charts.push((name, chart(labels, [Axis::Log(&marks), Axis::Log(&[])], &curves)));
+                charts.push((name, chart(labels, [Axis::LogAt(&marks), Axis::Log], &curves)));
             }
         }
         charts
