@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// What only `assets` has.
 #[derive(Clone, Debug, Default, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of `assets`")]
 pub(crate) struct Options {
     /// Write nothing; exit 0 only if every file is there and identical.

@@ -34,6 +34,7 @@ use tables::{Measured, is_ours};
 
 /// What only the suite `collide` has.
 #[derive(Clone, Debug, Default, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of the suite `collide`")]
 pub(crate) struct Options {
     /// Pairs of meshes to measure on (default: all).

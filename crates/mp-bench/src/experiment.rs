@@ -6,6 +6,6 @@ mod stats;
 mod table;
 
 pub(crate) use lab::Lab;
-pub(crate) use log::Log;
+pub(crate) use log::{Group, Log};
 pub(crate) use stats::{Median, geometric_mean, mean, ratio, seconds, short, wilson};
-pub(crate) use table::{Table, sections};
+pub(crate) use table::{Table, bit, sections};

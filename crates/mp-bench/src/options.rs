@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 /// What several suites have.
 #[derive(Clone, Debug, Args)]
+#[group(skip)]
 pub(crate) struct Common {
     /// A shorter run.
     #[arg(long)]

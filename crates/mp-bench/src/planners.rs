@@ -1,7 +1,7 @@
 //! Every planner on shipped scenes, to the first verified path: what `docs/choosing-a-planner.md` is made of.
 
 use crate::error::Result;
-use crate::experiment::{Lab, Table};
+use crate::experiment::{Lab, Table, bit};
 use crate::options::Common;
 use crate::scenes::{Planned, Rigid, bare};
 use mp_plan::median;
@@ -47,30 +47,32 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     if !complete {
         return Ok(false);
     }
-    let mut each = Table::new(["scene", "planner", "seed", "solved", "s", "checks", "iterations"]);
+    let by_planner: Vec<Case> =
+        planners().flat_map(|planner| scenes.iter().flat_map(move |scene| of(scene, planner))).collect();
+    let each = Table::of(
+        log.each(&by_planner),
+        &[
+            ("scene", &|(case, _)| case.scene.clone()),
+            ("planner", &|(case, _)| case.planner.clone()),
+            ("seed", &|(case, _)| case.seed.to_string()),
+            ("solved", &|(_, run)| bit(run.solved)),
+            ("s", &|(_, run)| format!("{:.6}", run.seconds)),
+            ("checks", &|(_, run)| run.queries.to_string()),
+            ("iterations", &|(_, run)| run.iterations.to_string()),
+        ],
+    );
+    let cell = |scene: &String, planner: &str| {
+        let runs: Vec<&Planned> = log.runs(of(scene, planner));
+        let solved = runs.iter().filter(|run| run.solved).count();
+        let seconds = runs.iter().map(|run| if run.solved { run.seconds } else { f64::INFINITY });
+        let time = median(seconds).filter(|s| s.is_finite());
+        let time = time.map_or(format!("> {cap}"), |s| format!("{s:.3}"));
+        if solved == runs.len() { time } else { format!("{time} ({solved}/{seeds})") }
+    };
     let mut summary = Table::new(["planner".to_owned()].into_iter().chain(scenes.clone()));
     for planner in planners() {
-        let mut row = vec![planner.to_owned()];
-        for scene in &scenes {
-            let runs: Vec<&Planned> = log.runs(of(scene, planner));
-            let solved = runs.iter().filter(|run| run.solved).count();
-            let seconds = runs.iter().map(|run| if run.solved { run.seconds } else { f64::INFINITY });
-            let time = median(seconds).filter(|s| s.is_finite());
-            let time = time.map_or(format!("> {cap}"), |s| format!("{s:.3}"));
-            row.push(if solved == runs.len() { time } else { format!("{time} ({solved}/{seeds})") });
-            for (seed, run) in (1..).zip(runs) {
-                each.rows.push(vec![
-                    scene.clone(),
-                    planner.to_owned(),
-                    u64::to_string(&seed),
-                    u8::from(run.solved).to_string(),
-                    format!("{:.6}", run.seconds),
-                    run.queries.to_string(),
-                    run.iterations.to_string(),
-                ]);
-            }
-        }
-        summary.rows.push(row);
+        let cells = scenes.iter().map(|scene| cell(scene, planner));
+        summary.rows.push([planner.to_owned()].into_iter().chain(cells).collect());
     }
     lab.report("planners", &summary, &each)?;
     Ok(true)

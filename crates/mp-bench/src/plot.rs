@@ -63,8 +63,10 @@ const COLOURS: [RGBColor; 10] = [
 /// How an axis is divided.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Axis<'a> {
-    /// Logarithmic, with a mark at each of these places, or where it suits.
-    Log(&'a [f64]),
+    /// Logarithmic, with marks where it suits.
+    Log,
+    /// Logarithmic, with a mark at each of these places if it is that of x.
+    LogAt(&'a [f64]),
     /// Even, as far as the curves go.
     Even,
     /// Even, from zero to this, or as far as the curves go.
@@ -73,16 +75,16 @@ pub(crate) enum Axis<'a> {
 
 impl Axis<'_> {
     fn shows(&self, v: f64) -> bool {
-        v.is_finite() && (v > 0.0 || !matches!(self, Self::Log(_)))
+        v.is_finite() && (v > 0.0 || !matches!(self, Self::Log | Self::LogAt(_)))
     }
 
-    /// From where to where it goes for these values, with some room at the ends.
-    fn range(&self, values: impl Iterator<Item = f64>, room: f64) -> Range<f64> {
+    /// From where to where it goes for these values; a logarithmic one goes beyond them by these factors.
+    fn range(&self, values: impl Iterator<Item = f64>, [below, above]: [f64; 2]) -> Range<f64> {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |b, v| (b.0.min(v), b.1.max(v)));
+        let side = if high > low { 0.02 * (high - low) } else { 1.0 };
         match self {
-            Self::Log(_) => low * (1.0 - room)..high / (1.0 - room),
-            Self::Even if high > low => low - 0.4 * room * (high - low)..high + 0.4 * room * (high - low),
-            Self::Even => low - 1.0..high + 1.0,
+            Self::Log | Self::LogAt(_) => low * below..high * above,
+            Self::Even => low - side..high + side,
             Self::FromZero(Some(top)) => 0.0..*top,
             Self::FromZero(None) if high > 0.0 => 0.0..1.05 * high,
             Self::FromZero(None) => 0.0..1.0,
@@ -103,16 +105,18 @@ pub(crate) fn chart(labels: Labels<'_>, [x, y]: [Axis<'_>; 2], curves: &[Curve])
     if points.is_empty() {
         return Err(Error::new(format!("nothing to draw in the chart `{}`", labels.title)));
     }
-    let (xs, ys) = (x.range(points.iter().map(|p| p.0), 0.05), y.range(points.iter().map(|p| p.1), 0.2));
+    let (xs, ys) =
+        (x.range(points.iter().map(|p| p.0), [0.95, 1.05]), y.range(points.iter().map(|p| p.1), [0.8, 1.25]));
+    let log = |range: &Range<f64>| range.clone().log_scale();
+    let at = |marks: &[f64]| log(&xs).with_key_points(marks.to_vec());
     match (x, y) {
-        (Axis::Log(marks), Axis::Log(_)) => {
-            let xs = xs.log_scale().with_key_points(marks.to_vec());
-            drawn(labels, 600, (xs, ys.log_scale()), curves, shown)
+        (Axis::LogAt(marks), Axis::Log | Axis::LogAt(_)) => {
+            drawn(labels, 600, (at(marks), log(&ys)), curves, shown)
         }
-        (Axis::Log(marks), _) => {
-            drawn(labels, 480, (xs.log_scale().with_key_points(marks.to_vec()), ys), curves, shown)
-        }
-        (_, Axis::Log(_)) => drawn(labels, 480, (xs, ys.log_scale()), curves, shown),
+        (Axis::LogAt(marks), _) => drawn(labels, 480, (at(marks), ys), curves, shown),
+        (Axis::Log, Axis::Log | Axis::LogAt(_)) => drawn(labels, 600, (log(&xs), log(&ys)), curves, shown),
+        (Axis::Log, _) => drawn(labels, 480, (log(&xs), ys), curves, shown),
+        (_, Axis::Log | Axis::LogAt(_)) => drawn(labels, 480, (xs, log(&ys)), curves, shown),
         _ => drawn(labels, 480, (xs, ys), curves, shown),
     }
 }
@@ -252,9 +256,9 @@ mod tests {
             ..Curve::new("RSRT", 0, vec![(2.0, 1.0), (4.0, 8.0), (8.0, f64::INFINITY)])
         };
         let labels = Labels { title: "Time", x: "obstacles", y: "s" };
-        let text = chart(labels, [Axis::Log(&[2.0, 4.0]), Axis::Log(&[])], &[curve]).unwrap();
+        let text = chart(labels, [Axis::LogAt(&[2.0, 4.0]), Axis::Log], &[curve]).unwrap();
         assert!(text.contains("RSRT") && text.contains("obstacles") && text.contains("<polyline"));
-        assert!(chart(labels, [Axis::Log(&[]); 2], &[]).is_err());
+        assert!(chart(labels, [Axis::Log; 2], &[]).is_err());
         let text = chart(
             labels,
             [Axis::Even, Axis::FromZero(None)],

@@ -11,7 +11,7 @@
 //! `valid_at_20x_finer` (0 when its path collides at twenty times finer steps).
 
 use crate::error::{IntoError, Result};
-use crate::experiment::{Lab, Table, mean};
+use crate::experiment::{Lab, Table, bit, mean};
 use crate::options::Common;
 use crate::scenes::{Planned, Rigid, bare};
 use clap::Args;
@@ -25,6 +25,7 @@ const SCENES: [&str; 4] = ["easy", "cubicles", "twisty", "apartment"];
 
 /// What only the suite `rigid` has.
 #[derive(Clone, Copy, Debug, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of the suite `rigid`")]
 pub(crate) struct Options {
     /// Longest edge of a tree, as a percentage of the extent of the space or a distance of the metric.
@@ -111,78 +112,56 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     if !complete {
         return Ok(false);
     }
-    let mut each = Table::new([
-        "scene",
-        "seed",
-        "solved",
-        "s",
-        "checks",
-        "peer_solved",
-        "peer_s",
-        "peer_checks",
-        "peer_path_free",
-    ]);
-    let mut summary = Table::new([
-        "scene",
-        "solved",
-        "median s",
-        "mean s",
-        "checks (median)",
-        "peer solved",
-        "peer median s",
-        "peer mean s",
-        "peer checks (median)",
-        "peer paths that collide",
-        "ratio of medians",
-    ]);
-    let groups = log.groups(&cases, |case| case.scene.as_str());
-    for (scene, runs) in &groups {
-        each.rows.extend(runs.iter().map(|(case, run)| row(case, run)));
-        summary.rows.push(summed_up(scene, runs));
-    }
-    lab.report("rigid", &summary, &each)?;
-    Ok(groups.iter().flat_map(|(_, runs)| runs).all(|(_, run)| run.ours.solved))
-}
-
-/// A line of one run.
-fn row(case: &Case, run: &Run) -> Vec<String> {
-    let Planned { solved, seconds, queries, .. } = run.ours;
-    let mut row = vec![case.scene.clone(), case.seed.to_string(), u8::from(solved).to_string()];
-    row.extend([format!("{seconds:.6}"), queries.to_string()]);
-    row.extend(match run.theirs {
-        Some(p) => [
-            p.solved.to_string(),
-            format!("{:.6}", p.time),
-            p.checks.to_string(),
-            p.valid_at_20x_finer.to_string(),
+    let peer = |run: &Run, cell: &dyn Fn(Theirs) -> String| run.theirs.map(cell).unwrap_or_default();
+    let each = Table::of(
+        log.each(&cases),
+        &[
+            ("scene", &|(case, _)| case.scene.clone()),
+            ("seed", &|(case, _)| case.seed.to_string()),
+            ("solved", &|(_, run)| bit(run.ours.solved)),
+            ("s", &|(_, run)| format!("{:.6}", run.ours.seconds)),
+            ("checks", &|(_, run)| run.ours.queries.to_string()),
+            ("peer_solved", &|(_, run)| peer(run, &|p| p.solved.to_string())),
+            ("peer_s", &|(_, run)| peer(run, &|p| format!("{:.6}", p.time))),
+            ("peer_checks", &|(_, run)| peer(run, &|p| p.checks.to_string())),
+            ("peer_path_free", &|(_, run)| peer(run, &|p| p.valid_at_20x_finer.to_string())),
         ],
-        None => [const { String::new() }; 4],
-    });
-    row
+    );
+    let show = |v: Option<f64>, digits: usize| v.map_or("–".into(), |v| format!("{v:.digits$}"));
+    let share = |n: usize, of: usize| if of == 0 { "–".into() } else { format!("{n}/{of}") };
+    let groups = log.groups(&cases, |case| &case.scene);
+    let solved = groups.iter().all(|group| group.runs.iter().all(|(_, run)| run.ours.solved));
+    // A run that was not solved counts with the time it was given.
+    let summary = Table::of(
+        groups
+            .iter()
+            .map(|group| (group, group.runs.iter().filter_map(|(_, r)| r.theirs).collect::<Vec<_>>())),
+        &[
+            ("scene", &|(g, _)| g.key.clone()),
+            ("solved", &|(g, _)| share(g.count(|r| r.ours.solved), g.runs.len())),
+            ("median s", &|(g, _)| show(median(g.values(|r| r.ours.seconds)), 4)),
+            ("mean s", &|(g, _)| show(mean(g.values(|r| r.ours.seconds)), 4)),
+            ("checks (median)", &|(g, _)| show(median(g.values(|r| r.ours.queries as f64)), 0)),
+            ("peer solved", &|(_, p)| share(solutions(p).count(), p.len())),
+            ("peer median s", &|(_, p)| show(median(p.iter().map(|r| r.time)), 4)),
+            ("peer mean s", &|(_, p)| show(mean(p.iter().map(|r| r.time)), 4)),
+            ("peer checks (median)", &|(_, p)| show(median(p.iter().map(|r| r.checks)), 0)),
+            ("peer paths that collide", &|(_, p)| {
+                share(solutions(p).filter(|r| r.valid_at_20x_finer == 0).count(), solutions(p).count())
+            }),
+            ("ratio of medians", &|(g, p)| {
+                let medians = median(p.iter().map(|r| r.time)).zip(median(g.values(|r| r.ours.seconds)));
+                show(medians.map(|(theirs, ours)| theirs / ours), 1)
+            }),
+        ],
+    );
+    lab.report("rigid", &summary, &each)?;
+    Ok(solved)
 }
 
-/// A line of one scene. A run that was not solved counts with the time it was given.
-fn summed_up(scene: &str, runs: &[(&Case, &Run)]) -> Vec<String> {
-    let ours = || runs.iter().map(|(_, run)| run.ours);
-    let theirs = || runs.iter().filter_map(|(_, run)| run.theirs);
-    let show = |v: Option<f64>, digits: usize| v.map_or("–".into(), |v| format!("{v:.digits$}"));
-    let count = |n: usize, of: usize| if of == 0 { "–".into() } else { format!("{n}/{of}") };
-    let (own, peer) = (median(ours().map(|r| r.seconds)), median(theirs().map(|r| r.time)));
-    let solved = theirs().filter(|r| r.solved == 1).count();
-    let bad = theirs().filter(|r| r.solved == 1 && r.valid_at_20x_finer == 0).count();
-    vec![
-        scene.to_owned(),
-        count(ours().filter(|r| r.solved).count(), runs.len()),
-        show(own, 4),
-        show(mean(ours().map(|r| r.seconds)), 4),
-        show(median(ours().map(|r| r.queries as f64)), 0),
-        count(solved, theirs().count()),
-        show(peer, 4),
-        show(mean(theirs().map(|r| r.time)), 4),
-        show(median(theirs().map(|r| r.checks)), 0),
-        count(bad, solved),
-        show(peer.zip(own).map(|(p, m)| p / m), 1),
-    ]
+/// The runs that the other program solved.
+fn solutions(theirs: &[Theirs]) -> impl Iterator<Item = &Theirs> {
+    theirs.iter().filter(|run| run.solved == 1)
 }
 
 /// One run of the other program.

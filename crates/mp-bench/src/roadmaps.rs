@@ -29,6 +29,7 @@ const SEEDS: u32 = 20;
 
 /// What only the suite `roadmaps` has.
 #[derive(Clone, Copy, Debug, Default, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of the suite `roadmaps`")]
 pub(crate) struct Options {
     /// Collision queries a run may ask [default: 100000; 10000 with --quick].

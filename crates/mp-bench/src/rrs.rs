@@ -14,13 +14,13 @@ mod tables;
 use crate::error::Result;
 use crate::experiment::Lab;
 use crate::options::Common;
-use crate::output::print;
 use clap::Args;
 use series::{Plan, measure};
 use tables::Found;
 
 /// What only the suite `rrs` has.
 #[derive(Clone, Copy, Debug, Default, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of the suite `rrs`")]
 pub(crate) struct Options {
     /// Let a robot with noisy wheels and a noisy laser follow the paths instead.
@@ -51,12 +51,8 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let mut log = lab.log(&name, solve::ITERATIONS as f64)?;
     let complete = measure(&plan, &lab, &mut log)?;
     let found = Found::new(&log, &plan);
-    let markdown = found.markdown();
-    print(&markdown)?;
-    lab.write(&format!("{name}.md"), &markdown)?;
-    lab.report(&format!("{name}-summary"), &found.summary(), &found.each())?;
-    for (file, chart) in found.charts() {
-        lab.write(&format!("{name}-{file}.svg"), &chart?)?;
-    }
+    // Of what was interrupted there may be nothing to draw.
+    let charts = if complete { found.charts() } else { Vec::new() };
+    lab.publish(&name, &found.markdown(), [&found.summary(), &found.each()], charts)?;
     Ok(complete)
 }

@@ -15,7 +15,7 @@ mod tables;
 use crate::error::Result;
 use crate::experiment::Lab;
 use crate::options::{Common, positive};
-use crate::output::{note, print};
+use crate::output::note;
 use clap::Args;
 use clutter::LEVELS;
 use std::time::Duration;
@@ -28,6 +28,7 @@ const INSTANCES: u32 = 10;
 
 /// What only the suite `rsrt` has.
 #[derive(Clone, Copy, Debug, Default, Args)]
+#[group(skip)]
 #[command(next_help_heading = "Of the suite `rsrt`")]
 pub(crate) struct Options {
     /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6; 0.25 with --quick].
@@ -52,13 +53,9 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let mut log = lab.log(&name, cap)?;
     let complete = series::measure(&plan, &lab, &mut log)?;
     let found = tables::Found::new(&log, &plan);
-    let markdown = found.markdown();
-    print(&markdown)?;
-    lab.write(&format!("{name}.md"), &markdown)?;
-    lab.report(&format!("{name}-summary"), &found.summary(), &found.each())?;
-    for (file, chart) in found.charts() {
-        lab.write(&format!("{name}-{file}.svg"), &chart?)?;
-    }
+    // Of what was interrupted there may be nothing to draw.
+    let charts = if complete { found.charts() } else { Vec::new() };
+    lab.publish(&name, &found.markdown(), [&found.summary(), &found.each()], charts)?;
     note(&format!("{} runs of up to {:?} each", log.all().len(), Duration::from_secs_f64(cap)));
     Ok(complete)
 }

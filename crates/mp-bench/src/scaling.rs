@@ -61,33 +61,32 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     if !complete {
         return Ok(false);
     }
-    let mut table = Table::new(["space", "nodes", "nodes/s", "bare loop nodes/s", "peer nodes/s", "ratio"]);
-    let mut reached = true;
-    for (space, runs) in log.groups(&cases, |case| &case.space) {
-        for (_, run) in runs {
-            reached &= run.ours.len() == sizes.len();
-            table.rows.extend(run.ours.iter().map(|row| cells(space, row, &run.theirs)));
-        }
-    }
+    let reached = log.each(&cases).all(|(_, run)| run.ours.len() == sizes.len());
+    // Where the other ran out of time, its rate at the size it reached: no less than it would be here.
+    let peer =
+        |run: &Run, nodes: usize| run.theirs.iter().find(|t| t.nodes >= nodes).or(run.theirs.last()).copied();
+    let rows = log
+        .each(&cases)
+        .flat_map(|(case, run)| run.ours.iter().map(move |row| (&case.space, row, peer(run, row.nodes))));
+    let table = Table::of(
+        rows,
+        &[
+            ("space", &|(space, ..)| (*space).clone()),
+            ("nodes", &|(_, row, _)| row.nodes.to_string()),
+            ("nodes/s", &|(_, row, _)| format!("{:.0}", row.rate())),
+            ("bare loop nodes/s", &|(_, row, _)| format!("{:.0}", row.nodes as f64 / row.bare)),
+            ("peer nodes/s", &|(_, row, peer)| match peer {
+                None => "–".to_owned(),
+                Some(p) if p.nodes < row.nodes => format!("{:.0} (at {})", p.avg_nodes_per_s, p.nodes),
+                Some(p) => format!("{:.0}", p.avg_nodes_per_s),
+            }),
+            ("ratio", &|(_, row, peer)| {
+                peer.map_or("–".to_owned(), |p| format!("{:.1}", row.rate() / p.avg_nodes_per_s))
+            }),
+        ],
+    );
     lab.report("scaling", &table, &table)?;
     Ok(reached)
-}
-
-/// A line of one size.
-fn cells(space: &str, row: &Row, theirs: &[Theirs]) -> Vec<String> {
-    // Where it ran out of time, its rate at the size it reached: no less than it would be here.
-    let peer = theirs.iter().find(|t| t.nodes >= row.nodes).or(theirs.last());
-    vec![
-        space.to_owned(),
-        row.nodes.to_string(),
-        format!("{:.0}", row.rate()),
-        format!("{:.0}", row.nodes as f64 / row.bare),
-        peer.map_or("–".into(), |p| match p.nodes < row.nodes {
-            true => format!("{:.0} (at {})", p.avg_nodes_per_s, p.nodes),
-            false => format!("{:.0}", p.avg_nodes_per_s),
-        }),
-        peer.map_or("–".into(), |p| format!("{:.1}", row.rate() / p.avg_nodes_per_s)),
-    ]
 }
 
 /// What the other program says of one space; sizes it does not reach in time are missing.

@@ -115,31 +115,20 @@ fn edges<C: Space<State = Isometry3<f64>>>(
 
 /// A row for each scene.
 pub(crate) fn table(all: &[Costs]) -> Table {
-    let mut table = Table::new([
-        "scene",
-        "step",
-        "edges",
-        "free by discrete checks",
-        "certified free",
-        "discrete, µs",
-        "certified, µs",
-        "ratio",
-    ]);
-    for costs in all {
-        let (discrete, certified) = (&costs.discrete, &costs.certified);
-        let free = |checked: &Checked| checked.free.iter().filter(|free| **free).count().to_string();
-        table.rows.push(vec![
-            costs.scene.to_owned(),
-            format!("{:.0}%", 100.0 * costs.step),
-            discrete.free.len().to_string(),
-            free(discrete),
-            free(certified),
-            format!("{:.1}", discrete.each),
-            format!("{:.1}", certified.each),
-            format!("{:.2}", certified.each / discrete.each),
-        ]);
-    }
-    table
+    let free = |checked: &Checked| checked.free.iter().filter(|free| **free).count().to_string();
+    Table::of(
+        all,
+        &[
+            ("scene", &|c| c.scene.to_owned()),
+            ("step", &|c| format!("{:.0}%", 100.0 * c.step)),
+            ("edges", &|c| c.discrete.free.len().to_string()),
+            ("free by discrete checks", &|c| free(&c.discrete)),
+            ("certified free", &|c| free(&c.certified)),
+            ("discrete, µs", &|c| format!("{:.1}", c.discrete.each)),
+            ("certified, µs", &|c| format!("{:.1}", c.certified.each)),
+            ("ratio", &|c| format!("{:.2}", c.certified.each / c.discrete.each)),
+        ],
+    )
 }
 
 #[cfg(test)]

@@ -184,24 +184,21 @@ pub(crate) fn agreement(all: &[Measured]) -> Table {
 
 /// A line for every library, pair, set and query.
 pub(crate) fn each(all: &[Measured]) -> Table {
-    let head =
-        ["lib", "pair", "set", "query", "answers", "median_ns", "least_ns", "differ", "relative_difference"];
-    let mut table = Table::new(head);
-    for m in all {
-        for r in &m.records {
-            let (_, differ, largest) = m.differences(r).unwrap_or((0, 0, 0.0));
-            let what = &r.what;
-            let mut row = vec![what.lib.clone(), m.pair.clone(), what.set.clone(), what.query.clone()];
-            row.extend([
-                r.answers.len().to_string(),
-                format!("{:.1}", r.median()),
-                format!("{:.1}", r.least),
-            ]);
-            row.extend([differ.to_string(), format!("{largest:.1e}")]);
-            table.rows.push(row);
-        }
-    }
-    table
+    let of = |m: &Measured, r: &Record| m.differences(r).unwrap_or((0, 0, 0.0));
+    Table::of(
+        all.iter().flat_map(|m| m.records.iter().map(move |r| (m, r))),
+        &[
+            ("lib", &|(_, r)| r.what.lib.clone()),
+            ("pair", &|(m, _)| m.pair.clone()),
+            ("set", &|(_, r)| r.what.set.clone()),
+            ("query", &|(_, r)| r.what.query.clone()),
+            ("answers", &|(_, r)| r.answers.len().to_string()),
+            ("median_ns", &|(_, r)| format!("{:.1}", r.median())),
+            ("least_ns", &|(_, r)| format!("{:.1}", r.least)),
+            ("differ", &|(m, r)| of(m, r).1.to_string()),
+            ("relative_difference", &|(m, r)| format!("{:.1e}", of(m, r).2)),
+        ],
+    )
 }
 
 /// Whether each of our own instruction sets gives the same answers.

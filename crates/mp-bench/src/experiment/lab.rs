@@ -153,6 +153,20 @@ impl Lab {
         write(&self.file(name), text.as_bytes())
     }
 
+    /// Prints `text`, what was found beside what was expected; writes it with a summary, all runs and charts.
+    pub(crate) fn publish(
+        &self,
+        name: &str,
+        text: &str,
+        [summary, each]: [&Table; 2],
+        charts: Vec<(String, Result<String>)>,
+    ) -> Result<()> {
+        print(text)?;
+        self.write(&format!("{name}.md"), text)?;
+        self.report(&format!("{name}-summary"), summary, each)?;
+        charts.into_iter().try_for_each(|(file, chart)| self.write(&format!("{name}-{file}.svg"), &chart?))
+    }
+
     /// Prints `summary` and writes it with `each`, one line per run.
     pub(crate) fn report(&self, name: &str, summary: &Table, each: &Table) -> Result<()> {
         self.report_text(name, &(summary.markdown() + "\n"), each)

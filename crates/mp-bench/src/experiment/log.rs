@@ -28,6 +28,25 @@ pub(crate) struct Log<K, R> {
     file: Mutex<File>,
 }
 
+/// Runs whose cases have a key in common.
+#[derive(Clone, Debug)]
+pub(crate) struct Group<'a, G, K, R> {
+    pub(crate) key: G,
+    pub(crate) runs: Vec<(&'a K, &'a R)>,
+}
+
+impl<G, K, R> Group<'_, G, K, R> {
+    /// How many of the runs are such.
+    pub(crate) fn count(&self, such: impl Fn(&R) -> bool) -> usize {
+        self.runs.iter().filter(|(_, run)| such(run)).count()
+    }
+
+    /// A value of each run.
+    pub(crate) fn values(&self, of: impl Fn(&R) -> f64) -> impl Iterator<Item = f64> {
+        self.runs.iter().map(move |(_, run)| of(run))
+    }
+}
+
 /// What was run.
 pub(crate) trait Case: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync {}
 impl<K: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync> Case for K {}
@@ -94,22 +113,27 @@ impl<K: Case, R: Record> Log<K, R> {
         cases.into_iter().filter_map(|case| self.get(&case)).collect()
     }
 
-    /// What is known of `cases`, in groups of neighbours for which `key` gives the same.
-    pub(crate) fn groups<'c, G: PartialEq>(
-        &self,
-        cases: &'c [K],
-        key: impl Fn(&'c K) -> G,
-    ) -> Vec<(G, Vec<(&'c K, &R)>)> {
-        let mut groups: Vec<(G, Vec<(&K, &R)>)> = Vec::new();
+    /// What is known of `cases`, in groups of neighbours of which `key` gives the same.
+    pub(crate) fn groups<'a, G: PartialEq>(
+        &'a self,
+        cases: &'a [K],
+        key: impl Fn(&'a K) -> G,
+    ) -> Vec<Group<'a, G, K, R>> {
+        let mut groups: Vec<Group<'_, G, K, R>> = Vec::new();
         for case in cases {
             let Some(run) = self.get(case) else { continue };
             let key = key(case);
             match groups.last_mut() {
-                Some((last, runs)) if *last == key => runs.push((case, run)),
-                _ => groups.push((key, vec![(case, run)])),
+                Some(last) if last.key == key => last.runs.push((case, run)),
+                _ => groups.push(Group { key, runs: vec![(case, run)] }),
             }
         }
         groups
+    }
+
+    /// What is known of `cases`, each with its run.
+    pub(crate) fn each<'a>(&'a self, cases: &'a [K]) -> impl Iterator<Item = (&'a K, &'a R)> {
+        cases.iter().filter_map(|case| Some((case, self.get(case)?)))
     }
 
     /// All runs, sorted.

@@ -1,5 +1,8 @@
 //! Tables, as Markdown, as comma-separated values and as JSON.
 
+/// A heading, and what the cell below it says of an item.
+pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
+
 /// A table, to be printed and written.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
@@ -11,6 +14,14 @@ impl Table {
     /// With these headings and no rows.
     pub(crate) fn new(head: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self { head: head.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    }
+
+    /// With a row for each of `items`.
+    pub(crate) fn of<T>(items: impl IntoIterator<Item = T>, columns: &[Column<'_, T>]) -> Self {
+        let mut table = Self::new(columns.iter().map(|(head, _)| *head));
+        table.rows =
+            items.into_iter().map(|item| columns.iter().map(|(_, cell)| cell(&item)).collect()).collect();
+        table
     }
 
     /// In Markdown.
@@ -48,6 +59,11 @@ impl Table {
     }
 }
 
+/// A cell that says whether: 1 or 0.
+pub(crate) fn bit(yes: bool) -> String {
+    u8::from(yes).to_string()
+}
+
 /// Tables under headings of this many `#`.
 pub(crate) fn sections(level: usize, parts: &[(&str, Table)]) -> String {
     let part =
@@ -63,6 +79,8 @@ mod tests {
     fn tables() {
         let mut table = Table::new(["a", "b"]);
         table.rows.push(vec!["1,5".into(), "x".into()]);
+        let same = Table::of(["1,5"], &[("a", &|v| (*v).to_owned()), ("b", &|_| "x".to_owned())]);
+        assert_eq!((&same.head, &same.rows), (&table.head, &table.rows));
         assert_eq!(table.csv(), "a,b\n\"1,5\",x\n");
         assert_eq!(table.json(), serde_json::json!([{ "a": "1,5", "b": "x" }]));
         assert_eq!(table.markdown(), "| a | b |\n| --- | --- |\n| 1,5 | x |");

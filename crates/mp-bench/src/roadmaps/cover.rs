@@ -3,7 +3,7 @@
 use super::queries::{local, steer};
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
-use crate::experiment::{Lab, Median, Table, short};
+use crate::experiment::{Group, Lab, Median, Table, short};
 use crate::scenes::{Rigid, either};
 use mp_cspace::{
     DefaultNn, Direction, Extension, Iterations, LocalPlanner, Metric, NodeId, Nodes, Reach, Rng, Space,
@@ -32,24 +32,6 @@ struct Case {
 
 /// Measures. None when it was interrupted.
 pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<Table>> {
-    let mut table = Table::new([
-        "scene",
-        "Visib-PRM nodes (95%)",
-        "of these guards",
-        "estimate",
-        "seen",
-        "seen from the largest component",
-        "components",
-        "s",
-        "PRM nodes to see as much (95%)",
-        "components",
-        "s",
-        "PRM nodes to see as much from the largest component (95%)",
-        "components",
-        "s",
-        "nodes PRM : Visib-PRM, seen",
-        "connected",
-    ]);
     let (scenes, seeds) = if quick { (&SCENES[..1], 2) } else { (&SCENES[..], SEEDS) };
     let case = |scene: &str, seed| Case { scene: scene.to_owned(), seed };
     let cases: Vec<Case> =
@@ -60,11 +42,8 @@ pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<Table>> {
         let i = scenes.iter().position(|scene| *scene == case.scene).unwrap_or(0);
         Ok(Some(either!(&ready[i], scene => on(scene, case.seed))?))
     })?;
-    for (scene, runs) in log.groups(&cases, |case| &case.scene) {
-        let runs: Vec<&Measured> = runs.into_iter().map(|(_, run)| run).collect();
-        table.rows.push([scene.clone()].into_iter().chain(row(&runs)).collect());
-    }
-    Ok(complete.then_some(table))
+    let groups = log.groups(&cases, |case| case.scene.as_str());
+    Ok(complete.then(|| table(groups)))
 }
 
 /// Parts of the free samples: with a motion from a node, and from one of the largest component.
@@ -202,31 +181,43 @@ fn on<M: RigidMotion>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     Ok(Measured { few, guards, estimate, seen: aim, many: needed })
 }
 
-fn row(found: &[&Measured]) -> Vec<String> {
-    let median = |value: &dyn Fn(&Measured) -> f64| {
-        Median::of(found.iter().map(|run| value(run))).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
+/// The medians of each scene.
+fn table(groups: Vec<Group<'_, &str, Case, Measured>>) -> Table {
+    type Scene<'a> = Group<'a, &'a str, Case, Measured>;
+    let median = |scene: &Scene<'_>, value: &dyn Fn(&Measured) -> f64| {
+        let none = Median { median: 0.0, low: 0.0, high: 0.0 };
+        Median::of(scene.values(value)).unwrap_or(none)
+    };
+    let few = |scene: &Scene<'_>, value: fn(&Measured) -> f64| median(scene, &value).median;
+    let many = |scene: &Scene<'_>, i: usize, value: fn(&Needed) -> f64| {
+        median(scene, &|m| m.many[i].as_ref().map_or(f64::INFINITY, value))
     };
     let count = |v: f64| format!("{v:.0}");
     let percent = |v: f64| format!("{:.1}%", 100.0 * v);
-    let many = |i: usize, value: fn(&Needed) -> f64| {
-        median(&move |m| m.many[i].as_ref().map_or(f64::INFINITY, value))
-    };
-    let few = median(&|m| m.few.nodes);
-    let mut cells = vec![
-        few.cell("–", count),
-        count(median(&|m| m.guards).median),
-        percent(median(&|m| m.estimate).median),
-        percent(median(&|m| m.seen.any).median),
-        percent(median(&|m| m.seen.largest).median),
-        count(median(&|m| m.few.components).median),
-        short(median(&|m| m.few.seconds).median),
-    ];
-    let sizes = [0, 1].map(|i| many(i, |m| m.nodes));
-    for (i, nodes) in sizes.iter().enumerate() {
-        cells.push(nodes.cell(&format!("> {MOST}"), count));
-        cells.push(count(many(i, |m| m.components).median));
-        cells.push(short(many(i, |m| m.seconds).median));
-    }
-    cells.extend(sizes.map(|nodes| short(nodes.median / few.median)));
-    cells
+    let beyond = format!("> {MOST}");
+    let more =
+        |scene: &Scene<'_>, i: usize| short(many(scene, i, |m| m.nodes).median / few(scene, |m| m.few.nodes));
+    Table::of(
+        groups,
+        &[
+            ("scene", &|s| s.key.to_owned()),
+            ("Visib-PRM nodes (95%)", &|s| median(s, &|m| m.few.nodes).cell("–", count)),
+            ("of these guards", &|s| count(few(s, |m| m.guards))),
+            ("estimate", &|s| percent(few(s, |m| m.estimate))),
+            ("seen", &|s| percent(few(s, |m| m.seen.any))),
+            ("seen from the largest component", &|s| percent(few(s, |m| m.seen.largest))),
+            ("components", &|s| count(few(s, |m| m.few.components))),
+            ("s", &|s| short(few(s, |m| m.few.seconds))),
+            ("PRM nodes to see as much (95%)", &|s| many(s, 0, |m| m.nodes).cell(&beyond, count)),
+            ("components", &|s| count(many(s, 0, |m| m.components).median)),
+            ("s", &|s| short(many(s, 0, |m| m.seconds).median)),
+            ("PRM nodes to see as much from the largest component (95%)", &|s| {
+                many(s, 1, |m| m.nodes).cell(&beyond, count)
+            }),
+            ("components", &|s| count(many(s, 1, |m| m.components).median)),
+            ("s", &|s| short(many(s, 1, |m| m.seconds).median)),
+            ("nodes PRM : Visib-PRM, seen", &|s| more(s, 0)),
+            ("connected", &|s| more(s, 1)),
+        ],
+    )
 }

@@ -48,46 +48,50 @@ impl Found<'_> {
     /// counts as beyond the budget.
     pub(super) fn summary(&self, scenes: &[String]) -> Table {
         let [few, some, all] = self.budgets();
-        let mut head: Vec<String> = ["scene", "planner"].map(str::to_owned).to_vec();
-        head.extend([few, some].map(|budget| format!("by {}", thousands(budget as f64))));
-        head.push(format!("solved by {}", thousands(all as f64)));
-        let rest = ["95%", "queries (95%)", "build s", "query ms", "nodes", "edges", "components", "motions"];
-        let mut table = Table::new(head.into_iter().chain(rest.map(str::to_owned)));
-        for scene in scenes {
-            for planner in planners() {
-                let runs = self.runs(scene, planner);
-                if runs.is_empty() {
-                    continue;
-                }
-                let [first, second, (solved, of)] =
-                    self.budgets().map(|budget| self.share(scene, planner, budget));
-                let (low, high) = wilson(solved, of);
-                let median = |value: &dyn Fn(&Run) -> f64| {
-                    let values = runs.iter().map(|run| value(run));
-                    Median::of(values).unwrap_or(Median { median: 0.0, low: 0.0, high: 0.0 })
-                };
-                let count = |value: &dyn Fn(&Run) -> f64| format!("{:.0}", median(value).median);
-                let of_map = |cell: String| if planner == BESIDE { "–".to_owned() } else { cell };
-                let queries = median(&|run| if run.solved { run.checks as f64 } else { f64::INFINITY });
-                let again = runs.iter().filter_map(|run| run.again);
-                table.rows.push(vec![
-                    scene.clone(),
-                    planner.to_owned(),
-                    first.0.to_string(),
-                    second.0.to_string(),
-                    format!("{solved}/{of}"),
-                    format!("{:.0}–{:.0}%", 100.0 * low, 100.0 * high),
-                    queries.cell(&format!("> {}", thousands(all as f64)), thousands),
-                    short(median(&|run| run.seconds).median),
-                    Median::of(again).map_or_else(|| "–".to_owned(), |m| short(1e3 * m.median)),
-                    count(&|run| run.nodes as f64),
-                    of_map(count(&|run| run.edges as f64)),
-                    of_map(count(&|run| run.components as f64)),
-                    count(&|run| run.motions as f64),
-                ]);
-            }
-        }
-        table
+        let [by_few, by_some] = [few, some].map(|budget| format!("by {}", thousands(budget as f64)));
+        let solved = format!("solved by {}", thousands(all as f64));
+        let beyond = format!("> {}", thousands(all as f64));
+        let rows = scenes.iter().flat_map(|scene| {
+            planners().into_iter().map(move |planner| (scene, planner, self.runs(scene, planner)))
+        });
+        let median = |runs: &[&Run], value: fn(&Run) -> f64| {
+            let none = Median { median: 0.0, low: 0.0, high: 0.0 };
+            Median::of(runs.iter().map(|run| value(run))).unwrap_or(none)
+        };
+        let count = |runs: &[&Run], value: fn(&Run) -> f64| format!("{:.0}", median(runs, value).median);
+        let of_map = |planner: &str, cell: String| if planner == BESIDE { "–".to_owned() } else { cell };
+        Table::of(
+            rows.filter(|(.., runs)| !runs.is_empty()),
+            &[
+                ("scene", &|(scene, ..)| (*scene).clone()),
+                ("planner", &|(_, planner, _)| (*planner).to_owned()),
+                (&by_few, &|(scene, planner, _)| self.share(scene, planner, few).0.to_string()),
+                (&by_some, &|(scene, planner, _)| self.share(scene, planner, some).0.to_string()),
+                (&solved, &|(scene, planner, runs)| {
+                    format!("{}/{}", self.share(scene, planner, all).0, runs.len())
+                }),
+                ("95%", &|(scene, planner, runs)| {
+                    let (low, high) = wilson(self.share(scene, planner, all).0, runs.len());
+                    format!("{:.0}–{:.0}%", 100.0 * low, 100.0 * high)
+                }),
+                ("queries (95%)", &|(.., runs)| {
+                    let queries =
+                        median(runs, |run| if run.solved { run.checks as f64 } else { f64::INFINITY });
+                    queries.cell(&beyond, thousands)
+                }),
+                ("build s", &|(.., runs)| short(median(runs, |run| run.seconds).median)),
+                ("query ms", &|(.., runs)| {
+                    let again = Median::of(runs.iter().filter_map(|run| run.again));
+                    again.map_or_else(|| "–".to_owned(), |m| short(1e3 * m.median))
+                }),
+                ("nodes", &|(.., runs)| count(runs, |run| run.nodes as f64)),
+                ("edges", &|(_, planner, runs)| of_map(planner, count(runs, |run| run.edges as f64))),
+                ("components", &|(_, planner, runs)| {
+                    of_map(planner, count(runs, |run| run.components as f64))
+                }),
+                ("motions", &|(.., runs)| count(runs, |run| run.motions as f64)),
+            ],
+        )
     }
 
     /// The width at which the planner falls under half by so many queries, and from where to where it may be: where the
@@ -150,7 +154,7 @@ impl Found<'_> {
             x: "width of the corridor less that of the robot, m",
             y: "share of runs solved",
         };
-        chart(labels, [Axis::Log(&[]), Axis::FromZero(Some(1.02))], &curves)
+        chart(labels, [Axis::Log, Axis::FromZero(Some(1.02))], &curves)
     }
 }
 

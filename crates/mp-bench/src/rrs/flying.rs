@@ -1,9 +1,9 @@
 //! RRT against RRS for a body that flies, with the same steps.
 
 use crate::error::Result;
-use crate::experiment::{Lab, Table, mean};
+use crate::experiment::{Lab, Table, bit, mean};
 use crate::options::Common;
-use crate::scenes::{Rigid, bare};
+use crate::scenes::{Planned, Rigid, bare};
 use mp_plan::median;
 use serde::{Deserialize, Serialize};
 
@@ -50,29 +50,32 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     if !complete {
         return Ok(false);
     }
-    let mut each = Table::new(["scene", "step", "planner", "seed", "solved", "iterations", "s"]);
-    let mut summary =
-        Table::new(["scene", "step", "planner", "solved", "mean iterations", "median", "mean s"]);
-    for (head, runs) in log.groups(&cases, |case| [&case.scene, &case.step, &case.planner]) {
-        let head = head.map(String::clone);
-        // A run that was not solved took all iterations.
-        let iterations = || runs.iter().map(|(_, run)| if run.solved { run.iterations } else { most } as f64);
-        let solved = runs.iter().filter(|(_, run)| run.solved).count();
-        for (case, run) in &runs {
-            let tail = [case.seed.to_string(), u8::from(run.solved).to_string(), run.iterations.to_string()];
-            each.rows.push(head.iter().cloned().chain(tail).chain([format!("{:.4}", run.seconds)]).collect());
-        }
-        summary.rows.push(
-            head.into_iter()
-                .chain([
-                    format!("{solved} of {seeds}"),
-                    format!("{:.0}", mean(iterations()).unwrap_or(f64::NAN)),
-                    format!("{:.0}", median(iterations()).unwrap_or(f64::NAN)),
-                    format!("{:.2}", mean(runs.iter().map(|(_, run)| run.seconds)).unwrap_or(f64::NAN)),
-                ])
-                .collect(),
-        );
-    }
+    let each = Table::of(
+        log.each(&cases),
+        &[
+            ("scene", &|(case, _)| case.scene.clone()),
+            ("step", &|(case, _)| case.step.clone()),
+            ("planner", &|(case, _)| case.planner.clone()),
+            ("seed", &|(case, _)| case.seed.to_string()),
+            ("solved", &|(_, run)| bit(run.solved)),
+            ("iterations", &|(_, run)| run.iterations.to_string()),
+            ("s", &|(_, run)| format!("{:.4}", run.seconds)),
+        ],
+    );
+    // A run that was not solved took all iterations.
+    let iterations = |run: &Planned| if run.solved { run.iterations as f64 } else { most as f64 };
+    let summary = Table::of(
+        log.groups(&cases, |case| [&case.scene, &case.step, &case.planner]),
+        &[
+            ("scene", &|g| g.key[0].clone()),
+            ("step", &|g| g.key[1].clone()),
+            ("planner", &|g| g.key[2].clone()),
+            ("solved", &|g| format!("{} of {seeds}", g.count(|run| run.solved))),
+            ("mean iterations", &|g| format!("{:.0}", mean(g.values(iterations)).unwrap_or(f64::NAN))),
+            ("median", &|g| format!("{:.0}", median(g.values(iterations)).unwrap_or(f64::NAN))),
+            ("mean s", &|g| format!("{:.2}", mean(g.values(|run| run.seconds)).unwrap_or(f64::NAN))),
+        ],
+    );
     lab.report(&name, &summary, &each)?;
     Ok(true)
 }

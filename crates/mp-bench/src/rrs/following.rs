@@ -2,7 +2,7 @@
 
 use super::follow::{Followed, KINDS, planned_and_followed};
 use crate::error::{IntoError, Result};
-use crate::experiment::{Lab, Table, mean};
+use crate::experiment::{Lab, Table, bit, mean};
 use crate::options::Common;
 use crate::plot::save_drawing;
 use mp_render::{Drawing, Item};
@@ -25,27 +25,39 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     })?;
     let Some(done) = done else { return Ok(false) };
     let of = |kind: usize| &done[kind * trials as usize..(kind + 1) * trials as usize];
-    let mut summary = Table::new([
-        "path",
-        "followed",
-        "collisions",
-        "arrived",
-        "length, cm",
-        "clearance planned, cm",
-        "executed, cm",
-        "least tenth below, cm",
-    ]);
-    let mut each = Table::new(["path", "trial", "arrived", "length_m", "planned_m", "executed_m"]);
-    for (k, kind) in KINDS.iter().enumerate() {
-        let all: Vec<&Followed> = of(k).iter().flatten().collect();
-        for (trial, one) in of(k).iter().enumerate() {
-            let Some(f) = one else { continue };
-            let numbers = [f.length, f.planned, f.executed].map(|v| format!("{v:.4}"));
-            let head = [(*kind).to_owned(), trial.to_string(), u8::from(f.arrived).to_string()];
-            each.rows.push(head.into_iter().chain(numbers).collect());
-        }
-        summary.rows.push(row(kind, &all));
-    }
+    let trial = |i: usize| (KINDS[i / trials as usize], i % trials as usize);
+    let each = Table::of(
+        done.iter().enumerate().filter_map(|(i, f)| Some((trial(i), f.as_ref()?))),
+        &[
+            ("path", &|((kind, _), _)| (*kind).to_owned()),
+            ("trial", &|((_, trial), _)| trial.to_string()),
+            ("arrived", &|(_, f)| bit(f.arrived)),
+            ("length_m", &|(_, f)| format!("{:.4}", f.length)),
+            ("planned_m", &|(_, f)| format!("{:.4}", f.planned)),
+            ("executed_m", &|(_, f)| format!("{:.4}", f.executed)),
+        ],
+    );
+    let centimetres = |all: &[&Followed], value: fn(&Followed) -> f64| {
+        format!("{:.2}", 100.0 * mean(all.iter().map(|f| value(f))).unwrap_or(0.0))
+    };
+    let summary = Table::of(
+        KINDS.iter().enumerate().map(|(k, kind)| (*kind, of(k).iter().flatten().collect())),
+        &[
+            ("path", &|(kind, _): &(&str, Vec<&Followed>)| (*kind).to_owned()),
+            ("followed", &|(_, all)| all.len().to_string()),
+            ("collisions", &|(_, all)| all.iter().filter(|f| f.executed <= 0.0).count().to_string()),
+            ("arrived", &|(_, all)| all.iter().filter(|f| f.arrived).count().to_string()),
+            ("length, cm", &|(_, all)| centimetres(all, |f| f.length)),
+            ("clearance planned, cm", &|(_, all)| centimetres(all, |f| f.planned)),
+            ("executed, cm", &|(_, all)| centimetres(all, |f| f.executed.max(0.0))),
+            ("least tenth below, cm", &|(_, all)| {
+                let mut executed: Vec<f64> = all.iter().map(|f| f.executed).collect();
+                executed.sort_by(f64::total_cmp);
+                let tenth = executed.get(executed.len() / 10).copied().unwrap_or(f64::NAN);
+                format!("{:.2}", 100.0 * tenth.max(0.0))
+            }),
+        ],
+    );
     let name = lab.name("rrs-follow");
     lab.report(&name, &summary, &each)?;
     // The first trial of which all paths were found.
@@ -59,19 +71,6 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
         }
     }
     Ok(true)
-}
-
-fn row(kind: &str, all: &[&Followed]) -> Vec<String> {
-    let mean = |of: &dyn Fn(&Followed) -> f64| mean(all.iter().map(|f| of(f))).unwrap_or(0.0);
-    let mut executed: Vec<f64> = all.iter().map(|f| f.executed).collect();
-    executed.sort_by(f64::total_cmp);
-    let tenth = executed.get(executed.len() / 10).copied().unwrap_or(f64::NAN);
-    let count = |of: &dyn Fn(&Followed) -> bool| all.iter().filter(|f| of(f)).count().to_string();
-    let numbers = [mean(&|f| f.length), mean(&|f| f.planned), mean(&|f| f.executed.max(0.0)), tenth.max(0.0)];
-    [kind.to_owned(), all.len().to_string(), count(&|f| f.executed <= 0.0), count(&|f| f.arrived)]
-        .into_iter()
-        .chain(numbers.map(|v| format!("{:.2}", 100.0 * v)))
-        .collect()
 }
 
 /// The path, dark, and where the robot went, with the robot at places.

@@ -142,6 +142,11 @@ fn areas(nodes: usize, triangles: &DelaunayTriangulation<Point2<f64>>) -> Areas 
     Areas { nodes, mean, least, most, deviation: (squares / count - mean * mean).max(0.0).sqrt() }
 }
 
+/// The mean of all runs at a number of nodes. A tree that is full stays as it is.
+fn over(runs: &[Vec<Areas>], nodes: usize, of: &dyn Fn(&Areas) -> f64) -> f64 {
+    mean(runs.iter().map(|run| of(&run[nodes.min(run.len()) - 1]))).unwrap_or(f64::NAN)
+}
+
 /// Measures and reports. The same seed gives the same numbers. False when it was interrupted.
 pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
     let seeds = if quick { 5 } else { 20 };
@@ -150,52 +155,45 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
         MOVES.iter().flat_map(|&moves| (0..seeds).map(move |s| (moves, seed + s))).collect();
     let grown = lab.all("expansion", &jobs, |&(moves, seed)| Ok(Some(grow(moves, nodes, seed)?)))?;
     let Some(grown) = grown else { return Ok(false) };
-    let mut each = Table::new(["moves", "seed", "nodes", "mean", "least", "most", "deviation"]);
-    let mut summary = Table::new([
-        "moves, of the side".to_owned(),
-        "most / mean at 25".into(),
+    let shown = |a: &&Areas| a.nodes < 30 || a.nodes.is_multiple_of(25) || a.nodes == THRESHOLD;
+    let each = Table::of(
+        jobs.iter().zip(&grown).flat_map(|(job, run)| run.iter().filter(shown).map(move |a| (job, a))),
+        &[
+            ("moves", &|((moves, _), _)| moves.to_string()),
+            ("seed", &|((_, seed), _)| seed.to_string()),
+            ("nodes", &|(_, a)| a.nodes.to_string()),
+            ("mean", &|(_, a)| format!("{:e}", a.mean)),
+            ("least", &|(_, a)| format!("{:e}", a.least)),
+            ("most", &|(_, a)| format!("{:e}", a.most)),
+            ("deviation", &|(_, a)| format!("{:e}", a.deviation)),
+        ],
+    );
+    let by_moves = || MOVES.iter().zip(grown.chunks(seeds as usize));
+    let ratio = |runs: &[Vec<Areas>], n: usize| format!("{:.2}", over(runs, n, &|a| a.most / a.mean));
+    let relative = |runs: &[Vec<Areas>], n: usize| format!("{:.2}", over(runs, n, &|a| a.deviation / a.mean));
+    let [at_threshold, at_end, deviation_at_end] = [
         format!("at {THRESHOLD} (paper: 8.15 until there)"),
-        "at 775".into(),
         format!("at {nodes} (paper: about 2)"),
-        "deviation / mean at 353".into(),
         format!("at {nodes}"),
-    ]);
+    ];
+    let summary = Table::of(
+        by_moves(),
+        &[
+            ("moves, of the side", &|(moves, _)| moves.to_string()),
+            ("most / mean at 25", &|(_, runs)| ratio(runs, 25)),
+            (&at_threshold, &|(_, runs)| ratio(runs, THRESHOLD)),
+            ("at 775", &|(_, runs)| ratio(runs, 775)),
+            (&at_end, &|(_, runs)| ratio(runs, nodes)),
+            ("deviation / mean at 353", &|(_, runs)| relative(runs, THRESHOLD)),
+            (&deviation_at_end, &|(_, runs)| relative(runs, nodes)),
+        ],
+    );
     let (mut size, mut spread) = (Vec::new(), Vec::new());
-    for (i, (&moves, runs)) in MOVES.iter().zip(grown.chunks(seeds as usize)).enumerate() {
-        for (s, run) in runs.iter().enumerate() {
-            for a in run.iter().filter(|a| a.nodes < 30 || a.nodes.is_multiple_of(25) || a.nodes == THRESHOLD)
-            {
-                each.rows.push(vec![
-                    moves.to_string(),
-                    (seed + s as u64).to_string(),
-                    a.nodes.to_string(),
-                    format!("{:e}", a.mean),
-                    format!("{:e}", a.least),
-                    format!("{:e}", a.most),
-                    format!("{:e}", a.deviation),
-                ]);
-            }
-        }
-        // A tree that is full stays as it is.
-        let over = |n: usize, of: &dyn Fn(&Areas) -> f64| {
-            let at = |run: &Vec<Areas>| of(&run[n.min(run.len()) - 1]);
-            mean(runs.iter().map(at)).unwrap_or(f64::NAN)
-        };
+    for (i, (moves, runs)) in by_moves().enumerate() {
         let full = runs.iter().map(Vec::len).max().unwrap_or(1);
-        let ratio = |n: usize| format!("{:.2}", over(n, &|a| a.most / a.mean));
-        let relative = |n: usize| format!("{:.2}", over(n, &|a| a.deviation / a.mean));
-        summary.rows.push(vec![
-            moves.to_string(),
-            ratio(25),
-            ratio(THRESHOLD),
-            ratio(775),
-            ratio(nodes),
-            relative(THRESHOLD),
-            relative(nodes),
-        ]);
         let curve = |name: String, of: &dyn Fn(&Areas) -> f64| {
             let points = (1..=full).filter(|n| *n < 40 || n.is_multiple_of(10) || *n == full);
-            Curve::new(name, i, points.map(|n| (n as f64, over(n, of))).collect())
+            Curve::new(name, i, points.map(|n| (n as f64, over(runs, n, of))).collect())
         };
         size.push(curve(format!("largest, {moves}"), &|a| 100.0 * a.most));
         size.push(curve(format!("smallest, {moves}"), &|a| 100.0 * a.least).thin());
@@ -210,7 +208,7 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
         x: "configurations",
         y: "% of the square",
     };
-    let axes = [Axis::Log(&marks), Axis::Log(&[])];
+    let axes = [Axis::LogAt(&marks), Axis::Log];
     lab.write("rsrt-expansion-area.svg", &chart(labels, axes, &size)?)?;
     let labels = Labels { title: "Delaunay triangles of an RRT in a free square: deviation", ..labels };
     lab.write("rsrt-expansion-deviation.svg", &chart(labels, axes, &spread)?)?;

@@ -3,7 +3,7 @@
 use super::series::{Case, METRICS, MODELS, MOVERS, PLANNERS, Plan, Series};
 use super::solve::Run;
 use crate::error::Result;
-use crate::experiment::{Log, Median, Table, geometric_mean, ratio, seconds};
+use crate::experiment::{Log, Median, Table, bit, geometric_mean, ratio, seconds};
 use crate::plot::{Axis, Curve, Labels, chart};
 
 /// The runs, to be summed up.
@@ -61,125 +61,104 @@ impl<'a> Found<'a> {
 
     /// A row for each mover, model, number of obstacles and metric.
     pub(super) fn summary(&self) -> Table {
-        let mut table = Table::new([
-            "mover",
-            "model",
-            "obstacles",
-            "metric",
-            "solved RRT",
-            "RSRT",
-            "RRT-Connect",
-            "median s RRT",
-            "RSRT",
-            "RRT-Connect",
-            "time RRT : RSRT",
-            "checks RRT : RSRT",
-            "checks per expansion RRT",
-            "RSRT",
-        ]);
-        let cap = format!("> {}", self.plan.cap);
-        for mover in MOVERS {
-            for model in MODELS {
-                for &level in &self.plan.levels {
-                    for metric in METRICS {
-                        let groups = self.three(mover, model, metric, level);
-                        let mut row = vec![mover.into(), model.into(), level.to_string(), metric.into()];
-                        let cell = |g: &Option<Group>, show: &dyn Fn(&Group) -> String| {
-                            g.as_ref().map_or_else(|| "–".to_owned(), show)
-                        };
-                        row.extend(groups.iter().map(|g| cell(g, &|g| format!("{}/{}", g.solved, g.of))));
-                        row.extend(groups.iter().map(|g| cell(g, &|g| g.seconds.cell(&cap, seconds))));
-                        let two = groups[0].as_ref().zip(groups[1].as_ref());
-                        row.push(
-                            two.map_or("–".into(), |(a, b)| ratio(&a.seconds, &b.seconds, self.plan.cap)),
-                        );
-                        row.push(two.map_or("–".into(), |(a, b)| finite(&a.checks, &b.checks)));
-                        row.extend(
-                            groups[..2].iter().map(|g| cell(g, &|g| format!("{:.1}", g.per_expansion))),
-                        );
-                        table.rows.push(row);
-                    }
-                }
+        let mut rows = Vec::new();
+        for (mover, model) in MOVERS.into_iter().flat_map(|mover| MODELS.map(|model| (mover, model))) {
+            for &level in &self.plan.levels {
+                rows.extend(METRICS.map(|m| ([mover, model, m], level, self.three(mover, model, m, level))));
             }
         }
-        table
+        let cap = format!("> {}", self.plan.cap);
+        let said = |cell: Option<String>| cell.unwrap_or_else(|| "–".to_owned());
+        let solved = |g: &Option<Group>| said(g.as_ref().map(|g| format!("{}/{}", g.solved, g.of)));
+        let time = |g: &Option<Group>| said(g.as_ref().map(|g| g.seconds.cell(&cap, seconds)));
+        let checks = |g: &Option<Group>| said(g.as_ref().map(|g| format!("{:.1}", g.per_expansion)));
+        let both = |[a, b, _]: &[Option<Group>; 3], cell: &dyn Fn(&Group, &Group) -> String| {
+            said(a.as_ref().zip(b.as_ref()).map(|(a, b)| cell(a, b)))
+        };
+        Table::of(
+            rows,
+            &[
+                ("mover", &|(names, ..)| names[0].to_owned()),
+                ("model", &|(names, ..)| names[1].to_owned()),
+                ("obstacles", &|(_, level, _)| level.to_string()),
+                ("metric", &|(names, ..)| names[2].to_owned()),
+                ("solved RRT", &|(.., g)| solved(&g[0])),
+                ("RSRT", &|(.., g)| solved(&g[1])),
+                ("RRT-Connect", &|(.., g)| solved(&g[2])),
+                ("median s RRT", &|(.., g)| time(&g[0])),
+                ("RSRT", &|(.., g)| time(&g[1])),
+                ("RRT-Connect", &|(.., g)| time(&g[2])),
+                ("time RRT : RSRT", &|(.., g)| both(g, &|a, b| ratio(&a.seconds, &b.seconds, self.plan.cap))),
+                ("checks RRT : RSRT", &|(.., g)| both(g, &|a, b| finite(&a.checks, &b.checks))),
+                ("checks per expansion RRT", &|(.., g)| checks(&g[0])),
+                ("RSRT", &|(.., g)| checks(&g[1])),
+            ],
+        )
     }
 
     /// A row for each run.
     pub(super) fn each(&self) -> Table {
-        let mut table = Table::new([
-            "mover",
-            "model",
-            "metric",
-            "planner",
-            "obstacles",
-            "instance",
-            "solved",
-            "s",
-            "iterations",
-            "nodes",
-            "checks",
-            "expansions",
-            "rejected",
-            "edges",
-        ]);
-        for (case, run) in self.log.all() {
-            table.rows.push(vec![
-                case.mover.clone(),
-                case.model.clone(),
-                case.metric.clone(),
-                case.planner.clone(),
-                case.obstacles.to_string(),
-                case.instance.to_string(),
-                u8::from(run.solved).to_string(),
-                format!("{:.6}", run.seconds),
-                run.iterations.to_string(),
-                run.nodes.to_string(),
-                run.checks.to_string(),
-                run.expansions.to_string(),
-                run.rejected.to_string(),
-                run.edges.to_string(),
-            ]);
-        }
-        table
+        Table::of(
+            self.log.all(),
+            &[
+                ("mover", &|(case, _)| case.mover.clone()),
+                ("model", &|(case, _)| case.model.clone()),
+                ("metric", &|(case, _)| case.metric.clone()),
+                ("planner", &|(case, _)| case.planner.clone()),
+                ("obstacles", &|(case, _)| case.obstacles.to_string()),
+                ("instance", &|(case, _)| case.instance.to_string()),
+                ("solved", &|(_, run)| bit(run.solved)),
+                ("s", &|(_, run)| format!("{:.6}", run.seconds)),
+                ("iterations", &|(_, run)| run.iterations.to_string()),
+                ("nodes", &|(_, run)| run.nodes.to_string()),
+                ("checks", &|(_, run)| run.checks.to_string()),
+                ("expansions", &|(_, run)| run.expansions.to_string()),
+                ("rejected", &|(_, run)| run.rejected.to_string()),
+                ("edges", &|(_, run)| run.edges.to_string()),
+            ],
+        )
     }
 
     /// What the paper says, and what was measured.
     pub(super) fn markdown(&self) -> String {
-        let mut table = Table::new(["paper says (§4)", "free-flyer", "6-DOF arm"]);
-        let mut row = |says: &str, of: &dyn Fn(&'static str) -> String| {
-            table.rows.push(vec![says.to_owned(), of(MOVERS[0]), of(MOVERS[1])]);
-        };
-        row(
-            "RSRT is 4 times faster for hard problems (time RRT : RSRT at the most obstacles both solve, positions)",
-            &|m| self.over_metrics(m, MODELS[0], true),
+        type Measure<'a> = (&'a str, &'a dyn Fn(&'static str, &'static str) -> String);
+        let says: [Measure<'_>; 6] = [
+            (
+                "RSRT is 4 times faster for hard problems (time RRT : RSRT at the most obstacles both solve, positions)",
+                &|mover, model| self.over_metrics(mover, model, true),
+            ),
+            (
+                "RSRT is faster for easier problems (time RRT : RSRT up to 64 obstacles, geometric mean, positions)",
+                &|mover, model| self.over_metrics(mover, model, false),
+            ),
+            (
+                "RRT fails for the arm from some number of obstacles (solved RRT / RSRT at the most obstacles, positions)",
+                &|mover, model| self.success(mover, model),
+            ),
+            (
+                "RSRT hardly depends on the metric (greatest : least median over metrics, RRT / RSRT, geometric mean over levels, positions)",
+                &|mover, model| self.spread(mover, model),
+            ),
+            (
+                "Manhattan is the most efficient metric for the arm (levels where it is, RRT / RSRT, positions)",
+                &|mover, model| self.manhattan(mover, model),
+            ),
+            (
+                "RSRT calls the collision checker less (calls per expansion RRT : RSRT, least over scenes, positions)",
+                &|mover, model| self.calls(mover, model),
+            ),
+        ];
+        let rows = says
+            .iter()
+            .flat_map(|(says, of)| [(*says, of, MODELS[0]), ("the same with velocities", of, MODELS[1])]);
+        let table = Table::of(
+            rows,
+            &[
+                ("paper says (§4)", &|(says, ..)| (*says).to_owned()),
+                ("free-flyer", &|(_, of, model)| of(MOVERS[0], model)),
+                ("6-DOF arm", &|(_, of, model)| of(MOVERS[1], model)),
+            ],
         );
-        row("the same with velocities", &|m| self.over_metrics(m, MODELS[1], true));
-        row(
-            "RSRT is faster for easier problems (time RRT : RSRT up to 64 obstacles, geometric mean, positions)",
-            &|m| self.over_metrics(m, MODELS[0], false),
-        );
-        row("the same with velocities", &|m| self.over_metrics(m, MODELS[1], false));
-        row(
-            "RRT fails for the arm from some number of obstacles (solved RRT / RSRT at the most obstacles, positions)",
-            &|m| self.success(m, MODELS[0]),
-        );
-        row("the same with velocities", &|m| self.success(m, MODELS[1]));
-        row(
-            "RSRT hardly depends on the metric (greatest : least median over metrics, RRT / RSRT, geometric mean over levels, positions)",
-            &|m| self.spread(m, MODELS[0]),
-        );
-        row("the same with velocities", &|m| self.spread(m, MODELS[1]));
-        row(
-            "Manhattan is the most efficient metric for the arm (levels where it is, RRT / RSRT, positions)",
-            &|m| self.manhattan(m, MODELS[0]),
-        );
-        row("the same with velocities", &|m| self.manhattan(m, MODELS[1]));
-        row(
-            "RSRT calls the collision checker less (calls per expansion RRT : RSRT, least over scenes, positions)",
-            &|m| self.calls(m, MODELS[0]),
-        );
-        row("the same with velocities", &|m| self.calls(m, MODELS[1]));
         table.markdown() + "\n"
     }
 
@@ -301,7 +280,7 @@ impl<'a> Found<'a> {
                 let labels = Labels { title: &title, x: "obstacles", y: "s of processor time" };
                 let marks: Vec<f64> = self.plan.levels.iter().map(|l| *l as f64).collect();
                 let name = format!("{}-{model}", mover.replace(' ', "-").to_lowercase());
-                charts.push((name, chart(labels, [Axis::Log(&marks), Axis::Log(&[])], &curves)));
+                charts.push((name, chart(labels, [Axis::LogAt(&marks), Axis::Log], &curves)));
             }
         }
         charts
