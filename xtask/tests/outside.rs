@@ -39,5 +39,9 @@ fn a_scene_is_planned_for_in_a_few_lines() {
 fn a_robot_of_ones_own_needs_the_vocabulary_and_the_trees_only() {
     let printed = run("own-robot");
     let (first, last) = (printed.lines().next().unwrap(), printed.lines().last().unwrap());
-    assert_eq!([first, last], ["Leaves { left: 0.0, right: 0.0 }", "Leaves { left: 1.5, right: 0.0 }"], "{printed}");
+    assert_eq!(
+        [first, last],
+        ["Leaves { left: 0.0, right: 0.0 }", "Leaves { left: 1.5, right: 0.0 }"],
+        "{printed}"
+    );
 }

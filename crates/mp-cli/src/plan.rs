@@ -180,7 +180,13 @@ fn show(args: &Plan, reports: Vec<Report>, single: bool) -> Result<(), Error> {
         return print(&text);
     }
     let taken = args.out.as_deref().is_some_and(is_standard);
-    let tell = |text: &str| if taken { Ok(note(text)) } else { print(text) };
+    let tell = |text: &str| match taken {
+        true => {
+            note(text);
+            Ok(())
+        }
+        false => print(text),
+    };
     match reports.as_slice() {
         [] => Ok(()),
         [only] if single => {

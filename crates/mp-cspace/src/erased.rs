@@ -17,7 +17,7 @@ mod index;
 mod space;
 
 pub use geometry::AnyGeometry;
-pub use index::{AnyIndex, CompiledIndex};
+pub use index::{AnyEmbed, AnyIndex, CompiledIndex, CoordinateState};
 pub use space::AnySpace;
 
 use crate::{MotionValidity, Problem, Straight};

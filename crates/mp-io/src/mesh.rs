@@ -28,7 +28,6 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<TriMesh, Error> {
 
 /// The same of files from elsewhere.
 pub(crate) fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
-    let path = path.as_ref();
     let bytes = files.read(path, MAX_MESH_BYTES)?;
     let file = path.display().to_string();
     match MeshFormat::of(path, &bytes) {

@@ -82,13 +82,13 @@ pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, 
     let mut faults = Vec::new();
     let (first, last) = (&states.states[0], &states.states[states.states.len() - 1]);
     let start = kind.mismatch(first, kind.start());
-    if !(start.off <= start.allowed) {
+    if !start.is_near() {
         faults.push(format!("does not begin at the start: {}{} off", brief(start.off), start.unit));
     }
     let ends = kind.goals().iter().map(|goal| kind.mismatch(last, goal));
     let nearest = ends.min_by(|a, b| a.off.total_cmp(&b.off));
     if let Some(goal) = nearest
-        && !(goal.off <= goal.allowed)
+        && !goal.is_near()
     {
         let which = if kind.goals().len() > 1 { "a goal" } else { "the goal" };
         faults.push(format!("does not end at {which}: {}{} off", brief(goal.off), goal.unit));

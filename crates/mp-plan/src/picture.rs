@@ -1,7 +1,7 @@
 //! Pictures of scenes and paths: the glue between scenes and `mp-render`.
 
 use crate::{BodyShape, Error, PathRows, Scene};
-use mp_geom::{Aabb, TriMesh};
+use mp_geom::TriMesh;
 use mp_render::palette::{GOAL, INK, MIDDLE, OBSTACLE, PATH, START};
 use mp_render::{Drawing, Item};
 use nalgebra::{Isometry3, Point2, Point3};
@@ -63,7 +63,6 @@ impl Scene {
 
     /// The scene in space.
     fn solid(&self, path: Option<&PathRows>, caption: &str) -> Result<mp_render::Scene, Error> {
-        let (planar, bounds) = self.view();
         let bodies = self.bodies();
         let mesh = |body: &crate::Body| match &body.shape {
             BodyShape::Mesh(mesh) => Some(mesh.clone()),
@@ -91,21 +90,21 @@ impl Scene {
         Ok(mp_render::Scene {
             title: self.name().to_owned(),
             subtitle: caption.to_owned(),
-            planar,
+            planar: self.is_planar(),
             obstacles: still.collect(),
             start: Some(shown(&sweep.start)),
             goal: Some(shown(&sweep.goal)),
             copies: sweep.between.iter().map(shown).collect(),
             trace: sweep.trace,
-            bounds: bounds.map(|(low, high)| Aabb::new(low, high)),
+            bounds: self.picture_bounds(),
         })
     }
 
     /// The world in the plane.
     fn drawing(&self, path: Option<&PathRows>, caption: &str) -> Result<Drawing, Error> {
         let sweep = self.sweep(path)?;
-        let (mut low, mut high) = match self.view().1 {
-            Some((low, high)) => (low.xy(), high.xy()),
+        let (mut low, mut high) = match self.picture_bounds() {
+            Some(bounds) => (bounds.min.xy(), bounds.max.xy()),
             None => (Point2::origin(), Point2::new(1.0, 1.0)),
         };
         let (mut items, mut robot, mut walls) = (Vec::new(), Vec::new(), false);

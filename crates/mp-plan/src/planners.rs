@@ -50,10 +50,11 @@ impl Named {
 
     /// Refuses settings that it does not have.
     pub(crate) fn check(&self, settings: &Settings) -> Result<(), Error> {
-        Ok(match self {
+        match self {
             Self::Tree(named) => named.check(settings)?,
             Self::Roadmap(info) => settings.check(info)?,
-        })
+        }
+        Ok(())
     }
 
     pub(crate) fn is_roadmap(&self) -> bool {

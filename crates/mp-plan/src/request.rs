@@ -318,7 +318,7 @@ impl Request {
         let planner = crate::planners::Named::new(&self.planner)?;
         planner.check(&self.settings())?;
         if let Some(time) = self.budget.time_s
-            && !(time > 0.0)
+            && (time.is_nan() || time <= 0.0)
         {
             return Err(
                 Error::new(format!("the budget of time is {time} s")).help("give a number above zero")

@@ -12,12 +12,12 @@ pub use rigid::{RigidMotion, RigidScene};
 use crate::numbers::plain;
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
-use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex};
+use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
     Clearance, DefaultNn, Embed, Factored, Metric as _, MotionBound, MotionValidity, Numbers,
     ObstacleKnowledge, Validity,
 };
-use mp_geom::TriMesh;
+use mp_geom::{Aabb, TriMesh};
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use serde::{Deserialize, Serialize};
@@ -146,7 +146,7 @@ impl<'c, S> Measured<'c, S> {
     /// A copy of `space` with an index by coordinates that is compiled once for all spaces of these states.
     pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self
     where
-        S: Clone + fmt::Debug + PartialEq + Send + Sync + 'static,
+        S: CoordinateState,
     {
         Self { space: AnySpace::new(space), index: AnyIndex::by_coordinates(space) }
     }
@@ -287,7 +287,7 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// Between two pictures of the robot along a path no point of it moves much farther than this, metres.
     fn picture_spacing(&self) -> f64;
     /// Where the origin of the robot may be, for pictures that show it.
-    fn picture_bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
+    fn picture_bounds(&self) -> Option<Aabb> {
         None
     }
     /// Whether the scene is best seen from above.
@@ -310,6 +310,14 @@ pub struct Mismatch {
     pub allowed: f64,
     /// `m`, or nothing where the numbers have no common unit.
     pub unit: &'static str,
+}
+
+impl Mismatch {
+    /// Whether it is as near as it has to be; not when a number is none.
+    #[must_use]
+    pub fn is_near(&self) -> bool {
+        self.off <= self.allowed
+    }
 }
 
 pub use crate::counted::Counted;

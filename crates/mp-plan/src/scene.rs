@@ -10,6 +10,7 @@ use crate::{
     RobotKind, Verdict,
 };
 use mp_cspace::{MotionBound, Outcome, Rng, Space, Validity};
+use mp_geom::Aabb;
 use mp_io::{Disk, Files, FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
@@ -294,10 +295,16 @@ impl Scene {
         self.robot.export(folder)
     }
 
-    /// Whether the scene is best seen from above, and where the origin of the robot may be.
+    /// Whether the scene is best seen from above.
     #[must_use]
-    pub fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>) {
-        self.robot.view()
+    pub fn is_planar(&self) -> bool {
+        self.robot.is_planar()
+    }
+
+    /// Where the origin of the robot may be, for pictures that show it.
+    #[must_use]
+    pub fn picture_bounds(&self) -> Option<Aabb> {
+        self.robot.picture_bounds()
     }
 }
 
@@ -334,7 +341,8 @@ trait AnyRobot: Send + Sync {
     fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error>;
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
     fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
-    fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>);
+    fn is_planar(&self) -> bool;
+    fn picture_bounds(&self) -> Option<Aabb>;
 }
 
 impl<K: RobotKind> AnyRobot for K {
@@ -394,8 +402,11 @@ impl<K: RobotKind> AnyRobot for K {
     fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
         RobotKind::export(self, folder)
     }
-    fn view(&self) -> (bool, Option<(Point3<f64>, Point3<f64>)>) {
-        (self.is_planar(), self.picture_bounds())
+    fn is_planar(&self) -> bool {
+        RobotKind::is_planar(self)
+    }
+    fn picture_bounds(&self) -> Option<Aabb> {
+        RobotKind::picture_bounds(self)
     }
 }
 

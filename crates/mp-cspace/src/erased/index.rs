@@ -2,9 +2,10 @@
 
 use super::AnySpace;
 use crate::{
-    DefaultNn, Embed, Hit, Joints, KdTree, Layout, Metric, NearestNeighbors, NodeId, Rn, Rng, Se2, Se3, Space,
+    DefaultNn, Embed, Hit, Joints, KdTree, Layout, Metric, NearestNeighbors, NodeId, Rn, Rng, Se2, Se2State,
+    Se3, Space,
 };
-use nalgebra::DVector;
+use nalgebra::{DVector, Isometry3};
 use std::fmt::{self, Debug};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -70,15 +71,11 @@ impl<S> AnyIndex<'_, S> {
     }
 }
 
-impl<S: Clone + Debug + PartialEq + Send + Sync + 'static> AnyIndex<'_, S> {
+impl<S: CoordinateState> AnyIndex<'_, S> {
     /// A [`KdTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: a little
     /// slower than [`of`](Self::of), compiled once.
     pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self {
-        let (space, layout) = (AnySpace::new(space), AnyEmbed(Arc::new(space.clone())));
-        Self(
-            Box::new(Searching { space: Arc::new(Embedded { space, layout }), index: <KdTree>::default() }),
-            PhantomData,
-        )
+        Self(S::index(AnySpace::new(space), AnyEmbed(Arc::new(space.clone()))).0, PhantomData)
     }
 }
 
@@ -97,7 +94,28 @@ impl<S, C: Embed<State = S> + Send> ErasedEmbed<S> for C {
     }
 }
 
-struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
+/// Coordinates behind a pointer.
+#[allow(missing_debug_implementations)] // nothing to be seen
+pub struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
+
+/// States for which an index of erased spaces with coordinates is compiled in this crate: those of robots.
+pub trait CoordinateState: Clone + Debug + PartialEq + Send + Sync + 'static {
+    /// An empty index of a space with these coordinates.
+    #[doc(hidden)]
+    fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<'static, Self>;
+}
+
+macro_rules! coordinate_states {
+    ($($state:ty),*) => {
+        $(impl CoordinateState for $state {
+            fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<'static, Self> {
+                let space = Arc::new(Embedded { space, layout });
+                AnyIndex(Box::new(Searching { space, index: <KdTree>::default() }), PhantomData)
+            }
+        })*
+    };
+}
+coordinate_states!(Isometry3<f64>, Se2State, DVector<f64>);
 
 /// An erased space with coordinates.
 struct Embedded<S> {

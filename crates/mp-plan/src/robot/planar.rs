@@ -8,6 +8,7 @@ use mp_cspace::{
     ClearanceGradient, Factored, MotionValidity, Numbers, ObstacleHints, ObstacleKnowledge, Rn, Se2,
     Se2State, Space,
 };
+use mp_geom::Aabb;
 use mp_geom::flat::FlatWorld;
 use mp_io::{FlatBody, FlatPart, FlatProblem};
 use mp_robot::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
@@ -371,9 +372,9 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     fn picture_spacing(&self) -> f64 {
         PICTURE_SPACING * self.robot.radius().max(1e-3 * self.space.extent())
     }
-    fn picture_bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
+    fn picture_bounds(&self) -> Option<Aabb> {
         let corner = |[x, y]: [f64; 2]| Point3::new(x, y, 0.0);
-        Some((corner(self.problem.bounds[0]), corner(self.problem.bounds[1])))
+        Some(Aabb::new(corner(self.problem.bounds[0]), corner(self.problem.bounds[1])))
     }
     fn is_planar(&self) -> bool {
         true

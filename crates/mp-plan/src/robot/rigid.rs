@@ -7,11 +7,11 @@ use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_collide::Query;
-use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex};
+use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    ClearanceGradient, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn, MetricTree,
-    NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume, TrueMetricOn,
-    WithMetric,
+    ClearanceGradient, DefaultNn, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn,
+    MetricTree, NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume,
+    TrueMetricOn, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{Problem, SpaceKind};
@@ -29,9 +29,9 @@ const PLANAR: f64 = 1e-9;
 const PICTURE_SPACING: f64 = 0.55;
 
 /// How a rigid body moves: [`Spatial`], in SE(3), or [`Planar`], in SE(2).
-pub trait RigidMotion: Placement<State: TreeState + RoadmapState + Numbers + PartialEq + 'static> {
+pub trait RigidMotion: Placement<State: TreeState + RoadmapState + CoordinateState + Numbers> {
     /// The space of its configurations.
-    type Space: EmbedFactors + CompiledIndex + Space<State = Self::State> + Debug;
+    type Space: EmbedFactors + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
     /// The metric of the farthest moving point.
     type Displacement: TrueMetricOn<Self::Space> + NnOn<Self::Space> + Clone + Send + 'static;
     /// The metric of the swept volume.
@@ -340,8 +340,8 @@ impl<M: RigidMotion> RobotKind for RigidScene<M> {
     fn picture_spacing(&self) -> f64 {
         PICTURE_SPACING * self.radius
     }
-    fn picture_bounds(&self) -> Option<(Point3<f64>, Point3<f64>)> {
-        self.problem.bounds.map(|b| (b.min, b.max))
+    fn picture_bounds(&self) -> Option<Aabb> {
+        self.problem.bounds
     }
     fn is_planar(&self) -> bool {
         self.problem.space == SpaceKind::Se2
