@@ -33,7 +33,7 @@ fn problem<'c, C: Space, P: Space<State = C::State>, V: Robot<C::State> + 'c>(
 
 fn same<C, V>(space: &C, robot: V, ends: [C::State; 2], names: &[String])
 where
-    C: DefaultNn<State: TreeState + Debug, Nn: Send + Sync>,
+    C: DefaultNn<State: TreeState + Debug, Nn: Send + Sync + 'static> + Clone + Send + 'static,
     V: Robot<C::State>,
 {
     let erased = AnySpace::new(space);
