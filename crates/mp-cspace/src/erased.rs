@@ -20,7 +20,7 @@ pub use geometry::AnyGeometry;
 pub use index::{AnyEmbed, AnyIndex, CompiledIndex, CoordinateState};
 pub use space::AnySpace;
 
-use crate::{MotionValidity, Problem, Straight};
+use crate::{MotionValidity, Straight};
 
 /// A motion check behind a pointer.
 pub type AnyCheck<'c, S> = Box<dyn MotionValidity<S> + Send + 'c>;
@@ -30,6 +30,3 @@ pub type AnyGradient<'c, S> = Box<dyn FnMut(&S, f64, &mut [f64]) -> f64 + Send +
 
 /// The straight local planner of an erased space.
 pub type AnyStraight<'c, S> = Straight<'c, AnySpace<'c, S>, AnyCheck<'c, S>>;
-
-/// A problem of an erased space, with straight edges.
-pub type AnyProblem<'c, S> = Problem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;

@@ -39,6 +39,7 @@ mod sampler;
 pub mod shorten;
 pub mod shortest;
 mod space;
+mod space_time;
 mod stop;
 pub mod testkit;
 mod validity;
@@ -63,14 +64,15 @@ pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
-    BoxedHints, BoxedVerify, BuildError, Demand, Endpoint, Goals, ObstacleKnowledge, Parameter, PlannerInfo,
-    Problem, ProblemParts, Settings, Step, Verify, Workers, closest,
+    AnyProblem, BoxedHints, BoxedVerify, BuildError, Demand, Endpoint, Goals, ObstacleKnowledge, Parameter,
+    PlannerInfo, Problem, ProblemParts, Settings, Step, Verify, Workers, closest,
 };
 pub use rng::Rng;
 pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};
 pub use space::{
-    AtAnyTime, Coordinates, Factored, Forward, JointRange, Joints, Metric, Product, Rn, RnDyn, Se2, Se2State,
-    Se3, So2, So3, Space, SpaceTime, Torus, TrueMetric, rotation_angle, slerp, wrap_angle,
+    Coordinates, Factored, JointRange, Joints, Metric, Product, Rn, RnDyn, Se2, Se2State, Se3, So2, So3,
+    Space, Torus, TrueMetric, rotation_angle, slerp, wrap_angle,
 };
+pub use space_time::{AtAnyTime, Forward, SpaceTime};
 pub use stop::{Cancel, Deadline, Iterations, Motions, Nodes, Or, Progress, Stop, StopReason};
 pub use validity::{Clearance, KnownFree, MotionBound, MotionCheck, MotionValidity, Room, Stretch, Validity};

@@ -9,7 +9,6 @@ mod se2;
 mod se3;
 mod so2;
 mod so3;
-mod space_time;
 mod torus;
 
 pub use joints::{Coordinates, JointRange, Joints};
@@ -20,7 +19,6 @@ pub use se2::{Se2, Se2State};
 pub use se3::Se3;
 pub use so2::{So2, wrap_angle};
 pub use so3::{So3, rotation_angle, slerp};
-pub use space_time::{AtAnyTime, Forward, SpaceTime};
 pub use torus::Torus;
 
 use crate::Rng;

@@ -1,8 +1,8 @@
 //! Planners that build roadmaps, where the feature `roadmaps` compiles them; without it there are none.
 
 use crate::{Error, Request};
-use mp_cspace::erased::{AnyIndex, AnyProblem};
-use mp_cspace::{BuildError, Planner, PlannerInfo, Settings, Workers};
+use mp_cspace::erased::AnyIndex;
+use mp_cspace::{AnyProblem, BuildError, Planner, PlannerInfo, Settings, Workers};
 
 /// A planner that builds a roadmap, and what became of the file that it is kept in.
 pub(crate) struct Made<'p, S> {

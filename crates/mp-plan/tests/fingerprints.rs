@@ -93,3 +93,14 @@ fn compare() {
 fn all_is_as_it_was() {
     compare();
 }
+
+#[test]
+fn every_planner_is_in_the_table_on_every_scene() {
+    let text = std::fs::read_to_string(table()).unwrap();
+    for scene in Scene::shipped() {
+        for planner in mp_plan::planners() {
+            let case = format!("{scene} {} 1 ", planner.name);
+            assert!(text.lines().any(|line| line.starts_with(&case)), "{case}is not in the table");
+        }
+    }
+}

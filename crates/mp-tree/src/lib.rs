@@ -152,7 +152,8 @@ pub use engine::{
     GOAL_BIAS, Growing, Grown, Growth, Improving, NEEDS_BOTH_ENDS, Near, Nearest, PATIENCE, Propose, Purpose,
     Recipe, Rewire, STEP, Samples, Selector, SingleTree, Steer, Tree, Tuning, TwoTrees, Untried, improve,
 };
-pub use mp_cspace::erased::{AnyIndex, AnyProblem};
+pub use mp_cspace::AnyProblem;
+pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{
     BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step, Verify, Workers,
     closest,

@@ -14,7 +14,7 @@ pub use step::Step;
 pub use verify::Verify;
 pub use workers::Workers;
 
-use crate::erased::{AnyGeometry, AnyGradient};
+use crate::erased::{AnyGeometry, AnyGradient, AnySpace, AnyStraight};
 use crate::{LocalPlanner, ObstacleHints, Space};
 use std::fmt;
 
@@ -28,6 +28,9 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
     goals: Goals<'c, C::State>,
     obstacles: ObstacleKnowledge<'c, C::State>,
 }
+
+/// A problem of an erased space, with straight edges.
+pub type AnyProblem<'c, S> = Problem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
 /// What planners by name may want to know of obstacles, beside whether a motion is free. Each is optional; a planner
 /// that cannot do without says so.

@@ -1,9 +1,9 @@
 //! Positions at times, for obstacles that move.
 
-use super::{Metric, Space};
+use crate::space::lerp;
 use crate::{
-    Embed, Goal, KdTree, KnownFree, Layout, MotionCheck, MotionValidity, Rng, Sampler, SpaceError,
-    error::weight,
+    Embed, Goal, KdTree, KnownFree, Layout, Metric, MotionCheck, MotionValidity, Rng, Sampler, Space,
+    SpaceError, error::weight,
 };
 use rand::RngExt;
 
@@ -105,7 +105,7 @@ impl<C: Space> Space for SpaceTime<C> {
     #[inline]
     fn interpolate_into(&self, from: &Self::State, to: &Self::State, t: f64, out: &mut Self::State) {
         self.positions.interpolate_into(&from.0, &to.0, t, &mut out.0);
-        out.1 = super::lerp(from.1, to.1, t);
+        out.1 = lerp(from.1, to.1, t);
     }
     fn unit_cube_to_state(&self, u: &[f64]) -> Self::State {
         let n = self.positions.dim();
