@@ -1,5 +1,6 @@
 //! What continuous integration runs.
 
+mod circles;
 mod tidy;
 
 use crate::{cargo, note, root};

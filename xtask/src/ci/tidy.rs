@@ -1,6 +1,7 @@
 //! What the compiler does not check: that the crates depend on each other as `ARCHITECTURE.md` says, that the
-//! paths it names exist, that files stay short, and that every algorithm has an example and a test.
+//! paths it names exist, that no folders of a crate import each other in a circle, that files stay short, and that every algorithm has an example and a test.
 
+use super::circles;
 use std::collections::BTreeSet;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -41,6 +42,12 @@ pub(crate) fn check(root: &Path) -> Result<Vec<Finding>> {
     }
     paths.sort();
     let sources = paths.into_iter().map(|p| read(&p).map(|text| (p, text))).collect::<Result<Vec<_>>>()?;
+    for src in paths_of_crates(root)? {
+        if let Some(circle) = circles::of(&src, &sources) {
+            let (shown, circle) = (src.strip_prefix(root).unwrap_or(&src).display(), circle.join(" → "));
+            findings.push(error(format!("{shown} has a circle of imports between folders: {circle}")));
+        }
+    }
     for (path, text) in &sources {
         let shown = path.strip_prefix(root).unwrap_or(path).display();
         let lines = text.lines().count();
@@ -51,6 +58,11 @@ pub(crate) fn check(root: &Path) -> Result<Vec<Finding>> {
         findings.extend(algorithm(&sources, path).map(|lack| error(format!("{shown} has no {lack}"))));
     }
     Ok(findings)
+}
+
+/// The folders of sources of all crates.
+fn paths_of_crates(root: &Path) -> Result<Vec<PathBuf>> {
+    list(&root.join("crates"))?.map(|folder| Ok(folder?.join("src"))).collect()
 }
 
 fn read(path: &Path) -> Result<String> {
