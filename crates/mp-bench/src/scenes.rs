@@ -4,24 +4,13 @@ use crate::error::Result;
 use crate::output::note;
 use mp_cspace::{Cancel, Outcome, Space, StopReason};
 use mp_io::{Problem, SpaceKind};
-use mp_plan::{Budget, Control, Error, Finish, Request, RigidScene, RobotKind, Scene, search};
+use mp_plan::{Budget, Control, Finish, Request, RigidScene, RobotKind, Scene, search};
 use mp_robot::{Planar, Spatial};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
 
-/// The problem of a shipped scene, or of a file. To be replaced when mp-plan finds scenes by name.
+/// The problem of a shipped scene, or of a file.
 pub(crate) fn problem(name: &str) -> Result<Problem> {
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../mp-scenes/assets");
-    let file = match mp_scenes::scene(name) {
-        Some(scene) => shipped.join(scene.path),
-        None => PathBuf::from(name),
-    };
-    if !file.is_file() {
-        let names = mp_scenes::names().collect::<Vec<_>>().join(", ");
-        let help = format!("name a scene file, or one of the shipped scenes: {names}");
-        return Err(Error::new(format!("there is no scene {name}")).help(help));
-    }
-    Ok(Problem::load(file)?)
+    Ok(mp_plan::find_problem(name)?)
 }
 
 /// A scene of a rigid body, in space or in the plane.

@@ -12,28 +12,11 @@ impl Scene {
     /// # Errors
     /// When there is no such scene (with the most similar name), or as [`load`](Self::load).
     pub fn find(given: impl AsRef<Path>) -> Result<Self, Error> {
-        let given = given.as_ref();
-        if let Some(file) = file_of(given) {
-            return Self::load(file);
+        match locate(given.as_ref())? {
+            Place::Disk(file) => Self::load(file),
+            #[cfg(feature = "scenes")]
+            Place::Memory(file) => Self::load_from(&shipped_files(), Path::new(file)),
         }
-        #[cfg(feature = "scenes")]
-        if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
-            return Self::in_memory(scene);
-        }
-        if given.is_dir() {
-            return Err(Error::new(format!("{} is a folder, not a scene file", given.display()))
-                .help("name a file in it"));
-        }
-        let stem = given.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-        let shipped = Self::shipped();
-        let beside =
-            scenes_in(given.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")));
-        let names = shipped.iter().copied().chain(beside.iter().map(String::as_str));
-        let help = match similar(&stem, names) {
-            Some(name) => format!("did you mean `{name}`?"),
-            None => format!("name a scene file, or one of the shipped scenes: {}", shipped.join(", ")),
-        };
-        Err(Error::new(format!("there is no scene {}", given.display())).help(help))
     }
 
     /// The names of the shipped scenes.
@@ -44,12 +27,53 @@ impl Scene {
         #[cfg(not(feature = "scenes"))]
         Vec::new()
     }
+}
 
+/// The problem of a rigid body meant by `given`, as [`Scene::find`] finds scenes: for who works with types.
+///
+/// # Errors
+/// When there is no such scene, or it is not one of a rigid body among meshes.
+pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::Problem, Error> {
+    Ok(match locate(given.as_ref())? {
+        Place::Disk(file) => mp_io::Problem::load(file)?,
+        #[cfg(feature = "scenes")]
+        Place::Memory(file) => mp_io::Problem::load_from(&shipped_files(), Path::new(file))?,
+    })
+}
+
+/// Where a scene is.
+enum Place {
+    Disk(PathBuf),
     #[cfg(feature = "scenes")]
-    fn in_memory(scene: mp_scenes::File) -> Result<Self, Error> {
-        let files = mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes));
-        Self::load_from(&files, Path::new(scene.path))
+    Memory(&'static str),
+}
+
+#[cfg(feature = "scenes")]
+fn shipped_files() -> impl mp_io::Files {
+    mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes))
+}
+
+fn locate(given: &Path) -> Result<Place, Error> {
+    if let Some(file) = file_of(given) {
+        return Ok(Place::Disk(file));
     }
+    #[cfg(feature = "scenes")]
+    if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
+        return Ok(Place::Memory(scene.path));
+    }
+    if given.is_dir() {
+        return Err(Error::new(format!("{} is a folder, not a scene file", given.display()))
+            .help("name a file in it"));
+    }
+    let stem = given.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let shipped = Scene::shipped();
+    let beside = scenes_in(given.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")));
+    let names = shipped.iter().copied().chain(beside.iter().map(String::as_str));
+    let help = match similar(&stem, names) {
+        Some(name) => format!("did you mean `{name}`?"),
+        None => format!("name a scene file, or one of the shipped scenes: {}", shipped.join(", ")),
+    };
+    Err(Error::new(format!("there is no scene {}", given.display())).help(help))
 }
 
 /// The file meant by `given`, with or without its ending.

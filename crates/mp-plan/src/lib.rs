@@ -71,6 +71,7 @@ mod watch;
 
 pub use check::{Explanation, Verdict};
 pub use error::Error;
+pub use find::find_problem;
 pub use finish::shorten;
 pub use inputs::is_same_file;
 pub use numbers::{brief, count};

@@ -173,7 +173,12 @@ fn solved<S: TreeState>(
     let mut rng = Rng::seed(request.seed);
     if request.first_only {
         return match planner.solve(&mut rng, stop, events) {
-            Outcome::Solved(path) => (Some(path), None, None),
+            Outcome::Solved(path) => {
+                if let Some(watch) = &mut *events.telling.watch.borrow_mut() {
+                    watch.found(path.length(space));
+                }
+                (Some(path), None, None)
+            }
             Outcome::Stopped(reason) => (None, Some(reason), None),
         };
     }
