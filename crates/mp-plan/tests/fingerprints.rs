@@ -9,13 +9,9 @@
 //! MP_WRITE_FINGERPRINTS=1 cargo test --release -p mp-plan --test fingerprints   # writes it anew
 //! ```
 
-use mp_plan::{Finish, Report, Request, Scene};
+use mp_plan::{Cancel, Finish, Report, Request, Scene, in_parallel};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 fn table() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fingerprints.txt")
@@ -63,29 +59,28 @@ fn line(case: &str, report: &Report) -> String {
 /// Runs the cases and compares them with the table.
 fn compare() {
     let text = std::fs::read_to_string(table()).unwrap();
+    let cases: Vec<(&str, &str)> =
+        text.lines().map(|expected| (expected, expected.split_once(" = ").unwrap().0)).collect();
     let mut scenes: BTreeMap<&str, Scene> = BTreeMap::new();
-    let (mut wrong, mut lines) = (Vec::new(), Vec::new());
-    for expected in text.lines() {
-        let (case, _) = expected.split_once(" = ").unwrap();
-        let words: Vec<&str> = case.split(' ').collect();
-        let scene = scenes.entry(words[0]).or_insert_with(|| {
-            let file =
-                |ending| root().join("crates/mp-scenes/assets/scenes").join(format!("{}.{ending}", words[0]));
-            let file = if file("env").exists() { file("env") } else { file("toml") };
-            Scene::load(file).unwrap()
-        });
-        let found = match scene.plan(&request(&words[1..])) {
-            Ok(report) => line(case, &report),
-            Err(_) => format!("{case} = error"),
-        };
-        if found != expected {
-            wrong.push(format!("was {expected}\nis  {found}"));
-        }
-        lines.push(found);
+    for (_, case) in &cases {
+        let name = case.split(' ').next().unwrap();
+        scenes.entry(name).or_insert_with(|| Scene::find(name).unwrap());
     }
+    let run = |i: usize| {
+        let words: Vec<&str> = cases[i].1.split(' ').collect();
+        match scenes[words[0]].plan(&request(&words[1..])) {
+            Ok(report) => line(cases[i].1, &report),
+            Err(_) => format!("{} = error", cases[i].1),
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, |n| n.get());
+    let lines: Vec<String> =
+        in_parallel(cases.len(), threads, &Cancel::new(), run).into_iter().flatten().collect();
     if std::env::var_os("MP_WRITE_FINGERPRINTS").is_some() {
         std::fs::write(table(), lines.join("\n") + "\n").unwrap();
     }
+    let differ = cases.iter().zip(&lines).filter(|((expected, _), found)| expected != found);
+    let wrong: Vec<String> = differ.map(|((was, _), is)| format!("was {was}\nis  {is}")).collect();
     assert!(wrong.is_empty(), "{} of {} differ:\n{}", wrong.len(), lines.len(), wrong.join("\n"));
 }
 
