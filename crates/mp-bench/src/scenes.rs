@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// The problem of a shipped scene, or of a file.
 pub(crate) fn problem(name: &str) -> Result<Problem> {
-    Ok(mp_plan::find_problem(name)?)
+    mp_plan::find_problem(name)
 }
 
 /// A scene of a rigid body, in space or in the plane.
