@@ -1,6 +1,6 @@
 //! Checkers whose queries go into one sum, for reports and budgets.
 
-use crate::Checker;
+use crate::Queries;
 use mp_cspace::{
     Clearance, ClearanceGradient, MotionBound, ObstacleGeometry, ObstacleHints, Outline, PointOf, Progress,
     Rng, Room, Stop, StopReason, Stretch, Validity,
@@ -13,25 +13,21 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const UNTOLD: u64 = 64;
 
 /// A checker whose queries go into a common sum: once in a while, and when it is dropped.
-pub struct Counted<'a, R> {
+pub struct Counted<'a, R: Queries> {
     checker: R,
-    asked: fn(&R) -> u64,
     /// What the checker had counted when it last told.
     before: u64,
     queries: &'a AtomicU64,
 }
 
-impl<'a, R> Counted<'a, R> {
+impl<'a, R: Queries> Counted<'a, R> {
     /// `checker`, whose queries from now on are added to `queries`.
-    pub fn new<S>(checker: R, queries: &'a AtomicU64) -> Self
-    where
-        R: Checker<S>,
-    {
-        Self { before: checker.queries(), checker, asked: R::queries, queries }
+    pub fn new(checker: R, queries: &'a AtomicU64) -> Self {
+        Self { before: checker.queries(), checker, queries }
     }
 
     fn tell(&mut self) {
-        let now = (self.asked)(&self.checker);
+        let now = self.checker.queries();
         self.queries.fetch_add(now - self.before, Ordering::Relaxed);
         self.before = now;
     }
@@ -39,7 +35,7 @@ impl<'a, R> Counted<'a, R> {
     /// What the checker answers.
     fn asked<T>(&mut self, ask: impl FnOnce(&mut R) -> T) -> T {
         let answer = ask(&mut self.checker);
-        if (self.asked)(&self.checker) - self.before >= UNTOLD {
+        if self.checker.queries() - self.before >= UNTOLD {
             self.tell();
         }
         answer
@@ -59,26 +55,25 @@ impl Stop for QueryBudget<'_> {
     }
 }
 
-impl<R: Clone> Clone for Counted<'_, R> {
+impl<R: Queries + Clone> Clone for Counted<'_, R> {
     fn clone(&self) -> Self {
-        let checker = self.checker.clone();
-        Self { before: (self.asked)(&checker), checker, asked: self.asked, queries: self.queries }
+        Self::new(self.checker.clone(), self.queries)
     }
 }
 
-impl<R> Drop for Counted<'_, R> {
+impl<R: Queries> Drop for Counted<'_, R> {
     fn drop(&mut self) {
         self.tell();
     }
 }
 
-impl<R: fmt::Debug> fmt::Debug for Counted<'_, R> {
+impl<R: Queries + fmt::Debug> fmt::Debug for Counted<'_, R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Counted").field("checker", &self.checker).finish_non_exhaustive()
     }
 }
 
-impl<S, R: Validity<S>> Validity<S> for Counted<'_, R> {
+impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
     fn is_valid(&mut self, q: &S) -> bool {
         self.asked(|checker| checker.is_valid(q))
     }
@@ -90,7 +85,7 @@ impl<S, R: Validity<S>> Validity<S> for Counted<'_, R> {
     }
 }
 
-impl<S, R: Clearance<S>> Clearance<S> for Counted<'_, R> {
+impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn clearance(&mut self, q: &S, enough: f64) -> f64 {
         self.asked(|checker| checker.clearance(q, enough))
     }
@@ -105,13 +100,13 @@ impl<S, R: Clearance<S>> Clearance<S> for Counted<'_, R> {
     }
 }
 
-impl<S, R: MotionBound<S>> MotionBound<S> for Counted<'_, R> {
+impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
     fn motion_bound(&self, from: &S, to: &S) -> f64 {
         self.checker.motion_bound(from, to)
     }
 }
 
-impl<S, R: ObstacleHints<S>> ObstacleHints<S> for Counted<'_, R> {
+impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
     fn touches(&mut self, q: &S) -> bool {
         self.asked(|checker| checker.touches(q))
     }
@@ -126,13 +121,13 @@ impl<S, R: ObstacleHints<S>> ObstacleHints<S> for Counted<'_, R> {
     }
 }
 
-impl<S, R: ClearanceGradient<S>> ClearanceGradient<S> for Counted<'_, R> {
+impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, R> {
     fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
         self.asked(|checker| checker.clearance_gradient(q, reach, gradient))
     }
 }
 
-impl<S, R: ObstacleGeometry<S>> ObstacleGeometry<S> for Counted<'_, R> {
+impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R> {
     fn obstacles(&self) -> &[Outline] {
         self.checker.obstacles()
     }

@@ -85,7 +85,7 @@ pub use request::{Budget, Finish, Length, Metric, MotionCheck, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
-    PlanarScene, RigidMotion, RigidScene, RobotKind, Touch,
+    PlanarScene, Queries, RigidMotion, RigidScene, RobotKind, Touch,
 };
 pub use scene::{Scene, Sweep};
 pub use search::{Search, search};

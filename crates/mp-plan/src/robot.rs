@@ -116,9 +116,13 @@ pub enum End {
 /// Clones share what is large; each has counters and scratch memory of its own.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot check configurations of type `{S}`",
-    note = "a checker is `Validity + Clearance + MotionBound + Clone + Send + Sync`, and counts its queries"
+    note = "a checker is `Validity + Clearance + MotionBound + Queries + Clone + Send + Sync`"
 )]
-pub trait Checker<S>: Validity<S> + Clearance<S> + MotionBound<S> + Clone + Send + Sync {
+pub trait Checker<S>: Validity<S> + Clearance<S> + MotionBound<S> + Queries + Clone + Send + Sync {}
+impl<S, R: Validity<S> + Clearance<S> + MotionBound<S> + Queries + Clone + Send + Sync> Checker<S> for R {}
+
+/// What counts its queries.
+pub trait Queries {
     /// How many collision and clearance queries this clone was asked so far.
     fn queries(&self) -> u64;
 }

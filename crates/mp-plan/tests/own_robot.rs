@@ -4,7 +4,7 @@ use mp_cspace::{
     Clearance, JointRange, Joints, KnownFree, MotionBound, MotionCheck, MotionValidity, Validity,
 };
 use mp_plan::{
-    Body, BodyShape, Checker, Column, Error, Measured, Metric, PathRows, Request, RobotKind, Scene, Touch,
+    Body, BodyShape, Column, Error, Measured, Metric, PathRows, Queries, Request, RobotKind, Scene, Touch,
 };
 use nalgebra::{DVector, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -51,7 +51,7 @@ impl MotionBound<Configuration> for Load {
         (to[0] - from[0]).abs() * from[1].max(to[1]) + (to[1] - from[1]).abs()
     }
 }
-impl Checker<Configuration> for Load {
+impl Queries for Load {
     fn queries(&self) -> u64 {
         self.asked
     }

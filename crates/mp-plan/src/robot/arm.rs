@@ -1,6 +1,6 @@
 //! Arms, and other trees of links, among meshes.
 
-use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, RobotKind, Touch, no_metric};
+use super::{Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, no_metric};
 use crate::{Error, Metric, brief};
 use mp_cspace::{ClearanceGradient, JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
 use mp_geom::TriMesh;
@@ -170,7 +170,7 @@ fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 
     })
 }
 
-impl Checker<Configuration> for Arm {
+impl Queries for Arm {
     fn queries(&self) -> u64 {
         let counters = self.counters();
         counters.collision_checks + counters.clearance_checks

@@ -1,6 +1,6 @@
 //! Robots of the plane among polygons: a disc, or a polygon that turns.
 
-use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, RobotKind, Touch, no_metric};
+use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, Queries, RobotKind, Touch, no_metric};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::CompiledIndex;
@@ -72,14 +72,14 @@ pub trait PlanarBody:
     fn moved(q: &Self::State, by: Vector2<f64>) -> Self::State;
 }
 
-impl Checker<Vector2<f64>> for DiscRobot {
+impl Queries for DiscRobot {
     fn queries(&self) -> u64 {
         let counters = self.counters();
         counters.collision_checks + counters.clearance_checks
     }
 }
 
-impl Checker<Se2State> for PolygonRobot {
+impl Queries for PolygonRobot {
     fn queries(&self) -> u64 {
         let counters = self.counters();
         counters.collision_checks + counters.clearance_checks

@@ -1,7 +1,7 @@
 //! Rigid bodies among meshes, in space or in the plane.
 
 use super::{
-    Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, RobotKind, Touch, tuples,
+    Body, BodyShape, Column, Counted, End, Measured, Mismatch, PathFormat, Queries, RobotKind, Touch, tuples,
 };
 use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
@@ -146,7 +146,7 @@ impl<M: RigidMotion> RigidScene<M> {
     }
 }
 
-impl<P: Placement> Checker<P::State> for RigidBody<P> {
+impl<P: Placement> Queries for RigidBody<P> {
     fn queries(&self) -> u64 {
         let counters = self.counters();
         counters.collision_checks + counters.clearance_checks
