@@ -21,6 +21,7 @@ mod obb;
 mod pose;
 pub mod primitives;
 mod sphere;
+mod spread;
 mod topology;
 mod triangulate;
 
@@ -35,4 +36,5 @@ pub use pose::{
 };
 pub use primitives::PrimitiveError;
 pub use sphere::{Sphere, minimal_sphere};
+pub use spread::evenly;
 pub use topology::{NO_COMPONENT, Topology};

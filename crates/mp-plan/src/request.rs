@@ -303,7 +303,7 @@ impl Request {
         Self { threads, ..self }
     }
 
-    /// The same with another end of the path's way.
+    /// The same with something else done to the path that was found.
     #[must_use]
     pub fn finish(self, finish: Finish) -> Self {
         Self { finish, ..self }

@@ -317,7 +317,7 @@ pub struct Mismatch {
 }
 
 impl Mismatch {
-    /// Whether it is as near as it has to be; not when a number is none.
+    /// Whether it is no farther off than allowed; false for NaN.
     #[must_use]
     pub fn is_near(&self) -> bool {
         self.off <= self.allowed

@@ -10,7 +10,7 @@ use crate::{
     RobotKind, Verdict,
 };
 use mp_cspace::{MotionBound, Outcome, Rng, Space, Validity};
-use mp_geom::Aabb;
+use mp_geom::{Aabb, evenly};
 use mp_io::{Disk, Files, FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
@@ -536,29 +536,4 @@ fn sweep<K: RobotKind>(kind: &K, path: Option<&PathRows>) -> Result<Sweep, Error
         between: places.into_iter().map(|(edge, t)| kind.poses(&at(edge, t))).collect(),
         trace: trace.map(|(edge, t)| kind.traced(&at(edge, t))).collect(),
     })
-}
-
-/// Places spread evenly along edges of these lengths, about `spacing` apart, from 12 to 70 of them: the index of an
-/// edge and a fraction of it. None on a path that stays put.
-fn evenly(lengths: &[f64], spacing: f64) -> Vec<(usize, f64)> {
-    let mut at = vec![0.0];
-    for length in lengths {
-        at.push(at[at.len() - 1] + length);
-    }
-    let total = at[at.len() - 1];
-    if lengths.is_empty() || total.is_nan() || total <= 0.0 {
-        return Vec::new();
-    }
-    let n = (total / spacing.max(1e-9)).clamp(12.0, 70.0) as usize;
-    let mut segment = 0;
-    let place = |i: usize| {
-        let s = total * i as f64 / n as f64;
-        while segment + 2 < at.len() && at[segment + 1] < s {
-            segment += 1;
-        }
-        let length = at[segment + 1] - at[segment];
-        let t = if length > 0.0 { ((s - at[segment]) / length).clamp(0.0, 1.0) } else { 0.0 };
-        (segment, t)
-    };
-    (1..n).map(place).collect()
 }

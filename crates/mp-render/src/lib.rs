@@ -51,7 +51,7 @@ mod view;
 pub use body::Body;
 pub use drawing::{Drawing, Item};
 pub use error::{MAX_SIDE, RenderError};
+pub use mp_geom::evenly;
 pub use picture::Picture;
 pub use plot::{Series, plot};
 pub use scene::Scene;
-pub use sweep::evenly;

@@ -7,6 +7,7 @@ use crate::decorate::nearer;
 use crate::model::{Lights, Model};
 use crate::palette::{INK, gradient};
 use crate::raster::line;
+use mp_geom::evenly;
 use nalgebra::{Isometry3, Point3};
 
 /// Opacity of one copy.
@@ -15,32 +16,6 @@ const COPY: f32 = 0.42;
 /// How far a point of the robot may move between two poses, metres.
 fn travel(robot: &Model, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     (a.translation.vector - b.translation.vector).norm() + robot.radius * a.rotation.angle_to(&b.rotation)
-}
-
-/// Places spread evenly along edges of these lengths, about `spacing` apart, 11 to 69 of them: the index of an edge
-/// and a fraction of it. None on a path that stays put.
-#[must_use]
-pub fn evenly(lengths: &[f64], spacing: f64) -> Vec<(usize, f64)> {
-    let mut at = vec![0.0];
-    for length in lengths {
-        at.push(at[at.len() - 1] + length);
-    }
-    let total = at[at.len() - 1];
-    if lengths.is_empty() || total.is_nan() || total <= 0.0 {
-        return Vec::new();
-    }
-    let n = (total / spacing.max(1e-9)).clamp(12.0, 70.0) as usize;
-    let mut segment = 0;
-    let place = |i: usize| {
-        let s = total * i as f64 / n as f64;
-        while segment + 2 < at.len() && at[segment + 1] < s {
-            segment += 1;
-        }
-        let length = at[segment + 1] - at[segment];
-        let t = if length > 0.0 { ((s - at[segment]) / length).clamp(0.0, 1.0) } else { 0.0 };
-        (segment, t)
-    };
-    (1..n).map(place).collect()
 }
 
 impl Body {
