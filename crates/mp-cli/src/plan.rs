@@ -98,7 +98,7 @@ fn request(args: &Plan) -> Result<Request, Error> {
         planner: args.planner.clone(),
         metric: args.metric,
         motion: args.motion,
-        budget: Budget { time_s: Some(args.time), iterations: args.iterations, queries: None },
+        budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
         seed: args.seed,
         threads,
         finish: match (args.relax, args.no_shorten) {

@@ -205,18 +205,25 @@ fn ends<K: RobotKind>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)
     std::iter::once((End::Start, "the start".to_owned(), kind.start())).chain(goals)
 }
 
+/// What is wrong with a configuration that messages call `name`, and what to do; `None` when it is free.
+pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Option<(String, String)> {
+    let fault = fault(kind, q)?;
+    let help = match kind.nearest_free(q) {
+        _ if !kind.space().contains(q) => "move it, or widen the bounds".to_owned(),
+        Some(free) => format!("the nearest free configuration found is {}", kind.written(&free)),
+        None => "no free configuration was found nearby: is the scene in metres, the robot in its frame?"
+            .to_owned(),
+    };
+    Some((format!("{name} is {fault}"), help))
+}
+
 /// An error when start or a goal is not free: names what touches, how deep, and the nearest free configuration.
 /// Otherwise what is odd about them.
 pub(crate) fn check_ends<K: RobotKind>(kind: &K) -> Result<Vec<String>, Error> {
     for (end, name, q) in ends(kind) {
-        let Some(fault) = fault(kind, q) else { continue };
-        let help = match kind.nearest_free(q) {
-            _ if !kind.space().contains(q) => "move it, or widen the bounds".to_owned(),
-            Some(free) => format!("the nearest free configuration found is {}", kind.written(&free)),
-            None => "no free configuration was found nearby: is the scene in metres, the robot in its frame?"
-                .to_owned(),
-        };
-        return Err(kind.fault(end, format!("{name} is {fault}"), help));
+        if let Some((message, help)) = refused(kind, &name, q) {
+            return Err(kind.fault(end, message, help));
+        }
     }
     Ok(kind.odd_ends().into_iter().collect())
 }

@@ -36,6 +36,7 @@
 //! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::parse`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
 //! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what becomes of the path |
 //! | plan | [`Scene::plan`]; watched and stopped from outside: [`Scene::plan_with`], [`Control`], [`Watch`] |
+//! | build a roadmap once and ask it many times | [`Scene::roadmap`], [`SceneRoadmap`] |
 //! | read what came of it | [`Report`], with a documented JSON form |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
 //! | know why a configuration is not free | [`Scene::explain`] |
@@ -60,12 +61,16 @@ mod parallel;
 mod path;
 #[cfg(feature = "pictures")]
 mod picture;
+mod plan;
 mod planners;
+mod prepared;
 mod report;
 mod request;
 mod roadmaps;
 mod robot;
 mod scene;
+#[cfg(feature = "roadmaps")]
+mod scene_roadmap;
 mod search;
 mod watch;
 
@@ -88,6 +93,8 @@ pub use robot::{
     PlanarScene, Queries, RigidMotion, RigidScene, RobotKind, Touch,
 };
 pub use scene::{Scene, Sweep};
+#[cfg(feature = "roadmaps")]
+pub use scene_roadmap::SceneRoadmap;
 pub use search::{Search, search};
 pub use watch::{Control, SearchEvent, Stage, Watch};
 

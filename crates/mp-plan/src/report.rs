@@ -97,6 +97,8 @@ pub enum StoppedBy {
     Exhausted,
     /// The path found did not pass the verifier once its numbers were written down.
     Verification,
+    /// The roadmap that was asked has no such path.
+    Unanswered,
 }
 
 impl StoppedBy {
@@ -110,6 +112,7 @@ impl StoppedBy {
             Self::Interrupted => "interrupted",
             Self::Exhausted => "exhausted",
             Self::Verification => "verification",
+            Self::Unanswered => "unanswered",
         }
     }
 }
@@ -124,6 +127,7 @@ impl fmt::Display for StoppedBy {
             Self::Interrupted => "interrupted",
             Self::Exhausted => "the planner has tried all it can by its own rule",
             Self::Verification => "the path found touches something when written down: try another seed",
+            Self::Unanswered => "the roadmap has no such path",
         })
     }
 }

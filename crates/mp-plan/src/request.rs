@@ -58,6 +58,8 @@ pub struct Budget {
     pub iterations: Option<u64>,
     /// Collision and clearance queries.
     pub queries: Option<u64>,
+    /// Nodes of the trees or the roadmap.
+    pub nodes: Option<usize>,
 }
 
 /// What becomes of the path that a planner found.
@@ -229,7 +231,7 @@ as_text!(Length, MotionCheck);
 /// A minute.
 impl Default for Budget {
     fn default() -> Self {
-        Self { time_s: Some(60.0), iterations: None, queries: None }
+        Self { time_s: Some(60.0), iterations: None, queries: None, nodes: None }
     }
 }
 
@@ -294,6 +296,13 @@ impl Request {
     #[must_use]
     pub fn iterations(mut self, iterations: u64) -> Self {
         self.budget.iterations = Some(iterations);
+        self
+    }
+
+    /// The same for at most so many nodes of trees or roadmap.
+    #[must_use]
+    pub fn nodes(mut self, nodes: usize) -> Self {
+        self.budget.nodes = Some(nodes);
         self
     }
 

@@ -3,6 +3,8 @@
 use crate::{Error, Request};
 use mp_cspace::erased::AnyIndex;
 use mp_cspace::{AnyProblem, BuildError, Planner, PlannerInfo, Settings, Workers};
+#[cfg(feature = "roadmaps")]
+use mp_cspace::{Observer, Rng, Stop, StopReason};
 
 /// A planner that builds a roadmap, and what became of the file that it is kept in.
 pub(crate) struct Made<'p, S> {
@@ -20,6 +22,16 @@ pub(crate) use mp_roadmap::planners;
 #[cfg(feature = "roadmaps")]
 pub use mp_roadmap::{Roadmap, RoadmapState};
 
+/// What a roadmap in a file of the request must be one of, where it names a file.
+pub(crate) fn fingerprint<K: crate::RobotKind>(kind: &K, request: &Request) -> Result<Option<u64>, Error> {
+    let Some(_) = &request.roadmap else { return Ok(None) };
+    let Some(fingerprint) = kind.fingerprint(request.metric) else {
+        let help = "leave the file of the roadmap out";
+        return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));
+    };
+    Ok(Some(fingerprint))
+}
+
 /// The planner called `name`, if there is one.
 #[cfg(feature = "roadmaps")]
 pub(crate) fn planner(name: &str) -> Option<&'static PlannerInfo> {
@@ -32,7 +44,7 @@ impl<'p, S: RoadmapState + mp_cspace::Numbers + 'static> Made<'p, S> {
     pub(crate) fn new(
         info: &PlannerInfo,
         make: Make<'_, 'p, S>,
-        index: AnyIndex<'p, S>,
+        index: AnyIndex<S>,
         request: &Request,
         settings: &Settings,
         workers: Workers,
@@ -53,6 +65,26 @@ impl<'p, S: RoadmapState + mp_cspace::Numbers + 'static> Made<'p, S> {
 
     pub(crate) fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
         &mut *self.planner
+    }
+
+    /// Builds until stopped, whether or not start and goal get connected.
+    pub(crate) fn build(
+        &mut self,
+        rng: &mut Rng,
+        stop: &mut dyn Stop,
+        observer: &mut dyn Observer<S>,
+    ) -> StopReason {
+        self.planner.build(rng, stop, observer)
+    }
+
+    /// How many nodes there are.
+    pub(crate) fn nodes(&self) -> usize {
+        self.planner.map().len()
+    }
+
+    /// Goes on with this roadmap.
+    pub(crate) fn resume(&mut self, map: Roadmap<S>) -> Result<(), Error> {
+        Ok(self.planner.resume(map)?)
     }
 
     /// Writes the roadmap to the file that it is kept in; its edges and components, and itself if wanted.
@@ -97,7 +129,7 @@ impl<'p, S: RoadmapState> Made<'p, S> {
     pub(crate) fn new(
         info: &PlannerInfo,
         _: Make<'_, 'p, S>,
-        _: AnyIndex<'p, S>,
+        _: AnyIndex<S>,
         _: &Request,
         _: &Settings,
         _: Workers,

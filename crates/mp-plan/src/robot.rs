@@ -133,7 +133,7 @@ pub struct Measured<'c, S> {
     /// The space under some metric.
     pub space: AnySpace<'c, S>,
     /// An empty index of it.
-    pub index: AnyIndex<'c, S>,
+    pub index: AnyIndex<S>,
 }
 
 impl<'c, S> Measured<'c, S> {

@@ -1,15 +1,15 @@
 //! A scene of any kind, and everything one does with it.
 
 use crate::check::{check, check_ends, explain, lint, states};
-use crate::finish::finish;
 use crate::inputs::Recording;
+use crate::plan::plan;
 use crate::robot::{ArmScene, PlanarScene, RigidScene};
-use crate::search::search;
+#[cfg(feature = "roadmaps")]
+use crate::scene_roadmap::{Answering, SceneRoadmap};
 use crate::{
-    Body, Column, Control, Error, Explanation, PathFormat, PathRows, REPORT_VERSION, Report, Request,
-    RobotKind, Verdict,
+    Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Verdict,
 };
-use mp_cspace::{MotionBound, Outcome, Rng, Space, Validity};
+use mp_cspace::{MotionBound, Rng, Space, Validity};
 use mp_geom::{Aabb, evenly};
 use mp_io::{Disk, Files, FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
@@ -17,7 +17,6 @@ use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
 
 /// A scene made ready to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share it.
 ///
@@ -234,6 +233,39 @@ impl Scene {
         Ok(report)
     }
 
+    /// Builds a roadmap, for many queries: with the planner of the request, which must be one of roadmaps, until its
+    /// budget is spent. Start and goal of the scene are not looked at. Where the request names a file with a roadmap, that
+    /// one is gone on with, and the file is written in the end.
+    ///
+    /// ```
+    /// use mp_plan::{Request, Scene};
+    /// let scene = Scene::find("easy")?;
+    /// let mut roadmap = scene.roadmap(&Request::new("prm").seed(3).nodes(3_000))?;
+    /// let (start, goal) = (scene.start(), scene.goals().remove(0));
+    /// for (from, to) in [(&start, &goal), (&goal, &start)] {
+    ///     let report = roadmap.query(from, to)?;
+    ///     assert!(report.solved, "{:?}", report.why);
+    /// }
+    /// # Ok::<(), mp_plan::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the planner builds no roadmap, the request makes no sense, or the file cannot be read or written.
+    #[cfg(feature = "roadmaps")]
+    pub fn roadmap(&self, request: &Request) -> Result<SceneRoadmap, Error> {
+        self.roadmap_with(request, &mut Control::default())
+    }
+
+    /// The same, watched and stopped from outside.
+    ///
+    /// # Errors
+    /// As [`roadmap`](Self::roadmap).
+    #[cfg(feature = "roadmaps")]
+    pub fn roadmap_with(&self, request: &Request, control: &mut Control<'_>) -> Result<SceneRoadmap, Error> {
+        let roadmap = Arc::clone(&self.robot).roadmap(request, control)?;
+        Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
+    }
+
     /// Verifies a path from the start to a goal, by a checker that shares no code with the planners'.
     ///
     /// # Errors
@@ -333,6 +365,12 @@ trait AnyRobot: Send + Sync {
     fn start(&self) -> Vec<f64>;
     fn goals(&self) -> Vec<Vec<f64>>;
     fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error>;
+    #[cfg(feature = "roadmaps")]
+    fn roadmap(
+        self: Arc<Self>,
+        request: &Request,
+        control: &mut Control<'_>,
+    ) -> Result<Box<dyn Answering>, Error>;
     fn check(&self, path: &PathRows) -> Result<Verdict, Error>;
     fn explain(&self, row: &[f64]) -> Result<Explanation, Error>;
     fn check_ends(&self) -> Result<Vec<String>, Error>;
@@ -345,7 +383,7 @@ trait AnyRobot: Send + Sync {
     fn picture_bounds(&self) -> Option<Aabb>;
 }
 
-impl<K: RobotKind> AnyRobot for K {
+impl<K: RobotKind + 'static> AnyRobot for K {
     fn name(&self) -> &str {
         RobotKind::name(self)
     }
@@ -377,6 +415,14 @@ impl<K: RobotKind> AnyRobot for K {
     }
     fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
         plan(self, request, control)
+    }
+    #[cfg(feature = "roadmaps")]
+    fn roadmap(
+        self: Arc<Self>,
+        request: &Request,
+        control: &mut Control<'_>,
+    ) -> Result<Box<dyn Answering>, Error> {
+        crate::scene_roadmap::build(self, request, control)
     }
     fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
         check(self, path)
@@ -440,7 +486,7 @@ pub(crate) fn foreign(file: &Path) -> Error {
 }
 
 /// The configuration of one row.
-fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
+pub(crate) fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
     let columns = RobotKind::columns(kind);
     if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {
         return Ok(kind.state(row));
@@ -452,72 +498,6 @@ fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
         columns.len()
     ))
     .help(format!("give in order: {}", names.join(", "))))
-}
-
-/// Plans, finishes, reports.
-fn plan<K: RobotKind>(kind: &K, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
-    let found = search(kind, request, control)?;
-    let mut report = Report {
-        version: REPORT_VERSION,
-        scene: RobotKind::name(kind).to_owned(),
-        scene_file: None,
-        space: RobotKind::space_name(kind),
-        solved: false,
-        verified: false,
-        stopped_by: None,
-        why: None,
-        planner: crate::planners::Named::new(&request.planner)?.to_string(),
-        metric: request.metric.to_string(),
-        motion: request.motion.to_string(),
-        seed: request.seed,
-        iterations: found.progress.iterations,
-        nodes: found.progress.nodes,
-        edges: found.map.map(|[edges, _]| edges),
-        components: found.map.map(|[_, components]| components),
-        motion_checks: found.progress.motions,
-        collision_checks: found.queries,
-        rejected: found.progress.rejected,
-        time_s: found.time.as_secs_f64(),
-        finish_s: 0.0,
-        first_s: found.first.as_ref().map(|(time, ..)| time.as_secs_f64()),
-        first_length: found.first.as_ref().map(|(_, length, _)| *length),
-        first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
-        path_length_found: None,
-        path_length: None,
-        clearance: None,
-        shortened: false,
-        fingerprint: None,
-        path_file: None,
-        picture_file: None,
-        columns: RobotKind::columns(kind),
-        path: None,
-    };
-    let stopped = |report: &mut Report, by: crate::StoppedBy| {
-        report.stopped_by = Some(by);
-        report.why = Some(by.to_string());
-    };
-    let path = match found.outcome {
-        Outcome::Stopped(reason) => {
-            stopped(&mut report, reason.into());
-            return Ok(report);
-        }
-        Outcome::Solved(path) => path,
-    };
-    report.path_length_found = Some(path.length(kind.space()));
-    let began = Instant::now();
-    let finished = finish(kind, &path, request, control)?;
-    report.finish_s = began.elapsed().as_secs_f64();
-    let Some(finished) = finished else {
-        stopped(&mut report, crate::StoppedBy::Verification);
-        return Ok(report);
-    };
-    (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
-    report.path_length = Some(finished.length);
-    report.clearance = Some(finished.clearance);
-    let numbers = finished.path.rows.iter().flatten().copied();
-    report.fingerprint = Some(format!("{:016x}", crate::numbers::fingerprint(numbers)));
-    report.path = Some(finished.path.rows);
-    Ok(report)
 }
 
 /// Poses along a path.

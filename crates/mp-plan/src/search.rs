@@ -1,15 +1,15 @@
 //! One run of a planner by name, for robots of all kinds.
 
-use crate::counted::{Counted, QueryBudget};
+use crate::counted::Counted;
 use crate::planners::Named;
+use crate::prepared::Prepared;
 use crate::roadmaps::{self, Roadmap};
 use crate::watch::{Events, Telling};
-use crate::{Control, Error, Finish, Length, Measured, MotionCheck, Request, RobotKind, Stage, StoppedBy};
+use crate::{Control, Error, Finish, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
 use mp_cspace::{
-    BuildError, Certified, Deadline, Discrete, Goals, Iterations, Outcome, ParameterError, Path, Planner,
-    Problem, Progress, Resolution, Rng, Space, Stop, StopReason, Straight, Workers, verify_path,
+    Certified, Outcome, Path, Planner, Progress, Rng, Space, Stop, StopReason, Workers, verify_path,
 };
 use mp_snake::{Params, Repulsion, relax};
 use mp_tree::{TreeState, improve};
@@ -71,34 +71,12 @@ pub fn search<K: RobotKind>(
     request.check()?;
     let planner = Named::new(&request.planner)?;
     let (settings, workers) = (request.settings(), Workers::new(request.threads)?);
-    let fingerprint = match &request.roadmap {
-        None => None,
-        Some(_) => Some(kind.fingerprint(request.metric).ok_or_else(|| {
-            Error::new("roadmaps are kept of rigid bodies only").help("leave the file of the roadmap out")
-        })?),
-    };
-    let queries = AtomicU64::new(0);
-    let Measured { space, index } = kind.measured(request.metric)?;
-    let verifier = kind.verifier()?;
+    let fingerprint = roadmaps::fingerprint(kind, request)?;
+    let prepared = Prepared::new(kind, request)?;
     let began = Instant::now();
     control.stage(Stage::Planning);
-
-    let counted = || Counted::new(kind.checker().clone(), &queries);
-    let problem = || {
-        let check: AnyCheck<'_, K::State> = match request.motion {
-            MotionCheck::Certified => {
-                Box::new(unmade(Certified::new(kind.space(), counted(), kind.tolerance()))?)
-            }
-            MotionCheck::Discrete(length) => {
-                Box::new(unmade(Discrete::new(&space, counted(), resolution(length)))?)
-            }
-        };
-        let goals = Goals::states(kind.goals().iter().cloned());
-        let local = Straight::new(&space, check);
-        let verifier: AnyCheck<'_, K::State> = Box::new(verifier.clone());
-        let problem = Problem::new(&space, local, verifier, kind.start().clone(), goals)?;
-        Ok(problem.with_obstacles(kind.obstacles(&counted)))
-    };
+    let problem = || prepared.problem();
+    let index = prepared.index.clone();
     let mut made = match &planner {
         Named::Tree(named) => {
             let name = named.to_string();
@@ -112,26 +90,14 @@ pub fn search<K: RobotKind>(
 
     let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
     let telling = Telling::new(control.watch.as_deref_mut());
-    let deadline = request.budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
-    let mut stop = control
-        .cancel
-        .clone()
-        .or(request.budget.iterations.map(Iterations))
-        .or(deadline.and_then(|time| began.checked_add(time)).map(Deadline::at))
-        .or(request.budget.queries.map(|most| QueryBudget { queries: &queries, most }))
-        .or(control.stop.as_deref_mut())
-        .or(&telling);
+    let stop = prepared.stop(request, began, control.cancel.clone());
+    let mut stop = stop.or(control.stop.as_deref_mut()).or(&telling);
     let mut events = Events { row: &|q| kind.row(q), telling: &telling, wanted };
-    let (best, reason, first) = solved(made.planner(), request, &space, &mut stop, &mut events, began);
+    let (best, reason, first) =
+        solved(made.planner(), request, &prepared.space, &mut stop, &mut events, began);
     drop(stop);
     let outcome = match (best, reason) {
-        (Some(path), _) if request.finish == Finish::Relax => {
-            if let Some(watch) = &mut *telling.watch.borrow_mut() {
-                watch.stage(Stage::Relaxing);
-            }
-            Outcome::Solved(relaxed(kind, path)?)
-        }
-        (Some(path), _) => Outcome::Solved(path),
+        (Some(path), _) => Outcome::Solved(relax_if_asked(kind, request, path, control)?),
         (None, reason) => Outcome::Stopped(reason.unwrap_or(StopReason::Cancelled)),
     };
     let time = began.elapsed();
@@ -155,7 +121,15 @@ pub fn search<K: RobotKind>(
         nodes = progress.nodes,
         "planned"
     );
-    Ok(Search { outcome, progress, queries: queries.load(Ordering::Relaxed), time, first, map, roadmap })
+    Ok(Search {
+        outcome,
+        progress,
+        queries: prepared.queries.load(Ordering::Relaxed),
+        time,
+        first,
+        map,
+        roadmap,
+    })
 }
 
 /// The last path found and why it is not the end, and the first of a planner that keeps improving.
@@ -196,15 +170,18 @@ fn solved<S: TreeState>(
     (best, reason, first)
 }
 
-fn unmade<T>(made: Result<T, ParameterError>) -> Result<T, BuildError> {
-    made.map_err(|e| BuildError::Unmade { reason: e.to_string() })
-}
-
-fn resolution(length: Length) -> Resolution {
-    match length {
-        Length::Absolute(v) => Resolution::Length(v),
-        Length::Fraction(f) => Resolution::Fraction(f),
+/// The path as it is, or [relaxed].
+pub(crate) fn relax_if_asked<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    path: Path<K::State>,
+    control: &mut Control<'_>,
+) -> Result<Path<K::State>, Error> {
+    if request.finish != Finish::Relax {
+        return Ok(path);
     }
+    control.stage(Stage::Relaxing);
+    relaxed(kind, path)
 }
 
 /// The path without the states it does not need, relaxed by a snake: where that is not free by the verifier, the path

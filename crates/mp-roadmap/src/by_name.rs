@@ -16,6 +16,9 @@ pub struct Team<'c, C: Space, L: LocalPlanner<C::State>> {
     hands: Vec<Steer<'c, C, L>>,
 }
 
+/// How a robot moves in an erased problem.
+pub type AnySteer<'c, S> = Steer<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
+
 /// A team for an erased problem.
 pub type AnyTeam<'c, S> = Team<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 

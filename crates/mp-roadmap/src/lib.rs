@@ -54,14 +54,14 @@ mod engine;
 mod registry;
 
 pub use algo::types::*;
-pub use by_name::{AnyPlanner, AnyTeam, Team};
+pub use by_name::{AnyPlanner, AnySteer, AnyTeam, Team};
 pub use engine::{
-    AStar, Among, Answers, Builder, CYCLES, Came, Candidate, Connector, Entry, Foreseeing, Free, Growing,
-    HasRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, Nearest, NodeGenerator, PATIENCE, Pace,
-    PairRule, Pairs, Query, RADIUS, Reachable, Recipe, Roadmap, RoadmapError, RoadmapFileError,
-    RoadmapPlanner, Stages, Steer, Tag, Turns, UNDIRECTED, Unanswered, Way, fingerprint, length, reachable,
-    yes,
+    AStar, Among, Answers, Builder, CYCLES, Came, Candidate, Connector, EdgeId, Entry, Foreseeing, Free,
+    Growing, HasRoadmap, IndexedRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, Nearest,
+    NodeGenerator, PATIENCE, Pace, PairRule, Pairs, Query, RADIUS, Reachable, Recipe, Roadmap, RoadmapError,
+    RoadmapFileError, RoadmapPlanner, Stages, Steer, Tag, Turns, UNDIRECTED, Unanswered, Way, fingerprint,
+    length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
-pub use mp_cspace::{BuildError, Settings};
-pub use registry::{RoadmapState, build, build_with, planner, planners};
+pub use mp_cspace::{BuildError, Path, Settings};
+pub use registry::{AnyRoadmap, RoadmapState, build, build_with, planner, planners};

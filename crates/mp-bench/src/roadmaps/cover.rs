@@ -150,7 +150,7 @@ fn on<M: RigidMotion>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     let began = nanoseconds();
     few.build(&mut Rng::seed(seed), &mut Iterations(10_000_000), &mut ());
     let seconds = seconds_since(began);
-    let guards = few.map().graph().node_weights().filter(|tag| tag.kind == mp_roadmap::Kind::Guard);
+    let guards = few.map().tags().filter(|tag| tag.kind == mp_roadmap::Kind::Guard);
     let (guards, estimate) = (guards.count() as f64, few.connector().coverage());
     let aim = seen(scene, few.map_mut(), &mut fresh(&samples))?;
     let (nodes, components) = (few.map().len() as f64, few.map_mut().components() as f64);

@@ -20,7 +20,6 @@ use mp_roadmap::{
 };
 use mp_robot::Spatial;
 use nalgebra::{Isometry3, Point3, Vector3};
-use petgraph::visit::EdgeRef;
 use std::path::PathBuf;
 
 const SCENES: [&str; 3] = ["maze", "planar-bugtrap", "gempa-3"];
@@ -113,12 +112,12 @@ fn place<M: RigidMotion>(q: &M::State) -> Point3<f64> {
 /// Edges, those not checked lighter; and nodes of this radius, pixels.
 fn roadmap<M: RigidMotion>(drawing: &mut Drawing, map: &Roadmap<M::State>, radius: f64) {
     for (state, colour) in [(LinkState::Unchecked, "#d5dde8"), (LinkState::Free, "#5b7fa8")] {
-        let edges = map.graph().edge_references().filter(|edge| edge.weight().state == state);
-        let ends = edges.map(|e| [e.source(), e.target()].map(|end| place::<M>(&map.states()[end.index()])));
+        let edges = map.all_edges().filter(|(_, _, link)| link.state == state);
+        let ends = edges.map(|(_, ends, _)| ends.map(|end| place::<M>(map.state(end))));
         drawing.lines(ends, colour, 0.8);
     }
     for kind in Kind::ALL {
-        let tagged = map.states().iter().zip(map.graph().node_weights());
+        let tagged = map.states().iter().zip(map.tags());
         let places: Vec<_> = tagged.filter(|(_, tag)| tag.kind == kind).map(|(q, _)| place::<M>(q)).collect();
         let radius = if matches!(kind, Kind::Guard | Kind::Connection) { radius * 1.7 } else { radius };
         if !places.is_empty() {

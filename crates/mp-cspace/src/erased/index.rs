@@ -7,7 +7,6 @@ use crate::{
 };
 use nalgebra::{DVector, Isometry3};
 use std::fmt::{self, Debug};
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// What of an index goes behind the pointer: all of [`NearestNeighbors`], with the space inside.
@@ -53,16 +52,16 @@ where
 
 /// Any index of an [erased space](AnySpace): it keeps the space it was made for, so that the search inside runs on the
 /// space itself and answers are the same, to the bit. Give it the erasure of that space.
-pub struct AnyIndex<'c, S>(Box<dyn Erased<S>>, PhantomData<&'c ()>);
+pub struct AnyIndex<S>(Box<dyn Erased<S>>);
 
-impl<S> AnyIndex<'_, S> {
+impl<S> AnyIndex<S> {
     /// `index` for a copy of `space`, erased.
     pub fn new<C, N>(space: &C, index: N) -> Self
     where
         C: Space<State = S> + Clone + Send + 'static,
         N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
     {
-        Self(Box::new(Searching { space: Arc::new(space.clone()), index }), PhantomData)
+        Self(Box::new(Searching { space: Arc::new(space.clone()), index }))
     }
 
     /// The [index that suits](DefaultNn) `space`, empty and erased.
@@ -71,11 +70,11 @@ impl<S> AnyIndex<'_, S> {
     }
 }
 
-impl<S: CoordinateState> AnyIndex<'_, S> {
+impl<S: CoordinateState> AnyIndex<S> {
     /// A [`KdTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: a little
     /// slower than [`of`](Self::of), compiled once.
     pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self {
-        Self(S::index(AnySpace::new(space), AnyEmbed(Arc::new(space.clone()))).0, PhantomData)
+        Self(S::index(AnySpace::new(space), AnyEmbed(Arc::new(space.clone()))).0)
     }
 }
 
@@ -102,15 +101,15 @@ pub struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
 pub trait CoordinateState: Clone + Debug + PartialEq + Send + Sync + 'static {
     /// An empty index of a space with these coordinates.
     #[doc(hidden)]
-    fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<'static, Self>;
+    fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self>;
 }
 
 macro_rules! coordinate_states {
     ($($state:ty),*) => {
         $(impl CoordinateState for $state {
-            fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<'static, Self> {
+            fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self> {
                 let space = Arc::new(Embedded { space, layout });
-                AnyIndex(Box::new(Searching { space, index: <KdTree>::default() }), PhantomData)
+                AnyIndex(Box::new(Searching { space, index: <KdTree>::default() }))
             }
         })*
     };
@@ -166,13 +165,13 @@ impl<S: Clone + Debug + PartialEq + Send + Sync> Embed for Embedded<S> {
 /// A space whose own index is compiled in this crate, for states of robots.
 pub trait CompiledIndex: Space + Clone + Send + 'static {
     /// The [index that suits](DefaultNn) the space, empty and erased.
-    fn compiled_index(&self) -> AnyIndex<'static, Self::State>;
+    fn compiled_index(&self) -> AnyIndex<Self::State>;
 }
 
 macro_rules! compiled {
     ($($space:ty),*) => {
         $(impl CompiledIndex for $space {
-            fn compiled_index(&self) -> AnyIndex<'static, Self::State> {
+            fn compiled_index(&self) -> AnyIndex<Self::State> {
                 AnyIndex::of(self)
             }
         })*
@@ -180,19 +179,19 @@ macro_rules! compiled {
 }
 compiled!(Se3, Se2, Rn<2>, Joints<DVector<f64>>);
 
-impl<S> Clone for AnyIndex<'_, S> {
+impl<S> Clone for AnyIndex<S> {
     fn clone(&self) -> Self {
-        Self(self.0.boxed(), PhantomData)
+        Self(self.0.boxed())
     }
 }
 
-impl<S> Debug for AnyIndex<'_, S> {
+impl<S> Debug for AnyIndex<S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("AnyIndex").finish_non_exhaustive()
     }
 }
 
-impl<S: Clone + Debug + PartialEq + Send + Sync> NearestNeighbors<AnySpace<'_, S>> for AnyIndex<'_, S> {
+impl<S: Clone + Debug + PartialEq + Send + Sync> NearestNeighbors<AnySpace<'_, S>> for AnyIndex<S> {
     #[inline]
     fn inserted(&mut self, _: &AnySpace<'_, S>, points: &[S], id: NodeId) {
         self.0.inserted(points, id);

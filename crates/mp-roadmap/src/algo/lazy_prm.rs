@@ -50,14 +50,13 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::{
-    AStar, Candidate, Kind, LinkState, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
+    AStar, Candidate, EdgeId, Kind, LinkState, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
     RoadmapPlanner, Steer,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, PlannerInfo, Problem, Reversible, Rng,
     Settings, Space,
 };
-use petgraph::graph::EdgeIndex;
 use rand::RngExt;
 
 const FIRST: Parameter = Parameter {
@@ -115,11 +114,11 @@ where
     ) {
         let space = steer.space();
         let mut q = space.sample_uniform(rng);
-        let edges = map.graph().edge_count();
+        let edges = map.all_edges().len();
         if map.len() >= self.first && edges > 0 && rng.random::<bool>() {
-            let draws = (0..LOOKS).map(|_| EdgeIndex::new(rng.random_range(0..edges)));
-            let removed = |edge: &EdgeIndex| map.graph()[*edge].state == LinkState::Blocked;
-            let found: Vec<EdgeIndex> = draws.filter(removed).take(1).collect();
+            let draws = (0..LOOKS).map(|_| EdgeId(rng.random_range(0..edges) as u32));
+            let removed = |edge: &EdgeId| map.edge(*edge).state == LinkState::Blocked;
+            let found: Vec<EdgeId> = draws.filter(removed).take(1).collect();
             if let Some(&edge) = found.first() {
                 let [a, b] = map.ends(edge).map(|id| map.state(id));
                 let middle = space.interpolate(a, b, 0.5);

@@ -2,12 +2,11 @@
 
 use super::forest::Forest;
 use super::planner::verify;
-use super::{AStar, Builder, LinkState, Query, Roadmap, Steer, Way};
+use super::{AStar, Builder, EdgeId, LinkState, Query, Roadmap, Steer, Way};
 use mp_cspace::shortest::shortest_paths;
 use mp_cspace::{
     BuildError, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible, Space,
 };
-use petgraph::graph::EdgeIndex;
 
 /// Why a query has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -36,7 +35,14 @@ pub enum Unanswered {
 #[derive(Debug)]
 pub struct Answers<'c, C: Space, L: LocalPlanner<C::State>, N> {
     steer: Steer<'c, C, L>,
-    map: Roadmap<C::State, L::Edge>,
+    indexed: IndexedRoadmap<C::State, L::Edge, N>,
+}
+
+/// A roadmap, an index of its nodes and what searches have learnt: what of [`Answers`] outlives a local planner. It
+/// answers the same queries to whoever brings one, always for the same space and scene.
+#[derive(Clone, Debug)]
+pub struct IndexedRoadmap<S, E, N> {
+    map: Roadmap<S, E>,
     index: N,
     star: AStar,
     forest: Forest,
@@ -53,8 +59,7 @@ where
     #[must_use]
     pub fn into_answers(self, neighbours: usize) -> Answers<'c, C, L, N> {
         let Self { steer, map, index, .. } = self;
-        let (star, forest) = (AStar::new(), Forest::default());
-        Answers { steer, map, index, star, forest, neighbours, near: Default::default() }
+        Answers { steer, indexed: IndexedRoadmap::filled(map, index, neighbours) }
     }
 }
 
@@ -85,49 +90,28 @@ where
     pub fn new(
         steer: Steer<'c, C, L>,
         map: Roadmap<C::State, L::Edge>,
-        mut index: N,
+        index: N,
         neighbours: usize,
     ) -> Result<Self, BuildError> {
-        map.fill(steer.space(), &mut index)?;
-        let (star, forest) = (AStar::new(), Forest::default());
-        Ok(Self { steer, map, index, star, forest, neighbours, near: Default::default() })
+        let indexed = IndexedRoadmap::new(steer.space(), map, index, neighbours)?;
+        Ok(Self { steer, indexed })
     }
 
-    /// Verifies all edges now, in both directions, so that no query waits for it; those that fail are blocked. How many
-    /// did. Edges that were only guessed are checked first.
-    ///
-    /// A planner of one path is better off with the verification of that path; of thousands each edge is on
-    /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
+    /// As [`IndexedRoadmap::verify`].
     pub fn verify(&mut self) -> usize {
-        let before = self.map.blocked();
-        let edges: Vec<EdgeIndex> = self.map.graph().edge_indices().collect();
-        for edge in edges {
-            if self.map.graph()[edge].state == LinkState::Blocked {
-                continue;
-            }
-            let [a, b] = self.map.ends(edge);
-            for nodes in [vec![a, b], vec![b, a]] {
-                let way = Way { nodes, edges: vec![edge], length: self.map.graph()[edge].length };
-                if !self.star.check(&mut self.map, &mut self.steer, &way)
-                    || !verify(&mut self.map, &mut self.steer, &way)
-                {
-                    break;
-                }
-            }
-        }
-        self.map.blocked() - before
+        self.indexed.verify(&mut self.steer)
     }
 
     /// The roadmap.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
-        &self.map
+        &self.indexed.map
     }
 
     /// The roadmap alone, with what was learnt about its edges.
     #[must_use]
     pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
-        self.map
+        self.indexed.map
     }
 
     /// Motions asked of the local planner so far.
@@ -145,18 +129,125 @@ where
         start: &C::State,
         goal: &C::State,
     ) -> Result<Path<C::State, L::Edge>, Unanswered> {
-        self.prepare(start, goal)?;
-        if let Some(motion) = self.steer.reach(start, goal)
-            && self.steer.passes(start, &motion.edge, goal)
+        self.indexed.answer(&mut self.steer, start, goal)
+    }
+
+    /// As [`IndexedRoadmap::alternatives`].
+    ///
+    /// # Errors
+    /// When there is none in the roadmap, with the reason.
+    pub fn alternatives(
+        &mut self,
+        start: &C::State,
+        goal: &C::State,
+        k: usize,
+    ) -> Result<Listed<C::State, L::Edge>, Unanswered> {
+        self.indexed.alternatives(&mut self.steer, start, goal, k)
+    }
+}
+
+impl<S, E, N> IndexedRoadmap<S, E, N> {
+    /// Of a roadmap whose nodes the index holds already.
+    fn filled(map: Roadmap<S, E>, index: N, neighbours: usize) -> Self {
+        let (star, forest) = (AStar::new(), Forest::default());
+        Self { map, index, star, forest, neighbours, near: Default::default() }
+    }
+
+    /// The roadmap.
+    #[must_use]
+    pub fn map(&self) -> &Roadmap<S, E> {
+        &self.map
+    }
+
+    /// The roadmap, to ask for its components.
+    pub fn map_mut(&mut self) -> &mut Roadmap<S, E> {
+        &mut self.map
+    }
+
+    /// The roadmap alone, with what was learnt about its edges.
+    #[must_use]
+    pub fn into_map(self) -> Roadmap<S, E> {
+        self.map
+    }
+}
+
+impl<S, E, N> IndexedRoadmap<S, E, N>
+where
+    S: Clone + PartialEq + std::fmt::Debug + Send + Sync,
+    E: Clone + Reversible,
+{
+    /// Of a roadmap made before, with an empty index. Each end of a query is connected to one of its `neighbours`
+    /// nearest nodes.
+    ///
+    /// # Errors
+    /// When a node is outside the space, as of a roadmap for another one.
+    pub fn new<C: Space<State = S>>(
+        space: &C,
+        map: Roadmap<S, E>,
+        mut index: N,
+        neighbours: usize,
+    ) -> Result<Self, BuildError>
+    where
+        N: NearestNeighbors<C>,
+    {
+        map.fill(space, &mut index)?;
+        Ok(Self::filled(map, index, neighbours))
+    }
+
+    /// Verifies all edges now, in both directions, so that no query waits for it; those that fail are blocked. How many
+    /// did. Edges that were only guessed are checked first.
+    ///
+    /// A planner of one path is better off with the verification of that path; of thousands each edge is on
+    /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
+    pub fn verify<C, L>(&mut self, steer: &mut Steer<'_, C, L>) -> usize
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+    {
+        let before = self.map.blocked();
+        let edges: Vec<EdgeId> = self.map.all_edges().map(|(edge, ..)| edge).collect();
+        for edge in edges {
+            if self.map.edge(edge).state == LinkState::Blocked {
+                continue;
+            }
+            let [a, b] = self.map.ends(edge);
+            for nodes in [vec![a, b], vec![b, a]] {
+                let way = Way { nodes, edges: vec![edge], length: self.map.edge(edge).length };
+                if !self.star.check(&mut self.map, steer, &way) || !verify(&mut self.map, steer, &way) {
+                    break;
+                }
+            }
+        }
+        self.map.blocked() - before
+    }
+
+    /// A verified path from `start` to `goal`.
+    ///
+    /// # Errors
+    /// When there is none in the roadmap, with the reason.
+    pub fn answer<C, L>(
+        &mut self,
+        steer: &mut Steer<'_, C, L>,
+        start: &S,
+        goal: &S,
+    ) -> Result<Path<S, E>, Unanswered>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
+        self.prepare(steer, start, goal)?;
+        if let Some(motion) = steer.reach(start, goal)
+            && steer.passes(start, &motion.edge, goal)
         {
             return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
         }
         loop {
-            let ends = self.join(start, goal)?;
-            let way = self.way(ends.nodes);
+            let ends = self.join(steer, start, goal)?;
+            let way = self.way(steer, ends.nodes);
             // Without a way a lazy search has blocked what connected the ends.
             if let Some(way) = way
-                && verify(&mut self.map, &mut self.steer, &way)
+                && verify(&mut self.map, steer, &way)
                 && let Some(path) = self.map.path(&way)
             {
                 return Ok(whole(&ends, path));
@@ -165,12 +256,17 @@ where
     }
 
     /// A shortest way between two nodes, all of whose edges have motions.
-    fn way(&mut self, [from, to]: [NodeId; 2]) -> Option<Way> {
+    fn way<C, L>(&mut self, steer: &mut Steer<'_, C, L>, [from, to]: [NodeId; 2]) -> Option<Way>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
         if !self.forest.holds(&mut self.map) {
-            return self.star.search(&mut self.map, &mut self.steer, &[(from, 0.0)], &[(to, 0.0)]);
+            return self.star.search(&mut self.map, steer, &[(from, 0.0)], &[(to, 0.0)]);
         }
         let way = self.forest.way(&self.map, from, to)?;
-        self.star.check(&mut self.map, &mut self.steer, &way).then_some(way)
+        self.star.check(&mut self.map, steer, &way).then_some(way)
     }
 
     /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin and
@@ -181,16 +277,22 @@ where
     ///
     /// # Errors
     /// When there is none in the roadmap, with the reason.
-    pub fn alternatives(
+    pub fn alternatives<C, L>(
         &mut self,
-        start: &C::State,
-        goal: &C::State,
+        steer: &mut Steer<'_, C, L>,
+        start: &S,
+        goal: &S,
         k: usize,
-    ) -> Result<Listed<C::State, L::Edge>, Unanswered> {
-        self.prepare(start, goal)?;
+    ) -> Result<Listed<S, E>, Unanswered>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
+        self.prepare(steer, start, goal)?;
         loop {
-            let ends = self.join(start, goal)?;
-            if let Some(ways) = self.ways(ends.nodes, k) {
+            let ends = self.join(steer, start, goal)?;
+            if let Some(ways) = self.ways(steer, ends.nodes, k) {
                 let more = ends.first.1.cost + ends.last.1.cost;
                 let paths = ways.iter().filter_map(|way| Some((self.map.path(way)?, way.length + more)));
                 return Ok(paths.map(|(path, length)| (whole(&ends, path), length)).collect());
@@ -200,7 +302,17 @@ where
 
     /// The shortest ways between two nodes, all of whose edges are verified; `None` when some edge had to be
     /// blocked on the way.
-    fn ways(&mut self, [from, to]: [NodeId; 2], k: usize) -> Option<Vec<Way>> {
+    fn ways<C, L>(
+        &mut self,
+        steer: &mut Steer<'_, C, L>,
+        [from, to]: [NodeId; 2],
+        k: usize,
+    ) -> Option<Vec<Way>>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
         let part = self.map.component(from);
         let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.map.len()];
         for node in 0..self.map.len() as NodeId {
@@ -216,10 +328,10 @@ where
             let edges =
                 nodes.windows(2).map(|pair| self.shortest_edge(pair[0], pair[1])).collect::<Option<_>>()?;
             let way = Way { nodes, edges, length };
-            if !self.star.check(&mut self.map, &mut self.steer, &way) {
+            if !self.star.check(&mut self.map, steer, &way) {
                 return None;
             }
-            if !verify(&mut self.map, &mut self.steer, &way) {
+            if !verify(&mut self.map, steer, &way) {
                 return None;
             }
             ways.push(way);
@@ -227,22 +339,27 @@ where
         Some(ways)
     }
 
-    fn shortest_edge(&self, from: NodeId, to: NodeId) -> Option<EdgeIndex> {
+    fn shortest_edge(&self, from: NodeId, to: NodeId) -> Option<EdgeId> {
         let between = self.map.links(from).filter(|(_, end, _)| *end == to);
         let shortest = between.min_by(|a, b| a.2.length.total_cmp(&b.2.length).then(a.0.cmp(&b.0)));
         shortest.map(|(edge, ..)| edge)
     }
 
     /// Looks at the ends, and for the nodes nearest to them.
-    fn prepare(&mut self, start: &C::State, goal: &C::State) -> Result<(), Unanswered> {
+    fn prepare<C, L>(&mut self, steer: &mut Steer<'_, C, L>, start: &S, goal: &S) -> Result<(), Unanswered>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
         for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
-            if !self.steer.space().contains(q) {
+            if !steer.space().contains(q) {
                 return Err(Unanswered::Outside(endpoint));
             }
-            if !self.steer.admits(q) {
+            if !steer.admits(q) {
                 return Err(Unanswered::NotFree(endpoint));
             }
-            let (space, states) = (self.steer.space(), self.map.states());
+            let (space, states) = (steer.space(), self.map.states());
             self.index.k_nearest(space, states, q, self.neighbours, &mut self.near[i]);
         }
         Ok(())
@@ -250,7 +367,17 @@ where
 
     /// Connects both ends to the same component. Neighbours that do not do are dropped for the rest of
     /// the query.
-    fn join(&mut self, start: &C::State, goal: &C::State) -> Result<Joined<C::State, L::Edge>, Unanswered> {
+    fn join<C, L>(
+        &mut self,
+        steer: &mut Steer<'_, C, L>,
+        start: &S,
+        goal: &S,
+    ) -> Result<Joined<S, E>, Unanswered>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
         let mut reached = [false; 2];
         loop {
             let [from, to] = &self.near;
@@ -259,16 +386,16 @@ where
                 to.iter().any(|other| map.component(other.id) == part)
             };
             let Some(&first) = from.iter().find(|hit| shares(hit, &mut self.map)) else {
-                return Err(self.why(start, goal, reached));
+                return Err(self.why(steer, start, goal, reached));
             };
-            let Some(ahead) = self.hop(start, first.id, false) else {
+            let Some(ahead) = self.hop(steer, start, first.id, false) else {
                 self.near[0].retain(|hit| hit.id != first.id);
                 continue;
             };
             reached[0] = true;
             let part = self.map.component(first.id);
             while let Some(&last) = self.near[1].iter().find(|hit| self.map.component(hit.id) == part) {
-                if let Some(behind) = self.hop(goal, last.id, true) {
+                if let Some(behind) = self.hop(steer, goal, last.id, true) {
                     return Ok(Joined { first: ahead, last: behind, nodes: [first.id, last.id] });
                 }
                 self.near[1].retain(|hit| hit.id != last.id);
@@ -277,10 +404,21 @@ where
     }
 
     /// Why the ends cannot be joined.
-    fn why(&mut self, start: &C::State, goal: &C::State, reached: [bool; 2]) -> Unanswered {
+    fn why<C, L>(
+        &mut self,
+        steer: &mut Steer<'_, C, L>,
+        start: &S,
+        goal: &S,
+        reached: [bool; 2],
+    ) -> Unanswered
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
         for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
             let near = self.near[i].clone();
-            if !reached[i] && !near.iter().any(|hit| self.hop(q, hit.id, i == 1).is_some()) {
+            if !reached[i] && !near.iter().any(|hit| self.hop(steer, q, hit.id, i == 1).is_some()) {
                 return Unanswered::Unreached(endpoint);
             }
         }
@@ -288,10 +426,14 @@ where
     }
 
     /// A verified motion from an end to a node, or with `back` from the node to it.
-    fn hop(&mut self, q: &C::State, node: NodeId, back: bool) -> Option<Hop<C::State, L::Edge>> {
+    fn hop<C, L>(&self, steer: &mut Steer<'_, C, L>, q: &S, node: NodeId, back: bool) -> Option<Hop<S, E>>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+    {
         let (from, to) = if back { (self.map.state(node), q) } else { (q, self.map.state(node)) };
-        let motion = self.steer.reach(from, to)?;
-        self.steer.passes(from, &motion.edge, to).then(|| (from.clone(), motion))
+        let motion = steer.reach(from, to)?;
+        steer.passes(from, &motion.edge, to).then(|| (from.clone(), motion))
     }
 }
 

@@ -2,11 +2,9 @@
 
 use super::{LinkState, Roadmap};
 use mp_cspace::Numbers;
-use petgraph::dot::{Config, Dot};
-use petgraph::visit::EdgeRef;
 use std::fmt::Write;
 
-impl<S: Numbers, E: std::fmt::Debug> Roadmap<S, E> {
+impl<S: Numbers, E> Roadmap<S, E> {
     /// The numbers of a state with a space between them.
     fn written(&self, index: usize) -> String {
         let mut numbers = Vec::new();
@@ -37,7 +35,7 @@ impl<S: Numbers, E: std::fmt::Debug> Roadmap<S, E> {
                 writeln!(text, "  <key id=\"{id}\" for=\"{of}\" attr.name=\"{id}\" attr.type=\"{kind}\"/>");
         }
         text.push_str("  <graph edgedefault=\"undirected\">\n");
-        for (i, tag) in self.graph().node_weights().enumerate() {
+        for (i, tag) in self.tags().enumerate() {
             let _ = write!(text, "    <node id=\"n{i}\"><data key=\"state\">{}</data>", self.written(i));
             let _ = write!(text, "<data key=\"kind\">{}</data>", tag.kind.name());
             if let Some(obstacle) = tag.obstacle {
@@ -45,8 +43,7 @@ impl<S: Numbers, E: std::fmt::Debug> Roadmap<S, E> {
             }
             text.push_str("</node>\n");
         }
-        for edge in self.graph().edge_references() {
-            let (a, b, link) = (edge.source().index(), edge.target().index(), edge.weight());
+        for (_, [a, b], link) in self.all_edges() {
             let _ = write!(text, "    <edge source=\"n{a}\" target=\"n{b}\">");
             let _ = writeln!(
                 text,
@@ -62,20 +59,21 @@ impl<S: Numbers, E: std::fmt::Debug> Roadmap<S, E> {
     /// The roadmap in the DOT language of Graphviz; blocked edges dotted, unchecked ones dashed.
     #[must_use]
     pub fn to_dot(&self) -> String {
-        let node = |_, (id, tag): (petgraph::graph::NodeIndex, &crate::engine::Tag)| {
-            let kind = tag.kind.name();
-            format!("label=\"{}\" kind=\"{kind}\" state=\"{}\" ", id.index(), self.written(id.index()))
-        };
-        let edge = |_, edge: petgraph::graph::EdgeReference<'_, crate::engine::Link<E>>| {
-            let style = match edge.weight().state {
+        let mut text = String::from("graph {\n");
+        for (i, tag) in self.tags().enumerate() {
+            let (kind, state) = (tag.kind.name(), self.written(i));
+            let _ = writeln!(text, "    {i} [label=\"{i}\" kind=\"{kind}\" state=\"{state}\"]");
+        }
+        for (_, [a, b], link) in self.all_edges() {
+            let style = match link.state {
                 LinkState::Unchecked => "dashed",
                 LinkState::Free => "solid",
                 LinkState::Blocked => "dotted",
             };
-            format!("len={} style={style} ", edge.weight().length)
-        };
-        let content = [Config::NodeNoLabel, Config::EdgeNoLabel];
-        format!("{:?}", Dot::with_attr_getters(self.graph(), &content, &edge, &node))
+            let _ = writeln!(text, "    {a} -- {b} [len={} style={style}]", link.length);
+        }
+        text.push_str("}\n");
+        text
     }
 }
 

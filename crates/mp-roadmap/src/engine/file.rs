@@ -2,7 +2,6 @@
 
 use super::{Kind, Link, LinkState, Roadmap, Tag};
 use mp_cspace::{NodeId, Numbers};
-use petgraph::visit::EdgeRef;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
@@ -89,13 +88,13 @@ impl<S: Numbers, E: Numbers> Roadmap<S, E> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(VERSION.to_le_bytes());
         bytes.extend(fingerprint.to_le_bytes());
-        for count in [self.len(), self.graph().edge_count(), numbers.len()] {
+        for count in [self.len(), self.all_edges().len(), numbers.len()] {
             bytes.extend((count as u32).to_le_bytes());
         }
         let put = |bytes: &mut Vec<u8>, numbers: &[f64]| {
             bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
         };
-        for (state, tag) in self.states().iter().zip(self.graph().node_weights()) {
+        for (state, tag) in self.states().iter().zip(self.tags()) {
             numbers.clear();
             state.write(&mut numbers);
             put(&mut bytes, &numbers);
@@ -105,11 +104,8 @@ impl<S: Numbers, E: Numbers> Roadmap<S, E> {
                 bytes.extend(number.to_le_bytes());
             }
         }
-        for edge in self.graph().edge_references() {
-            let link = edge.weight();
-            for end in [edge.source(), edge.target()] {
-                bytes.extend((end.index() as u32).to_le_bytes());
-            }
+        for (_, ends, link) in self.all_edges() {
+            ends.iter().for_each(|end| bytes.extend(end.to_le_bytes()));
             bytes.extend(link.length.to_le_bytes());
             bytes.push(match link.state {
                 LinkState::Unchecked => 0,

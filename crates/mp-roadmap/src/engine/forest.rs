@@ -1,8 +1,7 @@
 //! The only way between two nodes of a roadmap without cycles.
 
-use super::{Roadmap, Way};
+use super::{EdgeId, Roadmap, Way};
 use mp_cspace::NodeId;
-use petgraph::graph::EdgeIndex;
 
 /// How the trees of a roadmap hang, so that the way between two nodes is found in time by their depth, where A* would
 /// visit much of the tree: it has one way, however long, and distances do not tell which.
@@ -12,7 +11,7 @@ pub(crate) struct Forest {
     of: Option<[usize; 3]>,
     cycles: bool,
     /// The edge to the parent, and the parent.
-    up: Vec<Option<(EdgeIndex, NodeId)>>,
+    up: Vec<Option<(EdgeId, NodeId)>>,
     depth: Vec<u32>,
 }
 
@@ -68,8 +67,8 @@ impl Forest {
             *at = parent;
         }
         let nodes = head.iter().map(|step| step.0).chain([a]).chain(tail.iter().rev().map(|step| step.0));
-        let edges: Vec<EdgeIndex> = head.iter().chain(tail.iter().rev()).map(|step| step.1).collect();
-        let length = edges.iter().map(|&edge| map.graph()[edge].length).sum();
+        let edges: Vec<EdgeId> = head.iter().chain(tail.iter().rev()).map(|step| step.1).collect();
+        let length = edges.iter().map(|&edge| map.edge(edge).length).sum();
         Some(Way { nodes: nodes.collect(), edges, length })
     }
 }
@@ -110,10 +109,10 @@ mod tests {
                 }
             };
             agree(&mut map, &mut rng);
-            let edge = map.graph().edge_indices().nth(7).unwrap();
+            let edge = EdgeId(7);
             map.block(edge);
             agree(&mut map, &mut rng);
-            let ends = map.ends(map.graph().edge_indices().next().unwrap());
+            let ends = map.ends(EdgeId(0));
             map.link(ends[0], ends[1], (), 0.1);
             assert!(!forest.holds(&mut map));
         }

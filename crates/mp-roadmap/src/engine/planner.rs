@@ -3,7 +3,7 @@
 use super::{Builder, Candidate, Connector, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap, Steer, Way};
 use mp_cspace::{
     BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
-    ProblemParts, Progress, Reversible, Rng, Space, Workers,
+    ProblemParts, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
 };
 
 /// Rejected paths after which each new motion is verified.
@@ -181,7 +181,7 @@ where
 {
     for (&edge, ends) in way.edges.iter().zip(way.nodes.windows(2)) {
         let backward = map.ends(edge)[0] != ends[0];
-        if map.graph()[edge].verified[usize::from(backward)] {
+        if map.edge(edge).verified[usize::from(backward)] {
             continue;
         }
         let passes = map
@@ -212,6 +212,8 @@ where
     /// # Errors
     /// When a state of it is outside the space.
     fn resume(&mut self, map: Roadmap<S, E>) -> Result<(), BuildError>;
+    /// Grows the roadmap until stopped, whether or not it connects start and goal: for many queries later.
+    fn build(&mut self, rng: &mut Rng, stop: &mut dyn Stop, observer: &mut dyn Observer<S>) -> StopReason;
 }
 
 impl<C, L, G, K, Q, N> HasRoadmap<C::State, L::Edge> for RoadmapPlanner<'_, C, L, G, K, Q, N>
@@ -232,6 +234,17 @@ where
     fn resume(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
         (self.ends, self.looked) = (None, 0);
         self.builder.replace(map)
+    }
+    fn build(
+        &mut self,
+        rng: &mut Rng,
+        stop: &mut dyn Stop,
+        observer: &mut dyn Observer<C::State>,
+    ) -> StopReason {
+        let before = self.builder.progress().iterations;
+        let reason = self.builder.build(rng, stop, observer);
+        self.iterations += self.builder.progress().iterations - before;
+        reason
     }
 }
 

@@ -85,6 +85,20 @@ pub enum LinkState {
     Blocked,
 }
 
+/// The number of an edge: edges are counted from 0 in the order in which they came, and stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct EdgeId(pub u32);
+
+impl EdgeId {
+    fn inner(self) -> EdgeIndex {
+        EdgeIndex::new(self.0 as usize)
+    }
+
+    fn of(edge: EdgeIndex) -> Self {
+        Self(edge.index() as u32)
+    }
+}
+
 /// An edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link<E> {
@@ -160,10 +174,27 @@ impl<S, E> Roadmap<S, E> {
         &self.graph[NodeIndex::from(id)]
     }
 
-    /// The graph: nodes have their numbers as indices.
+    /// What else is known of all nodes, in order.
+    pub fn tags(&self) -> impl ExactSizeIterator<Item = &Tag> {
+        self.graph.raw_nodes().iter().map(|node| &node.weight)
+    }
+
+    /// An edge.
+    ///
+    /// # Panics
+    /// When there is no such edge, as in all that takes an id.
     #[must_use]
-    pub fn graph(&self) -> &UnGraph<Tag, Link<E>> {
-        &self.graph
+    pub fn edge(&self, id: EdgeId) -> &Link<E> {
+        &self.graph[id.inner()]
+    }
+
+    /// All edges in order, blocked ones too, each with its two ends, source first.
+    pub fn all_edges(&self) -> impl ExactSizeIterator<Item = (EdgeId, [NodeId; 2], &Link<E>)> {
+        let edges = self.graph.raw_edges().iter().enumerate();
+        edges.map(|(i, edge)| {
+            let ends = [edge.source(), edge.target()].map(|end| end.index() as NodeId);
+            (EdgeId(i as u32), ends, &edge.weight)
+        })
     }
 
     /// How many edges there are that are not blocked.
@@ -179,11 +210,11 @@ impl<S, E> Roadmap<S, E> {
     }
 
     /// The edges of a node that are not blocked, each with its other end.
-    pub fn links(&self, id: NodeId) -> impl Iterator<Item = (EdgeIndex, NodeId, &Link<E>)> {
+    pub fn links(&self, id: NodeId) -> impl Iterator<Item = (EdgeId, NodeId, &Link<E>)> {
         let edges = self.graph.edges(NodeIndex::from(id));
         edges
             .filter(|edge| edge.weight().state != LinkState::Blocked)
-            .map(|edge| (edge.id(), edge.target().index() as NodeId, edge.weight()))
+            .map(|edge| (EdgeId::of(edge.id()), edge.target().index() as NodeId, edge.weight()))
     }
 
     /// Adds a node, a component of its own.
@@ -196,23 +227,23 @@ impl<S, E> Roadmap<S, E> {
     }
 
     /// Adds the edge of a motion between two nodes.
-    pub fn link(&mut self, from: NodeId, to: NodeId, edge: E, length: f64) -> EdgeIndex {
+    pub fn link(&mut self, from: NodeId, to: NodeId, edge: E, length: f64) -> EdgeId {
         self.insert(from, to, Link { edge: Some(edge), length, state: LinkState::Free, verified: [false; 2] })
     }
 
     /// Adds an edge of which nothing is known but how long it will be.
-    pub fn guess(&mut self, from: NodeId, to: NodeId, length: f64) -> EdgeIndex {
+    pub fn guess(&mut self, from: NodeId, to: NodeId, length: f64) -> EdgeId {
         self.insert(from, to, Link { edge: None, length, state: LinkState::Unchecked, verified: [false; 2] })
     }
 
-    pub(crate) fn insert(&mut self, from: NodeId, to: NodeId, link: Link<E>) -> EdgeIndex {
+    pub(crate) fn insert(&mut self, from: NodeId, to: NodeId, link: Link<E>) -> EdgeId {
         let joins = link.state != LinkState::Blocked;
         let edge = self.graph.add_edge(NodeIndex::from(from), NodeIndex::from(to), link);
         self.blocked += usize::from(!joins);
         if joins && !self.stale && self.sets.union(from, to) {
             self.components -= 1;
         }
-        edge
+        EdgeId::of(edge)
     }
 
     /// Whether there is an edge between two nodes, blocked or not.
@@ -223,14 +254,14 @@ impl<S, E> Roadmap<S, E> {
 
     /// The two ends of an edge, source first.
     #[must_use]
-    pub fn ends(&self, edge: EdgeIndex) -> [NodeId; 2] {
-        let (a, b) = self.graph.edge_endpoints(edge).unwrap_or_default();
+    pub fn ends(&self, edge: EdgeId) -> [NodeId; 2] {
+        let (a, b) = self.graph.edge_endpoints(edge.inner()).unwrap_or_default();
         [a.index() as NodeId, b.index() as NodeId]
     }
 
     /// Marks an edge as leading nowhere.
-    pub fn block(&mut self, edge: EdgeIndex) {
-        let link = &mut self.graph[edge];
+    pub fn block(&mut self, edge: EdgeId) {
+        let link = &mut self.graph[edge.inner()];
         if link.state != LinkState::Blocked {
             link.state = LinkState::Blocked;
             self.stale = true;
@@ -239,15 +270,15 @@ impl<S, E> Roadmap<S, E> {
     }
 
     /// Notes the motion of an edge that was only guessed.
-    pub fn settle(&mut self, edge: EdgeIndex, motion: E, length: f64) {
-        let link = &mut self.graph[edge];
+    pub fn settle(&mut self, edge: EdgeId, motion: E, length: f64) {
+        let link = &mut self.graph[edge.inner()];
         if link.state == LinkState::Unchecked {
             (link.edge, link.length, link.state) = (Some(motion), length, LinkState::Free);
         }
     }
 
-    pub(crate) fn passed(&mut self, edge: EdgeIndex, backward: bool) {
-        self.graph[edge].verified[usize::from(backward)] = true;
+    pub(crate) fn passed(&mut self, edge: EdgeId, backward: bool) {
+        self.graph[edge.inner()].verified[usize::from(backward)] = true;
     }
 
     /// Counts an attempt to connect two nodes, or one node to something not in the roadmap.
@@ -264,9 +295,9 @@ impl<S, E> Roadmap<S, E> {
         }
         self.sets = UnionFind::new(self.states.len());
         self.components = self.states.len();
-        for edge in self.graph.edge_references() {
+        for edge in self.graph.raw_edges() {
             let ends = [edge.source(), edge.target()].map(|end| end.index() as u32);
-            if edge.weight().state != LinkState::Blocked && self.sets.union(ends[0], ends[1]) {
+            if edge.weight.state != LinkState::Blocked && self.sets.union(ends[0], ends[1]) {
                 self.components -= 1;
             }
         }
@@ -349,12 +380,11 @@ impl<S, E> Roadmap<S, E> {
         E: Clone,
     {
         let before = self.states.len() as NodeId;
-        for (state, tag) in other.states.iter().zip(other.graph.node_weights()) {
+        for (state, tag) in other.states.iter().zip(other.tags()) {
             self.add(state.clone(), *tag);
         }
-        for edge in other.graph.edge_references() {
-            let [a, b] = [edge.source(), edge.target()].map(|end| end.index() as NodeId + before);
-            self.insert(a, b, Link { verified: [false; 2], ..edge.weight().clone() });
+        for (_, [a, b], link) in other.all_edges() {
+            self.insert(a + before, b + before, Link { verified: [false; 2], ..link.clone() });
         }
     }
 }
@@ -365,7 +395,7 @@ pub struct Way {
     /// The nodes, one more than edges.
     pub nodes: Vec<NodeId>,
     /// The edges.
-    pub edges: Vec<EdgeIndex>,
+    pub edges: Vec<EdgeId>,
     /// Its length.
     pub length: f64,
 }
@@ -373,8 +403,8 @@ pub struct Way {
 impl<S: Clone, E: Clone + Reversible> Roadmap<S, E> {
     /// The motion along an edge that leaves `from`, if the edge has one.
     #[must_use]
-    pub fn motion(&self, edge: EdgeIndex, from: NodeId) -> Option<Motion<S, E>> {
-        let link = &self.graph[edge];
+    pub fn motion(&self, edge: EdgeId, from: NodeId) -> Option<Motion<S, E>> {
+        let link = &self.graph[edge.inner()];
         let [a, b] = self.ends(edge);
         let run = link.edge.as_ref()?;
         let (end, edge) = if from == a { (b, run.clone()) } else { (a, run.reversed()) };

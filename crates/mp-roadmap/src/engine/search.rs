@@ -1,8 +1,7 @@
 //! Shortest ways through a roadmap.
 
-use super::{LinkState, Roadmap, Steer, Way};
+use super::{EdgeId, LinkState, Roadmap, Steer, Way};
 use mp_cspace::{LocalPlanner, Metric, NodeId, Reversible, Space};
-use petgraph::graph::EdgeIndex;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -48,7 +47,7 @@ struct Mark {
     search: u32,
     length: f64,
     rest: f64,
-    came: Option<EdgeIndex>,
+    came: Option<EdgeId>,
 }
 
 const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, came: None };
@@ -137,7 +136,7 @@ impl AStar {
     }
 
     #[inline]
-    fn push(&mut self, node: NodeId, length: f64, came: Option<EdgeIndex>, estimate: impl Fn(NodeId) -> f64) {
+    fn push(&mut self, node: NodeId, length: f64, came: Option<EdgeId>, estimate: impl Fn(NodeId) -> f64) {
         let mark = &mut self.marks[node as usize];
         if mark.search == self.search {
             if length >= mark.length {
@@ -205,7 +204,7 @@ impl AStar {
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
     {
-        let unchecked = |edge: &EdgeIndex| map.graph()[*edge].state == LinkState::Unchecked;
+        let unchecked = |edge: &EdgeId| map.edge(*edge).state == LinkState::Unchecked;
         if !way.edges.iter().any(unchecked) {
             return true;
         }
@@ -215,7 +214,7 @@ impl AStar {
                 continue;
             }
             if !steer.admits(map.state(node)) {
-                let edges: Vec<EdgeIndex> = map.links(node).map(|(edge, ..)| edge).collect();
+                let edges: Vec<EdgeId> = map.links(node).map(|(edge, ..)| edge).collect();
                 edges.into_iter().for_each(|edge| map.block(edge));
                 return false;
             }
@@ -232,7 +231,7 @@ where
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
     for edge in inward(way.edges.len()).map(|i| way.edges[i]) {
-        if map.graph()[edge].state != LinkState::Unchecked {
+        if map.edge(edge).state != LinkState::Unchecked {
             continue;
         }
         let [a, b] = map.ends(edge);

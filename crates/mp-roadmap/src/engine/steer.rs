@@ -1,6 +1,8 @@
 //! How roadmaps move: the space, the local planner and the verifier.
 
-use mp_cspace::{BoxedVerify, Direction, Extension, LocalPlanner, Motion, Reach, Reversible, Space, Verify};
+use mp_cspace::{
+    BoxedVerify, Direction, Extension, LocalPlanner, Motion, Problem, Reach, Reversible, Space, Verify,
+};
 use std::fmt;
 
 /// The space, the local planner with a count of what it was asked, and the verifier of what is answered.
@@ -25,6 +27,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State, Edge: Reversible>> Steer<'c, C, L> 
         Self::boxed(space, local, Box::new(verify), patience)
     }
 
+    /// How a problem is moved in.
+    #[must_use]
+    pub fn of(problem: Problem<'c, C, L>) -> Self {
+        super::planner::taken_apart(problem).0
+    }
+
     pub(crate) fn boxed(space: &'c C, local: L, verify: BoxedVerify<'c, C, L>, patience: u64) -> Self {
         Self { space, local, verify, patience, motions: 0, rejected: 0 }
     }
@@ -44,6 +52,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State, Edge: Reversible>> Steer<'c, C, L> 
     #[must_use]
     pub fn motions(&self) -> u64 {
         self.motions
+    }
+
+    /// Paths that the verifier did not pass so far.
+    #[must_use]
+    pub fn rejected(&self) -> u64 {
+        self.rejected
     }
 
     /// Whether a state may be a node: within the space, and the local planner lets motions begin and

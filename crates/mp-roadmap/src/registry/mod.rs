@@ -2,7 +2,7 @@
 
 mod state;
 
-pub use state::RoadmapState;
+pub use state::{AnyRoadmap, RoadmapState};
 
 use crate::algo;
 use crate::by_name::{AnyPlanner, Given, Team};

@@ -1,7 +1,11 @@
 //! Planners by name of erased problems: compiled here, for the kinds of state that robots have.
 
-use crate::{AnyIndex, AnyPlanner, AnyTeam, BuildError, Settings};
+use crate::{AnyIndex, AnyPlanner, AnySteer, AnyTeam, BuildError, IndexedRoadmap, Settings, Unanswered};
+use mp_cspace::Path;
 use std::fmt::Debug;
+
+/// A roadmap of an erased problem, ready to answer queries.
+pub type AnyRoadmap<S> = IndexedRoadmap<S, (), AnyIndex<S>>;
 
 /// A kind of state for which the planners by name are compiled: those of SE(3), SE(2), the plane, and joints, here;
 /// others where [`compile_for`](crate::compile_for) names them. Whoever calls the method compiles no planner.
@@ -38,11 +42,25 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     fn roadmap_planner<'c>(
         name: &str,
         team: AnyTeam<'c, Self>,
-        index: AnyIndex<'c, Self>,
+        index: AnyIndex<Self>,
         settings: &Settings,
     ) -> Result<AnyPlanner<'c, Self, ()>, BuildError>
     where
         Self: 'c;
+
+    /// As [`IndexedRoadmap::answer`].
+    ///
+    /// # Errors
+    /// When the roadmap has no path, with the reason.
+    fn answer(
+        roadmap: &mut AnyRoadmap<Self>,
+        steer: &mut AnySteer<'_, Self>,
+        start: &Self,
+        goal: &Self,
+    ) -> Result<Path<Self>, Unanswered>;
+
+    /// As [`IndexedRoadmap::verify`].
+    fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, steer: &mut AnySteer<'_, Self>) -> usize;
 }
 
 /// Compiles the planners by name for states of your own: implements [`RoadmapState`] for them.
@@ -59,13 +77,27 @@ macro_rules! compile_for {
             fn roadmap_planner<'c>(
                 name: &str,
                 team: $crate::AnyTeam<'c, Self>,
-                index: $crate::AnyIndex<'c, Self>,
+                index: $crate::AnyIndex<Self>,
                 settings: &$crate::Settings,
             ) -> ::core::result::Result<$crate::AnyPlanner<'c, Self, ()>, $crate::BuildError>
             where
                 Self: 'c,
             {
                 $crate::build_with(name, team, index, settings)
+            }
+            fn answer(
+                roadmap: &mut $crate::AnyRoadmap<Self>,
+                steer: &mut $crate::AnySteer<'_, Self>,
+                start: &Self,
+                goal: &Self,
+            ) -> ::core::result::Result<$crate::Path<Self>, $crate::Unanswered> {
+                roadmap.answer(steer, start, goal)
+            }
+            fn verify_roadmap(
+                roadmap: &mut $crate::AnyRoadmap<Self>,
+                steer: &mut $crate::AnySteer<'_, Self>,
+            ) -> usize {
+                roadmap.verify(steer)
             }
         }
     )+};

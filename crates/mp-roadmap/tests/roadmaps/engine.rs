@@ -42,7 +42,7 @@ fn what_the_verifier_refuses_is_blocked_and_never_returned() {
     let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(20_000), &mut ());
     let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
     assert!(path.states.windows(2).all(|pair| !boxes.hit(&pair[0], &pair[1])));
-    let blocked = planner.map().graph().edge_weights().filter(|link| link.state == LinkState::Blocked);
+    let blocked = planner.map().all_edges().filter(|(_, _, link)| link.state == LinkState::Blocked);
     assert_eq!(blocked.count() as u64, planner.progress().rejected);
     assert!(planner.progress().rejected > 0);
 }
@@ -56,8 +56,7 @@ fn without_cycles_the_roadmap_is_a_forest() {
     assert_eq!(map.edges() + map.components(), map.len());
     let sizes = map.component_sizes();
     assert_eq!((sizes.len(), sizes.iter().sum::<usize>()), (map.components(), map.len()));
-    let near = map.graph().edge_indices().all(|edge| {
-        let [a, b] = map.ends(edge);
+    let near = map.all_edges().all(|(_, [a, b], _)| {
         space.distance(map.state(a), map.state(b)) <= 0.4 && !boxes.hit(map.state(a), map.state(b))
     });
     assert!(near);
@@ -193,7 +192,7 @@ fn lazily_few_motions_are_checked_and_none_of_the_path_is_unchecked() {
     let outcome = planner.solve(&mut Rng::seed(4), &mut Iterations(20_000), &mut ());
     let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
     assert!(path.states.windows(2).all(|pair| !boxes.hit(&pair[0], &pair[1])));
-    let states = planner.map().graph().edge_weights().map(|link| link.state);
+    let states = planner.map().all_edges().map(|(_, _, link)| link.state);
     let unchecked = states.filter(|state| *state == LinkState::Unchecked).count();
     assert!(planner.progress().motions < unchecked as u64 / 2, "{:?}", planner.progress());
     assert_eq!(planner.progress().rejected, 0);

@@ -116,7 +116,7 @@ fn edges_can_be_verified_beforehand() {
     let refused = {
         let map = answers.map();
         let hit = |[a, b]: [NodeId; 2]| boxes.hit(map.state(a), map.state(b));
-        map.graph().edge_indices().filter(|edge| hit(map.ends(*edge))).count()
+        map.all_edges().filter(|(_, ends, _)| hit(*ends)).count()
     };
     assert!(refused > 0);
     assert_eq!((answers.verify(), answers.map().blocked()), (refused, refused));
@@ -199,17 +199,13 @@ fn exported_for_other_programs() {
     let text = map.to_graphml();
     assert_eq!(text.matches("<node ").count(), 20);
     assert_eq!(text.matches("<edge ").count(), map.edges());
-    let [q, ends] = [map.state(3), &map.ends(petgraph_edge(0)).map(f64::from).into()];
+    let [q, ends] = [map.state(3), &map.ends(EdgeId(0)).map(f64::from).into()];
     assert!(text.contains(&format!("<node id=\"n3\"><data key=\"state\">{} {}</data>", q.x, q.y)));
     assert!(text.contains(&format!("<edge source=\"n{}\" target=\"n{}\">", ends.x, ends.y)));
     let dot = map.to_dot();
     assert!(dot.starts_with("graph {") && dot.trim_end().ends_with('}'));
     assert_eq!(dot.matches(" -- ").count(), map.edges());
     assert!(dot.contains(&format!("state=\"{} {}\"", q.x, q.y)), "{dot}");
-}
-
-fn petgraph_edge(index: usize) -> petgraph::graph::EdgeIndex {
-    petgraph::graph::EdgeIndex::new(index)
 }
 
 /// The same bytes on any number of threads, with any number of hands, and as without.

@@ -45,7 +45,7 @@ pub trait TreeState: Clone + Debug + PartialEq + Send + Sync + Sized {
     fn tree_planner<'c>(
         name: &str,
         make: ProblemFactory<'c, Self>,
-        index: AnyIndex<'c, Self>,
+        index: AnyIndex<Self>,
         settings: &Settings,
         workers: &Workers,
     ) -> Result<AnyPlanner<'c, Self, ()>, BuildError>
@@ -67,7 +67,7 @@ macro_rules! compile_for {
             fn tree_planner<'c>(
                 name: &str,
                 make: $crate::ProblemFactory<'c, Self>,
-                index: $crate::AnyIndex<'c, Self>,
+                index: $crate::AnyIndex<Self>,
                 settings: &$crate::Settings,
                 workers: &$crate::Workers,
             ) -> ::core::result::Result<$crate::AnyPlanner<'c, Self, ()>, $crate::BuildError>

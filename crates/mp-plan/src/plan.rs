@@ -1,0 +1,86 @@
+//! From a request to a report.
+
+use crate::finish::finish;
+use crate::search::{Search, search};
+use crate::{Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
+use mp_cspace::Outcome;
+use std::time::Instant;
+
+/// Plans, finishes, reports.
+pub(crate) fn plan<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    control: &mut Control<'_>,
+) -> Result<Report, Error> {
+    let found = search(kind, request, control)?;
+    reported(kind, request, found, None, control)
+}
+
+/// The report of a search: finishes the path, if there is one. `why` says better than the outcome why there is none.
+pub(crate) fn reported<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    found: Search<K::State>,
+    why: Option<String>,
+    control: &mut Control<'_>,
+) -> Result<Report, Error> {
+    let mut report = Report {
+        version: REPORT_VERSION,
+        scene: RobotKind::name(kind).to_owned(),
+        scene_file: None,
+        space: RobotKind::space_name(kind),
+        solved: false,
+        verified: false,
+        stopped_by: None,
+        why: None,
+        planner: crate::planners::Named::new(&request.planner)?.to_string(),
+        metric: request.metric.to_string(),
+        motion: request.motion.to_string(),
+        seed: request.seed,
+        iterations: found.progress.iterations,
+        nodes: found.progress.nodes,
+        edges: found.map.map(|[edges, _]| edges),
+        components: found.map.map(|[_, components]| components),
+        motion_checks: found.progress.motions,
+        collision_checks: found.queries,
+        rejected: found.progress.rejected,
+        time_s: found.time.as_secs_f64(),
+        finish_s: 0.0,
+        first_s: found.first.as_ref().map(|(time, ..)| time.as_secs_f64()),
+        first_length: found.first.as_ref().map(|(_, length, _)| *length),
+        first_path: found.first.as_ref().map(|(.., path)| kind.rows(path)),
+        path_length_found: None,
+        path_length: None,
+        clearance: None,
+        shortened: false,
+        fingerprint: None,
+        path_file: None,
+        picture_file: None,
+        columns: RobotKind::columns(kind),
+        path: None,
+    };
+    let path = match found.outcome {
+        Outcome::Stopped(reason) => {
+            let by = if why.is_some() { StoppedBy::Unanswered } else { reason.into() };
+            (report.stopped_by, report.why) = (Some(by), why.or(Some(by.to_string())));
+            return Ok(report);
+        }
+        Outcome::Solved(path) => path,
+    };
+    report.path_length_found = Some(path.length(kind.space()));
+    let began = Instant::now();
+    let finished = finish(kind, &path, request, control)?;
+    report.finish_s = began.elapsed().as_secs_f64();
+    let Some(finished) = finished else {
+        let by = StoppedBy::Verification;
+        (report.stopped_by, report.why) = (Some(by), Some(by.to_string()));
+        return Ok(report);
+    };
+    (report.solved, report.verified, report.shortened) = (true, true, finished.shortened);
+    report.path_length = Some(finished.length);
+    report.clearance = Some(finished.clearance);
+    let numbers = finished.path.rows.iter().flatten().copied();
+    report.fingerprint = Some(format!("{:016x}", crate::numbers::fingerprint(numbers)));
+    report.path = Some(finished.path.rows);
+    Ok(report)
+}

@@ -1,0 +1,244 @@
+//! Many queries to one roadmap of a scene.
+
+use crate::check::refused;
+use crate::plan::reported;
+use crate::planners::Named;
+use crate::prepared::Prepared;
+use crate::roadmaps::{Made, Roadmap, fingerprint};
+use crate::scene::state;
+use crate::search::{Search, relax_if_asked};
+use crate::watch::{Events, Telling};
+use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
+use mp_cspace::{Outcome, PlannerInfo, Rng, Stop, StopReason, Workers};
+use mp_roadmap::{AnyRoadmap, AnySteer, RoadmapState};
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// To so many nodes nearest to it a start or goal is connected at most.
+const NEIGHBOURS: usize = 20;
+
+/// A roadmap of a scene, which answers queries from any free configuration to any other. It does not grow by them, but
+/// learns: an edge that was verified once is not verified again, and one that fails is blocked for good.
+///
+/// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all it needs, and may go to another thread.
+pub struct SceneRoadmap {
+    pub(crate) roadmap: Box<dyn Answering>,
+    /// The file of the scene.
+    pub(crate) file: Option<String>,
+}
+
+impl fmt::Debug for SceneRoadmap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [nodes, edges] = self.roadmap.size();
+        f.debug_struct("SceneRoadmap").field("nodes", &nodes).field("edges", &edges).finish_non_exhaustive()
+    }
+}
+
+impl SceneRoadmap {
+    /// A path from one configuration to another, finished and verified as one of [`Scene::plan`](crate::Scene::plan) is,
+    /// by the request that the roadmap was built with. The budget of that request was for building: a query ends by itself.
+    ///
+    /// # Errors
+    /// When an end is not free: with what is in the way, how deep, and the nearest free configuration. That the
+    /// roadmap has no path is no error: [`Report::why`] says whether it needs more nodes near an end or between.
+    pub fn query(&mut self, start: &[f64], goal: &[f64]) -> Result<Report, Error> {
+        self.query_with(start, goal, &mut Control::default())
+    }
+
+    /// The same, watched and stopped from outside. Stopping ends what is done to the path that was found.
+    ///
+    /// # Errors
+    /// As [`query`](Self::query).
+    pub fn query_with(
+        &mut self,
+        start: &[f64],
+        goal: &[f64],
+        control: &mut Control<'_>,
+    ) -> Result<Report, Error> {
+        let mut report = self.roadmap.query(start, goal, control)?;
+        report.scene_file.clone_from(&self.file);
+        Ok(report)
+    }
+
+    /// Goes on building until this budget is spent; its nodes are counted with those there are.
+    ///
+    /// # Errors
+    /// When the planner of the request refuses the scene.
+    pub fn grow(&mut self, budget: Budget, control: &mut Control<'_>) -> Result<(), Error> {
+        self.roadmap.grow(budget, control)
+    }
+
+    /// Verifies all edges now, so that no query waits for it. How many failed, and are blocked.
+    ///
+    /// # Errors
+    /// When the request makes no sense for the robot.
+    pub fn verify(&mut self) -> Result<usize, Error> {
+        self.roadmap.verify()
+    }
+
+    /// How many nodes there are.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.roadmap.size()[0]
+    }
+
+    /// How many edges there are that are not blocked.
+    #[must_use]
+    pub fn edges(&self) -> usize {
+        self.roadmap.size()[1]
+    }
+
+    /// How many connected components there are.
+    pub fn components(&mut self) -> usize {
+        self.roadmap.components()
+    }
+
+    /// Writes it to a file, from which [`Request::roadmap`] goes on.
+    ///
+    /// # Errors
+    /// When roadmaps of such robots are not kept, or the file cannot be written.
+    pub fn save(&self, file: impl AsRef<Path>) -> Result<(), Error> {
+        self.roadmap.save(file.as_ref())
+    }
+}
+
+/// A roadmap of a robot of some kind, behind a pointer.
+pub(crate) trait Answering: Send {
+    fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error>;
+    fn grow(&mut self, budget: Budget, control: &mut Control<'_>) -> Result<(), Error>;
+    fn verify(&mut self) -> Result<usize, Error>;
+    fn size(&self) -> [usize; 2];
+    fn components(&mut self) -> usize;
+    fn save(&self, file: &Path) -> Result<(), Error>;
+}
+
+struct Of<K: RobotKind> {
+    kind: Arc<K>,
+    request: Request,
+    roadmap: AnyRoadmap<K::State>,
+}
+
+/// Builds a roadmap by the planner of the request.
+pub(crate) fn build<K: RobotKind + 'static>(
+    kind: Arc<K>,
+    request: &Request,
+    control: &mut Control<'_>,
+) -> Result<Box<dyn Answering>, Error> {
+    request.check()?;
+    let roadmap = grown(&*kind, request, None, control)?;
+    Ok(Box::new(Of { kind, request: request.clone(), roadmap }))
+}
+
+/// The planner of the request.
+fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
+    match Named::new(&request.planner)? {
+        Named::Roadmap(info) => Ok(info),
+        named @ Named::Tree(_) => {
+            let names: Vec<_> = crate::roadmaps::planners().iter().map(|p| p.name).collect();
+            Err(Error::new(format!("{named} builds no roadmap"))
+                .help(format!("take one of: {}", names.join(", "))))
+        }
+    }
+}
+
+/// Grows `map`, or the one in the file of the request, or a new one, until the budget is spent.
+fn grown<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    map: Option<Roadmap<K::State>>,
+    control: &mut Control<'_>,
+) -> Result<AnyRoadmap<K::State>, Error> {
+    let info = planner(request)?;
+    let _span = tracing::info_span!("roadmap", scene = kind.name(), planner = info.name, seed = request.seed)
+        .entered();
+    let (settings, workers) = (request.settings(), Workers::new(request.threads)?);
+    let fingerprint = fingerprint(kind, request)?;
+    let prepared = Prepared::new(kind, request)?;
+    control.stage(Stage::Planning);
+    let began = Instant::now();
+    let problem = || prepared.problem();
+    let index = prepared.index.clone();
+    let mut made = Made::new(info, &problem, index, request, &settings, workers, fingerprint)?;
+    if let Some(map) = map {
+        made.resume(map)?;
+    }
+    // One that is gone on with draws other numbers than those it was made of.
+    let mut rng = match made.nodes() {
+        0 => Rng::seed(request.seed),
+        nodes => Rng::stream(request.seed, nodes as u64),
+    };
+    let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
+    let telling = Telling::new(control.watch.as_deref_mut());
+    let mut events = Events { row: &|q| kind.row(q), telling: &telling, wanted };
+    let stop = prepared.stop(request, began, control.cancel.clone());
+    let mut stop = stop.or(control.stop.as_deref_mut()).or(&telling);
+    let reason = made.build(&mut rng, &mut stop, &mut events);
+    drop(stop);
+    let ([edges, components], map) = made.keep(request, fingerprint, true)?;
+    drop(made);
+    let map = map.unwrap_or_default();
+    tracing::info!(nodes = map.len(), edges, components, by = StoppedBy::from(reason).word(), "built");
+    Ok(AnyRoadmap::new(&prepared.space, map, prepared.index.clone(), NEIGHBOURS)?)
+}
+
+impl<K: RobotKind> Answering for Of<K> {
+    fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error> {
+        let (kind, request) = (&*self.kind, &self.request);
+        let _span = tracing::info_span!("query", scene = kind.name()).entered();
+        let [start, goal] = [state(kind, start)?, state(kind, goal)?];
+        for (name, q) in [("the start", &start), ("the goal", &goal)] {
+            if let Some((message, help)) = refused(kind, name, q) {
+                return Err(Error::new(message).help(help));
+            }
+        }
+        let prepared = Prepared::new(kind, request)?;
+        control.stage(Stage::Planning);
+        let began = Instant::now();
+        let mut steer = AnySteer::of(prepared.problem()?);
+        let answer = K::State::answer(&mut self.roadmap, &mut steer, &start, &goal);
+        let time = began.elapsed();
+        let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), steer.motions());
+        progress.rejected = steer.rejected();
+        // What the checkers have counted and not told yet.
+        drop(steer);
+        let queries = prepared.queries.load(Ordering::Relaxed);
+        let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
+        let (outcome, why) = match answer {
+            Ok(path) => (Outcome::Solved(relax_if_asked(kind, request, path, control)?), None),
+            Err(why) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
+        };
+        let found = Search { outcome, progress, queries, time, first: None, map, roadmap: None };
+        reported(kind, request, found, why, control)
+    }
+
+    fn grow(&mut self, budget: Budget, control: &mut Control<'_>) -> Result<(), Error> {
+        let request = Request { budget, roadmap: None, ..self.request.clone() };
+        request.check()?;
+        self.roadmap = grown(&*self.kind, &request, Some(self.roadmap.map().clone()), control)?;
+        Ok(())
+    }
+
+    fn verify(&mut self) -> Result<usize, Error> {
+        let _span = tracing::info_span!("verify", scene = self.kind.name()).entered();
+        let prepared = Prepared::new(&*self.kind, &self.request)?;
+        let mut steer = AnySteer::of(prepared.problem()?);
+        Ok(K::State::verify_roadmap(&mut self.roadmap, &mut steer))
+    }
+
+    fn size(&self) -> [usize; 2] {
+        [self.roadmap.map().len(), self.roadmap.map().edges()]
+    }
+
+    fn components(&mut self) -> usize {
+        self.roadmap.map_mut().components()
+    }
+
+    fn save(&self, file: &Path) -> Result<(), Error> {
+        let request = Request { roadmap: Some(file.to_owned()), ..self.request.clone() };
+        let fingerprint = fingerprint(&*self.kind, &request)?.unwrap_or_default();
+        Ok(mp_io::write_atomic(file, &self.roadmap.map().to_bytes(fingerprint))?)
+    }
+}

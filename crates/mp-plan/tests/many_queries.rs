@@ -1,0 +1,129 @@
+//! One roadmap of a scene, asked many times.
+
+use mp_plan::{Budget, Control, PathRows, Report, Request, Scene, SceneRoadmap, StoppedBy};
+
+/// Free configurations of a scene, by a walk over its limits that is the same every time.
+fn free(scene: &Scene, count: usize) -> Vec<Vec<f64>> {
+    let limits = scene.limits();
+    let row = |i: usize| -> Vec<f64> {
+        let of = |(k, range): (usize, &Option<[f64; 2]>)| {
+            let [low, high] = range.unwrap_or([-3.1, 3.1]);
+            // Steps that repeat late, other ones for each number.
+            let t = (0.5 + i as f64 * (1.0 + k as f64).sqrt() * 0.754_877_666).fract();
+            low + t * (high - low)
+        };
+        limits.iter().enumerate().map(of).collect()
+    };
+    let found: Vec<_> = (1..20_000)
+        .map(row)
+        .filter(|row| scene.explain(row).is_ok_and(|e| e.clearance > 0.02))
+        .take(count)
+        .collect();
+    assert_eq!(found.len(), count, "{}", scene.name());
+    found
+}
+
+/// The path goes from one to the other, and hits nothing on its way.
+fn assert_free(scene: &Scene, report: &Report, start: &[f64], goal: &[f64]) {
+    let rows = report.path.clone().unwrap();
+    // By where it puts the bodies: numbers of a configuration may be whole turns apart.
+    let near = |a: &[f64], b: &[f64]| {
+        let [a, b] = [a, b].map(|row| scene.poses(row).unwrap());
+        a.iter().zip(&b).all(|(a, b)| (a.to_homogeneous() - b.to_homogeneous()).amax() < 1e-6)
+    };
+    assert!(near(&rows[0], start) && near(&rows[rows.len() - 1], goal), "{start:?} {goal:?} {rows:?}");
+    let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+    // It is no path of the scene, whose own ends are elsewhere; but that is all that is wrong.
+    let verdict = scene.check(&path).unwrap();
+    assert!(verdict.faults.iter().all(|fault| fault.contains("does not")), "{:?}", verdict.faults);
+    assert!(report.verified && report.clearance > Some(0.0));
+}
+
+fn fingerprints(roadmap: &mut SceneRoadmap, ends: &[Vec<f64>]) -> Vec<Option<String>> {
+    ends.windows(2).map(|pair| roadmap.query(&pair[0], &pair[1]).unwrap().fingerprint).collect()
+}
+
+#[test]
+fn queries_are_answered_in_scenes_of_every_kind() {
+    for (name, planner, nodes) in
+        [("easy", "prm", 3_000), ("maze", "prm", 2_000), ("rrs-low", "visibility-prm", 100), ("arm", "prm", 500)]
+    {
+        let scene = Scene::find(name).unwrap();
+        let ends = free(&scene, 8);
+        let request = Request::new(planner).seed(3).nodes(nodes).iterations(50_000);
+        let mut roadmap = scene.roadmap(&request).unwrap();
+        assert!(roadmap.nodes() > 0 && roadmap.nodes() <= nodes + 1 && roadmap.edges() > 0, "{roadmap:?}");
+        let mut solved = 0;
+        for pair in ends.windows(2) {
+            let report = roadmap.query(&pair[0], &pair[1]).unwrap();
+            assert_eq!((report.solved, report.why.is_some()), (report.path.is_some(), !report.solved));
+            if report.solved {
+                solved += 1;
+                assert_free(&scene, &report, &pair[0], &pair[1]);
+            }
+        }
+        assert!(solved >= 5, "{name}: {solved} of 7");
+        // Asked again it says the same, and asks less, as it has learnt.
+        let again = roadmap.query(&ends[0], &ends[1]).unwrap();
+        let new = scene.roadmap(&request.clone().threads(2)).unwrap().query(&ends[0], &ends[1]).unwrap();
+        assert_eq!(again.fingerprint, new.fingerprint, "{name}");
+        let all = fingerprints(&mut roadmap, &ends);
+        roadmap.verify().unwrap();
+        assert_eq!(fingerprints(&mut roadmap, &ends), all, "{name}");
+    }
+}
+
+#[test]
+fn a_roadmap_grows_and_is_kept() {
+    let scene = Scene::find("easy").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("map");
+    let mut request = Request::new("prm").seed(5).nodes(50);
+    let mut roadmap = scene.roadmap(&request).unwrap();
+    assert_eq!(roadmap.nodes(), 50);
+    let more = Budget { nodes: Some(120), ..Budget::default() };
+    roadmap.grow(more, &mut Control::default()).unwrap();
+    assert_eq!(roadmap.nodes(), 120);
+    roadmap.save(&file).unwrap();
+    request.roadmap = Some(file.clone());
+    let mut read = scene.roadmap(&request).unwrap();
+    assert_eq!((read.nodes(), read.edges()), (120, roadmap.edges()));
+    assert_eq!(read.components(), roadmap.components());
+    let ends = free(&scene, 4);
+    assert_eq!(fingerprints(&mut read, &ends), fingerprints(&mut roadmap, &ends));
+    // A planner that goes on with the file has those nodes, and its own two ends.
+    request.budget = Budget { iterations: Some(20_000), ..Budget::default() };
+    let report = scene.plan(&request).unwrap();
+    assert!(report.solved && report.nodes >= 122, "{}", report.nodes);
+}
+
+#[test]
+fn what_cannot_be_answered_says_why() {
+    let scene = Scene::find("easy").unwrap();
+    let ends = free(&scene, 2);
+    let error = scene.roadmap(&Request::new("rrt-connect")).unwrap_err().to_string();
+    assert!(error.contains("rrt-connect builds no roadmap"), "{error}");
+    // Without nodes only a straight motion is found.
+    let mut roadmap = scene.roadmap(&Request::new("prm").nodes(1)).unwrap();
+    let report = roadmap.query(&scene.start(), &scene.goals()[0]).unwrap();
+    assert_eq!((report.solved, report.stopped_by), (false, Some(StoppedBy::Unanswered)));
+    assert!(report.why.unwrap().contains("roadmap"));
+    // An end in collision: what it touches, and where it would be free.
+    let inside = (0..).map(|i| [f64::from(i % 40) * 0.25 - 5.0, 0.0, f64::from(i / 40) * 0.1, 0.0, 0.0, 0.0]);
+    let hits = inside.take(4_000).find(|row| scene.explain(row).is_ok_and(|e| !e.touching.is_empty())).unwrap();
+    let error = roadmap.query(&ends[0], &hits).unwrap_err().to_string();
+    assert!(error.contains("the goal is in collision with"), "{error}");
+    let error = roadmap.query(&ends[0][1..], &ends[1]).unwrap_err().to_string();
+    assert!(error.contains("finite numbers"), "{error}");
+}
+
+/// It owns all it needs: a thread may have it, when the scene is gone.
+#[test]
+fn it_outlives_the_scene() {
+    let (mut roadmap, ends) = {
+        let scene = Scene::find("easy").unwrap();
+        (scene.roadmap(&Request::new("prm").seed(3).nodes(3_000)).unwrap(), [scene.start(), scene.goals().remove(0)])
+    };
+    let solved = std::thread::spawn(move || roadmap.query(&ends[0], &ends[1]).unwrap().solved);
+    assert!(solved.join().unwrap());
+}
