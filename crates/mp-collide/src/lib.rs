@@ -8,6 +8,8 @@
 //!   collide with what is inside of them.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
+//! * `parry`, with the feature of that name, which is off by default: shapes of parry3d (so of Rapier and Bevy) from and to
+//!   ours, convex hulls and decompositions. No other module has types of parry in its public API.
 //!
 //! ```
 //! use mp_collide::{CollisionMesh, Query};
@@ -69,6 +71,8 @@ mod solid;
 mod wide;
 
 pub mod fuzz;
+#[cfg(feature = "parry")]
+pub mod parry;
 pub mod reference;
 pub mod triangle;
 

@@ -124,6 +124,40 @@ impl Solid {
     pub fn half_space() -> Self {
         Self { shape: Shape::HalfSpace }
     }
+
+    /// What it was made of.
+    #[cfg(feature = "parry")]
+    pub(crate) fn dimensions(&self) -> Dimensions {
+        match &self.shape {
+            Shape::Swept { core, radius } => {
+                let radius = *radius;
+                let half = core.triangles().first().map_or(0.0, |core| core[1].z);
+                if half > 0.0 { Dimensions::Capsule { radius, half } } else { Dimensions::Ball { radius } }
+            }
+            Shape::Cuboid { half, .. } => Dimensions::Cuboid { half: *half },
+            Shape::Revolved { frustum, .. } => {
+                let Frustum { low: radius, high, half } = *frustum;
+                if high > 0.0 {
+                    Dimensions::Cylinder { radius, half }
+                } else {
+                    Dimensions::Cone { radius, half }
+                }
+            }
+            Shape::HalfSpace => Dimensions::HalfSpace,
+        }
+    }
+}
+
+/// The lengths of a solid (metres), halved where they are symmetric about the origin.
+#[cfg(feature = "parry")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Dimensions {
+    Ball { radius: f64 },
+    Capsule { radius: f64, half: f64 },
+    Cuboid { half: Vector3<f64> },
+    Cylinder { radius: f64, half: f64 },
+    Cone { radius: f64, half: f64 },
+    HalfSpace,
 }
 
 /// Queries between a mesh at `pose_wm` and a solid at `pose_ws` (poses in the world).

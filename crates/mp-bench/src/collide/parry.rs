@@ -6,9 +6,8 @@ use super::poses::Poses;
 use super::record::{Record, What, timed_once};
 use crate::clock::nanoseconds;
 use crate::error::{IntoError, Result};
-use mp_geom::TriMesh;
-use nalgebra::Isometry3;
-use parry3d_f64::math::{Pose, Rotation, Vector};
+use mp_collide::parry::{mesh_to_parry, pose_to_parry};
+use parry3d_f64::math::Pose;
 use parry3d_f64::query::{distance, intersection_test};
 use parry3d_f64::shape;
 
@@ -25,7 +24,7 @@ impl Parry {
     /// Builds its trees.
     pub(crate) fn new(pair: &Pair) -> Result<(Self, Build)> {
         let begin = nanoseconds();
-        let parry = Self { a: mesh(&pair.a)?, b: mesh(&pair.b)? };
+        let parry = Self { a: mesh_to_parry(&pair.a).into_error()?, b: mesh_to_parry(&pair.b).into_error()? };
         let ms = (nanoseconds() - begin) * 1e-6;
         // It does not tell its memory.
         Ok((parry, Build { lib: PARRY.to_owned(), ms, bytes: 0 }))
@@ -36,7 +35,7 @@ impl Parry {
         let here = Pose::identity();
         let mut all = Vec::new();
         for (set, poses) in [("uniform", &poses.uniform), ("near", &poses.near)] {
-            let poses: Vec<Pose> = poses.iter().map(placed).collect();
+            let poses: Vec<Pose> = poses.iter().map(pose_to_parry).collect();
             let mut failed = None;
             let mut checked = |answer: std::result::Result<f64, parry3d_f64::query::Unsupported>| {
                 answer.unwrap_or_else(|e| {
@@ -57,14 +56,4 @@ impl Parry {
         }
         Ok(all)
     }
-}
-
-fn mesh(mesh: &TriMesh) -> Result<shape::TriMesh> {
-    let points = mesh.vertices().iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-    shape::TriMesh::new(points, mesh.triangles().to_vec()).into_error()
-}
-
-fn placed(pose: &Isometry3<f64>) -> Pose {
-    let (t, q) = (pose.translation.vector, pose.rotation.quaternion());
-    Pose::from_parts(Vector::new(t.x, t.y, t.z), Rotation::from_xyzw(q.i, q.j, q.k, q.w))
 }

@@ -3,6 +3,7 @@
 mod bad_input;
 mod common;
 mod filled;
+mod hulls;
 mod lanes;
 mod meshes;
 mod motions;
@@ -12,5 +13,6 @@ mod referee;
 mod saved;
 mod scene_model;
 mod scenes;
+mod shapes;
 mod solids;
 mod triangles;

@@ -1,9 +1,8 @@
 //! Against parry3d-f64, whose leaf tests iterate: it errs within 5e-6 of contact, so that band is left out.
 
+use mp_collide::parry::{mesh_to_parry, point_to_parry, pose_to_parry};
 use mp_collide::{CollisionMesh, Query, triangle};
-use mp_geom::TriMesh;
-use nalgebra::{Isometry3, Point3};
-use parry3d_f64::math::{Pose, Rotation, Vector};
+use parry3d_f64::math::Pose;
 use parry3d_f64::query;
 use parry3d_f64::shape::{self, Shape};
 
@@ -11,19 +10,6 @@ use crate::common::{bumpy, point, pose, rng, soup};
 
 /// Half the band around contact in which parry is not to be trusted, for sizes about 1.
 const BAND: f64 = 5e-6;
-
-pub(crate) fn vector(p: &Point3<f64>) -> Vector {
-    Vector::new(p.x, p.y, p.z)
-}
-
-pub(crate) fn placed(pose: &Isometry3<f64>) -> Pose {
-    let q = pose.rotation.quaternion();
-    Pose::from_parts(vector(&pose.translation.vector.into()), Rotation::from_xyzw(q.i, q.j, q.k, q.w))
-}
-
-fn parry_mesh(mesh: &TriMesh) -> shape::TriMesh {
-    shape::TriMesh::new(mesh.vertices().iter().map(vector).collect(), mesh.triangles().to_vec()).unwrap()
-}
 
 /// Checks one pair; returns whether it counted (was outside the band), and whether it was a hit.
 fn agree(hit: bool, distance: f64, parry: (bool, f64), what: &dyn std::fmt::Debug) -> (bool, bool) {
@@ -43,7 +29,7 @@ fn triangles_agree_with_parry() {
     let (mut counted, mut hits) = (0, 0);
     for _ in 0..100_000 {
         let (a, b) = ([0; 3].map(|_| point(&mut rng, 1.0)), [0; 3].map(|_| point(&mut rng, 1.0)));
-        let [pa, pb] = [&a, &b].map(|t| shape::Triangle::new(vector(&t[0]), vector(&t[1]), vector(&t[2])));
+        let [pa, pb] = [&a, &b].map(|t| shape::Triangle::from(t.map(|p| point_to_parry(&p))));
         let ours = triangle::closest(&a, &b).distance;
         // parry's intersection test at triangles is its distance: one call tells both.
         let theirs = query::distance(&here, &pa, &here, &pb).unwrap().distance;
@@ -66,13 +52,13 @@ fn meshes_agree_with_parry() {
             _ => (bumpy(5, 0.5, 0.3), bumpy(4, 0.7, 0.0)),
         };
         let (tree_a, tree_b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
-        let (parry_a, parry_b) = (parry_mesh(&a), parry_mesh(&b));
+        let (parry_a, parry_b) = (mesh_to_parry(&a).unwrap(), mesh_to_parry(&b).unwrap());
         for _ in 0..25 {
             let (pose_wa, pose_wb) = (pose(&mut rng, 1.5), pose(&mut rng, 1.5));
             let hit = query.intersects(&tree_a, &pose_wa, &tree_b, &pose_wb);
             let distance = query.distance(&tree_a, &pose_wa, &tree_b, &pose_wb).distance;
             let (pa, pb): (&dyn Shape, &dyn Shape) = (&parry_a, &parry_b);
-            let (at_a, at_b) = (placed(&pose_wa), placed(&pose_wb));
+            let (at_a, at_b) = (pose_to_parry(&pose_wa), pose_to_parry(&pose_wb));
             let parry = (
                 query::intersection_test(&at_a, pa, &at_b, pb).unwrap().intersecting,
                 query::distance(&at_a, pa, &at_b, pb).unwrap().distance,
