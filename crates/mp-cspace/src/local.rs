@@ -9,6 +9,7 @@ use std::fmt::Debug;
 
 /// Which end of an edge is the parent. Edges are always stored in forward time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum Direction {
     /// The tree grows from the start: parent first.
     Forward,

@@ -12,12 +12,40 @@ use thiserror::Error;
 /// A sequence of states and the edges between them (`edges.len() + 1 == states.len()`).
 ///
 /// Between the states of a `Path<S>`, whose edges are `()`, the space interpolates.
+///
+/// With the feature `serde` it is written as an object with the members `states` and `edges`; one whose numbers of states
+/// and edges do not fit is refused when it is read. Being free is not written: verify what you read.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(try_from = "Written<S, E>")
+)]
 pub struct Path<S, E = ()> {
     /// The states, start first.
     pub states: Vec<S>,
     /// `edges[i]` leads from `states[i]` to `states[i + 1]`.
     pub edges: Vec<E>,
+}
+
+/// A path as it was written.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Written<S, E> {
+    states: Vec<S>,
+    edges: Vec<E>,
+}
+
+#[cfg(feature = "serde")]
+impl<S, E> TryFrom<Written<S, E>> for Path<S, E> {
+    type Error = String;
+    fn try_from(Written { states, edges }: Written<S, E>) -> Result<Self, String> {
+        match (states.len(), edges.len()) {
+            (0, 0) => Ok(Self { states, edges }),
+            (n, m) if n == m + 1 => Ok(Self { states, edges }),
+            (n, m) => Err(format!("a path of {n} states has {m} edges, not {}", n.saturating_sub(1))),
+        }
+    }
 }
 
 /// Why two paths cannot be joined.
@@ -136,6 +164,21 @@ mod tests {
         let space = Rn::new([0.0, 0.0], [10.0, 10.0]).unwrap();
         let states = [(0.0, 0.0), (3.0, 0.0), (3.0, 4.0)].map(|(x, y)| Vector2::new(x, y));
         (space, Path::straight(states.to_vec()))
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn paths_are_written_and_read() {
+        let (_, path) = corner();
+        let text = serde_json::to_string(&path).unwrap();
+        assert_eq!(text, r#"{"states":[[0.0,0.0],[3.0,0.0],[3.0,4.0]],"edges":[null,null]}"#);
+        assert_eq!(serde_json::from_str::<Path<Vector2<f64>>>(&text).unwrap(), path);
+        let short = r#"{"states": [[0.0, 0.0]], "edges": [null]}"#;
+        let error = serde_json::from_str::<Path<Vector2<f64>>>(short).unwrap_err().to_string();
+        assert!(error.contains("a path of 1 states has 1 edges, not 0"), "{error}");
+        let pose = crate::Se2State::new(1.0, 2.0, 0.5);
+        let text = serde_json::to_string(&pose).unwrap();
+        assert_eq!(serde_json::from_str::<crate::Se2State>(&text).unwrap(), pose);
     }
 
     #[test]

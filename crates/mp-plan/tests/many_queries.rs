@@ -45,9 +45,12 @@ fn fingerprints(roadmap: &mut SceneRoadmap, ends: &[Vec<f64>]) -> Vec<Option<Str
 
 #[test]
 fn queries_are_answered_in_scenes_of_every_kind() {
-    for (name, planner, nodes) in
-        [("easy", "prm", 3_000), ("maze", "prm", 2_000), ("rrs-low", "visibility-prm", 100), ("arm", "prm", 500)]
-    {
+    for (name, planner, nodes) in [
+        ("easy", "prm", 3_000),
+        ("maze", "prm", 2_000),
+        ("rrs-low", "visibility-prm", 100),
+        ("arm", "prm", 500),
+    ] {
         let scene = Scene::find(name).unwrap();
         let ends = free(&scene, 8);
         let request = Request::new(planner).seed(3).nodes(nodes).iterations(50_000);
@@ -110,7 +113,8 @@ fn what_cannot_be_answered_says_why() {
     assert!(report.why.unwrap().contains("roadmap"));
     // An end in collision: what it touches, and where it would be free.
     let inside = (0..).map(|i| [f64::from(i % 40) * 0.25 - 5.0, 0.0, f64::from(i / 40) * 0.1, 0.0, 0.0, 0.0]);
-    let hits = inside.take(4_000).find(|row| scene.explain(row).is_ok_and(|e| !e.touching.is_empty())).unwrap();
+    let hits =
+        inside.take(4_000).find(|row| scene.explain(row).is_ok_and(|e| !e.touching.is_empty())).unwrap();
     let error = roadmap.query(&ends[0], &hits).unwrap_err().to_string();
     assert!(error.contains("the goal is in collision with"), "{error}");
     let error = roadmap.query(&ends[0][1..], &ends[1]).unwrap_err().to_string();
@@ -122,7 +126,10 @@ fn what_cannot_be_answered_says_why() {
 fn it_outlives_the_scene() {
     let (mut roadmap, ends) = {
         let scene = Scene::find("easy").unwrap();
-        (scene.roadmap(&Request::new("prm").seed(3).nodes(3_000)).unwrap(), [scene.start(), scene.goals().remove(0)])
+        (
+            scene.roadmap(&Request::new("prm").seed(3).nodes(3_000)).unwrap(),
+            [scene.start(), scene.goals().remove(0)],
+        )
     };
     let solved = std::thread::spawn(move || roadmap.query(&ends[0], &ends[1]).unwrap().solved);
     assert!(solved.join().unwrap());

@@ -2,8 +2,8 @@
 
 use super::AnySpace;
 use crate::{
-    DefaultNn, Embed, Hit, Joints, KdTree, Layout, Metric, NearestNeighbors, NodeId, Rn, Rng, Se2, Se2State,
-    Se3, Space,
+    DefaultNn, Embed, Hit, Joints, KdTree, Layout, Metric, MetricTree, NearestNeighbors, NodeId, Rn, Rng,
+    Se2, Se2State, Se3, Space, TrueMetric,
 };
 use nalgebra::{DVector, Isometry3};
 use std::fmt::{self, Debug};
@@ -78,6 +78,14 @@ impl<S: CoordinateState> AnyIndex<S> {
     }
 }
 
+impl<S: CoordinateState> AnyIndex<S> {
+    /// A [`MetricTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: for
+    /// metrics whose distances take longer than a pointer.
+    pub fn by_metric<C: Space<State = S> + TrueMetric<S> + Clone + Send + 'static>(space: &C) -> Self {
+        S::metric_index(AnySpace::new(space))
+    }
+}
+
 /// What of coordinates goes behind the pointer.
 trait ErasedEmbed<S>: Send + Sync {
     fn layout(&self) -> Layout;
@@ -102,6 +110,9 @@ pub trait CoordinateState: Clone + Debug + PartialEq + Send + Sync + 'static {
     /// An empty index of a space with these coordinates.
     #[doc(hidden)]
     fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self>;
+    /// An empty index of a space by its distances.
+    #[doc(hidden)]
+    fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self>;
 }
 
 macro_rules! coordinate_states {
@@ -110,6 +121,9 @@ macro_rules! coordinate_states {
             fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self> {
                 let space = Arc::new(Embedded { space, layout });
                 AnyIndex(Box::new(Searching { space, index: <KdTree>::default() }))
+            }
+            fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self> {
+                AnyIndex::new(&space, MetricTree::default())
             }
         })*
     };

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 /// A pose in the plane: rotate by `angle`, then translate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Se2State {
     /// Translation, metres.
     pub translation: Vector2<f64>,

@@ -10,8 +10,8 @@ use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
     ClearanceGradient, DefaultNn, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn,
-    MetricTree, NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume,
-    TrueMetricOn, WithMetric,
+    NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume, TrueMetricOn,
+    WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{Problem, SpaceKind};
@@ -211,7 +211,7 @@ impl<M: RigidMotion> RobotKind for RigidScene<M> {
             }
             Metric::MaxDisplacement => {
                 let space = WithMetric::new(space, M::displacement(robot)?);
-                Measured { index: AnyIndex::new(&space, MetricTree::default()), space: AnySpace::new(&space) }
+                Measured { index: AnyIndex::by_metric(&space), space: AnySpace::new(&space) }
             }
             // No true metric: every state is looked at.
             Metric::SweptVolume => {

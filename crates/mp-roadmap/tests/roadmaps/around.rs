@@ -140,12 +140,15 @@ fn a_bar_goes_through_a_window() {
     let space = Se3::new([-1.5; 3], [1.5; 3]).unwrap();
     let (start, goal) =
         (pose_from_six([-1.0, 0.0, 0.0, 1.5, 0.0, 0.0]), pose_from_six([1.0, 0.2, 0.3, 1.0, 0.4, 0.0]));
+    let any = AnySpace::new(&space);
     for name in ["obprm", "obstacle-geometry-prm"] {
-        let check = Certified::new(&space, robot.clone(), robot.tolerance()).unwrap();
+        let check: AnyCheck<'_, Isometry3<f64>> =
+            Box::new(Certified::new(&space, robot.clone(), robot.tolerance()).unwrap());
         let verifier = Verifier::new(&space, &robot).unwrap();
-        let problem = Problem::new(&space, Straight::new(&space, check), verifier, start, goal).unwrap();
-        let index = <Se3 as DefaultNn>::Nn::default();
-        let mut planner = build_with(name, knowing(problem, &robot), index, &Settings::default()).unwrap();
+        let problem = Problem::new(&any, Straight::new(&any, check), verifier, start, goal).unwrap();
+        let team = AnyTeam::from(knowing(problem, &robot));
+        let (index, settings) = (AnyIndex::of(&space), Settings::default());
+        let mut planner = Isometry3::roadmap_planner(name, team, index, &settings).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("{name}: {:?}", planner.progress()) };
         assert!(verify_path(&space, &path, &mut Verifier::new(&space, &robot).unwrap()).is_free());

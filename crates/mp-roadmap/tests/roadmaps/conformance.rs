@@ -1,8 +1,9 @@
 //! Every planner on problems whose answer is known.
 
 use crate::common::*;
+use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::*;
-use mp_roadmap::{AnyPlanner, build};
+use mp_roadmap::{AnyPlanner, AnyTeam, RoadmapState};
 use std::f64::consts::FRAC_PI_2;
 
 const SEEDS: u64 = 20;
@@ -13,9 +14,11 @@ const HOPELESS: u64 = 2_000;
 
 type Check<'c, S> = Box<dyn MotionValidity<S> + Send + 'c>;
 
-/// A problem: a space, a robot in it, where from and where to.
+/// A problem: a space, a robot in it, where from and where to. Planners of erased problems are compiled in the library
+/// already, and are the same as those compiled for the space, to the bit: see `around`.
 struct World<'c, C: Space, V> {
     space: &'c C,
+    erased: AnySpace<'c, C::State>,
     robot: V,
     ends: [C::State; 2],
 }
@@ -31,13 +34,17 @@ fn settings(name: &str) -> Settings {
 
 impl<'c, C, V> World<'c, C, V>
 where
-    C: DefaultNn<Nn: Send + Sync> + Clone,
+    C: DefaultNn<State: RoadmapState, Nn: Send + Sync + 'static> + Clone + Send + 'static,
     V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + Clone + Send + 'c,
 {
-    fn planner(&self, name: &str, certified: bool) -> AnyPlanner<'c, C::State, ()> {
+    fn new(space: &'c C, robot: V, ends: [C::State; 2]) -> Self {
+        Self { space, erased: AnySpace::new(space), robot, ends }
+    }
+
+    fn planner(&self, name: &str, certified: bool) -> AnyPlanner<'_, C::State, ()> {
         let proof = |tolerance| Certified::new(self.space, self.robot.clone(), tolerance).unwrap();
         // What is found by samples is verified by proof, so that no corner is cut.
-        let (check, verifier): (Check<'c, C::State>, Check<'c, C::State>) = if certified {
+        let (check, verifier): (Check<'_, C::State>, Check<'_, C::State>) = if certified {
             let fine = FineDiscrete::new(self.space, self.robot.clone(), Resolution::Fraction(5e-4)).unwrap();
             (Box::new(proof(1e-3)), Box::new(fine))
         } else {
@@ -46,9 +53,9 @@ where
             (Box::new(sampled), Box::new(proof(1e-5)))
         };
         let [start, goal] = self.ends.clone();
-        let local = Straight::new(self.space, check);
-        let problem = Problem::new(self.space, local, verifier, start, goal).unwrap();
-        build(name, problem, &settings(name)).unwrap()
+        let local = Straight::new(&self.erased, check);
+        let team = AnyTeam::from(Problem::new(&self.erased, local, verifier, start, goal).unwrap());
+        C::State::roadmap_planner(name, team, AnyIndex::of(self.space), &settings(name)).unwrap()
     }
 
     /// Every planner finds a way, whatever the seed, and on some seeds with a discrete check as well.
@@ -83,7 +90,7 @@ where
 /// A point among boxes: whether an edge is free is known exactly.
 fn point(boxes: Boxes<2>, ends: [[f64; 2]; 2]) {
     let space = square();
-    let world = World { space: &space, robot: boxes.clone(), ends: ends.map(Into::into) };
+    let world = World::new(&space, boxes.clone(), ends.map(Into::into));
     world.is_solved(20_000, |a, b| !boxes.hit(a, b));
 }
 
@@ -91,7 +98,7 @@ fn point(boxes: Boxes<2>, ends: [[f64; 2]; 2]) {
 fn empty_space_takes_one_motion() {
     let space = square();
     let (start, goal) = ([0.1; 2].into(), [0.9; 2].into());
-    let world = World { space: &space, robot: Boxes::default(), ends: [start, goal] };
+    let world = World::new(&space, Boxes::default(), [start, goal]);
     for info in crate::blind() {
         let mut planner = world.planner(info.name, true);
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
@@ -113,7 +120,7 @@ fn bug_trap() {
 #[test]
 fn a_closed_box_around_the_goal_is_never_solved() {
     let (space, robot) = (square(), hollow([0.7, 0.5], 0.1, 0.02, 0.0));
-    World { space: &space, robot, ends: [[0.1, 0.5].into(), [0.7, 0.5].into()] }.is_never_solved();
+    World::new(&space, robot, [[0.1, 0.5].into(), [0.7, 0.5].into()]).is_never_solved();
 }
 
 /// The plane with a rod that must turn to pass.
@@ -125,12 +132,12 @@ fn rod(boxes: Boxes<2>) -> (Se2, Rod) {
 fn a_rod_turns_to_pass_a_gap() {
     let (space, robot) = rod(slit(0.05, 0.5, 0.15));
     let ends = [Se2State::new(0.2, 0.3, FRAC_PI_2), Se2State::new(0.8, 0.3, -FRAC_PI_2)];
-    World { space: &space, robot, ends }.is_solved(40_000, |_, _| true);
+    World::new(&space, robot, ends).is_solved(40_000, |_, _| true);
 }
 
 #[test]
 fn a_rod_never_leaves_a_closed_box() {
     let (space, robot) = rod(hollow([0.7, 0.5], 0.15, 0.01, 0.0));
     let ends = [Se2State::new(0.2, 0.5, 0.0), Se2State::new(0.7, 0.5, 0.0)];
-    World { space: &space, robot, ends }.is_never_solved();
+    World::new(&space, robot, ends).is_never_solved();
 }

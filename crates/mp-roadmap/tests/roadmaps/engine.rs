@@ -112,7 +112,7 @@ fn goals_may_be_regions_or_sampled() {
             true => Goals::sampled(corner),
             false => Goals::region(beyond),
         };
-        let local = Straight::new(&space, Exact(boxes.clone()));
+        let local: Local<'_> = Straight::new(&space, Box::new(Exact(boxes.clone())));
         let problem = Problem::new(&space, local, Exact(boxes.clone()), ENDS[0].into(), goals).unwrap();
         let mut planner = build("prm", problem, &Settings::default()).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());

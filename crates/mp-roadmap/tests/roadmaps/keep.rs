@@ -8,12 +8,12 @@ use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
 type Map = Roadmap<Point>;
-type Local<'c> = Straight<'c, Rn<2>, Exact<2>>;
+type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Point>>;
 
 const PRINT: u64 = 0x1234;
 
 fn steer<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Steer<'c, Rn<2>, Local<'c>> {
-    Steer::new(space, Straight::new(space, Exact(boxes.clone())), Exact(boxes.clone()), PATIENCE)
+    Steer::new(space, Straight::new(space, Box::new(Exact(boxes.clone()))), Exact(boxes.clone()), PATIENCE)
 }
 
 fn answers<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, map: Map) -> Answers<'c, Rn<2>, Local<'c>, KdTree<2>> {

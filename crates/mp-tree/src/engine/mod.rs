@@ -16,6 +16,8 @@ mod single;
 mod tree;
 mod two;
 mod untried;
+#[cfg(feature = "serde")]
+mod written;
 
 pub(crate) use self::core::joined;
 pub(crate) use constructors::constructors;

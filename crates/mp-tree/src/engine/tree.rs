@@ -19,6 +19,8 @@ use mp_cspace::{Direction, Motion, NodeId, Path};
 /// assert_eq!(tree.path(b).states, [3.0, 5.0, 9.0]);
 /// assert_eq!(tree.path(b).edges, ["3 to 5", "5 to 9"]);
 /// ```
+///
+/// With the feature `serde` it is written and read: no edge that was read counts as verified.
 #[derive(Clone, Debug)]
 pub struct Tree<S, E> {
     direction: Direction,
@@ -172,6 +174,41 @@ impl<S, E> Tree<S, E> {
         std::iter::successors(next(self.nodes[id as usize].child), move |&at| {
             next(self.nodes[at as usize].sibling)
         })
+    }
+
+    /// The tree of these states, each with its parent, edge and cost but roots, in linear time. Parents are there.
+    ///
+    /// # Errors
+    /// A node that hangs on itself.
+    #[cfg(feature = "serde")]
+    pub(super) fn from_links(
+        direction: Direction,
+        states: Vec<S>,
+        links: Vec<Option<(NodeId, E, f64)>>,
+    ) -> Result<Self, NodeId> {
+        let link = |(parent, edge, cost)| Link { parent, edge, cost, verified: false };
+        let node = |l: Option<_>| Node { cost: 0.0, link: l.map(link), child: NONE, sibling: NONE };
+        let mut tree = Self { direction, states, nodes: links.into_iter().map(node).collect() };
+        for id in 0..tree.len() as NodeId {
+            if let Some(parent) = tree.parent(id) {
+                tree.nodes[id as usize].sibling =
+                    std::mem::replace(&mut tree.nodes[parent as usize].child, id);
+            }
+        }
+        let mut reached = vec![false; tree.len()];
+        let mut stack: Vec<NodeId> =
+            (0..tree.len() as NodeId).filter(|&id| tree.link(id).is_none()).collect();
+        while let Some(at) = stack.pop() {
+            reached[at as usize] = true;
+            if let Some(link) = tree.link(at) {
+                tree.nodes[at as usize].cost = tree.cost(link.parent) + link.cost;
+            }
+            stack.extend(tree.children(at));
+        }
+        match reached.iter().position(|reached| !reached) {
+            Some(id) => Err(id as NodeId),
+            None => Ok(tree),
+        }
     }
 
     /// Takes `id` out of the list of the children of `parent`.

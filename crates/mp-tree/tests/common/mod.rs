@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "crates whose tests share this use their part of it")]
 
 use mp_cspace::*;
-use nalgebra::{SVector, Vector2};
+use nalgebra::{DVector, SVector, Vector2};
 use rand::RngExt;
 
 /// Closed boxes in R^n, and points among them.
@@ -53,6 +53,15 @@ impl<const N: usize> MotionBound<SVector<f64, N>> for Boxes<N> {
     fn motion_bound(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> f64 {
         (to - from).norm()
     }
+}
+
+/// Certified straight motions among boxes: of one type with any other check, so that planners are compiled once for all.
+pub(crate) fn certified<'c>(
+    space: &'c Rn<2>,
+    boxes: Boxes<2>,
+    tolerance: f64,
+) -> Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>> {
+    Straight::new(space, Box::new(Certified::new(space, boxes, tolerance).unwrap()))
 }
 
 /// The exact verifier of straight motions among boxes.
@@ -278,6 +287,54 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Arm<N> {
     }
     fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
         q + (to - from)
+    }
+}
+
+/// A robot of R^N, for states without a size at compile time.
+#[derive(Clone, Debug)]
+pub(crate) struct Sizeless<V, const N: usize>(pub(crate) V);
+
+pub(crate) fn fixed<const N: usize>(q: &DVector<f64>) -> SVector<f64, N> {
+    SVector::from_column_slice(q.as_slice())
+}
+
+fn sizeless<const N: usize>(q: SVector<f64, N>) -> DVector<f64> {
+    DVector::from_column_slice(q.as_slice())
+}
+
+impl<V: Validity<SVector<f64, N>>, const N: usize> Validity<DVector<f64>> for Sizeless<V, N> {
+    fn is_valid(&mut self, q: &DVector<f64>) -> bool {
+        self.0.is_valid(&fixed(q))
+    }
+}
+impl<V: Clearance<SVector<f64, N>>, const N: usize> Clearance<DVector<f64>> for Sizeless<V, N> {
+    fn clearance(&mut self, q: &DVector<f64>, enough: f64) -> f64 {
+        self.0.clearance(&fixed(q), enough)
+    }
+}
+impl<V: MotionBound<SVector<f64, N>>, const N: usize> MotionBound<DVector<f64>> for Sizeless<V, N> {
+    fn motion_bound(&self, from: &DVector<f64>, to: &DVector<f64>) -> f64 {
+        self.0.motion_bound(&fixed(from), &fixed(to))
+    }
+}
+impl<V: ObstacleHints<SVector<f64, N>>, const N: usize> ObstacleHints<DVector<f64>> for Sizeless<V, N> {
+    fn touches(&mut self, q: &DVector<f64>) -> bool {
+        self.0.touches(&fixed(q))
+    }
+    fn along(
+        &mut self,
+        from: &DVector<f64>,
+        toward: &DVector<f64>,
+        hit: Option<&DVector<f64>>,
+        rng: &mut Rng,
+    ) -> Option<DVector<f64>> {
+        self.0.along(&fixed(from), &fixed(toward), hit.map(fixed).as_ref(), rng).map(sizeless)
+    }
+    fn turned(&self, position: &DVector<f64>, rotation: &DVector<f64>) -> DVector<f64> {
+        sizeless(self.0.turned(&fixed(position), &fixed(rotation)))
+    }
+    fn carried(&self, q: &DVector<f64>, from: &DVector<f64>, to: &DVector<f64>) -> DVector<f64> {
+        sizeless(self.0.carried(&fixed(q), &fixed(from), &fixed(to)))
     }
 }
 

@@ -6,7 +6,7 @@ use mp_tree::*;
 use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>;
+type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
 
 fn wall() -> Boxes<2> {
     Boxes(vec![([0.4, 0.0], [0.6, 0.5])])
@@ -17,7 +17,7 @@ fn problem<'c>(
     start: [f64; 2],
     goal: impl Into<Goals<'c, Point>>,
 ) -> Result<Problem<'c, Rn<2>, Local<'c>>, BuildError> {
-    let local = Straight::new(space, Certified::new(space, wall(), 1e-3).unwrap());
+    let local = certified(space, wall(), 1e-3);
     let problem = Problem::new(space, local, Exact(wall()), start.into(), goal)?;
     Ok(problem.with_obstacles(knowledge(space, &wall())))
 }
@@ -146,9 +146,8 @@ fn names_must_be_known() {
 #[test]
 fn obstacles_must_be_known_to_be_followed() {
     let (space, boxes) = (square(), wall());
-    let local = Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
-    let problem =
-        || Problem::new(&space, local.clone(), Exact(boxes.clone()), point(0.1, 0.1), point(0.9, 0.1));
+    let local = || certified(&space, boxes.clone(), 1e-3);
+    let problem = || Problem::new(&space, local(), Exact(boxes.clone()), point(0.1, 0.1), point(0.9, 0.1));
     let error = |name| build(name, problem().unwrap(), &Settings::default()).err().unwrap();
     assert_eq!(error("obrrt"), BuildError::NoHints { planner: "obrrt" });
     for planner in ["rrs", "rrs-connect"] {

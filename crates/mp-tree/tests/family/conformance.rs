@@ -1,10 +1,12 @@
 //! Every planner on problems whose answer is known.
 
 use crate::common::*;
+use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::*;
-use mp_tree::{AnyPlanner, Problem, Settings, Step, Tuning, Workers, build, build_from, planners};
-use nalgebra::{SVector, Vector2};
-use std::f64::consts::FRAC_PI_2;
+use mp_tree::{AnyPlanner, Problem, Settings, Step, TreeState, Tuning, Workers, build, planners};
+use nalgebra::{DVector, SVector, Vector2};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
 const SEEDS: u64 = 20;
 /// Of these seeds so many are planned with a discrete check as well.
@@ -47,9 +49,11 @@ fn settings(step: f64) -> Settings {
     Settings::parse([format!("step={step}")]).unwrap()
 }
 
-/// A problem: a space, a robot in it, where from and where to, and a step that suits.
+/// A problem: a space, a robot in it, where from and where to, and a step that suits. Planners of erased problems are
+/// compiled in the library already, and are the same as those compiled for the space, to the bit: see `erased`.
 struct World<'c, C: Space, V> {
     space: &'c C,
+    erased: AnySpace<'c, C::State>,
     robot: V,
     ends: [C::State; 2],
     step: f64,
@@ -57,28 +61,33 @@ struct World<'c, C: Space, V> {
 
 impl<'c, C, V> World<'c, C, V>
 where
-    C: DefaultNn<Nn: Send + Sync> + Sync,
-    C::State: Send + Sync,
+    C: DefaultNn<State: TreeState, Nn: Send + Sync + 'static> + Clone + Send + 'static,
     V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + ObstacleHints<C::State>,
     V: Clone + Send + Sync + 'c,
 {
-    fn planner(&self, (name, set): (&str, &str), certified: bool) -> AnyPlanner<'c, C::State, ()> {
-        let (space, robot, [start, goal]) = (self.space, self.robot.clone(), self.ends.clone());
+    fn new(space: &'c C, robot: V, ends: [C::State; 2], step: f64) -> Self {
+        Self { space, erased: AnySpace::new(space), robot, ends, step }
+    }
+
+    fn planner(&self, (name, set): (&str, &str), certified: bool) -> AnyPlanner<'_, C::State, ()> {
+        let (space, robot, [start, goal]) = (self.space, &self.robot, &self.ends);
         let problem = move || {
             let proof = |tolerance| Certified::new(space, robot.clone(), tolerance).unwrap();
             // What is found by samples is verified by proof, so that no corner is cut.
-            let (check, verifier): (Check<'c, C::State>, Check<'c, C::State>) = if certified {
+            let (check, verifier): (Check<'_, C::State>, Check<'_, C::State>) = if certified {
                 let fine = FineDiscrete::new(space, robot.clone(), Resolution::Fraction(5e-4)).unwrap();
                 (Box::new(proof(1e-3)), Box::new(fine))
             } else {
                 let sampled = Discrete::new(space, robot.clone(), Resolution::Fraction(2e-3)).unwrap();
                 (Box::new(sampled), Box::new(proof(1e-5)))
             };
-            let problem = Problem::new(space, local(space, check), verifier, start.clone(), goal.clone())?;
-            Ok(problem.with_obstacles(knowledge(space, &robot)))
+            let local = Straight::new(&self.erased, check);
+            let problem = Problem::new(&self.erased, local, verifier, start.clone(), goal.clone())?;
+            Ok(problem.with_obstacles(knowledge(space, robot)))
         };
         let settings = Settings::parse([&format!("step={}", self.step), set]).unwrap();
-        build_from(name, problem, C::Nn::default(), &settings, &Workers::new(2).unwrap()).unwrap()
+        let (index, workers) = (AnyIndex::of(space), Workers::new(2).unwrap());
+        C::State::tree_planner(name, Arc::new(problem), index, &settings, &workers).unwrap()
     }
 
     /// Every planner finds a way, whatever the seed, and on the first `discrete` seeds with a discrete check
@@ -117,62 +126,75 @@ where
     }
 }
 
-/// A point among boxes: whether an edge is free is known exactly.
-fn point<const N: usize>(space: &Rn<N>, boxes: Boxes<N>, ends: [[f64; N]; 2], step: f64)
-where
-    Rn<N>: DefaultNn<State = SVector<f64, N>, Nn: Send>,
-{
-    let world = World { space, robot: boxes.clone(), ends: ends.map(SVector::from), step };
+/// A point of the plane among boxes: whether an edge is free is known exactly.
+fn point_of_the_plane(boxes: Boxes<2>, ends: [[f64; 2]; 2], step: f64) {
+    let space = square();
+    let world = World::new(&space, boxes.clone(), ends.map(SVector::from), step);
     world.is_solved(20_000, DISCRETE, |a, b| !boxes.hit(a, b));
+}
+
+/// The same in space.
+fn point_of_space(boxes: Boxes<3>, ends: [[f64; 3]; 2], step: f64) {
+    let space = any_cube();
+    let world = World::new(&space, Sizeless::<_, 3>(boxes.clone()), ends.map(any), step);
+    world.is_solved(20_000, DISCRETE, |a, b| !boxes.hit(&fixed(a), &fixed(b)));
+}
+
+/// The unit cube, of states without a size at compile time.
+fn any_cube() -> RnDyn {
+    RnDyn::new(vec![0.0; 3], vec![1.0; 3]).unwrap()
+}
+
+fn any<const N: usize>(q: [f64; N]) -> DVector<f64> {
+    DVector::from_column_slice(&q)
 }
 
 #[test]
 fn empty_space_takes_one_motion() {
-    let space = cube();
-    let (start, goal) = ([0.1; 3].into(), [0.9; 3].into());
-    let world = World { space: &space, robot: Boxes::default(), ends: [start, goal], step: 0.3 };
+    let space = any_cube();
+    let robot = Sizeless::<_, 3>(Boxes::default());
+    let world = World::new(&space, robot, [any([0.1; 3]), any([0.9; 3])], 0.3);
     // T-RRT makes no motion longer than a step.
     for info in planners().iter().filter(|info| info.name != "t-rrt") {
         let mut planner = world.planner((info.name, "patience=10"), true);
         let path = planner.step(&mut Rng::seed(1), &mut ()).unwrap();
-        assert_eq!(path, Path { states: vec![start, goal], edges: vec![()] }, "{}", info.name);
+        assert_eq!(path, Path { states: world.ends.to_vec(), edges: vec![()] }, "{}", info.name);
         assert_eq!(planner.progress().motions, 1);
     }
 }
 
 #[test]
 fn narrow_passage_in_the_plane() {
-    point(&square(), slit(0.2, 0.8, 0.04), [[0.1, 0.2], [0.9, 0.2]], 0.1);
+    point_of_the_plane(slit(0.2, 0.8, 0.04), [[0.1, 0.2], [0.9, 0.2]], 0.1);
 }
 
 #[test]
 fn narrow_passage_in_space() {
-    point(&cube(), slit(0.1, 0.7, 0.15), [[0.1; 3], [0.9, 0.1, 0.1]], 0.2);
+    point_of_space(slit(0.1, 0.7, 0.15), [[0.1; 3], [0.9, 0.1, 0.1]], 0.2);
 }
 
 #[test]
 fn bug_trap_in_the_plane() {
-    point(&square(), hollow([0.4, 0.5], 0.2, 0.05, 0.03), [[0.4, 0.5], [0.05, 0.5]], 0.1);
+    point_of_the_plane(hollow([0.4, 0.5], 0.2, 0.05, 0.03), [[0.4, 0.5], [0.05, 0.5]], 0.1);
 }
 
 #[test]
 fn bug_trap_in_space() {
-    point(&cube(), hollow([0.4; 3], 0.2, 0.05, 0.08), [[0.4; 3], [0.05, 0.4, 0.4]], 0.2);
+    point_of_space(hollow([0.4; 3], 0.2, 0.05, 0.08), [[0.4; 3], [0.05, 0.4, 0.4]], 0.2);
 }
 
 #[test]
 fn a_closed_box_around_the_goal_is_never_solved_in_the_plane() {
     let (space, robot) = (square(), hollow([0.7, 0.5], 0.1, 0.02, 0.0));
-    World { space: &space, robot, ends: [[0.1, 0.5].into(), [0.7, 0.5].into()], step: 0.2 }.is_never_solved();
+    World::new(&space, robot, [[0.1, 0.5].into(), [0.7, 0.5].into()], 0.2).is_never_solved();
 }
 
 /// The walls are 1e-3 thick: two points of the verifier would straddle them, a certified check does
 /// not.
 #[test]
 fn a_closed_box_around_the_goal_is_never_solved_in_space() {
-    let (space, robot) = (cube(), hollow([0.7, 0.5, 0.5], 0.1, 1e-3, 0.0));
-    let ends = [[0.1; 3].into(), [0.7, 0.5, 0.5].into()];
-    World { space: &space, robot, ends, step: 0.2 }.is_never_solved();
+    let (space, robot) = (any_cube(), Sizeless::<_, 3>(hollow([0.7, 0.5, 0.5], 0.1, 1e-3, 0.0)));
+    World::new(&space, robot, [any([0.1; 3]), any([0.7, 0.5, 0.5])], 0.2).is_never_solved();
 }
 
 /// The plane with a rod that must turn to pass.
@@ -184,14 +206,14 @@ fn rod(boxes: Boxes<2>) -> (Se2, Rod) {
 fn a_rod_turns_to_pass_a_gap() {
     let (space, robot) = rod(slit(0.05, 0.5, 0.1));
     let ends = [Se2State::new(0.2, 0.3, FRAC_PI_2), Se2State::new(0.8, 0.3, -FRAC_PI_2)];
-    World { space: &space, robot, ends, step: 0.3 }.is_solved(40_000, DISCRETE, |_, _| true);
+    World::new(&space, robot, ends, 0.3).is_solved(40_000, DISCRETE, |_, _| true);
 }
 
 #[test]
 fn a_rod_never_leaves_a_closed_box() {
     let (space, robot) = rod(hollow([0.7, 0.5], 0.15, 0.01, 0.0));
     let ends = [Se2State::new(0.2, 0.5, 0.0), Se2State::new(0.7, 0.5, 0.0)];
-    World { space: &space, robot, ends, step: 0.3 }.is_never_solved();
+    World::new(&space, robot, ends, 0.3).is_never_solved();
 }
 
 /// Two links must fold to get past a disc.
@@ -200,7 +222,7 @@ fn an_arm_of_two_joints_folds() {
     let (space, discs) = (joints::<2>(), vec![(Vector2::new(0.7, 0.7), 0.3)]);
     let robot = Arm { link: 0.5, radius: 0.02, discs };
     let ends = [[0.0, 0.0].into(), [FRAC_PI_2, 0.0].into()];
-    World { space: &space, robot, ends, step: 0.5 }.is_solved(20_000, DISCRETE, |_, _| true);
+    World::new(&space, robot, ends, 0.5).is_solved(20_000, DISCRETE, |_, _| true);
 }
 
 /// Six links among three discs, from one side of one to the other.
@@ -208,10 +230,10 @@ fn an_arm_of_two_joints_folds() {
 fn an_arm_of_six_joints_finds_its_way() {
     let places = [(1.06, 0.51), (-0.2, 0.9), (0.0, -0.9)];
     let discs = places.map(|(x, y)| (Vector2::new(x, y), 0.1)).to_vec();
-    let space = Rn::new([-1.5; 6], [1.5; 6]).unwrap();
-    let robot = Arm { link: 0.2, radius: 0.02, discs };
-    let ends = [[0.0; 6].into(), [0.9, 0.1, 0.0, 0.0, 0.0, 0.0].into()];
-    World { space: &space, robot, ends, step: 1.0 }.is_solved(200_000, 0, |_, _| true);
+    let space = RnDyn::new(vec![-1.5; 6], vec![1.5; 6]).unwrap();
+    let robot = Sizeless::<_, 6>(Arm { link: 0.2, radius: 0.02, discs });
+    let ends = [any([0.0; 6]), any([0.9, 0.1, 0.0, 0.0, 0.0, 0.0])];
+    World::new(&space, robot, ends, 1.0).is_solved(200_000, 0, |_, _| true);
 }
 
 /// Discs above and below the base keep the first link on its side; joints cannot turn all around.
@@ -220,10 +242,10 @@ fn an_arm_never_passes_what_it_cannot() {
     let discs = [0.3, -0.3].map(|y| (Vector2::new(0.0, y), 0.1)).to_vec();
     let two = Arm { link: 0.5, radius: 0.02, discs: discs.clone() };
     let ends = [[0.0, 0.0].into(), [3.0, 0.0].into()];
-    World { space: &joints::<2>(), robot: two, ends, step: 0.5 }.is_never_solved();
-    let six = Arm { link: 0.5, radius: 0.02, discs };
-    let ends = [[0.0; 6].into(), [3.0, 0.0, 0.0, 0.0, 0.0, 0.0].into()];
-    World { space: &joints::<6>(), robot: six, ends, step: 2.0 }.is_never_solved();
+    World::new(&joints::<2>(), two, ends, 0.5).is_never_solved();
+    let space = RnDyn::new(vec![-PI; 6], vec![PI; 6]).unwrap();
+    let six = Sizeless::<_, 6>(Arm { link: 0.5, radius: 0.02, discs });
+    World::new(&space, six, [any([0.0; 6]), any([3.0, 0.0, 0.0, 0.0, 0.0, 0.0])], 2.0).is_never_solved();
 }
 
 /// A wall 1e-4 thick, with a way around at the top.

@@ -6,10 +6,10 @@ use mp_tree::*;
 use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>;
+type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
 
 fn local<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Local<'c> {
-    Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap())
+    certified(space, boxes.clone(), 1e-3)
 }
 
 fn problem<'c>(
@@ -233,7 +233,7 @@ fn finitely_many_moves_make_no_duplicates_either() {
 
 /// Straight motions that remember their ends, in forward time.
 #[derive(Clone, Debug)]
-struct Remembers<'c>(Local<'c>);
+struct Remembers<'c>(Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>);
 
 impl LocalPlanner<Point> for Remembers<'_> {
     type Edge = [Point; 2];
@@ -325,7 +325,8 @@ fn edges_are_in_forward_time() {
     let (space, boxes) = (square(), slit(0.1, 0.8, 0.1));
     for name in REMEMBERING {
         for patience in [0, 10] {
-            let local = Remembers(local(&space, &boxes));
+            let check = Certified::new(&space, boxes.clone(), 1e-3).unwrap();
+            let local = Remembers(Straight::new(&space, check));
             let start = Point::new(0.1, 0.2);
             let problem = Problem::new(&space, local, Replays(boxes.clone()), start, goal()).unwrap();
             let mut planner = remembering(name, problem, &boxes, Tuning { patience, ..short() }).unwrap();

@@ -6,7 +6,7 @@ use mp_tree::*;
 use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>;
+type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
 
 const START: [f64; 2] = [0.1, 0.2];
 const GOAL: [f64; 2] = [0.9, 0.2];
@@ -18,7 +18,7 @@ fn wall() -> (Boxes<2>, f64) {
 }
 
 fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Problem<'c, Rn<2>, Local<'c>> {
-    let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-4).unwrap());
+    let local = certified(space, boxes.clone(), 1e-4);
     let problem = Problem::new(space, local, Exact(boxes.clone()), START.into(), Point::from(GOAL)).unwrap();
     problem.with_obstacles(knowledge(space, boxes))
 }
@@ -180,7 +180,7 @@ impl Verify<Point, [Point; 2]> for Anything {
 #[test]
 fn rewired_edges_are_in_forward_time_in_trees_of_both_directions() {
     let (space, (boxes, _)) = (square(), wall());
-    let local = Straight::new(&space, Certified::new(&space, boxes, 1e-3).unwrap());
+    let local = certified(&space, boxes, 1e-3);
     let problem = Problem::new(&space, Remembers(local), Anything, START.into(), Point::from(GOAL)).unwrap();
     let recipe = Recipe {
         propose: Samples(Uniform(&space)),
@@ -214,7 +214,7 @@ fn rewired_edges_are_in_forward_time_in_trees_of_both_directions() {
 fn goals_of_every_kind_improve() {
     let (space, (boxes, _)) = (square(), wall());
     let ends = [Point::new(0.9, 0.9), Point::new(0.9, 0.2)];
-    let local = || Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
+    let local = || certified(&space, boxes.clone(), 1e-3);
     for info in improving().filter(|info| info.can(Demand::Region)) {
         let kinds: [Goals<'_, Point>; 3] = [
             Goals::states(ends),

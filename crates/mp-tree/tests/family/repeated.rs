@@ -9,11 +9,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>;
+type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
 type Made<'c> = Result<Problem<'c, Rn<2>, Local<'c>>, BuildError>;
 
 fn problem<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Made<'c> {
-    let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
+    let local = certified(space, boxes.clone(), 1e-3);
     let ends = [Point::new(0.1, 0.2), Point::new(0.9, 0.2)];
     let problem = Problem::new(space, local, Exact(boxes.clone()), ends[0], ends[1])?;
     Ok(problem.with_obstacles(knowledge(space, boxes)))
@@ -132,7 +132,7 @@ fn a_run_that_panics_does_not_take_the_others_along() {
     let (well, ill) = (AtomicU64::new(0), AtomicU64::new(1));
     for threads in [1, 2] {
         let run = |i| {
-            let local = Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap());
+            let local = certified(&space, boxes.clone(), 1e-3);
             let local = Fragile(local, if i == 0 { &ill } else { &well });
             let (start, goal) = (Point::new(0.1, 0.2), Point::new(0.9, 0.2));
             RrtConnect::new(Problem::new(&space, local, Exact(boxes.clone()), start, goal)?, tuning())

@@ -9,7 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, Discrete<'c, Rn<2>, Boxes<2>>>;
+type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
 type Shared<'c, L> = SharedTree<'c, Rn<2>, L, KdTree<2>>;
 
 const START: Point = Point::new(0.1, 0.2);
@@ -17,7 +17,8 @@ const GOAL: Point = Point::new(0.9, 0.2);
 const STEP: f64 = 0.1;
 
 fn local<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, resolution: f64) -> Local<'c> {
-    Straight::new(space, Discrete::new(space, boxes.clone(), Resolution::Length(resolution)).unwrap())
+    let check = Discrete::new(space, boxes.clone(), Resolution::Length(resolution)).unwrap();
+    Straight::new(space, Box::new(check))
 }
 
 fn tuning(goal_bias: f64) -> Tuning {

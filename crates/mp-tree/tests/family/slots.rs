@@ -6,7 +6,7 @@ use mp_tree::*;
 use nalgebra::Vector2;
 
 type Point = Vector2<f64>;
-type Local<'c> = Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>;
+type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Vector2<f64>>>;
 
 fn problem<'c>(
     space: &'c Rn<2>,
@@ -14,7 +14,7 @@ fn problem<'c>(
     start: Point,
     goal: Point,
 ) -> Problem<'c, Rn<2>, Local<'c>> {
-    let local = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
+    let local = certified(space, boxes.clone(), 1e-3);
     Problem::new(space, local, Exact(boxes.clone()), start, goal).unwrap()
 }
 
@@ -291,7 +291,7 @@ fn leaps_can_be_declined() {
     let (space, boxes) = (square(), Boxes::default());
     let (start, goal) = (Point::new(0.1, 0.5), Point::new(0.9, 0.5));
     let problem = || {
-        let local = NeverFar(Straight::new(&space, Certified::new(&space, boxes.clone(), 1e-3).unwrap()));
+        let local = NeverFar(certified(&space, boxes.clone(), 1e-3));
         Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap()
     };
     fn recipe<G>(space: &Rn<2>, grow: G) -> Recipe<Samples<Uniform<'_, Rn<2>>>, Nearest<Linear>, G, Append> {
