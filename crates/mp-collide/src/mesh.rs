@@ -28,6 +28,7 @@ impl CollisionMesh {
 
     /// `triangles`: at least one, at most `u32::MAX`, finite.
     pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
+        let _span = tracing::debug_span!("build", triangles = triangles.len()).entered();
         Self::from_tree(Tree::build(&triangles))
     }
 

@@ -41,6 +41,7 @@ pub mod shortest;
 mod space;
 mod space_time;
 mod stop;
+mod tell;
 pub mod testkit;
 mod validity;
 

@@ -1,6 +1,6 @@
 //! Outcomes and the planner trait.
 
-use crate::{Event, Observer, Path, Progress, Rng, Stop, StopReason};
+use crate::{Event, Observer, Path, Progress, Rng, Stop, StopReason, tell};
 
 /// How a solve ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,14 +33,14 @@ pub trait Planner<S> {
     ) -> Outcome<Path<S, Self::Edge>> {
         loop {
             let progress = self.progress();
-            if let Some(reason) = stop.check(&progress) {
+            let exhausted = || progress.exhausted.then_some(StopReason::Exhausted);
+            if let Some(reason) = stop.check(&progress).or_else(exhausted) {
+                tell::ended(&progress, Some(reason));
                 return Outcome::Stopped(reason);
-            }
-            if progress.exhausted {
-                return Outcome::Stopped(StopReason::Exhausted);
             }
             observer.on(Event::Iteration(progress));
             if let Some(path) = self.step(rng, observer) {
+                tell::ended(&self.progress(), None);
                 observer.on(Event::Solved);
                 return Outcome::Solved(path);
             }

@@ -18,7 +18,7 @@ mod random;
 pub use bspline::bspline;
 pub use random::{partial_shortcut, shortcut};
 
-use crate::{Factored, MotionValidity, Path, Rng, Space};
+use crate::{Factored, MotionValidity, Path, Rng, Space, tell};
 
 /// How much work to put into shortening a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,9 +83,11 @@ pub fn simplify<C: Factored>(
     effort: Effort,
     rng: &mut Rng,
 ) -> Path<C::State> {
-    let path = reduce(space, check, path);
-    let path = shortcut(space, check, &path, effort, rng);
-    let path = partial_shortcut(space, check, &path, effort, rng);
-    let path = reduce(space, check, &path);
-    bspline(space, check, &path, effort.rounds)
+    let short = reduce(space, check, path);
+    let short = shortcut(space, check, &short, effort, rng);
+    let short = partial_shortcut(space, check, &short, effort, rng);
+    let short = reduce(space, check, &short);
+    let short = bspline(space, check, &short, effort.rounds);
+    tell::simplified([path, &short].map(|path| path.states.len()));
+    short
 }

@@ -96,6 +96,7 @@ pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     if bytes.len() as u64 > limit {
         return Err(too_large(bytes.len() as u64));
     }
+    tracing::debug!(file = %path.display(), bytes = bytes.len(), "read");
     Ok(bytes)
 }
 
@@ -187,6 +188,7 @@ pub fn write_atomic(path: &Path, content: &[u8]) -> Result<(), Error> {
     file.write_all(content).map_err(|e| fail("write the file", &e))?;
     file.as_file().sync_all().map_err(|e| fail("write the file", &e))?;
     file.persist(&target).map_err(|e| fail("write the file", &e.error))?;
+    tracing::debug!(file = %path.display(), bytes = content.len(), "written");
     Ok(())
 }
 

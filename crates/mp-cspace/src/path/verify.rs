@@ -1,7 +1,7 @@
 //! Verification of finished paths.
 
 use super::Path;
-use crate::{MotionCheck, MotionValidity, Space};
+use crate::{MotionCheck, MotionValidity, Space, tell};
 use std::fmt;
 
 /// The first thing found wrong with a path.
@@ -77,7 +77,9 @@ pub fn verify_path<C: Space>(
         Ok(clearance) => (clearance, None),
         Err(fault) => (0.0, Some(fault)),
     };
-    PathReport { edges, length, clearance, fault }
+    let report = PathReport { edges, length, clearance, fault };
+    tell::verified(&report);
+    report
 }
 
 /// The least clearance over the edges, or the first fault.

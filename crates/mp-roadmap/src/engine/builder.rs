@@ -237,11 +237,10 @@ where
     ) -> StopReason {
         loop {
             let progress = self.progress();
-            if let Some(reason) = stop.check(&progress) {
+            let exhausted = || progress.exhausted.then_some(StopReason::Exhausted);
+            if let Some(reason) = stop.check(&progress).or_else(exhausted) {
+                built(&progress, self.map.edges(), reason);
                 return reason;
-            }
-            if progress.exhausted {
-                return StopReason::Exhausted;
             }
             observer.on(Event::Iteration(progress));
             self.step(rng, observer);
@@ -255,4 +254,9 @@ where
         (progress.rejected, progress.exhausted) = (self.steer.rejected, self.connect.exhausted());
         progress
     }
+}
+
+/// Tells that building has ended: a function that is compiled once.
+fn built(progress: &Progress, edges: usize, reason: StopReason) {
+    tracing::debug!(attempts = progress.iterations, nodes = progress.nodes, edges, ?reason, "built");
 }

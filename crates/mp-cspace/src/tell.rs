@@ -1,0 +1,26 @@
+//! What is told by `tracing`: events at the level of debugging, from functions that are compiled once.
+
+use crate::{PathReport, Progress, StopReason};
+
+/// A planner has found a path, or stopped without one.
+pub(crate) fn ended(progress: &Progress, stopped: Option<StopReason>) {
+    let Progress { iterations, nodes, motions, rejected, .. } = *progress;
+    match stopped {
+        None => tracing::debug!(iterations, nodes, motions, rejected, "solved"),
+        Some(reason) => tracing::debug!(iterations, nodes, motions, rejected, ?reason, "stopped"),
+    }
+}
+
+/// A path was verified.
+pub(crate) fn verified(report: &PathReport) {
+    let PathReport { edges, length, clearance, fault } = report;
+    match fault {
+        None => tracing::debug!(edges, length, clearance, "verified"),
+        Some(fault) => tracing::debug!(edges, length, %fault, "not verified"),
+    }
+}
+
+/// A path was made simpler: how many states it had and has.
+pub(crate) fn simplified(states: [usize; 2]) {
+    tracing::debug!(from = states[0], to = states[1], "simplified");
+}
