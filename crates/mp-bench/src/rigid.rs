@@ -16,7 +16,7 @@ use crate::options::Common;
 use crate::scenes::{Planned, Rigid, bare};
 use clap::Args;
 use mp_io::{OmplExport, export_ompl};
-use mp_plan::{Error, Length, MotionCheck, Request, median};
+use mp_plan::{Error, Length, MotionValidator, Request, median};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -79,7 +79,7 @@ impl Place {
             Length::Absolute(length) => length,
             Length::Fraction(part) => part * rigid.extent(),
         };
-        let motion = MotionCheck::Discrete(Length::Fraction(0.01));
+        let motion = MotionValidator::Discrete(Length::Fraction(0.01));
         let request = bare("rrt-connect").motion(motion).time(time).set("step", step);
         Ok(Self { rigid, request, range, file, _folder: folder })
     }

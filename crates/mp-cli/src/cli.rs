@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, Metric, MotionCheck, PlannerInfo, Request};
+use mp_plan::{Length, Metric, MotionValidator, PlannerInfo, Request};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -69,8 +69,8 @@ pub(crate) struct Plan {
     pub(crate) step: Option<Length>,
     /// How motions are checked: `certified` (no wall is ever missed) or `discrete:R`, at steps of R (a
     /// distance of the metric, or a percentage of the extent). What is written is certified either way.
-    #[arg(long, value_name = "CHECK", default_value = "certified", value_parser = parsed::<MotionCheck>)]
-    pub(crate) motion: MotionCheck,
+    #[arg(long, value_name = "CHECK", default_value = "certified", value_parser = parsed::<MotionValidator>)]
+    pub(crate) motion: MotionValidator,
     /// Plan this often, with seeds N, N + 1, …, and print a table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,

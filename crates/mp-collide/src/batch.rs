@@ -7,8 +7,8 @@ use crate::pose::{Relative, is_rigid};
 use crate::query::Query;
 use crate::wide::Tree;
 use crate::wide::frames::Frames;
-use crate::wide::span::{Parts, Span, Travel};
-use crate::wide::sweep::Course;
+use crate::wide::span::{Parts, SweptInterval, Travel};
+use crate::wide::sweep::Schedule;
 
 /// Poses are taken so many at a time.
 const CHUNK: usize = 64;
@@ -196,7 +196,7 @@ impl Poses<'_> {
     }
 }
 
-impl Course for Poses<'_> {
+impl Schedule for Poses<'_> {
     const ORDERED: bool = true;
 
     #[inline]
@@ -214,12 +214,12 @@ impl Course for Poses<'_> {
         if hi - lo == 1 { 0.0 } else { self.farthest(steps as usize).max(LEAST) }
     }
 
-    fn make(&self, range: [u32; 2]) -> Option<Span> {
+    fn make(&self, range: [u32; 2]) -> Option<SweptInterval> {
         let [lo, hi] = range.map(|i| i as usize);
         let middle = usize::midpoint(lo, hi - 1);
         let relative = Relative::between(&self.poses[middle], self.a.radius, self.pose_wb, self.b.radius)?;
         let travel =
             if hi - lo == 1 { Travel::none() } else { self.travel(&relative, middle, hi - 1 - middle) };
-        Span::new((self.a, self.b), &relative, &travel, 0.0)
+        SweptInterval::new((self.a, self.b), &relative, &travel, 0.0)
     }
 }

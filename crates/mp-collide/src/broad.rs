@@ -5,7 +5,7 @@
 
 use nalgebra::Point3;
 
-/// Room for a traversal: the tree is balanced, 2³² boxes are less than 50 levels.
+/// IntervalClearance for a traversal: the tree is balanced, 2³² boxes are less than 50 levels.
 const STACK: usize = 96;
 
 /// An axis-aligned box in the world.

@@ -2,7 +2,7 @@
 //!
 //! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads, saved and loaded.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
-//!   stretches of motions.
+//!   intervals of motions.
 //! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
 //! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs; [filled](CollisionMesh::filled) ones
 //!   collide with what is inside of them.
@@ -78,7 +78,7 @@ pub mod triangle;
 
 pub use filled::FillError;
 pub use mesh::CollisionMesh;
-pub use motion::{Stay, Sway};
+pub use motion::{IntervalCheck, RigidMotion};
 pub use query::{Counters, Query, Separation};
 pub use save::{TreeError, TreeFileError};
 pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};

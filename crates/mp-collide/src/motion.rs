@@ -7,14 +7,14 @@ use crate::pose::{LIMIT, Relative};
 use crate::query::Query;
 use crate::wide::Tree;
 use crate::wide::frames::Frames;
-use crate::wide::span::{Parts, Span, Travel};
-use crate::wide::sweep::{Course, Met};
-use crate::wide::swept::Gap;
+use crate::wide::span::{Parts, SweptInterval, Travel};
+use crate::wide::sweep::{Met, Schedule};
+use crate::wide::swept::LeafCheck;
 
-/// A stretch of a rigid motion about a pose in its middle: from there the body moves on at constant speed to
-/// one end of the stretch, and back likewise to the other.
+/// An interval of a rigid motion about a pose in its middle: from there the body moves on at constant speed to
+/// one end of the interval, and back likewise to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sway {
+pub struct RigidMotion {
     /// How far the origin of the body moves from the middle to the end, in the world (metres).
     pub shift: Vector3<f64>,
     /// The axis through the origin about which the body turns meanwhile, in the world, times the angle
@@ -24,8 +24,8 @@ pub struct Sway {
     pub most: f64,
 }
 
-impl Sway {
-    /// The sway of a body with no point farther than `radius` from its origin.
+impl RigidMotion {
+    /// The motion of a body with no point farther than `radius` from its origin.
     #[must_use]
     pub fn new(shift: Vector3<f64>, turn: Vector3<f64>, radius: f64) -> Self {
         Self { shift, turn, most: (shift.norm() + turn.norm() * radius) * (1.0 + 1e-12) }
@@ -55,90 +55,90 @@ impl Sway {
     }
 }
 
-/// Whether a body stays clear all along a stretch: a place `at` is a share of the way from its middle to its end,
+/// Whether a body stays clear all along an interval: a place `at` is a share of the way from its middle to its end,
 /// from −1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stay {
+pub enum IntervalCheck {
     /// Surely at least the margin from everything.
-    Clear,
-    /// Not shown to: a shorter stretch may be found clear.
-    Near,
+    Free,
+    /// Not shown to: a shorter interval may be found clear.
+    Unproven,
     /// Nearer than the margin at `at`.
-    Tight {
+    TooClose {
         /// The place.
         at: f64,
     },
     /// In collision at `at`.
-    Contact {
+    Collision {
         /// The place.
         at: f64,
     },
 }
 
-impl Stay {
+impl IntervalCheck {
     /// Whether it surely stays clear.
     #[must_use]
-    pub fn is_clear(self) -> bool {
-        self == Self::Clear
+    pub fn is_free(self) -> bool {
+        self == Self::Free
     }
 }
 
 impl Query {
-    /// Whether `a` stays at least `margin` (metres) from `b` all along a stretch about `middle_wa`.
+    /// Whether `a` stays at least `margin` (metres) from `b` all along an interval about `middle_wa`.
     ///
-    /// Whenever the clearance in the middle is at least `sway.most + margin`, up to rounding, the answer is
-    /// [`Stay::Clear`]; but far longer stretches are found clear too, as the bound of each part of `a` is its own,
-    /// and counts toward `b` only. One traversal, in which the stretch is divided where the bodies are near each
+    /// Whenever the clearance in the middle is at least `motion.most + margin`, up to rounding, the answer is
+    /// [`IntervalCheck::Free`]; but far longer intervals are found clear too, as the bound of each part of `a` is its own,
+    /// and counts toward `b` only. One traversal, in which the interval is divided where the bodies are near each
     /// other; it ends where they are in contact or too near (in a pose that is rounded as that of a place between).
     ///
-    /// What counts as in collision with everything (see the crate docs), a sway or a margin that is not
-    /// finite, and a turn of more than 4 radians are [`Stay::Near`]; a negative margin counts as 0.
-    pub fn keeps_clear(
+    /// What counts as in collision with everything (see the crate docs), a motion or a margin that is not
+    /// finite, and a turn of more than 4 radians are [`IntervalCheck::Unproven`]; a negative margin counts as 0.
+    pub fn check_interval(
         &mut self,
         a: &CollisionMesh,
         middle_wa: &Isometry3<f64>,
-        sway: &Sway,
+        motion: &RigidMotion,
         b: &CollisionMesh,
         pose_wb: &Isometry3<f64>,
         margin: f64,
-    ) -> Stay {
+    ) -> IntervalCheck {
         self.counters.queries += 1;
         let relative = Relative::between(middle_wa, a.radius(), pose_wb, b.radius());
-        let Some(relative) = relative.filter(|_| sway.is_usable() && margin.abs() <= LIMIT) else {
-            return Stay::Near;
+        let Some(relative) = relative.filter(|_| motion.is_usable() && margin.abs() <= LIMIT) else {
+            return IntervalCheck::Unproven;
         };
         let margin = margin.max(0.0);
         let (a, b) = (a.tree(), b.tree());
         let frames = Frames::new(a, b, &relative);
-        if !frames.fits_f32(a, b) || frames.apart + sway.most + margin > 1e8 {
-            let enough = sway.most + margin;
+        if !frames.fits_f32(a, b) || frames.apart + motion.most + margin > 1e8 {
+            let enough = motion.most + margin;
             let clear = self.clearance_with(a, b, &relative, enough).0 >= enough;
-            return if clear { Stay::Clear } else { Stay::Near };
+            return if clear { IntervalCheck::Free } else { IntervalCheck::Unproven };
         }
         let (back, parts) = (pose_wb.rotation.inverse(), std::mem::take(&mut self.parts));
-        let mut course = Smooth { a, b, middle_wa, sway, pose_wb, back, margin, parts };
+        let mut course = Smooth { a, b, middle_wa, motion, pose_wb, back, margin, parts };
         let met = self.sweep(a, b, &mut course, [0, PIECES]);
         self.parts = course.parts;
-        met.map_or(Stay::Clear, |Met { range, gap }| match gap {
-            Gap::Contact => Stay::Contact { at: middle(range) },
-            Gap::Tight => Stay::Tight { at: middle(range) },
-            Gap::Kept | Gap::Short => Stay::Near,
+        met.map_or(IntervalCheck::Free, |Met { range, gap }| match gap {
+            LeafCheck::Collision => IntervalCheck::Collision { at: middle(range) },
+            LeafCheck::TooClose => IntervalCheck::TooClose { at: middle(range) },
+            LeafCheck::Free | LeafCheck::Unproven => IntervalCheck::Unproven,
         })
     }
 }
 
-/// A stretch is divided into no more pieces than this.
+/// An interval is divided into no more pieces than this.
 const PIECES: u32 = 32;
 
 /// Triangles are compared over parts of no more pieces than this. Measured: half as many or twice as many are slower.
 const FINE: u32 = 4;
 
-/// A stretch of a motion; parts are ranges of its pieces.
+/// An interval of a motion; parts are ranges of its pieces.
 struct Smooth<'q> {
     a: &'q Tree,
     b: &'q Tree,
     middle_wa: &'q Isometry3<f64>,
-    sway: &'q Sway,
+    motion: &'q RigidMotion,
     pose_wb: &'q Isometry3<f64>,
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
@@ -146,17 +146,17 @@ struct Smooth<'q> {
     parts: Parts,
 }
 
-/// Half of a part, as a share of half the stretch.
+/// Half of a part, as a share of half the interval.
 fn share([lo, hi]: [u32; 2]) -> f64 {
     f64::from(hi - lo) / f64::from(PIECES)
 }
 
-/// The middle of a part, as a share of half the stretch.
+/// The middle of a part, as a share of half the interval.
 fn middle([lo, hi]: [u32; 2]) -> f64 {
     f64::from(lo + hi) / f64::from(PIECES) - 1.0
 }
 
-impl Course for Smooth<'_> {
+impl Schedule for Smooth<'_> {
     const ORDERED: bool = false;
 
     #[inline]
@@ -170,31 +170,31 @@ impl Course for Smooth<'_> {
     }
 
     fn most(&self, range: [u32; 2]) -> f64 {
-        (self.sway.most * share(range)).max(1e-30)
+        (self.motion.most * share(range)).max(1e-30)
     }
 
-    fn make(&self, range: [u32; 2]) -> Option<Span> {
+    fn make(&self, range: [u32; 2]) -> Option<SweptInterval> {
         let at = middle(range);
         let half = share(range);
-        let sway = self.sway;
+        let motion = self.motion;
         let pose = if at == 0.0 {
             *self.middle_wa
         } else {
-            let turned = UnitQuaternion::from_scaled_axis(sway.turn * at) * self.middle_wa.rotation;
-            let place = self.middle_wa.translation.vector + sway.shift * at;
+            let turned = UnitQuaternion::from_scaled_axis(motion.turn * at) * self.middle_wa.rotation;
+            let place = self.middle_wa.translation.vector + motion.shift * at;
             Isometry3::from_parts(Translation3::from(place), turned)
         };
-        let turn = sway.turn * half;
+        let turn = motion.turn * half;
         // A point at most `radius` from the axis moves on a circle: this far from its tangent.
         let rest = 0.5 * turn.norm_squared() * self.a.radius;
         let travel = Travel {
-            shift: self.back * (sway.shift * half),
+            shift: self.back * (motion.shift * half),
             turn: self.back * turn,
             rest,
-            most: sway.most * half,
+            most: motion.most * half,
         };
         let relative = Relative::between(&pose, self.a.radius, self.pose_wb, self.b.radius)?;
-        Span::new((self.a, self.b), &relative, &travel, self.margin)
+        SweptInterval::new((self.a, self.b), &relative, &travel, self.margin)
     }
 
     fn keep(&self, [lo, hi]: [u32; 2]) -> Option<f64> {

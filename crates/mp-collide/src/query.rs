@@ -9,7 +9,7 @@ use crate::triangle::intersect;
 use crate::wide::Tree;
 use crate::wide::frames::Frames;
 use crate::wide::intersect::Intersect;
-use crate::wide::meeting::Meeting;
+use crate::wide::meeting::TriangleFilter;
 use crate::wide::nearest::Scratch;
 use crate::wide::span::Parts;
 use crate::wide::sweep::Item;
@@ -54,7 +54,7 @@ pub struct Query {
     /// What was done so far; set to `Counters::default()` to start over.
     pub counters: Counters,
     pub(crate) stack: Vec<(u32, u32)>,
-    pub(crate) meeting: Meeting,
+    pub(crate) meeting: TriangleFilter,
     pub(crate) scratch: Scratch,
     pub(crate) items: Vec<Item>,
     pub(crate) parts: Parts,
@@ -75,7 +75,7 @@ impl Query {
         Self {
             counters: Counters::default(),
             stack: Vec::new(),
-            meeting: Meeting::NONE,
+            meeting: TriangleFilter::NONE,
             scratch: Scratch::default(),
             items: Vec::new(),
             parts: Parts::default(),

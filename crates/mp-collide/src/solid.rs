@@ -38,7 +38,7 @@ pub struct Solid {
 #[derive(Clone, Debug)]
 enum Shape {
     /// All points within `radius` of a core.
-    Swept {
+    SweepCheck {
         core: CollisionMesh,
         radius: f64,
     },
@@ -83,7 +83,7 @@ impl Solid {
 
     fn swept([p, q]: [Point3<f64>; 2], radius: f64) -> Self {
         let core = CollisionMesh::from_triangles(vec![[p, q, q]]);
-        Self { shape: Shape::Swept { core, radius } }
+        Self { shape: Shape::SweepCheck { core, radius } }
     }
 
     /// The box of these edge lengths (metres), centred on the origin.
@@ -129,7 +129,7 @@ impl Solid {
     #[cfg(feature = "parry")]
     pub(crate) fn dimensions(&self) -> Dimensions {
         match &self.shape {
-            Shape::Swept { core, radius } => {
+            Shape::SweepCheck { core, radius } => {
                 let radius = *radius;
                 let half = core.triangles().first().map_or(0.0, |core| core[1].z);
                 if half > 0.0 { Dimensions::Capsule { radius, half } } else { Dimensions::Ball { radius } }
@@ -177,7 +177,7 @@ impl Query {
         pose_ws: &Isometry3<f64>,
     ) -> bool {
         match &solid.shape {
-            Shape::Swept { core, radius } => self.within(mesh, pose_wm, core, pose_ws, *radius),
+            Shape::SweepCheck { core, radius } => self.within(mesh, pose_wm, core, pose_ws, *radius),
             Shape::Cuboid { surface, half } => {
                 self.intersects(mesh, pose_wm, surface, pose_ws)
                     || self.corner_inside(mesh, pose_wm, surface, half, pose_ws).is_some()
@@ -201,7 +201,7 @@ impl Query {
     ) -> Separation {
         let touching = |point| Separation { distance: 0.0, point_a: point, point_b: point };
         match &solid.shape {
-            Shape::Swept { core, radius } => {
+            Shape::SweepCheck { core, radius } => {
                 let hit = self.within(mesh, pose_wm, core, pose_ws, *radius);
                 let to_core = self.distance(mesh, pose_wm, core, pose_ws);
                 if hit {
@@ -249,7 +249,7 @@ impl Query {
         enough: f64,
     ) -> f64 {
         match &solid.shape {
-            Shape::Swept { core, radius } => {
+            Shape::SweepCheck { core, radius } => {
                 // Touching first: then only a rounding error is left between the two.
                 if self.within(mesh, pose_wm, core, pose_ws, *radius) {
                     return 0.0;
@@ -289,7 +289,7 @@ impl Query {
         tolerance: f64,
     ) -> bool {
         match &solid.shape {
-            Shape::Swept { core, radius } => {
+            Shape::SweepCheck { core, radius } => {
                 let tolerance = if tolerance.is_nan() { f64::INFINITY } else { tolerance.max(0.0) };
                 self.within(mesh, pose_wm, core, pose_ws, tolerance + radius)
             }

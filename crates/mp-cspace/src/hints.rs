@@ -42,7 +42,7 @@ impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for &mut H {
 ///
 /// The last two are *straightness* and *volume* of Benitez and Vallejo 2004.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outline {
+pub struct BodyFeatures {
     /// Centre of the surrounding sphere.
     pub center: Vector3<f64>,
     /// Radius of the surrounding sphere: no point of the body is farther from the centre.
@@ -50,7 +50,7 @@ pub struct Outline {
     /// Unit vector along the longest side.
     pub axis: Vector3<f64>,
     /// Volume of the body over that of its surrounding sphere, in \[0, 1\].
-    pub fullness: f64,
+    pub volume_ratio: f64,
 }
 
 /// Which points of a body to take.
@@ -70,10 +70,10 @@ pub enum PointOf {
 /// hints, states that are made need be neither free nor within the space.
 pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     /// The obstacles, in the world.
-    fn obstacles(&self) -> &[Outline];
+    fn obstacles(&self) -> &[BodyFeatures];
 
     /// The robot, in its own frame.
-    fn robot(&self) -> Outline;
+    fn robot(&self) -> BodyFeatures;
 
     /// The index of an obstacle that the robot at `q` touches.
     fn touched(&mut self, q: &S) -> Option<usize>;
@@ -106,10 +106,10 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
 }
 
 impl<S, H: ObstacleGeometry<S> + ?Sized> ObstacleGeometry<S> for &mut H {
-    fn obstacles(&self) -> &[Outline] {
+    fn obstacles(&self) -> &[BodyFeatures] {
         (**self).obstacles()
     }
-    fn robot(&self) -> Outline {
+    fn robot(&self) -> BodyFeatures {
         (**self).robot()
     }
     fn touched(&mut self, q: &S) -> Option<usize> {

@@ -48,9 +48,10 @@ mod validity;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use gradient::ClearanceGradient;
-pub use hints::{ObstacleGeometry, ObstacleHints, Outline, PointOf};
+pub use hints::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf};
 pub use local::{
-    Direction, Extension, LocalPlanner, Motion, Poses, Reach, Reversible, RotateAtS, Straight, Via, turn_at,
+    Direction, Extension, LocalPlanner, Motion, PoseSpace, Reach, Reversible, RotateAtS, Straight, Via,
+    turn_at,
 };
 pub use metric::{
     Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, SweptVolume,
@@ -60,7 +61,7 @@ pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
 pub use nn::{
     DefaultNn, Embed, EmbedFactors, Hit, KdTree, Layout, Linear, MetricTree, NearestNeighbors, NnOn, NodeId,
 };
-pub use numbers::Numbers;
+pub use numbers::StateVector;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
@@ -76,4 +77,7 @@ pub use space::{
 };
 pub use space_time::{AtAnyTime, Forward, SpaceTime};
 pub use stop::{Cancel, Deadline, Iterations, Motions, Nodes, Or, Progress, Stop, StopReason};
-pub use validity::{Clearance, KnownFree, MotionBound, MotionCheck, MotionValidity, Room, Stretch, Validity};
+pub use validity::{
+    Clearance, IntervalClearance, KnownFree, MotionBound, MotionCheck, MotionInterval, MotionValidity,
+    Validity,
+};

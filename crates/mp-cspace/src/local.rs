@@ -2,7 +2,7 @@
 
 mod rotate;
 
-pub use rotate::{Poses, RotateAtS, Via, turn_at};
+pub use rotate::{PoseSpace, RotateAtS, Via, turn_at};
 
 use crate::{KnownFree, MotionValidity, Space};
 use std::fmt::Debug;

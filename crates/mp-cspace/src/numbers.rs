@@ -4,21 +4,21 @@ use crate::Se2State;
 use nalgebra::{DVector, Isometry3, Quaternion, SVector, Translation3, UnitQuaternion};
 
 /// A value that is written as a list of numbers, and read back the same to the bit.
-pub trait Numbers: Sized {
+pub trait StateVector: Sized {
     /// Appends its numbers.
     fn write(&self, out: &mut Vec<f64>);
     /// The value of these numbers; `None` when there are too many or too few, or they are of none.
     fn read(numbers: &[f64]) -> Option<Self>;
 }
 
-impl Numbers for () {
+impl StateVector for () {
     fn write(&self, _: &mut Vec<f64>) {}
     fn read(numbers: &[f64]) -> Option<Self> {
         numbers.is_empty().then_some(())
     }
 }
 
-impl Numbers for f64 {
+impl StateVector for f64 {
     fn write(&self, out: &mut Vec<f64>) {
         out.push(*self);
     }
@@ -28,7 +28,7 @@ impl Numbers for f64 {
     }
 }
 
-impl<const N: usize> Numbers for SVector<f64, N> {
+impl<const N: usize> StateVector for SVector<f64, N> {
     fn write(&self, out: &mut Vec<f64>) {
         out.extend(self.iter());
     }
@@ -37,7 +37,7 @@ impl<const N: usize> Numbers for SVector<f64, N> {
     }
 }
 
-impl Numbers for DVector<f64> {
+impl StateVector for DVector<f64> {
     fn write(&self, out: &mut Vec<f64>) {
         out.extend(self.iter());
     }
@@ -47,7 +47,7 @@ impl Numbers for DVector<f64> {
 }
 
 /// x, y, z and w.
-impl Numbers for UnitQuaternion<f64> {
+impl StateVector for UnitQuaternion<f64> {
     fn write(&self, out: &mut Vec<f64>) {
         out.extend(self.coords.iter());
     }
@@ -59,20 +59,20 @@ impl Numbers for UnitQuaternion<f64> {
 }
 
 /// Position, then rotation as a quaternion.
-impl Numbers for Isometry3<f64> {
+impl StateVector for Isometry3<f64> {
     fn write(&self, out: &mut Vec<f64>) {
         self.translation.vector.write(out);
         self.rotation.write(out);
     }
     fn read(numbers: &[f64]) -> Option<Self> {
         let (position, rotation) = numbers.split_at_checked(3)?;
-        let position = Translation3 { vector: Numbers::read(position)? };
-        Some(Self::from_parts(position, Numbers::read(rotation)?))
+        let position = Translation3 { vector: StateVector::read(position)? };
+        Some(Self::from_parts(position, StateVector::read(rotation)?))
     }
 }
 
 /// Position, then angle.
-impl Numbers for Se2State {
+impl StateVector for Se2State {
     fn write(&self, out: &mut Vec<f64>) {
         self.translation.write(out);
         out.push(self.angle);
@@ -88,7 +88,7 @@ mod tests {
     use super::*;
     use crate::{Rn, Rng, Se2, Se3, So3, Space};
 
-    fn same<S: Numbers + PartialEq + std::fmt::Debug>(state: S) {
+    fn same<S: StateVector + PartialEq + std::fmt::Debug>(state: S) {
         let mut numbers = Vec::new();
         state.write(&mut numbers);
         assert_eq!(S::read(&numbers).as_ref(), Some(&state));

@@ -150,7 +150,7 @@ impl<S> Path<S> {
 fn free_clearance(check: MotionCheck) -> Option<f64> {
     match check {
         MotionCheck::Free { clearance } => Some(clearance),
-        MotionCheck::Collides { .. } | MotionCheck::Undecided { .. } => None,
+        MotionCheck::Collision { .. } | MotionCheck::Unproven { .. } => None,
     }
 }
 

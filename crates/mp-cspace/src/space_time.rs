@@ -175,7 +175,7 @@ impl<C: Space, M: MotionValidity<(C::State, f64)>> MotionValidity<(C::State, f64
         if self.space.leads(from, to) {
             self.check.check_extension(from, to, known)
         } else {
-            MotionCheck::Undecided { at: 0.0 }
+            MotionCheck::Unproven { at: 0.0 }
         }
     }
 }

@@ -42,83 +42,83 @@ pub trait Clearance<S> {
         self.clearance(q, f64::MIN_POSITIVE) <= 0.0
     }
 
-    /// What is known about the clearance over a stretch of a motion: the one question
+    /// What is known about the clearance over an interval of a motion: the one question
     /// [`Certified`](crate::Certified) asks.
     ///
     /// The default asks for the clearance in the middle and trusts no point to travel less than
-    /// the stretch's bound. May be overridden where more is known, such as how far each part of
+    /// the interval's bound. May be overridden where more is known, such as how far each part of
     /// the robot travels and whether toward the obstacle or along it.
-    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
-        let enough = stretch.travel.max(stretch.margin) + stretch.margin;
-        Room::of(self.clearance(stretch.middle, enough), stretch.margin)
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
+        let enough = interval.travel.max(interval.margin) + interval.margin;
+        IntervalClearance::of(self.clearance(interval.middle, enough), interval.margin)
     }
 
     /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
-    /// [`room`](Clearance::room) that contact is looked for all along a motion, every two strides
+    /// [`room`](Clearance::interval_clearance) that contact is looked for all along a motion, every two strides
     /// of [`Certified`](crate::Certified), before anything else.
     fn contact_first(&self) -> bool {
         false
     }
 }
 
-/// A stretch of a motion, about a state in its middle.
+/// An interval of a motion, about a state in its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch<'a, S> {
+pub struct MotionInterval<'a, S> {
     /// Where the whole motion starts.
     pub from: &'a S,
     /// Where the whole motion ends.
     pub to: &'a S,
-    /// The state in the middle of the stretch.
+    /// The state in the middle of the interval.
     pub middle: &'a S,
-    /// Half the stretch, as a fraction of the motion.
+    /// Half the interval, as a fraction of the motion.
     pub half: f64,
-    /// A bound (m) on how far any point of the robot travels over half the stretch.
+    /// A bound (m) on how far any point of the robot travels over half the interval.
     pub travel: f64,
     /// The clearance (m) to be kept.
     pub margin: f64,
 }
 
-/// The clearance over a [`Stretch`].
+/// The clearance over a [`MotionInterval`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Room {
+pub enum IntervalClearance {
     /// At least `margin` as far from the middle as no point travels more than `clearance - margin`
-    /// to either side; beyond the ends of the stretch too when that is farther. Returned whenever
+    /// to either side; beyond the ends of the interval too when that is farther. Returned whenever
     /// the clearance in the middle is at least `travel + margin`.
-    Clear {
+    Free {
         /// As good as this clearance (m) in the middle.
         clearance: f64,
     },
     /// At least `margin` from everything over `part` of the motion, a fraction of it above zero, to either side
     /// of the middle. Where the clearance in the middle is `c` of at least twice the margin, this is at
     /// least `(c - margin)` over the travel of the whole motion.
-    Over {
+    FreeOver {
         /// The fraction; may be more than what is left of the motion.
         part: f64,
     },
-    /// Nothing shown: a shorter stretch may be.
-    Near,
+    /// Nothing shown: a shorter interval may be.
+    Unproven,
     /// Less than twice the margin at `at`: not worth a closer look.
-    Tight {
-        /// As a share of the way from the middle of the stretch to its end, from −1 to 1.
+    TooClose {
+        /// As a share of the way from the middle of the interval to its end, from −1 to 1.
         at: f64,
     },
     /// In contact at `at`.
-    Contact {
-        /// As a share of the way from the middle of the stretch to its end, from −1 to 1.
+    Collision {
+        /// As a share of the way from the middle of the interval to its end, from −1 to 1.
         at: f64,
     },
 }
 
-impl Room {
+impl IntervalClearance {
     /// What a clearance (m) in the middle says when `margin` (m) is to be kept.
     #[must_use]
     pub fn of(clearance: f64, margin: f64) -> Self {
         if clearance <= 0.0 {
-            Self::Contact { at: 0.0 }
+            Self::Collision { at: 0.0 }
         } else if clearance >= 2.0 * margin {
-            Self::Clear { clearance }
+            Self::Free { clearance }
         } else {
-            Self::Tight { at: 0.0 }
+            Self::TooClose { at: 0.0 }
         }
     }
 }
@@ -133,8 +133,8 @@ impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {
     fn contact_first(&self) -> bool {
         (**self).contact_first()
     }
-    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
-        (**self).room(stretch)
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
+        (**self).interval_clearance(interval)
     }
 }
 
@@ -164,13 +164,13 @@ pub enum MotionCheck {
         clearance: f64,
     },
     /// The state at fraction `at` is in collision.
-    Collides {
+    Collision {
         /// Fraction of the motion.
         at: f64,
     },
     /// Within the tolerance of contact at fraction `at` (grazing): neither proved. Planners treat
     /// it as a collision.
-    Undecided {
+    Unproven {
         /// Fraction of the motion.
         at: f64,
     },
@@ -182,7 +182,7 @@ impl MotionCheck {
     pub fn failed_at(&self) -> Option<f64> {
         match *self {
             Self::Free { .. } => None,
-            Self::Collides { at } | Self::Undecided { at } => Some(at),
+            Self::Collision { at } | Self::Unproven { at } => Some(at),
         }
     }
 

@@ -31,7 +31,7 @@ where
     V: Validity<C::State> + Clone,
 {
     let make = |order, accept| {
-        let check = Along::new(space, valid.clone(), Resolution::Fraction(0.01)).unwrap();
+        let check = DiscreteFlowCheck::new(space, valid.clone(), Resolution::Fraction(0.01)).unwrap();
         let planner = InputPlanner::new(space, flow.clone(), inputs.clone(), duration, check).unwrap();
         planner.ordered(order).accepting(accept)
     };
@@ -64,7 +64,7 @@ where
                     // Runs again to the bit, and nothing else does.
                     let again = flow.integrate(&from, &m.edge.input, m.edge.duration);
                     assert_eq!(again, m.end);
-                    let longer = Leg { duration: m.edge.duration * 1.5, ..m.edge.clone() };
+                    let longer = ControlSegment { duration: m.edge.duration * 1.5, ..m.edge.clone() };
                     assert!(!verifier.check_leg(&from, &longer, &m.end).is_free());
                     assert!(!verifier.check_leg(&from, &m.edge, &from).is_free());
                 }
@@ -104,7 +104,7 @@ fn verifiers_agree_with_checks_up_to_resolution() {
     let flow = DoubleIntegrator::new(space.spaces().0).unwrap();
     let inputs = InputSet::grid([0.5, 0.5], 3).unwrap();
     let valid = OnPosition(free);
-    let check = Along::new(&space, valid.clone(), Resolution::Fraction(0.001)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, valid.clone(), Resolution::Fraction(0.001)).unwrap();
     let mut planner = InputPlanner::new(&space, flow, inputs, 0.4, check).unwrap();
     let mut verifier = ReplayFinely::new(&space, flow, valid.clone(), Resolution::Fraction(1e-4)).unwrap();
     let mut rng = Rng::seed(3);
@@ -130,13 +130,13 @@ fn motions_that_come_round_are_tested_on_the_way() {
     let space = Se2::new([-2.0; 2], [2.0; 2]).unwrap();
     let inputs = InputSet::new([[TAU, TAU]]).unwrap();
     let beyond = |q: &Se2State| q.translation.y < 1.0;
-    let check = Along::new(&space, beyond, Resolution::Length(0.5)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, beyond, Resolution::Length(0.5)).unwrap();
     let mut planner = InputPlanner::new(&space, Unicycle, inputs, 0.999, check).unwrap();
     let mut verifier = ReplayFinely::new(&space, Unicycle, beyond, Resolution::Length(0.5)).unwrap();
     let (from, toward) = (Se2State::new(0.0, 0.0, 0.0), Se2State::new(0.0, 0.1, 0.0));
     assert_eq!(planner.extend(&from, &toward, Direction::Forward, Reach::Step(1.0)), Extension::Trapped);
     assert_eq!(planner.counters().tested, 1);
-    let leg = Leg { input: [TAU, TAU], duration: 0.999 };
+    let leg = ControlSegment { input: [TAU, TAU], duration: 0.999 };
     let end = Unicycle.integrate(&from, &leg.input, leg.duration);
     assert!(space.distance(&from, &end) < 0.02);
     assert!(!verifier.check_leg(&from, &leg, &end).is_free());
@@ -236,7 +236,7 @@ fn backward_edges_run_forward_to_the_bit_or_are_refused() {
     assert_eq!(planner.counters().irreversible, 0);
     // A flow that cannot be turned back has no backward successors.
     let one_way = |q: &Vector2<f64>, u: &Vector2<f64>, t: f64| q + u * t;
-    let check = Along::new(&space, free, Resolution::Fraction(0.01)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, free, Resolution::Fraction(0.01)).unwrap();
     let mut planner = InputPlanner::new(&space, one_way, inputs, 0.7, check).unwrap();
     let extension = planner.extend(&node, &Vector2::new(0.1, 0.1), Direction::Backward, Reach::Step(1.0));
     assert_eq!(extension, Extension::Trapped);
@@ -279,7 +279,7 @@ fn goals_are_connected_to_from_within_a_step() {
     for reach in [Reach::Full, Reach::Step(1.0)] {
         let extension = recorded.extend(&from, &target, Direction::Forward, reach);
         assert!(
-            matches!(extension, Extension::Reached(Motion { edge: Leg { input, .. }, .. }) if input.x == 0.25)
+            matches!(extension, Extension::Reached(Motion { edge: ControlSegment { input, .. }, .. }) if input.x == 0.25)
         );
     }
     assert_eq!(
@@ -308,7 +308,7 @@ fn bad_input_is_a_typed_error() {
 
     let flow = Kinematic::new(&space).unwrap();
     let axes = || InputSet::axes([0.1, 0.1]).unwrap();
-    let check = || Along::new(&space, free, Resolution::Fraction(0.01)).unwrap();
+    let check = || DiscreteFlowCheck::new(&space, free, Resolution::Fraction(0.01)).unwrap();
     for duration in [0.0, -1.0, nan, f64::INFINITY] {
         let error = InputPlanner::new(&space, flow, axes(), duration, check()).map(drop).unwrap_err();
         assert!(matches!(error, InputError::Parameter(_)), "{error}");
@@ -369,7 +369,7 @@ fn states_that_are_not_finite_are_dropped_and_counted() {
         if to.x > 0.999 && to.y > 0.999 { Vector2::new(f64::NAN, to.y) } else { to }
     };
     let inputs = InputSet::axes([0.01, 0.01]).unwrap();
-    let check = Along::new(&space, |_: &Vector2<f64>| true, Resolution::Fraction(0.01)).unwrap();
+    let check = DiscreteFlowCheck::new(&space, |_: &Vector2<f64>| true, Resolution::Fraction(0.01)).unwrap();
     let mut planner = InputPlanner::new(&space, flow, inputs, 1.0, check).unwrap();
     let from = Vector2::new(0.9995, 0.9895);
     let extension = planner.extend(&from, &Vector2::new(1.0, 1.0), Direction::Forward, Reach::Step(1.0));

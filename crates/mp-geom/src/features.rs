@@ -38,7 +38,7 @@ impl Features {
     /// The volume as a part of that of the surrounding sphere, in \[0, 1\]; 1 for a single point. A ball has
     /// 1, a cube 0.37, a rod or a plate nearly 0.
     #[must_use]
-    pub fn fullness(&self) -> f64 {
+    pub fn volume_ratio(&self) -> f64 {
         let sphere = 4.0 / 3.0 * PI * self.radius.powi(3);
         if sphere > 0.0 { (self.volume / sphere).min(1.0) } else { 1.0 }
     }
@@ -137,7 +137,7 @@ mod tests {
             prop_assert!((found.center.coords - pose.translation.vector).norm() < 1e-9);
             prop_assert!((found.radius - radius).abs() < 1e-9 && (found.volume - x * y * z).abs() < 1e-9);
             prop_assert!(along(found.axis, pose.rotation * Vector3::z()));
-            prop_assert!((found.fullness() - x * y * z / (4.0 / 3.0 * PI * radius.powi(3))).abs() < 1e-9);
+            prop_assert!((found.volume_ratio() - x * y * z / (4.0 / 3.0 * PI * radius.powi(3))).abs() < 1e-9);
             let moved = mesh.features().transformed(&pose);
             prop_assert!((moved.center - found.center).norm() < 1e-9 && (moved.axis.into_inner() - found.axis.into_inner()).norm() < 1e-6);
         }
@@ -147,10 +147,12 @@ mod tests {
     fn of_round_and_pointed_things() {
         let ball = sphere(1.0, 5).unwrap().features();
         assert!(
-            ball.fullness() > 0.98 && ball.center.coords.norm() < 1e-12 && (ball.radius - 1.0).abs() < 1e-12
+            ball.volume_ratio() > 0.98
+                && ball.center.coords.norm() < 1e-12
+                && (ball.radius - 1.0).abs() < 1e-12
         );
         let rod = cylinder(0.1, 4.0, 48).unwrap().features();
-        assert!(along(rod.axis, Vector3::z()) && rod.fullness() < 0.01);
+        assert!(along(rod.axis, Vector3::z()) && rod.volume_ratio() < 0.01);
         assert!((rod.volume - PI * 0.01 * 4.0).abs() < 1e-3);
         // The centre of gravity of a cone is a quarter of the way up.
         let cone = cone(0.5, 4.0, 48).unwrap();
@@ -169,7 +171,10 @@ mod tests {
         // One of six faces is missing: the centre leans away from it.
         assert!(found.center.coords.norm() > 0.05);
         let point = TriMesh::from_soup(&[[Point3::new(1.0, 2.0, 3.0); 3]]).unwrap().features();
-        assert_eq!((point.center, point.radius, point.fullness()), (Point3::new(1.0, 2.0, 3.0), 0.0, 1.0));
+        assert_eq!(
+            (point.center, point.radius, point.volume_ratio()),
+            (Point3::new(1.0, 2.0, 3.0), 0.0, 1.0)
+        );
     }
 
     #[test]

@@ -128,7 +128,7 @@ fn told<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: PathFault) -> Stri
     let at: Vec<_> = kind.row(&state).into_iter().map(brief).collect();
     let touching = kind.touching(&state);
     let what = match (check, touching.is_empty()) {
-        (MotionCheck::Undecided { .. }, _) | (_, true) => {
+        (MotionCheck::Unproven { .. }, _) | (_, true) => {
             format!("comes nearer to contact than {} m", brief(kind.tolerance()))
         }
         _ => format!("hits {}", list(&touching)),

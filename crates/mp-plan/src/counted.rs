@@ -2,8 +2,8 @@
 
 use crate::Queries;
 use mp_cspace::{
-    Clearance, ClearanceGradient, MotionBound, ObstacleGeometry, ObstacleHints, Outline, PointOf, Progress,
-    Rng, Room, Stop, StopReason, Stretch, Validity,
+    BodyFeatures, Clearance, ClearanceGradient, IntervalClearance, MotionBound, MotionInterval,
+    ObstacleGeometry, ObstacleHints, PointOf, Progress, Rng, Stop, StopReason, Validity,
 };
 use nalgebra::Vector3;
 use std::fmt;
@@ -92,8 +92,8 @@ impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn in_contact(&mut self, q: &S) -> bool {
         self.asked(|checker| checker.in_contact(q))
     }
-    fn room(&mut self, stretch: &Stretch<'_, S>) -> Room {
-        self.asked(|checker| checker.room(stretch))
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
+        self.asked(|checker| checker.interval_clearance(interval))
     }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()
@@ -128,10 +128,10 @@ impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, 
 }
 
 impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R> {
-    fn obstacles(&self) -> &[Outline] {
+    fn obstacles(&self) -> &[BodyFeatures] {
         self.checker.obstacles()
     }
-    fn robot(&self) -> Outline {
+    fn robot(&self) -> BodyFeatures {
         self.checker.robot()
     }
     fn touched(&mut self, q: &S) -> Option<usize> {

@@ -30,7 +30,7 @@ impl<S> MotionValidity<S> for Until<'_, S> {
     }
     fn check_extension(&mut self, from: &S, to: &S, known: KnownFree) -> MotionCheck {
         if self.1.0.load(Ordering::Relaxed) {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         self.0.check_extension(from, to, known)
     }

@@ -86,11 +86,11 @@ pub use path::{PathFileKind, PathRows};
 pub use picture::{PICTURE_SIZE, PictureKind};
 pub use planners::{planners, wrappers};
 pub use report::{Medians, REPORT_VERSION, Report, Runs, StoppedBy, median, medians};
-pub use request::{Budget, Finish, Length, Metric, MotionCheck, Request};
+pub use request::{Budget, Finish, Length, Metric, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
-    PlanarScene, Queries, RigidMotion, RigidScene, RobotKind, Touch,
+    PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, Touch,
 };
 pub use scene::{Scene, Sweep};
 #[cfg(feature = "roadmaps")]

@@ -12,26 +12,26 @@ pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
 
 /// What may stand before the name of a planner.
 #[must_use]
-pub fn wrappers() -> &'static [mp_tree::Wrapper] {
+pub fn wrappers() -> &'static [mp_tree::MetaPlanner] {
     mp_tree::wrappers()
 }
 
 /// A planner by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Named {
+pub(crate) enum PlannerSpec {
     /// Grows trees.
-    Tree(mp_tree::Named),
+    Tree(mp_tree::PlannerSpec),
     /// Builds a roadmap.
     Roadmap(&'static PlannerInfo),
 }
 
-impl Named {
+impl PlannerSpec {
     /// The planner called `name`.
     pub(crate) fn new(name: &str) -> Result<Self, Error> {
         if let Some(info) = roadmaps::planner(name) {
             return Ok(Self::Roadmap(info));
         }
-        mp_tree::Named::new(name).map(Self::Tree).map_err(|error| {
+        mp_tree::PlannerSpec::new(name).map(Self::Tree).map_err(|error| {
             // The trees know only trees.
             let names = planners().flat_map(|p| [p.name].into_iter().chain(p.aliases.iter().copied()));
             let known = planners().map(|p| p.name).collect::<Vec<_>>().join(", ");
@@ -62,7 +62,7 @@ impl Named {
     }
 }
 
-impl fmt::Display for Named {
+impl fmt::Display for PlannerSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Tree(named) => named.fmt(f),

@@ -1,7 +1,7 @@
 //! A request made ready for a robot: the space, an index, a verifier, and problems made of them.
 
 use crate::counted::{Counted, QueryBudget};
-use crate::{Error, Length, Measured, MotionCheck, Request, RobotKind};
+use crate::{Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
     AnyProblem, BuildError, Cancel, Certified, Deadline, Discrete, Goals, Iterations, Nodes, ParameterError,
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// What problems of one request are made of.
 pub(crate) struct Prepared<'k, K: RobotKind> {
     kind: &'k K,
-    motion: MotionCheck,
+    motion: MotionValidator,
     /// The space under the metric of the request.
     pub(crate) space: AnySpace<'k, K::State>,
     /// An empty index of it.
@@ -35,10 +35,10 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         let kind = self.kind;
         let counted = || Counted::new(kind.checker().clone(), &self.queries);
         let check: AnyCheck<'_, K::State> = match self.motion {
-            MotionCheck::Certified => {
+            MotionValidator::Certified => {
                 Box::new(unmade(Certified::new(kind.space(), counted(), kind.tolerance()))?)
             }
-            MotionCheck::Discrete(length) => {
+            MotionValidator::Discrete(length) => {
                 Box::new(unmade(Discrete::new(&self.space, counted(), resolution(length)))?)
             }
         };

@@ -32,7 +32,7 @@ pub struct Request {
     /// How far apart two configurations are.
     pub metric: Metric,
     /// How motions are checked while planning. What is returned is verified by other means in any case.
-    pub motion: MotionCheck,
+    pub motion: MotionValidator,
     /// When to give up.
     pub budget: Budget,
     /// All randomness flows from this number.
@@ -182,7 +182,7 @@ fn positive(s: &str) -> Result<f64, Error> {
 /// How motions are checked while planning. As text `certified`, `discrete:1%` and `discrete:0.05`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub enum MotionCheck {
+pub enum MotionValidator {
     /// Clearance against bounds of the motion: no wall is missed, however thin.
     #[default]
     Certified,
@@ -190,7 +190,7 @@ pub enum MotionCheck {
     Discrete(Length),
 }
 
-impl fmt::Display for MotionCheck {
+impl fmt::Display for MotionValidator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Certified => f.write_str("certified"),
@@ -199,7 +199,7 @@ impl fmt::Display for MotionCheck {
     }
 }
 
-impl FromStr for MotionCheck {
+impl FromStr for MotionValidator {
     type Err = Error;
     fn from_str(s: &str) -> Result<Self, Error> {
         match (s, s.strip_prefix("discrete:")) {
@@ -226,7 +226,7 @@ macro_rules! as_text {
         })*
     };
 }
-as_text!(Length, MotionCheck);
+as_text!(Length, MotionValidator);
 
 /// A minute.
 impl Default for Budget {
@@ -242,7 +242,7 @@ impl Default for Request {
             planner: "rrt-connect".to_owned(),
             settings: BTreeMap::new(),
             metric: Metric::Default,
-            motion: MotionCheck::Certified,
+            motion: MotionValidator::Certified,
             budget: Budget::default(),
             seed: 1,
             threads: 1,
@@ -281,7 +281,7 @@ impl Request {
 
     /// The same with another motion check.
     #[must_use]
-    pub fn motion(self, motion: MotionCheck) -> Self {
+    pub fn motion(self, motion: MotionValidator) -> Self {
         Self { motion, ..self }
     }
 
@@ -324,7 +324,7 @@ impl Request {
     /// # Errors
     /// The first thing wrong.
     pub fn check(&self) -> Result<(), Error> {
-        let planner = crate::planners::Named::new(&self.planner)?;
+        let planner = crate::planners::PlannerSpec::new(&self.planner)?;
         planner.check(&self.settings())?;
         if let Some(time) = self.budget.time_s
             && (time.is_nan() || time <= 0.0)
@@ -357,12 +357,12 @@ mod tests {
     fn lengths_and_motions() {
         assert_eq!("20%".parse::<Length>().unwrap(), Length::Fraction(0.2));
         assert_eq!("0.5".parse::<Length>().unwrap(), Length::Absolute(0.5));
-        let one = MotionCheck::Discrete(Length::Fraction(0.01));
-        assert_eq!("discrete:1%".parse::<MotionCheck>().unwrap(), one);
+        let one = MotionValidator::Discrete(Length::Fraction(0.01));
+        assert_eq!("discrete:1%".parse::<MotionValidator>().unwrap(), one);
         assert_eq!(one.to_string(), "discrete:1%");
         for bad in ["", "0", "-1", "nan", "inf", "101%", "0%", "%", "x"] {
             assert!(bad.parse::<Length>().is_err(), "{bad}");
-            assert!(format!("discrete:{bad}").parse::<MotionCheck>().is_err(), "{bad}");
+            assert!(format!("discrete:{bad}").parse::<MotionValidator>().is_err(), "{bad}");
         }
     }
 

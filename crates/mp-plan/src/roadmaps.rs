@@ -39,7 +39,7 @@ pub(crate) fn planner(name: &str) -> Option<&'static PlannerInfo> {
 }
 
 #[cfg(feature = "roadmaps")]
-impl<'p, S: RoadmapState + mp_cspace::Numbers + 'static> Made<'p, S> {
+impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> Made<'p, S> {
     /// The planner of `request`, going on with the roadmap that is kept.
     pub(crate) fn new(
         info: &PlannerInfo,
@@ -50,7 +50,7 @@ impl<'p, S: RoadmapState + mp_cspace::Numbers + 'static> Made<'p, S> {
         workers: Workers,
         fingerprint: Option<u64>,
     ) -> Result<Self, Error> {
-        let team = mp_roadmap::Team::new(workers, request.threads, make)?;
+        let team = mp_roadmap::ParallelProblem::new(workers, request.threads, make)?;
         let mut planner = S::roadmap_planner(info.name, team, index, settings)?;
         if let (Some(file), Some(fingerprint)) = (&request.roadmap, fingerprint)
             && file.exists()

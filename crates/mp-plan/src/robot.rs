@@ -7,15 +7,15 @@ mod tuples;
 
 pub use arm::ArmScene;
 pub use planar::{PlanarBody, PlanarScene};
-pub use rigid::{RigidMotion, RigidScene};
+pub use rigid::{RigidScene, RigidSpace};
 
 use crate::numbers::plain;
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    Clearance, DefaultNn, Embed, Factored, Metric as _, MotionBound, MotionValidity, Numbers,
-    ObstacleKnowledge, Validity,
+    Clearance, DefaultNn, Embed, Factored, Metric as _, MotionBound, MotionValidity, ObstacleKnowledge,
+    StateVector, Validity,
 };
 use mp_geom::{Aabb, TriMesh};
 use mp_tree::TreeState;
@@ -165,7 +165,7 @@ impl<'c, S> Measured<'c, S> {
 /// [`compile_for!`](mp_tree::compile_for) of mp-tree and mp-roadmap. docs/own-robot.md is a guide.
 pub trait RobotKind: fmt::Debug + Send + Sync {
     /// A configuration.
-    type State: TreeState + RoadmapState + Numbers + 'static;
+    type State: TreeState + RoadmapState + StateVector + 'static;
     /// The space of configurations, under its own metric.
     type Space: Factored<State = Self::State> + Clone + Send + fmt::Debug;
     /// What checks configurations and motions while planning.

@@ -2,7 +2,7 @@
 
 use crate::check::refused;
 use crate::plan::reported;
-use crate::planners::Named;
+use crate::planners::PlannerSpec;
 use crate::prepared::Prepared;
 use crate::roadmaps::{Made, Roadmap, fingerprint};
 use crate::scene::state;
@@ -10,7 +10,7 @@ use crate::search::{Search, relax_if_asked};
 use crate::watch::{Events, Telling};
 use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::{Outcome, PlannerInfo, Rng, Stop, StopReason, Workers};
-use mp_roadmap::{AnyRoadmap, AnySteer, RoadmapState};
+use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, RoadmapState};
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -134,9 +134,9 @@ pub(crate) fn build<K: RobotKind + 'static>(
 
 /// The planner of the request.
 fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
-    match Named::new(&request.planner)? {
-        Named::Roadmap(info) => Ok(info),
-        named @ Named::Tree(_) => {
+    match PlannerSpec::new(&request.planner)? {
+        PlannerSpec::Roadmap(info) => Ok(info),
+        named @ PlannerSpec::Tree(_) => {
             let names: Vec<_> = crate::roadmaps::planners().iter().map(|p| p.name).collect();
             Err(Error::new(format!("{named} builds no roadmap"))
                 .help(format!("take one of: {}", names.join(", "))))
@@ -197,7 +197,7 @@ impl<K: RobotKind> Answering for Of<K> {
         let prepared = Prepared::new(kind, request)?;
         control.stage(Stage::Planning);
         let began = Instant::now();
-        let mut steer = AnySteer::of(prepared.problem()?);
+        let mut steer = AnyEdgeChecker::of(prepared.problem()?);
         let answer = K::State::answer(&mut self.roadmap, &mut steer, &start, &goal);
         let time = began.elapsed();
         let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), steer.motions());
@@ -224,7 +224,7 @@ impl<K: RobotKind> Answering for Of<K> {
     fn verify(&mut self) -> Result<usize, Error> {
         let _span = tracing::info_span!("verify", scene = self.kind.name()).entered();
         let prepared = Prepared::new(&*self.kind, &self.request)?;
-        let mut steer = AnySteer::of(prepared.problem()?);
+        let mut steer = AnyEdgeChecker::of(prepared.problem()?);
         Ok(K::State::verify_roadmap(&mut self.roadmap, &mut steer))
     }
 

@@ -1,7 +1,7 @@
 //! One run of a planner by name, for robots of all kinds.
 
 use crate::counted::Counted;
-use crate::planners::Named;
+use crate::planners::PlannerSpec;
 use crate::prepared::Prepared;
 use crate::roadmaps::{self, Roadmap};
 use crate::watch::{Events, Telling};
@@ -47,7 +47,7 @@ enum Made<'p, S> {
     Roadmap(roadmaps::Made<'p, S>),
 }
 
-impl<'p, S: roadmaps::RoadmapState + mp_cspace::Numbers + 'static> Made<'p, S> {
+impl<'p, S: roadmaps::RoadmapState + mp_cspace::StateVector + 'static> Made<'p, S> {
     fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
         match self {
             Self::Tree(planner) => &mut **planner,
@@ -69,7 +69,7 @@ pub fn search<K: RobotKind>(
         tracing::info_span!("plan", scene = kind.name(), planner = %request.planner, seed = request.seed)
             .entered();
     request.check()?;
-    let planner = Named::new(&request.planner)?;
+    let planner = PlannerSpec::new(&request.planner)?;
     let (settings, workers) = (request.settings(), Workers::new(request.threads)?);
     let fingerprint = roadmaps::fingerprint(kind, request)?;
     let prepared = Prepared::new(kind, request)?;
@@ -78,11 +78,11 @@ pub fn search<K: RobotKind>(
     let problem = || prepared.problem();
     let index = prepared.index.clone();
     let mut made = match &planner {
-        Named::Tree(named) => {
+        PlannerSpec::Tree(named) => {
             let name = named.to_string();
             Made::Tree(TreeState::tree_planner(&name, Arc::new(&problem), index, &settings, &workers)?)
         }
-        Named::Roadmap(info) => {
+        PlannerSpec::Roadmap(info) => {
             let made = roadmaps::Made::new(info, &problem, index, request, &settings, workers, fingerprint)?;
             Made::Roadmap(made)
         }

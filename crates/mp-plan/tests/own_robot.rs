@@ -75,7 +75,7 @@ impl MotionValidity<Configuration> for Steps<'_> {
                 let clearance = (post.x - reach * cosine).hypot(post.y - reach * sine) - LOAD;
                 least = least.min(clearance);
                 if clearance <= 0.0 {
-                    return MotionCheck::Collides { at };
+                    return MotionCheck::Collision { at };
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! What planners by name are made from.
 
 use crate::engine::taken_apart;
-use crate::{Connector, HasRoadmap, NodeGenerator, Query, Recipe, RoadmapPlanner, Steer};
+use crate::{Connector, EdgeChecker, HasRoadmap, NodeGenerator, Query, Recipe, RoadmapPlanner};
 use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
 use mp_cspace::{BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible, Settings, Space, Workers};
 
@@ -10,19 +10,19 @@ pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;
 
 /// A problem, and as many local planners and verifiers for it beside as threads are to build the roadmap.
 #[derive(Debug)]
-pub struct Team<'c, C: Space, L: LocalPlanner<C::State>> {
+pub struct ParallelProblem<'c, C: Space, L: LocalPlanner<C::State>> {
     problem: Problem<'c, C, L>,
     workers: Workers,
-    hands: Vec<Steer<'c, C, L>>,
+    hands: Vec<EdgeChecker<'c, C, L>>,
 }
 
 /// How a robot moves in an erased problem.
-pub type AnySteer<'c, S> = Steer<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
+pub type AnyEdgeChecker<'c, S> = EdgeChecker<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
 /// A team for an erased problem.
-pub type AnyTeam<'c, S> = Team<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
+pub type AnyParallelProblem<'c, S> = ParallelProblem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
-impl<'c, C, L> Team<'c, C, L>
+impl<'c, C, L> ParallelProblem<'c, C, L>
 where
     C: Space + 'c,
     L: LocalPlanner<C::State, Edge: Reversible>,
@@ -66,7 +66,7 @@ where
 }
 
 /// On the thread of the caller.
-impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for Team<'c, C, L> {
+impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for ParallelProblem<'c, C, L> {
     fn from(problem: Problem<'c, C, L>) -> Self {
         Self { problem, workers: Workers::alone(), hands: Vec::new() }
     }
@@ -96,7 +96,7 @@ where
 
 /// What a planner by name is made from.
 pub(crate) struct Given<'c, 's, T: Types<'c>> {
-    team: Team<'c, T::Space, T::Local>,
+    team: ParallelProblem<'c, T::Space, T::Local>,
     /// An empty index.
     index: T::Index,
     /// All parameters that are set; the planner has parameters of these names.
@@ -116,7 +116,7 @@ pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
 impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
     /// To make a planner of.
     pub(crate) fn new(
-        mut team: Team<'c, T::Space, T::Local>,
+        mut team: ParallelProblem<'c, T::Space, T::Local>,
         index: T::Index,
         settings: &'s Settings,
     ) -> Self {

@@ -33,7 +33,7 @@
 //! | slot | trait | here |
 //! |---|---|---|
 //! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
-//! | what becomes a node, with which edges | [`Connector`] | [`Nearest`], [`Star`], [`Visibility`], [`Stages`] |
+//! | what becomes a node, with which edges | [`Connector`] | [`NearestConnector`], [`Star`], [`Visibility`], [`StagedConnector`] |
 //! | how a way is looked for | [`Query`] | [`AStar`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
 //!
@@ -43,7 +43,7 @@
 //! # What is promised
 //! - A path is returned only after the verifier has passed each of its edges, in the direction in which it
 //!   is run. An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
-//! - On several threads ([`Builder::on`], [`Team`]) the roadmap is the same to the bit as on one.
+//! - On several threads ([`Builder::on`], [`ParallelProblem`]) the roadmap is the same to the bit as on one.
 //! - Bad input is a [`BuildError`] before planning begins.
 //! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
 //!   and going on changes nothing.
@@ -54,13 +54,13 @@ mod engine;
 mod registry;
 
 pub use algo::types::*;
-pub use by_name::{AnyPlanner, AnySteer, AnyTeam, Team};
+pub use by_name::{AnyEdgeChecker, AnyParallelProblem, AnyPlanner, ParallelProblem};
 pub use engine::{
-    AStar, Among, Answers, Builder, CYCLES, Came, Candidate, Connector, EdgeId, Entry, Foreseeing, Free,
-    Growing, HasRoadmap, IndexedRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, Nearest,
-    NodeGenerator, PATIENCE, Pace, PairRule, Pairs, Query, RADIUS, Reachable, Recipe, Roadmap, RoadmapError,
-    RoadmapFileError, RoadmapPlanner, Stages, Steer, Tag, Turns, UNDIRECTED, Unanswered, Way, fingerprint,
-    length, reachable, yes,
+    AStar, Builder, CYCLES, Candidate, Connector, EdgeChecker, EdgeId, Entry, Free, GraphPath, Growing,
+    HasRoadmap, IndexedRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, NearestConnector,
+    NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, ParentMotion, Prefetching, Query, RADIUS,
+    Reachable, Recipe, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapQueries,
+    StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Path, Settings};

@@ -2,7 +2,7 @@
 
 use crate::rigid::Shared;
 use crate::{Placement, RigidBody};
-use mp_cspace::{ObstacleGeometry, Outline, PointOf, Rng};
+use mp_cspace::{BodyFeatures, ObstacleGeometry, PointOf, Rng};
 use mp_geom::{Features, NO_COMPONENT, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
@@ -10,8 +10,8 @@ use rand::RngExt;
 /// The outlines of a robot and of the parts of its obstacles.
 #[derive(Debug)]
 pub(crate) struct Outlines {
-    robot: (Outline, Surface),
-    parts: Vec<Outline>,
+    robot: (BodyFeatures, Surface),
+    parts: Vec<BodyFeatures>,
     /// Of each part, in the world.
     surfaces: Vec<Surface>,
     /// Of each obstacle: its first part, and the part of each triangle, counted from there.
@@ -25,12 +25,12 @@ struct Surface {
     areas: Vec<f64>,
 }
 
-fn outline(features: &Features) -> Outline {
-    Outline {
+fn outline(features: &Features) -> BodyFeatures {
+    BodyFeatures {
         center: features.center.coords,
         radius: features.radius,
         axis: features.axis.into_inner(),
-        fullness: features.fullness(),
+        volume_ratio: features.volume_ratio(),
     }
 }
 
@@ -105,11 +105,11 @@ fn turn_to(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
 /// By the meshes: obstacles are what hangs together in them, and points are theirs. The outlines are made when first asked
 /// for, O(n log n) in the triangles, and shared by clones.
 impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
-    fn obstacles(&self) -> &[Outline] {
+    fn obstacles(&self) -> &[BodyFeatures] {
         &self.outlines().parts
     }
 
-    fn robot(&self) -> Outline {
+    fn robot(&self) -> BodyFeatures {
         self.outlines().robot.0
     }
 

@@ -4,8 +4,8 @@ use crate::outlines::Outlines;
 use crate::solid::Solid;
 use crate::{Placement, Planar, Point, Shape, Spatial};
 use mp_collide::reference::RefMesh;
-use mp_collide::{BodyId, CollisionMesh, Counters, Query, Scene, SceneError, Stay, Sway};
-use mp_cspace::{Clearance, MotionBound, Room, Stretch, Validity};
+use mp_collide::{BodyId, CollisionMesh, Counters, IntervalCheck, Query, RigidMotion, Scene, SceneError};
+use mp_cspace::{Clearance, IntervalClearance, MotionBound, MotionInterval, Validity};
 use mp_geom::{Aabb, MeshError, TriMesh};
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
@@ -337,27 +337,29 @@ impl<P: Placement> Clearance<P::State> for RigidBody<P> {
         self.collides(&P::pose(q))
     }
 
-    /// By one sweep over the stretch, in which each part of the body moves as far as it does and as it does
-    /// toward the obstacles: a stretch found clear so may be much longer than the clearance in its middle. The sweep
+    /// By one sweep over the interval, in which each part of the body moves as far as it does and as it does
+    /// toward the obstacles: an interval found clear so may be much longer than the clearance in its middle. The sweep
     /// ends where it comes upon contact.
-    fn room(&mut self, stretch: &Stretch<'_, P::State>) -> Room {
-        let Stretch { travel, margin, half, .. } = *stretch;
-        let [from, to, middle] = [stretch.from, stretch.to, stretch.middle].map(P::pose);
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, P::State>) -> IntervalClearance {
+        let MotionInterval { travel, margin, half, .. } = *interval;
+        let [from, to, middle] = [interval.from, interval.to, interval.middle].map(P::pose);
         let long = travel > margin;
-        if let Some(sway) = Sway::of_motion(&from, &to, half, travel) {
+        if let Some(motion) = RigidMotion::of_motion(&from, &to, half, travel) {
             self.counters.clearance_checks += 1;
             let shared = &*self.shared;
-            match shared.scene.keeps_clear(&mut self.query, &shared.robot, &middle, &sway, margin) {
-                Stay::Clear if self.point_inside(&middle) => return Room::Contact { at: 0.0 },
-                Stay::Clear => return Room::Clear { clearance: travel + margin },
-                Stay::Contact { at } => return Room::Contact { at },
-                Stay::Tight { at } => return Room::Tight { at },
-                Stay::Near if long => return Room::Near,
-                Stay::Near => {}
+            match shared.scene.check_interval(&mut self.query, &shared.robot, &middle, &motion, margin) {
+                IntervalCheck::Free if self.point_inside(&middle) => {
+                    return IntervalClearance::Collision { at: 0.0 };
+                }
+                IntervalCheck::Free => return IntervalClearance::Free { clearance: travel + margin },
+                IntervalCheck::Collision { at } => return IntervalClearance::Collision { at },
+                IntervalCheck::TooClose { at } => return IntervalClearance::TooClose { at },
+                IntervalCheck::Unproven if long => return IntervalClearance::Unproven,
+                IntervalCheck::Unproven => {}
             }
         }
-        let clearance = self.clearance(stretch.middle, travel.max(margin) + margin);
-        Room::of(clearance, margin)
+        let clearance = self.clearance(interval.middle, travel.max(margin) + margin);
+        IntervalClearance::of(clearance, margin)
     }
 
     fn contact_first(&self) -> bool {

@@ -3,7 +3,7 @@
 use crate::rigid::Reference;
 use crate::solid::Solid;
 use crate::{Placement, RigidBody};
-use mp_collide::reference::{RefMesh, Sweep, Swept};
+use mp_collide::reference::{RefMesh, Sweep, SweepCheck};
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 ///
 /// - free means: clearance of at least the tolerance all along, however thin the obstacles;
 /// - a motion with clearance of at least twice the tolerance all along is found free;
-/// - a motion with a tested state of less is [`Undecided`](MotionCheck::Undecided), as are motions longer
+/// - a motion with a tested state of less is [`Undecided`](MotionCheck::Unproven), as are motions longer
 ///   than 10⁹ tolerances or that take a sweep too long.
 ///
 /// Interpolation in the space must move the origin on a straight line and turn by at most half a turn about
@@ -115,19 +115,19 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<P::State> for Veri
         // Written so that NaN is refused.
         let provable = self.displacement(&ends[0], &ends[1]) / self.tolerance < MAX_LENGTH;
         if !provable {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         if self.solids.iter().any(|solid| solid.contains(&ends[0].translation.vector.into())) {
-            return MotionCheck::Collides { at: 0.0 };
+            return MotionCheck::Collision { at: 0.0 };
         }
         let Some(world) = &self.world else { return MotionCheck::Free { clearance: f64::INFINITY } };
         let pose_at = |t: f64| P::pose(&self.space.interpolate(from, to, t));
         match self.sweep.sweep(&self.robot, pose_at, world, self.tolerance) {
-            Swept::Free { clearance } => MotionCheck::Free { clearance },
-            _ if self.touches(&ends[0]) => MotionCheck::Collides { at: 0.0 },
-            _ if self.touches(&ends[1]) => MotionCheck::Collides { at: 1.0 },
-            Swept::Contact { at } => MotionCheck::Collides { at },
-            Swept::Near { at } => MotionCheck::Undecided { at },
+            SweepCheck::Free { clearance } => MotionCheck::Free { clearance },
+            _ if self.touches(&ends[0]) => MotionCheck::Collision { at: 0.0 },
+            _ if self.touches(&ends[1]) => MotionCheck::Collision { at: 1.0 },
+            SweepCheck::Collision { at } => MotionCheck::Collision { at },
+            SweepCheck::TooClose { at } => MotionCheck::Unproven { at },
         }
     }
 }

@@ -38,12 +38,12 @@ fn agree<P: Placement, C: Space<State = P::State>>(space: &C, robot: &RigidBody<
                 };
                 assert!(clearance >= verifier.tolerance());
             }
-            MotionCheck::Collides { at } => {
+            MotionCheck::Collision { at } => {
                 refused += 1;
                 assert!(!exact.is_valid(&space.interpolate(&a, &b, at)));
                 assert!(!verified.is_free());
             }
-            MotionCheck::Undecided { .. } => {}
+            MotionCheck::Unproven { .. } => {}
         }
         match verified {
             MotionCheck::Free { clearance } => {
@@ -53,12 +53,12 @@ fn agree<P: Placement, C: Space<State = P::State>>(space: &C, robot: &RigidBody<
                     assert!(mp_cspace::Clearance::clearance(&mut exact, &q, 1e9) >= clearance - 1e-9);
                 }
             }
-            MotionCheck::Collides { at } => {
+            MotionCheck::Collision { at } => {
                 let q = space.interpolate(&a, &b, at);
                 // The reference calls contact what is nearer than 1e-13 of the coordinates.
                 assert!(mp_cspace::Clearance::clearance(&mut exact, &q, 1.0) < 1e-11);
             }
-            MotionCheck::Undecided { at } => {
+            MotionCheck::Unproven { at } => {
                 let q = space.interpolate(&a, &b, at);
                 assert!(mp_cspace::Clearance::clearance(&mut exact, &q, 1.0) < 2.0 * tolerance);
             }
@@ -126,7 +126,7 @@ fn the_verifier_catches_an_edge_whose_ends_are_free() {
     let at = |x: f64, y: f64| pose_from_six([x, y, 0.0, x, 0.3, y]);
     let (a, b) = (at(-1.0, 0.0), at(1.0, 0.0));
     assert!(robot.is_valid(&a) && robot.is_valid(&b));
-    let MotionCheck::Collides { at: t } = verifier.check_motion(&a, &b) else { panic!("missed the pole") };
+    let MotionCheck::Collision { at: t } = verifier.check_motion(&a, &b) else { panic!("missed the pole") };
     assert!(!robot.is_valid(&space.interpolate(&a, &b, t)));
     // Around it is free, with the clearance there is.
     let MotionCheck::Free { clearance } = verifier.check_motion(&at(-1.0, 1.0), &at(1.0, 1.0)) else {
@@ -169,7 +169,7 @@ fn grazing_motions() {
         assert!(!accepted || gap >= certified.margin(), "{gap}");
         assert!(proved || !accepted);
         if gap < verifier.tolerance() {
-            assert!(matches!(verifier.check_motion(&a, &b), MotionCheck::Undecided { .. }));
+            assert!(matches!(verifier.check_motion(&a, &b), MotionCheck::Unproven { .. }));
         }
     }
 }
@@ -180,7 +180,7 @@ fn standing_still_bad_states_and_no_obstacles() {
     let robot = FreeFlyer::new(&robot(), clutter()).unwrap();
     let mut verifier = Verifier::new(&space, &robot).unwrap();
     let (hit, out) = (Isometry3::translation(1.0, 0.0, 0.0), Isometry3::translation(-1.8, -1.8, 1.8));
-    assert_eq!(verifier.check_motion(&hit, &hit), MotionCheck::Collides { at: 0.0 });
+    assert_eq!(verifier.check_motion(&hit, &hit), MotionCheck::Collision { at: 0.0 });
     assert!(verifier.check_motion(&out, &out).is_free());
     for x in [f64::NAN, f64::INFINITY, 1e300] {
         assert!(!verifier.check_motion(&out, &Isometry3::translation(x, 0.0, 0.0)).is_free());

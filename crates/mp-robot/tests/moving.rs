@@ -105,7 +105,7 @@ fn checks_and_verifier_agree_with_dense_sampling() {
                 assert!(least < tolerance + slack, "{least}");
                 hit += 1;
                 by_mover += u32::from(
-                    verified != MotionCheck::Undecided { at: 0.0 }
+                    verified != MotionCheck::Unproven { at: 0.0 }
                         && among.body().clone().clearance(&from.0, 1.0) > 0.0,
                 );
             }

@@ -48,8 +48,8 @@ impl<S> Curve<S> {
             let whole = |at: f64| (i as f64 + at) / pieces;
             match check(here, next) {
                 MotionCheck::Free { clearance } => least = least.min(clearance),
-                MotionCheck::Collides { at } => return MotionCheck::Collides { at: whole(at) },
-                MotionCheck::Undecided { at } => return MotionCheck::Undecided { at: whole(at) },
+                MotionCheck::Collision { at } => return MotionCheck::Collision { at: whole(at) },
+                MotionCheck::Unproven { at } => return MotionCheck::Unproven { at: whole(at) },
             }
             here = next;
         }
@@ -197,7 +197,7 @@ where
         snake.between_into(from, to, curve);
         let free = |a: &C::State, b: &C::State, known| match check.check_extension(a, b, known) {
             MotionCheck::Free { .. } => None,
-            MotionCheck::Collides { at } | MotionCheck::Undecided { at } => Some(at),
+            MotionCheck::Collision { at } | MotionCheck::Unproven { at } => Some(at),
         };
         match snake.bulge(curve, field, *wanted, free) {
             Bulged::Fits => return true,

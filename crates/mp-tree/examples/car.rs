@@ -3,7 +3,7 @@
 //! `cargo run -p mp-tree --example car [SEED]`
 #![allow(clippy::print_stdout)] // an example talks
 
-use mp_cspace::inputs::{Along, Car, InputPlanner, ReplayFinely};
+use mp_cspace::inputs::{Car, DiscreteFlowCheck, InputPlanner, ReplayFinely};
 use mp_cspace::{Exactly, Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
 use mp_tree::{Goals, Problem, Rsrt, Tuning};
 use nalgebra::Point2;
@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seed = std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?;
     let space = Se2::new([0.0, 0.0], [18.0, 6.0])?.with_rotation_weight(2.0)?;
     let car = Car::new(2.5)?;
-    let check = Along::new(&space, free, Resolution::Length(0.1))?;
+    let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.1))?;
     let mut local = InputPlanner::new(&space, car, Car::inputs(1.0, 0.6, 2)?, 0.6, check)?;
     let verifier = ReplayFinely::new(&space, car, free, Resolution::Length(0.01))?;
     let parked =

@@ -29,15 +29,15 @@
 //! ```
 //!
 //! # The engine
-//! A [`Branch`] is a [`Tree`] with its policies. Every iteration of every variant is: propose a
+//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant is: propose a
 //! target, select nodes, grow from them, attach what came of it. Each verb is a slot:
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | what to grow toward | [`Propose`] | [`Samples`], [`Acceptable`], [`VoronoiBias`] |
-//! | which nodes to grow from | [`Selector`] | [`Nearest`], [`DynamicDomain`], [`LeastViolated`], [`Unexhausted`] |
-//! | how far | [`Growth`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`ObstacleGuided`], [`Untried`], [`Cyclic`] |
-//! | how a motion joins the tree | [`Attach`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
+//! | what to grow toward | [`TargetSampler`] | [`Samples`], [`Acceptable`], [`VoronoiBias`] |
+//! | which nodes to grow from | [`Selector`] | [`NearestSelector`], [`DynamicDomain`], [`LeastViolated`], [`Unexhausted`] |
+//! | how far | [`Extender`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`ObstacleGuided`], [`Untried`], [`Cyclic`] |
+//! | how a motion joins the tree | [`Inserter`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
 //! A variant is a [`Recipe`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
@@ -57,29 +57,29 @@
 //! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //! use mp_cspace::{Linear, Uniform};
-//! use mp_tree::{Append, Connect, Nearest, Recipe, Samples, SingleTree, Tuning};
+//! use mp_tree::{Append, Connect, NearestSelector, Recipe, Samples, SingleTree, Tuning};
 //!
 //! let propose = Samples(Uniform(&space));
-//! let (select, grow) = (Nearest(Linear::new()), Connect::default());
+//! let (select, grow) = (NearestSelector(Linear::new()), Connect::default());
 //! let recipe = Recipe { propose, select, grow, attach: Append, tuning: Tuning::default() };
 //! let mut planner = SingleTree::assemble(problem, recipe)?;
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! assert!(matches!(outcome, Outcome::Solved(_)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! The loops try the straight way to the goal first, unless the growth [declines](Growth::leaps).
+//! The loops try the straight way to the goal first, unless the growth [declines](Extender::leaps).
 //!
 //! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem and traces
-//! and verifies paths, [`Branch`] is a tree that grows, and forgets what hangs on an edge the verifier refuses. A tree
+//! and verifies paths, [`SearchTree`] is a tree that grows, and forgets what hangs on an edge the verifier refuses. A tree
 //! that grows from random nodes:
 //! ```
 //! use mp_cspace::{Direction, Linear, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
-//! use mp_tree::{AppendDistinct, Branch, Core, Extend, Grown, Nearest};
+//! use mp_tree::{AppendDistinct, SearchTree, Core, Extend, Grown, NearestSelector};
 //! use rand::RngExt;
 //!
 //! struct RandomTree<'c, C: Space, L: LocalPlanner<C::State>> {
 //!     core: Core<'c, C, L>,
-//!     branch: Branch<C, L, Nearest<Linear>, AppendDistinct>,
+//!     branch: SearchTree<C, L, NearestSelector<Linear>, AppendDistinct>,
 //! }
 //!
 //! impl<C: Space, L: LocalPlanner<C::State>> Planner<C::State> for RandomTree<'_, C, L> {
@@ -120,7 +120,7 @@
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //!
 //! let tuning = Tuning { step: Step::Fraction(0.2), goal_bias: 0.2, ..Tuning::default() };
-//! let branch = Branch::new(0, Direction::Forward, Nearest(Linear::new()), AppendDistinct::default());
+//! let branch = SearchTree::new(0, Direction::Forward, NearestSelector(Linear::new()), AppendDistinct::default());
 //! let mut planner = RandomTree { core: Core::new(problem, &tuning)?, branch };
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! assert!(matches!(outcome, Outcome::Solved(_)));
@@ -148,9 +148,10 @@ pub use algo::shared_tree::SharedTree;
 pub use algo::types::*;
 pub use by_name::{AnyPlanner, INPUTS, LEVELS};
 pub use engine::{
-    Acceptable, Append, AppendApart, AppendDistinct, Attach, Attached, Branch, Connect, Core, Extend,
-    GOAL_BIAS, Growing, Grown, Growth, Improving, NEEDS_BOTH_ENDS, Near, Nearest, PATIENCE, Propose, Purpose,
-    Recipe, Rewire, STEP, Samples, Selector, SingleTree, Steer, Tree, Tuning, TwoTrees, Untried, improve,
+    Acceptable, Append, AppendApart, AppendDistinct, Connect, Core, Extend, Extender, GOAL_BIAS, Growing,
+    Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Recipe,
+    Rewire, STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, TreeEdgeChecker, Tuning,
+    TwoTrees, Untried, improve,
 };
 pub use mp_cspace::AnyProblem;
 pub use mp_cspace::erased::AnyIndex;
@@ -159,5 +160,6 @@ pub use mp_cspace::{
     closest,
 };
 pub use registry::{
-    Named, ProblemFactory, TreeState, Wrapper, build, build_from, build_with, planner, planners, wrappers,
+    MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, planner, planners,
+    wrappers,
 };

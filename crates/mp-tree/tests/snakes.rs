@@ -175,7 +175,7 @@ fn edges_of_the_tree_are_curves() {
     wider.0.push((bend.map(|x| x - 1e-3).into(), bend.map(|x| x + 1e-3).into()));
     let i = path.edges.iter().position(|edge| edge.states().contains(bend)).unwrap();
     let verdict = Pieces(Exact(wider)).verify_edge(&path.states[i], &path.edges[i], &path.states[i + 1]);
-    assert!(matches!(verdict, MotionCheck::Collides { at } if (0.0..=1.0).contains(&at)), "{verdict:?}");
+    assert!(matches!(verdict, MotionCheck::Collision { at } if (0.0..=1.0).contains(&at)), "{verdict:?}");
 }
 
 #[test]

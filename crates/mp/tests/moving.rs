@@ -6,7 +6,9 @@ use mp::cspace::{
 };
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};
-use mp::tree::{Append, Connect, Goals, Nearest, Problem, Recipe, Rrt, Samples, SingleTree, Step, Tuning};
+use mp::tree::{
+    Append, Connect, Goals, NearestSelector, Problem, Recipe, Rrt, Samples, SingleTree, Step, Tuning,
+};
 use nalgebra::Isometry3;
 
 type State = (Se2State, f64);
@@ -34,7 +36,7 @@ fn through(gate: &[(f64, f64)], connect: bool, iterations: u64) -> Option<Path<S
     let tuning = Tuning { step: Step::Length(2.0), ..Tuning::default() };
     let (mut rng, mut stop) = (Rng::seed(1), Iterations(iterations));
     let outcome = if connect {
-        let (propose, select) = (Samples(Uniform(&space)), Nearest::<KdTree>::default());
+        let (propose, select) = (Samples(Uniform(&space)), NearestSelector::<KdTree>::default());
         let recipe = Recipe { propose, select, grow: Connect::default(), attach: Append, tuning };
         SingleTree::assemble(problem, recipe).unwrap().solve(&mut rng, &mut stop, &mut ())
     } else {

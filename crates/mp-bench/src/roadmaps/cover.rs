@@ -9,7 +9,7 @@ use mp_cspace::{
     DefaultNn, Direction, Extension, Iterations, LocalPlanner, Metric, NodeId, Nodes, Reach, Rng, Space,
     Validity,
 };
-use mp_plan::{RigidMotion, RigidScene, RobotKind};
+use mp_plan::{RigidScene, RigidSpace, RobotKind};
 use mp_roadmap::algo::{prm, visibility_prm};
 use mp_roadmap::{Builder, Learning, Reachable, Roadmap};
 use serde::{Deserialize, Serialize};
@@ -66,7 +66,7 @@ fn fresh<S: Clone>(samples: &[S]) -> Vec<Sample<S>> {
 }
 
 /// What is seen, by nodes tried in order of distance.
-fn seen<M: RigidMotion>(
+fn seen<M: RigidSpace>(
     scene: &RigidScene<M>,
     map: &mut Roadmap<M::State>,
     samples: &mut [Sample<M::State>],
@@ -132,7 +132,7 @@ struct Measured {
     many: [Option<Needed>; 2],
 }
 
-fn on<M: RigidMotion>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
+fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     let space = scene.space();
     let mut robot = scene.robot().clone();
     let verifier = scene.verifier()?;

@@ -7,7 +7,7 @@ use crate::experiment::{Table, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
 use mp_cspace::{DefaultNn, Nodes, Rng};
-use mp_plan::{RigidMotion, RigidScene, RobotKind};
+use mp_plan::{RigidScene, RigidSpace, RobotKind};
 use mp_roadmap::algo::prm;
 use mp_roadmap::{Builder, Learning, Reachable};
 
@@ -18,7 +18,7 @@ pub(super) fn measure(quick: bool) -> Result<Table> {
     either!(Rigid::load("cubicles")?, scene => on(&scene, quick))
 }
 
-fn on<M: RigidMotion>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
+fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
     let learning = Learning { expand: 0.0, ..Learning::default() };
     let recipe = prm::recipe(scene.space(), reach, learning).into_error()?;

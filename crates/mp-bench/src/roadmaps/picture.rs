@@ -12,7 +12,7 @@ use mp_cspace::{DefaultNn, Iterations, Nodes, ObstacleGeometry, Outcome, Rng, St
 use mp_geom::Aabb;
 use mp_geom::primitives::cuboid;
 use mp_io::{Body, PlacedBody, Problem, SpaceKind};
-use mp_plan::{Control, Error, RigidMotion, RigidScene, RobotKind, search};
+use mp_plan::{Control, Error, RigidScene, RigidSpace, RobotKind, search};
 use mp_roadmap::algo::{prm, visibility_prm};
 use mp_roadmap::{
     AroundObstacles, Builder, ByGeometry, Candidate, Connector, Kind, Learning, LinkState, NodeGenerator,
@@ -68,7 +68,7 @@ fn save(drawing: Drawing, lab: &Lab, name: &str) -> Result<()> {
 }
 
 /// PRM's and Visib-PRM's roadmaps of a whole scene.
-fn covered<M: RigidMotion>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
+fn covered<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let (space, name) = (scene.space(), &scene.problem().name);
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
     let learning = Learning { learn: NODES * 2 / 3, ..Learning::default() };
@@ -85,7 +85,7 @@ fn covered<M: RigidMotion>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     Ok(())
 }
 
-fn built<'c, M: RigidMotion, G, K>(
+fn built<'c, M: RigidSpace, G, K>(
     scene: &'c RigidScene<M>,
     generate: G,
     connect: K,
@@ -105,12 +105,12 @@ fn obstacles(drawing: &mut Drawing, problem: &Problem) {
     drawing.silhouette(problem.obstacles.iter().map(|o| (&o.mesh, o.pose)), OBSTACLE, 0.6);
 }
 
-fn place<M: RigidMotion>(q: &M::State) -> Point3<f64> {
+fn place<M: RigidSpace>(q: &M::State) -> Point3<f64> {
     Point3::from(M::pose(q).translation.vector)
 }
 
 /// Edges, those not checked lighter; and nodes of this radius, pixels.
-fn roadmap<M: RigidMotion>(drawing: &mut Drawing, map: &Roadmap<M::State>, radius: f64) {
+fn roadmap<M: RigidSpace>(drawing: &mut Drawing, map: &Roadmap<M::State>, radius: f64) {
     for (state, colour) in [(LinkState::Unchecked, "#d5dde8"), (LinkState::Free, "#5b7fa8")] {
         let edges = map.all_edges().filter(|(_, _, link)| link.state == state);
         let ends = edges.map(|(_, ends, _)| ends.map(|end| place::<M>(map.state(end))));
@@ -128,7 +128,7 @@ fn roadmap<M: RigidMotion>(drawing: &mut Drawing, map: &Roadmap<M::State>, radiu
 }
 
 /// The roadmap of a planner when it had found a path, and the path.
-fn passed<M: RigidMotion>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Result<()> {
+fn passed<M: RigidSpace>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Result<()> {
     let mut request = bare(planner);
     request.budget.queries = Some(1_000_000);
     let done = search(scene, &request, &mut Control { keep_roadmap: true, ..Control::default() })?;
@@ -169,7 +169,7 @@ fn pillar() -> Result<Problem> {
 }
 
 /// The configurations that obstacle-geometry PRM and OBPRM propose around one obstacle.
-fn around<M: RigidMotion>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
+fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let robot = scene.robot();
     let Some(block) = robot.obstacles().first().copied() else { return Err(Error::new("no obstacle")) };
     let along = |q: &M::State| {
@@ -208,7 +208,7 @@ fn around<M: RigidMotion>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     shown(scene, [(&contact, RED), (&free, GREEN), (&vec![], BLUE)], [caption, more], (lab, "obprm-contact"))
 }
 
-fn candidates<'c, M: RigidMotion, G: NodeGenerator<M::Space, Local<'c, M>>>(
+fn candidates<'c, M: RigidSpace, G: NodeGenerator<M::Space, Local<'c, M>>>(
     scene: &'c RigidScene<M>,
     mut generate: G,
     attempts: std::ops::Range<u64>,
@@ -223,7 +223,7 @@ fn candidates<'c, M: RigidMotion, G: NodeGenerator<M::Space, Local<'c, M>>>(
 }
 
 /// Robots in their colours around the obstacles, with the spheres around these.
-fn shown<M: RigidMotion>(
+fn shown<M: RigidSpace>(
     scene: &RigidScene<M>,
     robots: [(&Vec<M::State>, &str); 3],
     captions: [String; 2],

@@ -6,9 +6,9 @@ use crate::experiment::{Median, Table, mean, short};
 use crate::output::note;
 use crate::scenes::{Rigid, either};
 use mp_cspace::{Certified, Nodes, Outcome, Planner, Problem, Rng, Space, Straight, Validity};
-use mp_plan::{RigidMotion, RigidScene, RobotKind};
+use mp_plan::{RigidScene, RigidSpace, RobotKind};
 use mp_roadmap::algo::prm;
-use mp_roadmap::{Answers, Builder, Learning, PATIENCE, Reachable, Steer};
+use mp_roadmap::{Builder, EdgeChecker, Learning, PATIENCE, Reachable, RoadmapQueries};
 use mp_robot::{RigidBody, Verifier};
 use mp_tree::{RrtConnect, Tuning};
 
@@ -21,20 +21,20 @@ const NEIGHBOURS: usize = 10;
 const CAP: f64 = 2.0;
 
 pub(super) type Local<'c, M> =
-    Straight<'c, <M as RigidMotion>::Space, Certified<'c, <M as RigidMotion>::Space, RigidBody<M>>>;
+    Straight<'c, <M as RigidSpace>::Space, Certified<'c, <M as RigidSpace>::Space, RigidBody<M>>>;
 
 /// Straight motions, proved.
-pub(super) fn local<M: RigidMotion>(scene: &RigidScene<M>) -> Result<Local<'_, M>> {
+pub(super) fn local<M: RigidSpace>(scene: &RigidScene<M>) -> Result<Local<'_, M>> {
     let check = Certified::new(scene.space(), scene.robot().clone(), scene.tolerance()).into_error()?;
     Ok(Straight::new(scene.space(), check))
 }
 
 /// How roadmaps of the setting move.
-pub(super) fn steer<'c, M: RigidMotion>(
+pub(super) fn steer<'c, M: RigidSpace>(
     scene: &'c RigidScene<M>,
     verifier: Verifier<'c, M::Space, M>,
-) -> Result<Steer<'c, M::Space, Local<'c, M>>> {
-    Ok(Steer::new(scene.space(), local(scene)?, verifier, PATIENCE))
+) -> Result<EdgeChecker<'c, M::Space, Local<'c, M>>> {
+    Ok(EdgeChecker::new(scene.space(), local(scene)?, verifier, PATIENCE))
 }
 
 /// Measures on the scene `cubicles`.
@@ -42,7 +42,7 @@ pub(super) fn measure(quick: bool) -> Result<Table> {
     either!(Rigid::load("cubicles")?, scene => on(&scene, quick))
 }
 
-fn on<M: RigidMotion>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
+fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     let (sizes, count) = if quick { (&SIZES[..1], 100) } else { (&SIZES[..], QUERIES) };
     let space = scene.space();
     let mut robot = scene.robot().clone();
@@ -115,7 +115,7 @@ fn on<M: RigidMotion>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         builder.build(&mut Rng::seed(1), &mut Nodes(size), &mut ());
         let build = seconds_since(began);
         let components = builder.map_mut().components();
-        let mut ask = |what: &str, build: f64, answers: &mut Answers<'_, _, _, _>| {
+        let mut ask = |what: &str, build: f64, answers: &mut RoadmapQueries<'_, _, _, _>| {
             let mut times = Vec::new();
             for [start, goal] in &pairs {
                 let began = nanoseconds();
@@ -129,7 +129,7 @@ fn on<M: RigidMotion>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         ask("roadmap", build, &mut builder.into_answers(NEIGHBOURS));
         let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
         let mut answers =
-            Answers::new(steer(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
+            RoadmapQueries::new(steer(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
         let began = nanoseconds();
         answers.verify();
         let verified = seconds_since(began);

@@ -7,8 +7,8 @@ use crate::experiment::{Lab, Log};
 use crate::output::note;
 use crate::scenes::{Rigid, bare, either};
 use mp_cspace::{Cancel, DefaultNn, Outcome, StopReason};
-use mp_plan::{Control, Request, RigidMotion, RigidScene, RobotKind, Stage, Watch, search};
-use mp_roadmap::Answers;
+use mp_plan::{Control, Request, RigidScene, RigidSpace, RobotKind, Stage, Watch, search};
+use mp_roadmap::RoadmapQueries;
 use serde::{Deserialize, Serialize};
 
 /// How much to measure.
@@ -124,7 +124,7 @@ impl Watch for Began {
     }
 }
 
-fn one<M: RigidMotion>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
+fn one<M: RigidSpace>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
     let mut began = Began(nanoseconds());
     let mut control = Control { keep_roadmap: true, ..Control::new(cancel.clone(), &mut began) };
     let done = search(scene, request, &mut control)?;
@@ -145,9 +145,9 @@ fn one<M: RigidMotion>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel
         motions: done.progress.motions,
     };
     if let (true, Some(map)) = (run.solved, done.roadmap) {
-        let index = <<M as RigidMotion>::Space as DefaultNn>::Nn::default();
+        let index = <<M as RigidSpace>::Space as DefaultNn>::Nn::default();
         let steer = steer(scene, scene.verifier()?)?;
-        let mut answers = Answers::new(steer, map, index, NEIGHBOURS).into_error()?;
+        let mut answers = RoadmapQueries::new(steer, map, index, NEIGHBOURS).into_error()?;
         let began = nanoseconds();
         let answer = answers.answer(scene.start(), &scene.goals()[0]);
         run.again = answer.is_ok().then(|| seconds_since(began));

@@ -4,7 +4,7 @@ use super::movers::{Mover, Six};
 use crate::clock::{Processor, nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use mp_cspace::inputs::{
-    Along, Between, DoubleIntegrator, InputPlanner, InputSet, Kinematic, OnPosition, ReplayFinely,
+    Between, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, OnPosition, ReplayFinely,
 };
 use mp_cspace::{
     Cancel, Discrete, Exactly, MotionValidity, NnOn, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
@@ -159,7 +159,7 @@ where
     let began = nanoseconds();
     let valid = OnPosition(Counted { valid: robot, count: count.clone() });
     let resolution = Resolution::Length(mover.resolution());
-    let check = Along::new(&places, valid, resolution).into_error()?;
+    let check = DiscreteFlowCheck::new(&places, valid, resolution).into_error()?;
     let inputs = InputSet::axes(accelerations).into_error()?;
     let local = InputPlanner::new(&space, flow, inputs, 1.0, check).into_error()?;
     let rest = Six::zeros();

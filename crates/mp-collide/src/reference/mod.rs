@@ -13,7 +13,7 @@ mod triangle;
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, IsometryMatrix3, Point3, Vector3};
 
-pub use sweep::{Sweep, Swept};
+pub use sweep::{Sweep, SweepCheck};
 pub use triangle::triangle_distance;
 
 use triangle::{Triangle, point_triangle};

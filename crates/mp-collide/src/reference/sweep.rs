@@ -7,20 +7,20 @@ use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 
 /// What a [`Sweep`] found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Swept {
+pub enum SweepCheck {
     /// Free all along.
     Free {
         /// A lower bound on the distance all along, at least the margin (m).
         clearance: f64,
     },
     /// The meshes touch at fraction `at` of the motion, or have no distance there.
-    Contact {
+    Collision {
         /// The fraction.
         at: f64,
     },
     /// The meshes are nearer than twice the margin at fraction `at` of the motion, or the search was given up
     /// there.
-    Near {
+    TooClose {
         /// The fraction.
         at: f64,
     },
@@ -153,7 +153,7 @@ impl Sweep {
         pose_at: impl Fn(f64) -> Isometry3<f64>,
         standing: &RefMesh,
         margin: f64,
-    ) -> Swept {
+    ) -> SweepCheck {
         self.parts.clear();
         self.moments.clear();
         self.open.clear();
@@ -163,7 +163,7 @@ impl Sweep {
         let ends = [0.0, 1.0].map(|at| (at, pose_at(at)));
         for (at, pose) in &ends {
             if !self.moment(*at, pose, size) {
-                return Swept::Contact { at: *at };
+                return SweepCheck::Collision { at: *at };
             }
         }
         let [from, to] = ends.map(|(_, pose)| pose.rotation.into_inner());
@@ -184,7 +184,7 @@ impl Sweep {
             let first = open.near[1];
             self.list(&task, &open, &swath, &mut least);
             if self.compared > limit {
-                return Swept::Near { at: self.middle(open.part) };
+                return SweepCheck::TooClose { at: self.middle(open.part) };
             }
             let triangle = match ball.content {
                 Content::Triangle(k) => Some(moving.triangles[k]),
@@ -205,7 +205,7 @@ impl Sweep {
                 continue;
             }
             let Some((middle, halves)) = self.cut(open.part, &pose_at, size) else {
-                return Swept::Contact { at: self.middle(open.part) };
+                return SweepCheck::Collision { at: self.middle(open.part) };
             };
             if let Some(triangle) = &triangle {
                 let middle = &self.moments[middle];
@@ -214,15 +214,15 @@ impl Sweep {
                     near.way = match task.way(&moved, near) {
                         Ok(way) => way,
                         Err(distance) if distance <= task.touching => {
-                            return Swept::Contact { at: middle.at };
+                            return SweepCheck::Collision { at: middle.at };
                         }
-                        Err(_) => return Swept::Near { at: middle.at },
+                        Err(_) => return SweepCheck::TooClose { at: middle.at },
                     };
                 }
             }
             self.open.extend(halves.map(|part| Open { ball: open.ball, part, near }));
         }
-        Swept::Free { clearance: least }
+        SweepCheck::Free { clearance: least }
     }
 
     /// Lists what may be near a ball in a part of the motion, of what was listed for a larger one: balls not larger than
@@ -402,11 +402,11 @@ mod tests {
             let clearance = |t: f64| bar.clearance(&pose_at(t), &other, &Isometry3::identity(), 10.0);
             let sampled = (0..=60).map(|k| clearance(f64::from(k) / 60.0)).fold(f64::INFINITY, f64::min);
             match Sweep::default().sweep(&bar, &pose_at, &other, margin) {
-                Swept::Free { clearance } => {
+                SweepCheck::Free { clearance } => {
                     prop_assert!(clearance >= margin && clearance <= sampled + 1e-12, "{} {}", clearance, sampled);
                 }
-                Swept::Contact { at } => prop_assert_eq!(clearance(at), 0.0),
-                Swept::Near { at } => prop_assert!(clearance(at) < 2.0 * margin),
+                SweepCheck::Collision { at } => prop_assert_eq!(clearance(at), 0.0),
+                SweepCheck::TooClose { at } => prop_assert!(clearance(at) < 2.0 * margin),
             }
         }
     }
@@ -424,10 +424,10 @@ mod tests {
             ([-0.05, 0.8, 0.0, 1.57, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 3.1]),
         ] {
             let found = sweep.sweep(&bar, motion(pose_from_six(from), by), &wall, 1e-5);
-            assert!(!matches!(found, Swept::Free { .. }), "{found:?}");
+            assert!(!matches!(found, SweepCheck::Free { .. }), "{found:?}");
         }
         let beside = motion(pose_from_six([-0.71, 0.0, 0.0, 0.0, 0.0, 0.0]), [0.0, 1.0, 0.0, 0.0, 0.0, 3.1]);
-        assert!(matches!(sweep.sweep(&bar, beside, &wall, 1e-5), Swept::Free { .. }));
+        assert!(matches!(sweep.sweep(&bar, beside, &wall, 1e-5), SweepCheck::Free { .. }));
         assert!(sweep.compared() < 20_000, "{}", sweep.compared());
     }
 
@@ -451,7 +451,7 @@ mod tests {
         let [bar, other] = meshes();
         for x in [f64::NAN, f64::INFINITY, 1e80] {
             let jump = |t: f64| Isometry3::translation(if t > 0.3 { x } else { 5.0 }, 0.0, 0.0);
-            assert!(matches!(Sweep::default().sweep(&bar, jump, &other, 1e-3), Swept::Contact { .. }));
+            assert!(matches!(Sweep::default().sweep(&bar, jump, &other, 1e-3), SweepCheck::Collision { .. }));
         }
     }
 }

@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Vector3};
 use super::{BodyId, Groups, Scene, View, bounds};
 use crate::broad::Bounds;
 use crate::mesh::CollisionMesh;
-use crate::motion::{Stay, Sway};
+use crate::motion::{IntervalCheck, RigidMotion};
 use crate::query::Query;
 
 impl View<'_> {
@@ -50,25 +50,26 @@ impl View<'_> {
         self.collide_body(query, mesh, at).map(|id| (before, id))
     }
 
-    /// Whether `mesh` stays at least `margin` (metres) from all bodies along a stretch of a motion: see
-    /// [`Query::keeps_clear`].
-    pub fn keeps_clear(
+    /// Whether `mesh` stays at least `margin` (metres) from all bodies along an interval of a motion: see
+    /// [`Query::check_interval`].
+    pub fn check_interval(
         &self,
         query: &mut Query,
         mesh: &CollisionMesh,
         middle_wm: &Isometry3<f64>,
-        sway: &Sway,
+        motion: &RigidMotion,
         margin: f64,
-    ) -> Stay {
+    ) -> IntervalCheck {
         let scene = self.scene;
         for merged in scene.merged.iter().filter(|merged| merged.groups.meets(self.groups)) {
-            let stay = query.keeps_clear(mesh, middle_wm, sway, &merged.mesh, &Isometry3::identity(), margin);
-            if !stay.is_clear() {
-                return stay;
+            let found =
+                query.check_interval(mesh, middle_wm, motion, &merged.mesh, &Isometry3::identity(), margin);
+            if !found.is_free() {
+                return found;
             }
         }
         // Whatever is farther than this from the box in the middle is never near; NaN is near everything.
-        let reach = (sway.most + margin) * (1.0 + 1e-9);
+        let reach = (motion.most + margin) * (1.0 + 1e-9);
         let own = bounds(mesh, middle_wm).filter(|_| reach >= 0.0).map(|own| Bounds {
             min: own.min - Vector3::repeat(reach),
             max: own.max + Vector3::repeat(reach),
@@ -81,14 +82,14 @@ impl View<'_> {
                     if !body.groups.meets(self.groups) {
                         return None;
                     }
-                    let stay = query.keeps_clear(mesh, middle_wm, sway, &body.mesh, &body.pose, margin);
-                    (!stay.is_clear()).then_some(stay)
+                    let found = query.check_interval(mesh, middle_wm, motion, &body.mesh, &body.pose, margin);
+                    (!found.is_free()).then_some(found)
                 },
             )
         });
         // Nothing gets inside or outside without a surface in its way.
-        let nested = || self.nested(query, mesh, middle_wm).map(|_| Stay::Contact { at: 0.0 });
-        blocked.or_else(nested).unwrap_or(Stay::Clear)
+        let nested = || self.nested(query, mesh, middle_wm).map(|_| IntervalCheck::Collision { at: 0.0 });
+        blocked.or_else(nested).unwrap_or(IntervalCheck::Free)
     }
 }
 
@@ -104,16 +105,16 @@ impl Scene {
         self.view(Groups::ALL).first_collision(query, mesh, poses_wm)
     }
 
-    /// Whether `mesh` stays at least `margin` (metres) from all bodies along a stretch of a motion: see
-    /// [`Query::keeps_clear`].
-    pub fn keeps_clear(
+    /// Whether `mesh` stays at least `margin` (metres) from all bodies along an interval of a motion: see
+    /// [`Query::check_interval`].
+    pub fn check_interval(
         &self,
         query: &mut Query,
         mesh: &CollisionMesh,
         middle_wm: &Isometry3<f64>,
-        sway: &Sway,
+        motion: &RigidMotion,
         margin: f64,
-    ) -> Stay {
-        self.view(Groups::ALL).keeps_clear(query, mesh, middle_wm, sway, margin)
+    ) -> IntervalCheck {
+        self.view(Groups::ALL).check_interval(query, mesh, middle_wm, motion, margin)
     }
 }

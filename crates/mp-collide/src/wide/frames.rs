@@ -29,13 +29,13 @@ impl Frame {
 
 /// A [`Frame`] that carries boxes: rows 0 and 1 side by side, then row 2.
 #[derive(Clone, Copy)]
-pub(crate) struct Carrier<L> {
+pub(crate) struct FrameTransform<L> {
     r: [[L; 3]; 2],
     /// Moves the centre of a box, not its axes.
     t: [L; 2],
 }
 
-impl<L: Lanes> Carrier<L> {
+impl<L: Lanes> FrameTransform<L> {
     #[inline(always)]
     pub(crate) fn new(frame: &Frame) -> Self {
         let (r, t) = (&frame.r, &frame.t);

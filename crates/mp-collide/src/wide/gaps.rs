@@ -39,9 +39,9 @@ pub(crate) struct Bounds {
 
 /// A direction, shorter than a unit by a little; or none.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Slab(pub(crate) [f32; 3]);
+pub(crate) struct SeparatingDirection(pub(crate) [f32; 3]);
 
-impl Slab {
+impl SeparatingDirection {
     /// Along `join`, if it has a length.
     pub(crate) fn across(join: &Vector3<f64>) -> Self {
         let scale = (1.0 - 1e-6) / join.norm();
@@ -63,7 +63,7 @@ pub(crate) struct Close {
 }
 
 /// The triangles of a leaf, ready to be compared with one after another.
-pub(crate) struct Gaps<L> {
+pub(crate) struct DistanceKernel<L> {
     v: [[L; 3]; 3],
     f: [[L; 3]; 3],
     /// Squared lengths of the edges, and their inverses.
@@ -87,9 +87,9 @@ pub(crate) struct Gaps<L> {
     edge: f32,
 }
 
-impl<L: Lanes> Gaps<L> {
+impl<L: Lanes> DistanceKernel<L> {
     #[inline(always)]
-    pub(crate) fn new(leaf: &Leaf, slab: &Slab) -> Self {
+    pub(crate) fn new(leaf: &Leaf, slab: &SeparatingDirection) -> Self {
         let v = corners::<L>(leaf);
         let f = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
         let n = cross(&f[0], &f[1]);
@@ -286,7 +286,7 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Output {
             let mut bounds = Bounds::default();
-            let gaps = Gaps::<L>::new(self.0, &Slab::default());
+            let gaps = DistanceKernel::<L>::new(self.0, &SeparatingDirection::default());
             let close = gaps.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
             (bounds, close)
         }

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::boxes::touching;
-use super::frames::{Carrier, Frames, fits};
+use super::frames::{FrameTransform, Frames, fits};
 use super::{LEAF, Tree, WIDTH};
 use crate::pose::Relative;
 use crate::query::Counters;
@@ -29,7 +29,7 @@ impl Kernel for Inside<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, half, frames, stack, counters } = self;
-        let place = Carrier::<L>::new(&frames.into_a).place(b.own(b.root));
+        let place = FrameTransform::<L>::new(&frames.into_a).place(b.own(b.root));
         stack.clear();
         stack.push((a.root, b.root));
         while let Some((x, _)) = stack.pop() {

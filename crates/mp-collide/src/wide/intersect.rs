@@ -1,9 +1,9 @@
 //! Do two trees meet?
 
 use super::boxes::touching;
-use super::frames::{Carrier, Frames, Placed};
+use super::frames::{FrameTransform, Frames, Placed};
 use super::leaves::{Near, corners, near_box};
-use super::meeting::{Meeting, Verdict};
+use super::meeting::{TriangleFilter, Verdict};
 use super::{LEAF, Leaf, Node, Tree};
 use crate::query::Counters;
 use crate::simd::{Kernel, Lanes, prefetch};
@@ -17,7 +17,7 @@ pub(crate) struct Intersect<'q> {
     /// Any two triangles that meet will do, not always the same.
     pub(crate) any: bool,
     pub(crate) stack: &'q mut Vec<(u32, u32)>,
-    pub(crate) meeting: &'q mut Meeting,
+    pub(crate) meeting: &'q mut TriangleFilter,
     pub(crate) counters: &'q mut Counters,
 }
 
@@ -29,7 +29,8 @@ impl Kernel for Intersect<'_> {
     fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, frames, any, stack, meeting, counters } = self;
         let pad = frames.pad;
-        let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
+        let (into_a, into_b) =
+            (FrameTransform::<L>::new(&frames.into_a), FrameTransform::<L>::new(&frames.into_b));
         let (far_a, far_b) = (a.is_large(), b.is_large());
         let mut tests = 0;
         stack.clear();
@@ -66,7 +67,7 @@ pub(super) fn push<L: Lanes>(
     tree: &Tree,
     far: bool,
     node: &Node,
-    frame: &Carrier<L>,
+    frame: &FrameTransform<L>,
     other: &super::Obb,
     margin: f32,
     mut push: impl FnMut(u32),
@@ -99,9 +100,9 @@ pub(super) fn leaf_pair<L: Lanes>(
     (a, i): (&Tree, usize),
     (b, j): (&Tree, usize),
     frames: &Frames,
-    into_a: &Carrier<L>,
+    into_a: &FrameTransform<L>,
     any: bool,
-    meeting: &mut Meeting,
+    meeting: &mut TriangleFilter,
     counters: &mut Counters,
 ) -> Option<(usize, usize)> {
     let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);

@@ -2,7 +2,7 @@
 //! that meets the box.
 
 use super::boxes::{cross, dot, sub};
-use super::frames::{Carrier, Frames, Placed};
+use super::frames::{FrameTransform, Frames, Placed};
 use super::{Leaf, Obb};
 use crate::simd::{Lanes, Mask};
 
@@ -99,7 +99,7 @@ pub(crate) fn near_each_other<L: Lanes>(
     (a, b): (&Leaf, &Leaf),
     (box_a, box_b): (&Obb, &Obb),
     frames: &Frames,
-    into_a: &Carrier<L>,
+    into_a: &FrameTransform<L>,
     margin: f32,
 ) -> (u32, u32) {
     let near = Near::new(a, b, frames);

@@ -110,7 +110,7 @@ impl Eight {
 
 /// Eight triangles against others one by one.
 #[derive(Clone, Debug)]
-pub(crate) struct Meeting {
+pub(crate) struct TriangleFilter {
     block: Eight,
     singles: Eight,
     /// How wrong heights over the planes of the eight, over that of the one, and volumes may be.
@@ -131,7 +131,7 @@ impl Verdict {
     const NONE: Self = Self { maybe: 0, sure: 0 };
 }
 
-impl Meeting {
+impl TriangleFilter {
     /// Of no triangles.
     pub(crate) const NONE: Self = Self {
         block: Eight::NONE,

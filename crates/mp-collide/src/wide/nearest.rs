@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use super::boxes::distances;
-use super::frames::{Carrier, Frames};
-use super::gaps::{Bounds, Gaps, Slab};
+use super::frames::{FrameTransform, Frames};
+use super::gaps::{Bounds, DistanceKernel, SeparatingDirection};
 use super::intersect::ahead;
 use super::leaves::near_each_other;
 use super::{LEAF, Tree, WIDTH};
@@ -75,10 +75,15 @@ impl Kernel for Nearest<'_> {
     #[inline(always)]
     fn run<L: Lanes>(mut self) -> Self::Output {
         let (a, b, frames, enough) = (self.a, self.b, self.frames, self.enough);
-        let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
+        let (into_a, into_b) =
+            (FrameTransform::<L>::new(&frames.into_a), FrameTransform::<L>::new(&frames.into_b));
         self.scratch.pairs.clear();
         self.scratch.candidates.clear();
-        let mut best = Best { squared: up(enough * enough), closest: Closest::NONE, slab: Slab::default() };
+        let mut best = Best {
+            squared: up(enough * enough),
+            closest: Closest::NONE,
+            slab: SeparatingDirection::default(),
+        };
         let far = a.is_large() || b.is_large();
         let mut next = Some(Pair { bound: 0.0, a: a.root, b: b.root });
         while let Some(pair) = next.take().or_else(|| self.scratch.pairs.pop()) {
@@ -140,13 +145,13 @@ struct Best {
     /// The nearest found.
     closest: Closest,
     /// Across the join of the nearest found, in the frame of `a`.
-    slab: Slab,
+    slab: SeparatingDirection,
 }
 
 impl Nearest<'_> {
     /// Compares the triangles of two leaves.
     #[inline(always)]
-    fn leaf_pair<L: Lanes>(&mut self, i: usize, j: usize, into_a: &Carrier<L>, best: &mut Best) {
+    fn leaf_pair<L: Lanes>(&mut self, i: usize, j: usize, into_a: &FrameTransform<L>, best: &mut Best) {
         let (a, b, frames) = (self.a, self.b, self.frames);
         let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
         let (mut lanes, mut singles) = (leaf_a.all(), leaf_b.all());
@@ -158,7 +163,7 @@ impl Nearest<'_> {
                 return;
             }
         }
-        let gaps = Gaps::<L>::new(leaf_a, &best.slab);
+        let gaps = DistanceKernel::<L>::new(leaf_a, &best.slab);
         let mut nearest = None;
         while singles != 0 {
             let position = leaf_b.first + singles.trailing_zeros();
@@ -187,7 +192,7 @@ impl Nearest<'_> {
                 best.closest = closest;
             }
             let join = closest.on_b - closest.on_a;
-            best.slab = Slab::across(&join);
+            best.slab = SeparatingDirection::across(&join);
         }
     }
 }

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::boxes::distances;
-use super::frames::{Carrier, Frames};
+use super::frames::{FrameTransform, Frames};
 use super::{LEAF, Tree, WIDTH};
 use crate::pose::Relative;
 use crate::query::Counters;
@@ -166,7 +166,7 @@ impl Kernel for Revolved<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, solid, frames, enough, any, stack, counters } = self;
-        let place = Carrier::<L>::new(&frames.into_a).place(b.own(b.root));
+        let place = FrameTransform::<L>::new(&frames.into_a).place(b.own(b.root));
         let mut best: Option<Apart> = None;
         // Squared, rounded up.
         let up = |x: f64| ((x * x * (1.0 + 1e-6)) as f32).next_up();

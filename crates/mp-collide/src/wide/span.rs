@@ -66,7 +66,7 @@ impl Travel {
 
 /// What lies where in a part of a motion of `a` past `b`, about its middle.
 #[derive(Clone, Debug)]
-pub(crate) struct Span {
+pub(crate) struct SweptInterval {
     pub(crate) frames: Frames,
     /// In the frame of `a` as it is in the middle, and in that of `b`.
     pub(crate) in_a: Drift,
@@ -83,7 +83,7 @@ pub(crate) struct Span {
 /// For what is rounded to `f32`.
 const UP: f64 = 1.0 + 1e-6;
 
-impl Span {
+impl SweptInterval {
     /// `None` when `a` stays farther than `clearance` from `b` by the balls around them.
     #[inline(always)]
     pub(crate) fn new(
@@ -144,7 +144,7 @@ impl Part {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Parts {
     parts: Vec<Part>,
-    spans: Vec<Span>,
+    spans: Vec<SweptInterval>,
 }
 
 impl Parts {
@@ -166,13 +166,13 @@ impl Parts {
 
     /// What [`Parts::set_span`] was given for a part; `None` when it was not yet called.
     #[inline]
-    pub(crate) fn span(&self, index: u32) -> Option<Option<&Span>> {
+    pub(crate) fn span(&self, index: u32) -> Option<Option<&SweptInterval>> {
         let span = self.part(index).span;
         (span != Part::NONE).then(|| self.spans.get(span as usize))
     }
 
     /// Says where things are in a part; `None` when the bodies are nowhere near each other.
-    pub(crate) fn set_span(&mut self, index: u32, span: Option<Span>) {
+    pub(crate) fn set_span(&mut self, index: u32, span: Option<SweptInterval>) {
         self.parts[index as usize].span = if span.is_some() { self.spans.len() as u32 } else { Part::FAR };
         self.spans.extend(span);
     }

@@ -6,12 +6,12 @@
 //! the part of the motion; so motions are cut into short parts only where and when bodies are near.
 
 use super::boxes::{cross, dot, sub, touching};
-use super::frames::{Carrier, Placed};
+use super::frames::{FrameTransform, Placed};
 use super::intersect::{ahead, leaf_pair};
 use super::leaves::{Corners, Near, corners};
-use super::meeting::Meeting;
-use super::span::{Parts, Span};
-use super::swept::{Gap, triangles};
+use super::meeting::TriangleFilter;
+use super::span::{Parts, SweptInterval};
+use super::swept::{LeafCheck, triangles};
 use super::{LEAF, Node, Tree};
 use crate::query::{Counters, Query};
 use crate::simd::{Kernel, Lanes, Mask, run};
@@ -31,7 +31,7 @@ impl Item {
 }
 
 /// A motion, in parts that cover ranges of what it is counted in.
-pub(crate) trait Course {
+pub(crate) trait Schedule {
     /// Whether the earliest part is wanted, or any.
     const ORDERED: bool;
     /// What was made of it.
@@ -41,7 +41,7 @@ pub(crate) trait Course {
     /// How far any point moves at most (m) from the middle of a range to either end; 0 for a single pose.
     fn most(&self, range: [u32; 2]) -> f64;
     /// What lies where in a range; `None` when the bodies are nowhere near each other.
-    fn make(&self, range: [u32; 2]) -> Option<Span>;
+    fn make(&self, range: [u32; 2]) -> Option<SweptInterval>;
     /// How far apart (m) the bodies are to stay all along a range that is not still, if triangles are to be compared
     /// over it; smallest ranges that are not still need that.
     fn keep(&self, _range: [u32; 2]) -> Option<f64> {
@@ -56,7 +56,7 @@ pub(crate) trait Course {
 
     /// What lies where in a part, made when first asked for.
     #[inline]
-    fn span(&mut self, index: u32) -> Option<&Span> {
+    fn span(&mut self, index: u32) -> Option<&SweptInterval> {
         if self.parts().span(index).is_none() {
             let span = self.make(self.parts().part(index).range);
             self.parts_mut().set_span(index, span);
@@ -94,7 +94,7 @@ impl Query {
         &mut self,
         a: &Tree,
         b: &Tree,
-        course: &mut impl Course,
+        course: &mut impl Schedule,
         range: [u32; 2],
     ) -> Option<Met> {
         course.parts_mut().clear();
@@ -111,7 +111,7 @@ impl Query {
 pub(crate) struct Met {
     pub(crate) range: [u32; 2],
     /// `Short` for a single pose.
-    pub(crate) gap: Gap,
+    pub(crate) gap: LeafCheck,
 }
 
 /// Depth-first; the earlier part of the motion first.
@@ -121,11 +121,11 @@ struct Sweep<'q, C> {
     course: &'q mut C,
     /// What to look at, the first last.
     stack: &'q mut Vec<Item>,
-    meeting: &'q mut Meeting,
+    meeting: &'q mut TriangleFilter,
     counters: &'q mut Counters,
 }
 
-impl<C: Course> Kernel for Sweep<'_, C> {
+impl<C: Schedule> Kernel for Sweep<'_, C> {
     /// See `Query::sweep`.
     type Output = Option<Met>;
 
@@ -159,7 +159,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                 tests += 2;
                 if still {
                     let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
-                    let into_a = Carrier::<L>::new(&frames.into_a);
+                    let into_a = FrameTransform::<L>::new(&frames.into_a);
                     if leaf_pair((a, i), (b, j), frames, &into_a, true, meeting, counters).is_none() {
                         continue;
                     }
@@ -171,8 +171,8 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                     if let Some(keep) = keep {
                         let pair = ((a, x, mask_a), (b, y, mask_b));
                         match triangles::<L>(pair, span, (most, keep), counters) {
-                            Gap::Kept => continue,
-                            Gap::Short => {}
+                            LeafCheck::Free => continue,
+                            LeafCheck::Unproven => {}
                             gap => {
                                 met = Some(Met { range: part.range, gap });
                                 break;
@@ -185,7 +185,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                         continue;
                     }
                 }
-                met = Some(Met { range: part.range, gap: Gap::Short });
+                met = Some(Met { range: part.range, gap: LeafCheck::Unproven });
                 if !C::ORDERED {
                     break;
                 }
@@ -196,7 +196,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
             let open_a = x & LEAF == 0 && (y & LEAF != 0 || own_a.size >= own_b.size);
             if open_a {
                 let node = &a.nodes[x as usize];
-                let q = Carrier::<L>::new(&frames.into_a).place(own_b);
+                let q = FrameTransform::<L>::new(&frames.into_a).place(own_b);
                 let mut mask = if still {
                     touching::<L>(node, &q, frames.pad)
                 } else {
@@ -216,7 +216,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
                 }
             } else {
                 let node = &b.nodes[y as usize];
-                let q = Carrier::<L>::new(&frames.into_b).place(own_a);
+                let q = FrameTransform::<L>::new(&frames.into_b).place(own_a);
                 let mut mask = if still {
                     touching::<L>(node, &q, frames.pad)
                 } else {
@@ -242,7 +242,7 @@ impl<C: Course> Kernel for Sweep<'_, C> {
 ///
 /// As `boxes::touching`, which see.
 #[inline(always)]
-fn apart<L: Lanes>(node: &Node, q: &Placed<'_>, drift: &[L; 3], slop: L, span: &Span) -> u32 {
+fn apart<L: Lanes>(node: &Node, q: &Placed<'_>, drift: &[L; 3], slop: L, span: &SweptInterval) -> u32 {
     let center = q.center::<L>();
     let d: [L; 3] = three!(k => center[k].sub(L::load(&node.center[k])));
     let zero = L::splat(0.0);
@@ -298,7 +298,7 @@ fn apart<L: Lanes>(node: &Node, q: &Placed<'_>, drift: &[L; 3], slop: L, span: &
 /// The triangles of each of two leaves that may come within the margin of the box around the other; none of
 /// the second when none of the first does.
 #[inline(always)]
-fn near_leaves<L: Lanes>(a: &Tree, x: u32, b: &Tree, y: u32, span: &Span) -> (u32, u32) {
+fn near_leaves<L: Lanes>(a: &Tree, x: u32, b: &Tree, y: u32, span: &SweptInterval) -> (u32, u32) {
     let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
     let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
     let (own_a, own_b) = (&a.leaf_boxes[i], &b.leaf_boxes[j]);
@@ -307,7 +307,7 @@ fn near_leaves<L: Lanes>(a: &Tree, x: u32, b: &Tree, y: u32, span: &Span) -> (u3
     let center: [L; 3] = three!(d => L::splat(own_a.frame[d][0]));
     let drift = span.in_a.at(&center);
     let margin = span.slop(own_a) + span.margin;
-    let box_b = Carrier::<L>::new(&frames.into_a).place(own_b).centred_at(near.shift);
+    let box_b = FrameTransform::<L>::new(&frames.into_a).place(own_b).centred_at(near.shift);
     let mask_a = near_box(&corners::<L>(leaf_a), leaf_a.edge, &box_b, &near, &drift, margin) & leaf_a.all();
     if mask_a == 0 {
         return (0, 0);

@@ -2,8 +2,8 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::gaps::{Bounds, Gaps, Slab};
-use super::span::{Drift, Span};
+use super::gaps::{Bounds, DistanceKernel, SeparatingDirection};
+use super::span::{Drift, SweptInterval};
 use super::{LEAF, Obb, Tree};
 use crate::query::Counters;
 use crate::simd::Lanes;
@@ -11,15 +11,15 @@ use crate::triangle::{Triangle, closest_within, intersect};
 
 /// How things keep away from each other over a part of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Gap {
+pub(crate) enum LeafCheck {
     /// By what is to be kept, all along.
-    Kept,
+    Free,
     /// Not shown to.
-    Short,
+    Unproven,
     /// By less, in the middle.
-    Tight,
+    TooClose,
     /// Not at all: they meet in the middle.
-    Contact,
+    Collision,
 }
 
 /// How the triangles of `mask_a` keep away from those of `mask_b` over a part in which no point moves farther than
@@ -29,14 +29,14 @@ pub(crate) enum Gap {
 #[inline(always)]
 pub(super) fn triangles<L: Lanes>(
     ((a, x, mask_a), (b, y, mask_b)): ((&Tree, u32, u32), (&Tree, u32, u32)),
-    span: &Span,
+    span: &SweptInterval,
     (most, keep): (f32, f64),
     counters: &mut Counters,
-) -> Gap {
+) -> LeafCheck {
     let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
     let (leaf_a, leaf_b, frames) = (&a.leaves[i], &b.leaves[j], &span.frames);
-    let swept = Swept::new(a, &a.leaf_boxes[i], span, most, keep);
-    let gaps = Gaps::<L>::new(leaf_a, &Slab::default());
+    let swept = SweepCheck::new(a, &a.leaf_boxes[i], span, most, keep);
+    let gaps = DistanceKernel::<L>::new(leaf_a, &SeparatingDirection::default());
     let mut singles = mask_b;
     while singles != 0 {
         let l = leaf_b.first as usize + singles.trailing_zeros() as usize;
@@ -50,21 +50,21 @@ pub(super) fn triangles<L: Lanes>(
             lanes &= lanes - 1;
             let other = &a.triangles[leaf_a.first as usize + lane as usize];
             if close.crossing >> lane & 1 != 0 && intersect(other, &single) {
-                return Gap::Contact;
+                return LeafCheck::Collision;
             }
             if close.near >> lane & 1 != 0 {
                 let gap = swept.gap(other, &single);
-                if gap != Gap::Kept {
+                if gap != LeafCheck::Free {
                     return gap;
                 }
             }
         }
     }
-    Gap::Kept
+    LeafCheck::Free
 }
 
 /// How the triangles of a leaf of `a` move over a part.
-struct Swept<'s> {
+struct SweepCheck<'s> {
     drift: &'s Drift,
     /// The origin of the drift, in the frame of `a`.
     origin: &'s Point3<f64>,
@@ -78,9 +78,9 @@ struct Swept<'s> {
     maybe: f32,
 }
 
-impl<'s> Swept<'s> {
+impl<'s> SweepCheck<'s> {
     #[inline(always)]
-    fn new(a: &'s Tree, own: &Obb, span: &'s Span, most: f32, keep: f64) -> Self {
+    fn new(a: &'s Tree, own: &Obb, span: &'s SweptInterval, most: f32, keep: f64) -> Self {
         let center = three!(d => f64::from(own.frame[d][0]));
         let far = span.in_a.at_point(&center.into()).norm() + f64::from(span.slop(own));
         // Rounding of the transform is on top of what is to be kept.
@@ -93,16 +93,16 @@ impl<'s> Swept<'s> {
 
     /// How two triangles that do not intersect in the middle keep away: along the join of their nearest points, or
     /// along a normal, as where that join leads to an edge within a wall.
-    fn gap(&self, a: &Triangle, b: &Triangle) -> Gap {
-        let Some(closest) = closest_within(a, b, self.squared) else { return Gap::Kept };
+    fn gap(&self, a: &Triangle, b: &Triangle) -> LeafCheck {
+        let Some(closest) = closest_within(a, b, self.squared) else { return LeafCheck::Free };
         if closest.squared < self.keep * self.keep {
-            return Gap::Tight;
+            return LeafCheck::TooClose;
         }
         let normal = |t: &Triangle| (t[1] - t[0]).cross(&(t[2] - t[0]));
         let kept = self.keeps(a, b, &(closest.on_b - closest.on_a))
             || self.keeps(a, b, &normal(b))
             || self.keeps(a, b, &normal(a));
-        if kept { Gap::Kept } else { Gap::Short }
+        if kept { LeafCheck::Free } else { LeafCheck::Unproven }
     }
 
     /// Whether triangles stay apart along `way`, of any length: each corner of `a` gets as far along it as it drifts,
@@ -156,14 +156,20 @@ mod tests {
             let drifts = a.map(|corner| drift.at_point(&(corner - origin)));
             let far = drifts.iter().map(|d| d.norm()).fold(0.0, f64::max);
             let squared = (far + keep).powi(2);
-            let swept =
-                Swept { drift: &drift, origin: &origin, keep, beside: keep, squared, maybe: squared as f32 };
+            let swept = SweepCheck {
+                drift: &drift,
+                origin: &origin,
+                keep,
+                beside: keep,
+                squared,
+                maybe: squared as f32,
+            };
             if intersect(&a, &b) {
                 continue;
             }
             let distance = closest(&a, &b).distance;
             match swept.gap(&a, &b) {
-                Gap::Kept => {
+                LeafCheck::Free => {
                     past += u32::from(distance < far + keep);
                     for i in -8..=8 {
                         let at = |k: usize| a[k] + drifts[k] * (f64::from(i) / 8.0);
@@ -172,15 +178,15 @@ mod tests {
                         assert!(least >= keep - 1e-12, "{round}: {least} {keep} {moved:?} {b:?}");
                     }
                 }
-                Gap::Tight => {
+                LeafCheck::TooClose => {
                     assert!(distance < keep + 1e-12);
                     tight += 1;
                 }
-                Gap::Short => {
+                LeafCheck::Unproven => {
                     assert!(distance < far + keep + 1e-12);
                     short += 1;
                 }
-                Gap::Contact => panic!("these do not intersect"),
+                LeafCheck::Collision => panic!("these do not intersect"),
             }
         }
         assert!(past > 1000 && tight > 200 && short > 1000, "{past} {tight} {short}");

@@ -1,7 +1,7 @@
 //! Do two trees come within a tolerance?
 
-use super::frames::{Carrier, Frames};
-use super::gaps::{Bounds, Gaps, Slab};
+use super::frames::{FrameTransform, Frames};
+use super::gaps::{Bounds, DistanceKernel, SeparatingDirection};
 use super::intersect::push;
 use super::leaves::near_each_other;
 use super::{LEAF, Tree};
@@ -28,7 +28,8 @@ impl Kernel for Within<'_> {
     fn run<L: Lanes>(mut self) -> bool {
         let (a, b, frames, tolerance) = (self.a, self.b, self.frames, self.tolerance);
         let margin = ((f64::from(frames.pad) + tolerance) * (1.0 + 1e-6)) as f32;
-        let (into_a, into_b) = (Carrier::<L>::new(&frames.into_a), Carrier::<L>::new(&frames.into_b));
+        let (into_a, into_b) =
+            (FrameTransform::<L>::new(&frames.into_a), FrameTransform::<L>::new(&frames.into_b));
         let limit = Limit::new(tolerance, margin);
         let (far_a, far_b) = (a.is_large(), b.is_large());
         let mut tests = 0;
@@ -87,7 +88,7 @@ impl Limit {
 impl Within<'_> {
     /// Whether two triangles of two leaves come near enough.
     #[inline(always)]
-    fn leaf_pair<L: Lanes>(&mut self, i: usize, j: usize, into_a: &Carrier<L>, limit: &Limit) -> bool {
+    fn leaf_pair<L: Lanes>(&mut self, i: usize, j: usize, into_a: &FrameTransform<L>, limit: &Limit) -> bool {
         let (a, b, frames) = (self.a, self.b, self.frames);
         let (leaf_a, leaf_b) = (&a.leaves[i], &b.leaves[j]);
         let boxes = (&a.leaf_boxes[i], &b.leaf_boxes[j]);
@@ -95,7 +96,7 @@ impl Within<'_> {
         if mask_a == 0 || singles == 0 {
             return false;
         }
-        let gaps = Gaps::<L>::new(leaf_a, &Slab::default());
+        let gaps = DistanceKernel::<L>::new(leaf_a, &SeparatingDirection::default());
         while singles != 0 {
             let l = leaf_b.first as usize + singles.trailing_zeros() as usize;
             singles &= singles - 1;

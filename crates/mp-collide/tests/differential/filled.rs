@@ -1,6 +1,6 @@
 //! Filled meshes in scenes: what is wholly inside collides.
 
-use mp_collide::{CollisionMesh, FillError, Query, Scene, Sway};
+use mp_collide::{CollisionMesh, FillError, Query, RigidMotion, Scene};
 use mp_geom::TriMesh;
 use mp_geom::primitives::{cuboid, sphere, torus};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -50,9 +50,9 @@ fn every_query_of_a_scene_knows_the_inside() {
                 let first = scene.first_collision(&mut query, robot, &poses);
                 assert_eq!(first, Some((if solid { 2 } else { 3 }, id)));
                 assert_eq!(scene.first_collision(&mut query, robot, &poses[..3]).is_some(), solid);
-                let sway = Sway::new(Vector3::new(0.0, 0.1, 0.0), Vector3::zeros(), robot.radius());
-                assert_eq!(scene.keeps_clear(&mut query, robot, &inside, &sway, 0.0).is_clear(), !solid);
-                assert!(scene.keeps_clear(&mut query, robot, &outside, &sway, 0.0).is_clear());
+                let motion = RigidMotion::new(Vector3::new(0.0, 0.1, 0.0), Vector3::zeros(), robot.radius());
+                assert_eq!(scene.check_interval(&mut query, robot, &inside, &motion, 0.0).is_free(), !solid);
+                assert!(scene.check_interval(&mut query, robot, &outside, &motion, 0.0).is_free());
                 let contacts = scene.contacts(&mut query, robot, &inside);
                 assert_eq!(contacts.len(), usize::from(solid));
                 // Out of a cube that reaches to 1 from a place at 0.1: 0.9 and the radius.

@@ -1,21 +1,21 @@
 //! Every kind of query on every instruction set: the same answers to the last bit, and the same work wherever products
 //! are fused alike.
 
-use mp_collide::{CollisionMesh, Counters, Isa, Query, Separation, Solid, Stay, Sway};
+use mp_collide::{CollisionMesh, Counters, IntervalCheck, Isa, Query, RigidMotion, Separation, Solid};
 use mp_geom::primitives;
 use nalgebra::{Isometry3, Translation3, Vector3};
 use rand::RngExt;
 
 use crate::common::{Pcg64, bumpy, cuboid, point, pose, rng, soup};
 
-/// What is asked: `a` at `poses` and along `sway` about the first of them, against `b` and `solids` at `here`.
+/// What is asked: `a` at `poses` and along `motion` about the first of them, against `b` and `solids` at `here`.
 struct Case {
     a: CollisionMesh,
     b: CollisionMesh,
     solids: Vec<Solid>,
     here: Isometry3<f64>,
     poses: Vec<Isometry3<f64>>,
-    sway: Sway,
+    motion: RigidMotion,
 }
 
 impl Case {
@@ -42,7 +42,7 @@ impl Case {
         let along = point(rng, 0.05).coords;
         let at = |i: i32| Translation3::from(along * f64::from(i)) * from;
         Self {
-            sway: Sway::new(along, point(rng, 0.05).coords, a.radius()),
+            motion: RigidMotion::new(along, point(rng, 0.05).coords, a.radius()),
             poses: (0..20).map(at).collect(),
             here: if kind.is_multiple_of(2) { Isometry3::identity() } else { pose(rng, 0.5) },
             solids: solids.map(Result::unwrap).to_vec(),
@@ -70,7 +70,7 @@ impl Case {
             clearance: near.map(|part| query.clearance(a, at, b, here, part * d)),
             escape: query.escape(a, at, b, here),
             first: query.first_collision(a, poses, b, here),
-            keeps_clear: query.keeps_clear(a, at, &self.sway, b, here, 0.1),
+            check_interval: query.check_interval(a, at, &self.motion, b, here, 0.1),
             apart,
             solids,
         }
@@ -86,7 +86,7 @@ struct Answers {
     clearance: [f64; 6],
     escape: Option<Vector3<f64>>,
     first: Option<usize>,
-    keeps_clear: Stay,
+    check_interval: IntervalCheck,
     solids: Vec<(Separation, [bool; 6], f64)>,
 }
 

@@ -1,6 +1,6 @@
 //! Batches of poses and whole motions, against single poses.
 
-use mp_collide::{CollisionMesh, Isa, Query, Stay, Sway};
+use mp_collide::{CollisionMesh, IntervalCheck, Isa, Query, RigidMotion};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
@@ -112,17 +112,17 @@ fn batches_are_exact_at_contact() {
     }
 }
 
-/// A stretch of a motion and the pose at `t` in [−1, 1].
-fn stretch(rng: &mut Pcg64, radius: f64) -> (Isometry3<f64>, Sway) {
+/// An interval of a motion and the pose at `t` in [−1, 1].
+fn interval(rng: &mut Pcg64, radius: f64) -> (Isometry3<f64>, RigidMotion) {
     let size = 10.0_f64.powf(rng.random_range(-6.0..0.0));
     let mut part = || if rng.random_range(0..4) == 0 { Vector3::zeros() } else { point(rng, size).coords };
-    let sway = Sway::new(part(), part(), radius);
-    (pose(rng, 1.8), sway)
+    let motion = RigidMotion::new(part(), part(), radius);
+    (pose(rng, 1.8), motion)
 }
 
-fn along(middle: &Isometry3<f64>, sway: &Sway, t: f64) -> Isometry3<f64> {
-    let turned = UnitQuaternion::from_scaled_axis(sway.turn * t) * middle.rotation;
-    Isometry3::from_parts(Translation3::from(middle.translation.vector + sway.shift * t), turned)
+fn along(middle: &Isometry3<f64>, motion: &RigidMotion, t: f64) -> Isometry3<f64> {
+    let turned = UnitQuaternion::from_scaled_axis(motion.turn * t) * middle.rotation;
+    Isometry3::from_parts(Translation3::from(middle.translation.vector + motion.shift * t), turned)
 }
 
 #[test]
@@ -134,38 +134,40 @@ fn what_is_clear_stays_clear_and_wide_room_is_found_clear() {
         let (a, b) = pair(&mut rng, kind);
         let (a, b) = (CollisionMesh::new(&a), CollisionMesh::new(&b));
         for _ in 0..30 {
-            let (middle, sway) = stretch(&mut rng, a.radius());
+            let (middle, motion) = interval(&mut rng, a.radius());
             let here = if kind % 2 == 0 { Isometry3::identity() } else { pose(&mut rng, 0.5) };
             let margin = 10.0_f64.powf(rng.random_range(-9.0..-1.0));
-            let answers: Vec<Stay> =
-                queries.iter_mut().map(|q| q.keeps_clear(&a, &middle, &sway, &b, &here, margin)).collect();
+            let answers: Vec<IntervalCheck> = queries
+                .iter_mut()
+                .map(|q| q.check_interval(&a, &middle, &motion, &b, &here, margin))
+                .collect();
             assert!(answers.iter().all(|x| *x == answers[0]), "{kind} {answers:?}");
             let query = &mut queries[0];
             let mut room_at = |at: f64| {
                 assert!(at.abs() <= 1.0);
-                query.clearance(&a, &along(&middle, &sway, at), &b, &here, f64::INFINITY)
+                query.clearance(&a, &along(&middle, &motion, at), &b, &here, f64::INFINITY)
             };
             match answers[0] {
                 // Poses are equal to rounding.
-                Stay::Contact { at } => {
+                IntervalCheck::Collision { at } => {
                     assert!(room_at(at) < 1e-12, "{kind} {at}");
                     contact += 1;
                 }
-                Stay::Tight { at } => {
+                IntervalCheck::TooClose { at } => {
                     assert!(room_at(at) < margin + 1e-12, "{kind} {at}");
                     tight += 1;
                 }
-                Stay::Clear | Stay::Near => {}
+                IntervalCheck::Free | IntervalCheck::Unproven => {}
             }
             let room = query.clearance(&a, &middle, &b, &here, f64::INFINITY);
-            if room >= (sway.most + margin) * (1.0 + 1e-9) + 1e-12 {
-                assert!(answers[0].is_clear(), "{kind} {room} {margin} {sway:?}");
+            if room >= (motion.most + margin) * (1.0 + 1e-9) + 1e-12 {
+                assert!(answers[0].is_free(), "{kind} {room} {margin} {motion:?}");
             }
-            if answers[0].is_clear() {
+            if answers[0].is_free() {
                 clear += 1;
-                beyond += u32::from(room < sway.most + margin);
+                beyond += u32::from(room < motion.most + margin);
                 for i in -32..=32 {
-                    let at = along(&middle, &sway, f64::from(i) / 32.0);
+                    let at = along(&middle, &motion, f64::from(i) / 32.0);
                     let clearance = query.clearance(&a, &at, &b, &here, 2.0 * margin);
                     assert!(clearance >= margin - 1e-13, "{kind} {clearance} {margin} at {i}");
                 }
@@ -189,7 +191,7 @@ fn sliding_past_is_clear_to_the_margin() {
         let margin = 10.0_f64.powf(rng.random_range(-3.0..-1.0));
         let along = Vector3::new(0.0, rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0));
         let place = Vector3::new(3.0, along.y, along.z);
-        let sway = Sway::new(here.rotation * along, Vector3::zeros(), a.radius());
+        let motion = RigidMotion::new(here.rotation * along, Vector3::zeros(), a.radius());
         let mut at = here * Isometry3::from_parts(Translation3::from(place), rotation(&mut rng));
         let room = queries[0].clearance(&a, &at, &wall, &here, f64::INFINITY);
         for (part, clear) in [(1.01, true), (0.99, false)] {
@@ -197,15 +199,15 @@ fn sliding_past_is_clear_to_the_margin() {
             let mut at = at;
             at.translation.vector -= nearer;
             for query in &mut queries {
-                let stay = query.keeps_clear(&a, &at, &sway, &wall, &here, margin);
-                assert_eq!(stay.is_clear(), clear, "{round} {part} {margin} {stay:?}");
+                let found = query.check_interval(&a, &at, &motion, &wall, &here, margin);
+                assert_eq!(found.is_free(), clear, "{round} {part} {margin} {found:?}");
             }
         }
         // As far as the wall, and into it.
         at.translation.vector -= here.rotation * Vector3::x() * (room + 1e-9);
-        let stay = queries[0].keeps_clear(&a, &at, &sway, &wall, &here, margin);
-        assert!(!stay.is_clear(), "{round}");
-        placed += u32::from(stay != Stay::Near);
+        let found = queries[0].check_interval(&a, &at, &motion, &wall, &here, margin);
+        assert!(!found.is_free(), "{round}");
+        placed += u32::from(found != IntervalCheck::Unproven);
     }
     assert!(placed > 60, "{placed}");
 }
@@ -221,10 +223,10 @@ fn no_wall_is_too_thin() {
         let thickness = if exponent == 13 { 0.0 } else { 0.1_f64.powi(exponent) };
         let b = CollisionMesh::new(&cuboid(Vector3::new(0.5 * thickness, 3.0, 3.0)));
         for _ in 0..200 {
-            let (mut middle, sway) = stretch(&mut rng, a.radius());
-            // Somewhere in the stretch the origin is in the wall.
-            middle.translation.vector.x = sway.shift.x * rng.random_range(-1.0..1.0);
-            assert!(!query.keeps_clear(&a, &middle, &sway, &b, &here, 0.0).is_clear(), "{exponent}");
+            let (mut middle, motion) = interval(&mut rng, a.radius());
+            // Somewhere in the interval the origin is in the wall.
+            middle.translation.vector.x = motion.shift.x * rng.random_range(-1.0..1.0);
+            assert!(!query.check_interval(&a, &middle, &motion, &b, &here, 0.0).is_free(), "{exponent}");
         }
     }
 }
@@ -234,15 +236,15 @@ fn bad_stretches_are_not_clear() {
     let mesh = CollisionMesh::new(&cuboid(Vector3::new(0.1, 0.1, 0.1)));
     let (here, far) = (Isometry3::identity(), Isometry3::translation(9.0, 0.0, 0.0));
     let mut query = Query::default();
-    let mut clear = |middle, sway: Sway, margin| {
-        query.keeps_clear(&mesh, &middle, &sway, &mesh, &here, margin).is_clear()
+    let mut clear = |middle, motion: RigidMotion, margin| {
+        query.check_interval(&mesh, &middle, &motion, &mesh, &here, margin).is_free()
     };
-    let still = Sway::new(Vector3::zeros(), Vector3::zeros(), 1.0);
+    let still = RigidMotion::new(Vector3::zeros(), Vector3::zeros(), 1.0);
     assert!(clear(far, still, 1.0) && clear(far, still, -1.0) && !clear(here, still, 0.0));
     for x in [f64::NAN, f64::INFINITY, 1e300] {
-        assert!(!clear(far, Sway { shift: Vector3::new(x, 0.0, 0.0), ..still }, 0.0));
-        assert!(!clear(far, Sway { turn: Vector3::new(0.0, x, 0.0), ..still }, 0.0));
-        assert!(!clear(far, Sway { most: x, ..still }, 0.0) && !clear(far, still, x));
+        assert!(!clear(far, RigidMotion { shift: Vector3::new(x, 0.0, 0.0), ..still }, 0.0));
+        assert!(!clear(far, RigidMotion { turn: Vector3::new(0.0, x, 0.0), ..still }, 0.0));
+        assert!(!clear(far, RigidMotion { most: x, ..still }, 0.0) && !clear(far, still, x));
         assert!(!clear(Isometry3::translation(0.0, 0.0, x), still, 0.0));
     }
 }

@@ -1,6 +1,6 @@
 //! The geometry of obstacles behind a pointer.
 
-use crate::{ObstacleGeometry, ObstacleHints, Outline, PointOf, Rng};
+use crate::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf, Rng};
 use nalgebra::Vector3;
 use std::fmt;
 
@@ -53,10 +53,10 @@ impl<S> ObstacleHints<S> for AnyGeometry<'_, S> {
 }
 
 impl<S> ObstacleGeometry<S> for AnyGeometry<'_, S> {
-    fn obstacles(&self) -> &[Outline] {
+    fn obstacles(&self) -> &[BodyFeatures] {
         self.0.obstacles()
     }
-    fn robot(&self) -> Outline {
+    fn robot(&self) -> BodyFeatures {
         self.0.robot()
     }
     fn touched(&mut self, q: &S) -> Option<usize> {

@@ -7,7 +7,7 @@ use std::fmt::Debug;
 /// An edge that remembers how it was made: run from the state before it, the input leads in `duration`
 /// to the state after it, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Leg<U> {
+pub struct ControlSegment<U> {
     /// What the system is told.
     pub input: U,
     /// For how long, seconds.
@@ -91,11 +91,11 @@ impl<S, U, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Between<L> {
 pub struct Recorded<L>(pub L);
 
 impl<S, U: Input, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Recorded<L> {
-    type Edge = Leg<U>;
+    type Edge = ControlSegment<U>;
     const REPLAYED: bool = true;
 
     #[inline]
-    fn test(&mut self, _: &F, drive: &Drive<'_, S, U>) -> Option<(Leg<U>, f64)> {
+    fn test(&mut self, _: &F, drive: &Drive<'_, S, U>) -> Option<(ControlSegment<U>, f64)> {
         let free = self.0.extend(drive.node, drive.successor, drive.direction, Reach::Full);
         matches!(free, Extension::Reached(_)).then(|| leg(drive))
     }
@@ -104,8 +104,8 @@ impl<S, U: Input, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Recorded<L> {
     }
 }
 
-fn leg<S, U: Input>(drive: &Drive<'_, S, U>) -> (Leg<U>, f64) {
-    (Leg { input: drive.input.clone(), duration: drive.duration }, drive.duration)
+fn leg<S, U: Input>(drive: &Drive<'_, S, U>) -> (ControlSegment<U>, f64) {
+    (ControlSegment { input: drive.input.clone(), duration: drive.duration }, drive.duration)
 }
 
 /// Motions are sampled along the flow, whatever it is: the successor first, then states on the way no
@@ -114,7 +114,7 @@ fn leg<S, U: Input>(drive: &Drive<'_, S, U>) -> (Leg<U>, f64) {
 /// **What it does not promise:** as with [`Discrete`](crate::Discrete), between tested states anything
 /// may be hit.
 #[derive(Clone, Debug)]
-pub struct Along<'c, C: Space, V> {
+pub struct DiscreteFlowCheck<'c, C: Space, V> {
     /// The space to measure in.
     pub space: &'c C,
     /// Whether a state is free.
@@ -129,7 +129,7 @@ const MAX_STATES: usize = 1 << 20;
 /// Parts in which the length of a motion is measured.
 const LENGTH_PARTS: u32 = 8;
 
-impl<'c, C: Space, V: Validity<C::State>> Along<'c, C, V> {
+impl<'c, C: Space, V: Validity<C::State>> DiscreteFlowCheck<'c, C, V> {
     /// Tests states by `valid` every `resolution`.
     ///
     /// # Errors
@@ -181,17 +181,17 @@ impl<'c, C: Space, V: Validity<C::State>> Along<'c, C, V> {
     }
 }
 
-impl<C, U, F, V> FlowCheck<C::State, U, F> for Along<'_, C, V>
+impl<C, U, F, V> FlowCheck<C::State, U, F> for DiscreteFlowCheck<'_, C, V>
 where
     C: Space,
     U: Input,
     F: Flow<C::State, U>,
     V: Validity<C::State>,
 {
-    type Edge = Leg<U>;
+    type Edge = ControlSegment<U>;
     const REPLAYED: bool = true;
 
-    fn test(&mut self, flow: &F, drive: &Drive<'_, C::State, U>) -> Option<(Leg<U>, f64)> {
+    fn test(&mut self, flow: &F, drive: &Drive<'_, C::State, U>) -> Option<(ControlSegment<U>, f64)> {
         if !self.valid.is_valid(drive.successor) || !self.walk(flow, drive) {
             return None;
         }

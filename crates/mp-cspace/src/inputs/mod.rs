@@ -24,7 +24,7 @@ mod rk4;
 mod set;
 mod wheels;
 
-pub use check::{Along, Between, Drive, FlowCheck, Leg, OnPosition, Recorded};
+pub use check::{Between, ControlSegment, DiscreteFlowCheck, Drive, FlowCheck, OnPosition, Recorded};
 pub use double_integrator::DoubleIntegrator;
 pub use error::InputError;
 pub use flow::{Flow, Input, InputMut};

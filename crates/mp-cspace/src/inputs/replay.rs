@@ -1,13 +1,13 @@
 //! Verifying edges by running them again.
 
-use super::{Flow, Leg};
+use super::{ControlSegment, Flow};
 use crate::{MotionCheck, MotionValidity, ParameterError, Resolution, Space, Validity};
 
 /// Not the motion it is said to be: refused at its end.
-const FALSE: MotionCheck = MotionCheck::Undecided { at: 1.0 };
+const FALSE: MotionCheck = MotionCheck::Unproven { at: 1.0 };
 
 /// Whether running the edge leads from `from` to `to`, bit for bit.
-fn replays<S: PartialEq, U, F: Flow<S, U>>(flow: &F, from: &S, leg: &Leg<U>, to: &S) -> bool {
+fn replays<S: PartialEq, U, F: Flow<S, U>>(flow: &F, from: &S, leg: &ControlSegment<U>, to: &S) -> bool {
     let runs = leg.duration > 0.0 && leg.duration.is_finite();
     runs && flow.integrate(from, &leg.input, leg.duration) == *to
 }
@@ -29,7 +29,7 @@ impl<F, V> ReplayMotions<F, V> {
     }
 
     /// Verifies one edge, in forward time.
-    pub fn check_leg<S: PartialEq, U>(&mut self, from: &S, leg: &Leg<U>, to: &S) -> MotionCheck
+    pub fn check_leg<S: PartialEq, U>(&mut self, from: &S, leg: &ControlSegment<U>, to: &S) -> MotionCheck
     where
         F: Flow<S, U>,
         V: MotionValidity<S>,
@@ -48,7 +48,7 @@ impl<F, V> ReplayMotions<F, V> {
 
 /// Verifies any edge that remembers its input: runs it again, which must end in the very state after it,
 /// and walks along it in steps of a resolution, some twenty times finer than that of the local planner. Shares only the
-/// flow with [`Along`](super::Along): the flow is what a motion *is*.
+/// flow with [`DiscreteFlowCheck`](super::DiscreteFlowCheck): the flow is what a motion *is*.
 #[derive(Clone, Debug)]
 pub struct ReplayFinely<'c, C, F, V> {
     space: &'c C,
@@ -74,7 +74,7 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
     }
 
     /// Verifies one edge, in forward time.
-    pub fn check_leg<U>(&mut self, from: &C::State, leg: &Leg<U>, to: &C::State) -> MotionCheck
+    pub fn check_leg<U>(&mut self, from: &C::State, leg: &ControlSegment<U>, to: &C::State) -> MotionCheck
     where
         F: Flow<C::State, U>,
     {
@@ -84,7 +84,7 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
         let (mut at, mut pace, mut q) = (0.0_f64, 0.01_f64, from.clone());
         loop {
             if !self.is_free(&q) {
-                return MotionCheck::Collides { at };
+                return MotionCheck::Collision { at };
             }
             if at >= 1.0 {
                 return MotionCheck::Free { clearance: 0.0 };
@@ -101,7 +101,7 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
                 }
                 pace *= 0.5;
                 if pace <= SHORTEST {
-                    return MotionCheck::Undecided { at };
+                    return MotionCheck::Unproven { at };
                 }
             };
             (at, q) = next;
@@ -111,7 +111,11 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
 
     /// Verifies one state.
     pub fn check_state(&mut self, q: &C::State) -> MotionCheck {
-        if self.is_free(q) { MotionCheck::Free { clearance: 0.0 } } else { MotionCheck::Collides { at: 0.0 } }
+        if self.is_free(q) {
+            MotionCheck::Free { clearance: 0.0 }
+        } else {
+            MotionCheck::Collision { at: 0.0 }
+        }
     }
 
     fn is_free(&mut self, q: &C::State) -> bool {

@@ -7,7 +7,7 @@ use crate::{
 use nalgebra::Isometry3;
 
 /// A space whose states are a position and a rotation.
-pub trait Poses: Space {
+pub trait PoseSpace: Space {
     /// The position of the one state with the rotation of the other.
     ///
     /// Contract: interpolation between states of the same rotation does not turn, and between states of the same
@@ -15,26 +15,26 @@ pub trait Poses: Space {
     fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State;
 }
 
-impl Poses for Se3 {
+impl PoseSpace for Se3 {
     fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State {
         Isometry3::from_parts(position.translation, rotation.rotation)
     }
 }
 
-impl Poses for Se2 {
+impl PoseSpace for Se2 {
     fn posed(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
         Se2State { translation: position.translation, angle: rotation.angle }
     }
 }
 
-impl<C: Poses, M: MetricOn<C>> Poses for WithMetric<C, M> {
+impl<C: PoseSpace, M: MetricOn<C>> PoseSpace for WithMetric<C, M> {
     fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State {
         self.space().posed(position, rotation)
     }
 }
 
 /// The states where rotate-at-s turns on its way from `from` to `to`: before and after the turn. `at` in \[0, 1\].
-pub fn turn_at<C: Poses>(space: &C, from: &C::State, to: &C::State, at: f64) -> [C::State; 2] {
+pub fn turn_at<C: PoseSpace>(space: &C, from: &C::State, to: &C::State, at: f64) -> [C::State; 2] {
     let middle = space.interpolate(from, to, at);
     [space.posed(&middle, from), space.posed(&middle, to)]
 }
@@ -95,7 +95,7 @@ pub struct RotateAtS<'c, C, M> {
     at: f64,
 }
 
-impl<'c, C: Poses, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
+impl<'c, C: PoseSpace, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
     /// Motions in `space` that turn at fraction `at` of the way, checked by `check`.
     ///
     /// # Errors
@@ -137,7 +137,7 @@ impl<'c, C: Poses, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
     }
 }
 
-impl<C: Poses, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS<'_, C, M> {
+impl<C: PoseSpace, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS<'_, C, M> {
     type Edge = Via<C::State>;
     fn extend(
         &mut self,

@@ -2,7 +2,8 @@
 
 use super::discrete::bit_reversed;
 use crate::{
-    Clearance, KnownFree, MotionBound, MotionCheck, MotionValidity, ParameterError, Room, Space, Stretch,
+    Clearance, IntervalClearance, KnownFree, MotionBound, MotionCheck, MotionInterval, MotionValidity,
+    ParameterError, Space,
 };
 use std::collections::VecDeque;
 
@@ -10,7 +11,7 @@ use std::collections::VecDeque;
 ///
 /// Where the robot has clearance `c` and no point of it travels farther than `L` over the whole
 /// motion, all states within a fraction `(c - margin) / L` of the motion to either side have
-/// clearance at least `margin`. The check covers the motion with such stretches: first one in the
+/// clearance at least `margin`. The check covers the motion with such intervals: first one in the
 /// middle, then in the middles of what is left, in order of size, so that the parts about which
 /// least is known come first.
 ///
@@ -19,12 +20,12 @@ use std::collections::VecDeque;
 ///   verifier that asks for less always agrees;
 /// - a motion whose clearance (as [`Clearance`] bounds it) is at least `tolerance` all along is
 ///   found free;
-/// - what is between may be [`Undecided`](MotionCheck::Undecided), which planners treat as a
+/// - what is between may be [`Undecided`](MotionCheck::Unproven), which planners treat as a
 ///   collision.
 ///
 /// Contact is looked for first, at the end, and at some places between where [that is
-/// cheap](Clearance::contact_first). At most `4·L / tolerance + 2` stretches are asked about. As distances cost the more the farther
-/// they reach, no stretch is longer than twice the [stride](Certified::with_stride).
+/// cheap](Clearance::contact_first). At most `4·L / tolerance + 2` intervals are asked about. As distances cost the more the farther
+/// they reach, no interval is longer than twice the [stride](Certified::with_stride).
 ///
 /// The idea is conservative advancement (Mirtich 1996), bisected as in Schwarzer, Saha and
 /// Latombe 2005, *Adaptive dynamic collision checking for single and multiple articulated robots*.
@@ -91,7 +92,7 @@ where
         })
     }
 
-    /// Covers the motion, no point of which travels farther than `travel`, with stretches that have
+    /// Covers the motion, no point of which travels farther than `travel`, with intervals that have
     /// clearance.
     fn cover(&mut self, from: &C::State, to: &C::State, travel: f64) -> MotionCheck {
         let margin = self.margin();
@@ -102,7 +103,7 @@ where
         self.open.push_back((0.0, 1.0));
         while let Some((a, b)) = self.open.pop_front() {
             let at = 0.5 * (a + b);
-            // As many equal stretches as it takes; an odd number has one in the middle.
+            // As many equal intervals as it takes; an odd number has one in the middle.
             let pieces = (0.5 * (b - a) * travel / stride).ceil().max(1.0);
             if pieces % 2.0 == 0.0 {
                 self.open.extend([(a, at), (at, b)]);
@@ -110,29 +111,33 @@ where
             }
             let half = 0.5 * (b - a) / pieces;
             self.space.interpolate_into(from, to, at, &mut q);
-            let stretch = Stretch { from, to, middle: &q, half, travel: half * travel, margin };
-            let covered = match self.valid.room(&stretch) {
-                Room::Contact { at: beside } => {
+            let interval = MotionInterval { from, to, middle: &q, half, travel: half * travel, margin };
+            let covered = match self.valid.interval_clearance(&interval) {
+                IntervalClearance::Collision { at: beside } => {
                     let at = at + half * beside;
                     self.space.interpolate_into(from, to, at, &mut q);
                     // States of the motion are within rounding of those that were looked at.
                     let collides = beside == 0.0 || self.valid.in_contact(&q);
                     return if collides {
-                        MotionCheck::Collides { at }
+                        MotionCheck::Collision { at }
                     } else {
-                        MotionCheck::Undecided { at }
+                        MotionCheck::Unproven { at }
                     };
                 }
-                Room::Tight { at: beside } => return MotionCheck::Undecided { at: at + half * beside },
-                Room::Near if stretch.travel <= margin => return MotionCheck::Undecided { at },
-                Room::Near => 0.0,
-                Room::Over { part } => {
+                IntervalClearance::TooClose { at: beside } => {
+                    return MotionCheck::Unproven { at: at + half * beside };
+                }
+                IntervalClearance::Unproven if interval.travel <= margin => {
+                    return MotionCheck::Unproven { at };
+                }
+                IntervalClearance::Unproven => 0.0,
+                IntervalClearance::FreeOver { part } => {
                     least = least.min(margin);
                     part
                 }
-                Room::Clear { clearance } => {
+                IntervalClearance::Free { clearance } => {
                     let reach = (clearance - margin) / travel;
-                    let covered = if clearance >= stretch.travel + margin { reach.max(half) } else { reach };
+                    let covered = if clearance >= interval.travel + margin { reach.max(half) } else { reach };
                     // As far out as it is relied on.
                     let relied = covered.min(b - at) * travel;
                     least = least.min((clearance - relied).max(margin));
@@ -165,19 +170,19 @@ where
         // Written so that NaN fails it too.
         let provable = travel / self.tolerance < MAX_TOLERANCES;
         if !provable {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         // Contact is likeliest at the end that nobody has tested.
         if known != KnownFree::To && self.valid.in_contact(to) {
-            return MotionCheck::Collides { at: 1.0 };
+            return MotionCheck::Collision { at: 1.0 };
         }
         if known == KnownFree::To && self.valid.in_contact(from) {
-            return MotionCheck::Collides { at: 0.0 };
+            return MotionCheck::Collision { at: 0.0 };
         }
         if self.valid.contact_first()
             && let Some(at) = self.contact(from, to, travel)
         {
-            return MotionCheck::Collides { at };
+            return MotionCheck::Collision { at };
         }
         self.cover(from, to, travel)
     }
@@ -235,19 +240,19 @@ mod tests {
         fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
             self.0.clearance(q, enough)
         }
-        fn room(&mut self, stretch: &Stretch<'_, Vector2<f64>>) -> Room {
+        fn interval_clearance(&mut self, interval: &MotionInterval<'_, Vector2<f64>>) -> IntervalClearance {
             self.0.asked.set(self.0.asked.get() + 1);
-            let part = (stretch.to - stretch.from) * stretch.half;
-            let middle = *stretch.middle;
-            assert!((part.norm() - stretch.travel).abs() < 1e-12);
+            let part = (interval.to - interval.from) * interval.half;
+            let middle = *interval.middle;
+            assert!((part.norm() - interval.travel).abs() < 1e-12);
             let places = [-0.9, -0.3, 0.0, 0.3, 0.9];
             let contact = places.into_iter().find(|at| self.0.exact(&(middle + part * *at)) <= 0.0);
             if let Some(at) = contact {
-                Room::Contact { at }
-            } else if self.0.along(&(middle - part), &(middle + part)) >= stretch.margin {
-                Room::Clear { clearance: stretch.travel + stretch.margin }
+                IntervalClearance::Collision { at }
+            } else if self.0.along(&(middle - part), &(middle + part)) >= interval.margin {
+                IntervalClearance::Free { clearance: interval.travel + interval.margin }
             } else {
-                Room::Near
+                IntervalClearance::Unproven
             }
         }
         fn contact_first(&self) -> bool {
@@ -278,11 +283,11 @@ mod tests {
                 MotionCheck::Free { clearance } => {
                     assert!(clearance >= tolerance / 2.0 && clearance <= exact + 1e-12);
                 }
-                MotionCheck::Collides { at } => {
+                MotionCheck::Collision { at } => {
                     assert!(check.valid.0.exact(&a.lerp(&b, at)) <= 0.0);
                     hits += 1;
                 }
-                MotionCheck::Undecided { .. } => assert!(exact < tolerance),
+                MotionCheck::Unproven { .. } => assert!(exact < tolerance),
             }
             let bound = 4.0 * (b - a).norm() / tolerance + 2.0;
             assert!(f64::from(check.valid.0.asked.get()) <= bound);
@@ -307,11 +312,11 @@ mod tests {
                     assert!(clearance >= tolerance / 2.0 && clearance <= exact + 1e-12);
                     free += 1;
                 }
-                MotionCheck::Collides { at } => {
+                MotionCheck::Collision { at } => {
                     assert!(check.valid.exact(&a.lerp(&b, at)) <= 0.0);
                     refused += 1;
                 }
-                MotionCheck::Undecided { at } => {
+                MotionCheck::Unproven { at } => {
                     assert!(check.valid.exact(&a.lerp(&b, at)) < tolerance && exact < tolerance);
                 }
             }
@@ -321,7 +326,7 @@ mod tests {
         assert!(free > 2000 && refused > 2000);
     }
 
-    /// A check that answers more than it is asked, as bounds on boxes do: covered far beyond the stretch, and the
+    /// A check that answers more than it is asked, as bounds on boxes do: covered far beyond the interval, and the
     /// clearance out there is what counts.
     #[test]
     fn reports_no_more_clearance_than_there_is() {
@@ -360,13 +365,16 @@ mod tests {
             fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
                 self.0.clearance(q, enough)
             }
-            fn room(&mut self, stretch: &Stretch<'_, Vector2<f64>>) -> Room {
+            fn interval_clearance(
+                &mut self,
+                interval: &MotionInterval<'_, Vector2<f64>>,
+            ) -> IntervalClearance {
                 self.0.asked.set(self.0.asked.get() + 1);
-                let clearance = self.0.exact(stretch.middle);
-                match Room::of(clearance, stretch.margin) {
-                    Room::Clear { clearance } => {
-                        let travel = (stretch.to - stretch.from).norm();
-                        Room::Over { part: (clearance - stretch.margin) / travel }
+                let clearance = self.0.exact(interval.middle);
+                match IntervalClearance::of(clearance, interval.margin) {
+                    IntervalClearance::Free { clearance } => {
+                        let travel = (interval.to - interval.from).norm();
+                        IntervalClearance::FreeOver { part: (clearance - interval.margin) / travel }
                     }
                     other => other,
                 }
@@ -430,8 +438,8 @@ mod tests {
         let discs = || Discs { discs: vec![(Vector2::new(0.5, 0.5), 0.1)], ..Discs::default() };
         let mut check = Certified::new(&space, discs(), 0.01).unwrap();
         let (inside, near, out) = (Vector2::new(0.5, 0.5), Vector2::new(0.603, 0.5), Vector2::new(0.8, 0.5));
-        assert_eq!(check.check_motion(&inside, &inside), MotionCheck::Collides { at: 1.0 });
-        assert_eq!(check.check_motion(&near, &near), MotionCheck::Undecided { at: 0.5 });
+        assert_eq!(check.check_motion(&inside, &inside), MotionCheck::Collision { at: 1.0 });
+        assert_eq!(check.check_motion(&near, &near), MotionCheck::Unproven { at: 0.5 });
         assert!(check.check_motion(&out, &out).is_free());
         for x in [f64::NAN, f64::INFINITY, 1e300] {
             assert!(!check.check_motion(&out, &Vector2::new(x, 0.0)).is_free());

@@ -88,13 +88,13 @@ impl<C: Space, V: Validity<C::State>> MotionValidity<C::State> for Discrete<'_, 
     fn check_extension(&mut self, from: &C::State, to: &C::State, known: KnownFree) -> MotionCheck {
         let parts = (self.space.distance(from, to) / self.step).ceil();
         if parts.is_nan() || parts > MAX_PARTS {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         if known != KnownFree::To && !self.valid.is_valid(to) {
-            return MotionCheck::Collides { at: 1.0 };
+            return MotionCheck::Collision { at: 1.0 };
         }
         if known != KnownFree::From && !self.valid.is_valid(from) {
-            return MotionCheck::Collides { at: 0.0 };
+            return MotionCheck::Collision { at: 0.0 };
         }
         let parts = parts as u64;
         let hit = match self.valid.batch_size() {
@@ -102,7 +102,7 @@ impl<C: Space, V: Validity<C::State>> MotionValidity<C::State> for Discrete<'_, 
             size => self.in_batches(from, to, parts, size),
         };
         match hit {
-            Some(at) => MotionCheck::Collides { at },
+            Some(at) => MotionCheck::Collision { at },
             None => MotionCheck::Free { clearance: 0.0 },
         }
     }

@@ -31,14 +31,14 @@ impl<C: Space, V: Validity<C::State>> MotionValidity<C::State> for FineDiscrete<
         // Written so that NaN fails it too.
         let walkable = length / self.step < 1e10;
         if !walkable {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         let mut walked = 0.0;
         let mut steps = 0_u64;
         while walked < length {
             let t = walked / length;
             if !self.valid.is_valid(&self.space.interpolate(from, to, t)) {
-                return MotionCheck::Collides { at: t };
+                return MotionCheck::Collision { at: t };
             }
             steps += 1;
             walked = steps as f64 * self.step;
@@ -46,7 +46,7 @@ impl<C: Space, V: Validity<C::State>> MotionValidity<C::State> for FineDiscrete<
         if self.valid.is_valid(from) && self.valid.is_valid(to) {
             MotionCheck::Free { clearance: 0.0 }
         } else {
-            MotionCheck::Collides { at: 1.0 }
+            MotionCheck::Collision { at: 1.0 }
         }
     }
 }

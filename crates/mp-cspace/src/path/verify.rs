@@ -30,10 +30,10 @@ impl fmt::Display for PathFault {
         match *self {
             Self::Empty => write!(f, "the path has no state"),
             Self::OutOfBounds { state } => write!(f, "state {state} is out of bounds"),
-            Self::Motion { edge, check: MotionCheck::Collides { at } } => {
+            Self::Motion { edge, check: MotionCheck::Collision { at } } => {
                 write!(f, "edge {edge} collides at {:.1}% of its length", percent(at))
             }
-            Self::Motion { edge, check: MotionCheck::Undecided { at } } => {
+            Self::Motion { edge, check: MotionCheck::Unproven { at } } => {
                 write!(f, "edge {edge} is too near contact at {:.1}% of its length", percent(at))
             }
             Self::Motion { edge, check: MotionCheck::Free { .. } } => write!(f, "edge {edge} is free"),
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn reports_read_well() {
-        let fault = PathFault::Motion { edge: 3, check: MotionCheck::Collides { at: 0.25 } };
+        let fault = PathFault::Motion { edge: 3, check: MotionCheck::Collision { at: 0.25 } };
         assert_eq!(fault.to_string(), "edge 3 collides at 25.0% of its length");
     }
 }

@@ -174,8 +174,8 @@ impl BuildError {
 fn describe(check: &MotionCheck) -> &'static str {
     match check {
         MotionCheck::Free { .. } => "free",
-        MotionCheck::Collides { .. } => "in collision",
-        MotionCheck::Undecided { .. } => "within tolerance of contact",
+        MotionCheck::Collision { .. } => "in collision",
+        MotionCheck::Unproven { .. } => "within tolerance of contact",
     }
 }
 

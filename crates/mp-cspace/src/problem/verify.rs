@@ -1,6 +1,6 @@
 //! The independent check of finished paths.
 
-use crate::inputs::{Flow, Leg, ReplayFinely, ReplayMotions};
+use crate::inputs::{ControlSegment, Flow, ReplayFinely, ReplayMotions};
 use crate::{MotionCheck, MotionValidity, Space, Validity, Via};
 
 /// Verifies states and edges of a candidate path, sharing nothing with the local planner.
@@ -35,24 +35,26 @@ impl<S, V: MotionValidity<S>> Verify<S, Via<S>> for V {
             let whole = |at| (part as f64 + at) / (edge.0.len() + 1) as f64;
             match self.check_motion(a, b) {
                 MotionCheck::Free { clearance } => least = least.min(clearance),
-                MotionCheck::Collides { at } => return MotionCheck::Collides { at: whole(at) },
-                MotionCheck::Undecided { at } => return MotionCheck::Undecided { at: whole(at) },
+                MotionCheck::Collision { at } => return MotionCheck::Collision { at: whole(at) },
+                MotionCheck::Unproven { at } => return MotionCheck::Unproven { at: whole(at) },
             }
         }
         MotionCheck::Free { clearance: least }
     }
 }
 
-impl<S: PartialEq, U, F: Flow<S, U>, V: MotionValidity<S>> Verify<S, Leg<U>> for ReplayMotions<F, V> {
+impl<S: PartialEq, U, F: Flow<S, U>, V: MotionValidity<S>> Verify<S, ControlSegment<U>>
+    for ReplayMotions<F, V>
+{
     fn verify_state(&mut self, q: &S) -> MotionCheck {
         self.check_state(q)
     }
-    fn verify_edge(&mut self, from: &S, edge: &Leg<U>, to: &S) -> MotionCheck {
+    fn verify_edge(&mut self, from: &S, edge: &ControlSegment<U>, to: &S) -> MotionCheck {
         self.check_leg(from, edge, to)
     }
 }
 
-impl<C, U, F, V> Verify<C::State, Leg<U>> for ReplayFinely<'_, C, F, V>
+impl<C, U, F, V> Verify<C::State, ControlSegment<U>> for ReplayFinely<'_, C, F, V>
 where
     C: Space,
     F: Flow<C::State, U>,
@@ -61,7 +63,7 @@ where
     fn verify_state(&mut self, q: &C::State) -> MotionCheck {
         self.check_state(q)
     }
-    fn verify_edge(&mut self, from: &C::State, edge: &Leg<U>, to: &C::State) -> MotionCheck {
+    fn verify_edge(&mut self, from: &C::State, edge: &ControlSegment<U>, to: &C::State) -> MotionCheck {
         self.check_leg(from, edge, to)
     }
 }

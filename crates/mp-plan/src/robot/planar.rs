@@ -5,8 +5,8 @@ use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::CompiledIndex;
 use mp_cspace::{
-    ClearanceGradient, Factored, MotionValidity, Numbers, ObstacleHints, ObstacleKnowledge, Rn, Se2,
-    Se2State, Space,
+    ClearanceGradient, Factored, MotionValidity, ObstacleHints, ObstacleKnowledge, Rn, Se2, Se2State, Space,
+    StateVector,
 };
 use mp_geom::Aabb;
 use mp_geom::flat::FlatWorld;
@@ -30,7 +30,7 @@ pub trait PlanarBody:
     Checker<Self::State> + ObstacleHints<Self::State> + ClearanceGradient<Self::State> + Debug + 'static
 {
     /// A configuration.
-    type State: TreeState + RoadmapState + Numbers + 'static;
+    type State: TreeState + RoadmapState + StateVector + 'static;
     /// The space of configurations.
     type Space: Factored + CompiledIndex + Space<State = Self::State> + Debug;
     /// The independent checker.

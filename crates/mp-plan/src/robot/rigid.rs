@@ -10,7 +10,7 @@ use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
     ClearanceGradient, DefaultNn, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn,
-    NnOn, Numbers, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, SweptVolume, TrueMetricOn,
+    NnOn, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetricOn,
     WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
@@ -29,7 +29,7 @@ const PLANAR: f64 = 1e-9;
 const PICTURE_SPACING: f64 = 0.55;
 
 /// How a rigid body moves: [`Spatial`], in SE(3), or [`Planar`], in SE(2).
-pub trait RigidMotion: Placement<State: TreeState + RoadmapState + CoordinateState + Numbers> {
+pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateState + StateVector> {
     /// The space of its configurations.
     type Space: EmbedFactors + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
     /// The metric of the farthest moving point.
@@ -59,7 +59,7 @@ pub trait RigidMotion: Placement<State: TreeState + RoadmapState + CoordinateSta
     fn swept(robot: &TriMesh) -> Result<Self::Swept, Error>;
 }
 
-impl RigidMotion for Spatial {
+impl RigidSpace for Spatial {
     type Space = Se3;
     type Displacement = MaxDisplacement<Point3<f64>>;
     type Swept = SweptVolume;
@@ -78,7 +78,7 @@ impl RigidMotion for Spatial {
     }
 }
 
-impl RigidMotion for Planar {
+impl RigidSpace for Planar {
     type Space = Se2;
     type Displacement = MaxDisplacement<Point2<f64>>;
     type Swept = SweptVolume;
@@ -104,7 +104,7 @@ fn swept(robot: &TriMesh) -> Result<SweptVolume, Error> {
 
 /// A rigid body among meshes, with a start and a goal.
 #[derive(Clone, Debug)]
-pub struct RigidScene<M: RigidMotion> {
+pub struct RigidScene<M: RigidSpace> {
     problem: Problem,
     space: M::Space,
     robot: RigidBody<M>,
@@ -113,7 +113,7 @@ pub struct RigidScene<M: RigidMotion> {
     radius: f64,
 }
 
-impl<M: RigidMotion> RigidScene<M> {
+impl<M: RigidSpace> RigidScene<M> {
     /// Makes `problem` ready.
     ///
     /// # Errors
@@ -153,7 +153,7 @@ impl<P: Placement> Queries for RigidBody<P> {
     }
 }
 
-impl<M: RigidMotion> RobotKind for RigidScene<M> {
+impl<M: RigidSpace> RobotKind for RigidScene<M> {
     type State = M::State;
     type Space = M::Space;
     type Checker = RigidBody<M>;

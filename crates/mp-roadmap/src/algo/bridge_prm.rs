@@ -50,7 +50,7 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::mixed::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
-use crate::{AStar, Mixing, Nearest, PairRule, Pairs, RoadmapPlanner};
+use crate::{AStar, Mixing, NearestConnector, PairRule, Pairs, RoadmapPlanner};
 use mp_cspace::{Bridge, PlannerInfo, Rng, Space, Step};
 
 /// The defaults.
@@ -88,4 +88,5 @@ impl PairRule for BetweenObstacles {
 }
 
 /// Bridge-test PRM: see the [module](self).
-pub type BridgePrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Pairs<BetweenObstacles>, Nearest, AStar, N>;
+pub type BridgePrm<'c, C, L, N> =
+    RoadmapPlanner<'c, C, L, Pairs<BetweenObstacles>, NearestConnector, AStar, N>;

@@ -50,8 +50,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::{
-    AStar, Candidate, EdgeId, Kind, LinkState, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner, Steer,
+    AStar, Candidate, EdgeChecker, EdgeId, Kind, LinkState, NearestConnector, NodeGenerator, Pace, Reachable,
+    Recipe, Roadmap, RoadmapPlanner,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, PlannerInfo, Problem, Reversible, Rng,
@@ -108,7 +108,7 @@ where
         &mut self,
         _: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
@@ -136,7 +136,7 @@ where
 }
 
 /// LazyPRM: see the [module](self).
-pub type LazyPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Unchecked, Nearest, AStar, N>;
+pub type LazyPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Unchecked, NearestConnector, AStar, N>;
 
 impl<'c, C, L, N> LazyPrm<'c, C, L, N>
 where
@@ -161,19 +161,25 @@ where
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe(reach: Reachable, pace: Pace) -> Result<Recipe<Unchecked, Nearest, AStar>, BuildError> {
+pub fn recipe(
+    reach: Reachable,
+    pace: Pace,
+) -> Result<Recipe<Unchecked, NearestConnector, AStar>, BuildError> {
     BuildError::count_within(FIRST.name, pace.first as u64, 1, 1_000_000_000)?;
     BuildError::count_within(MORE.name, pace.more as u64, 1, 1_000_000_000)?;
     Ok(Recipe {
         generate: Unchecked { first: pace.first },
-        connect: Nearest::unchecked(reach)?,
+        connect: NearestConnector::unchecked(reach)?,
         query: AStar::new(),
         pace,
         improves: false,
     })
 }
 
-fn read<C: Space>(space: &C, settings: &Settings) -> Result<Recipe<Unchecked, Nearest, AStar>, BuildError> {
+fn read<C: Space>(
+    space: &C,
+    settings: &Settings,
+) -> Result<Recipe<Unchecked, NearestConnector, AStar>, BuildError> {
     let pace = Pace { first: settings.count_of(&FIRST)? as usize, more: settings.count_of(&MORE)? as usize };
     recipe(reachable(space, settings)?, pace)
 }

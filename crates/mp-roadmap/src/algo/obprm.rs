@@ -24,7 +24,7 @@
 //! A part `uniform` of the attempts are uniform samples; the papers have none, and would leave scenes without obstacles
 //! without nodes. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the `per-obstacle` nearest of
 //! each obstacle (`obstacles`); in stages: first by the local planner, then, to what is still apart, by
-//! rotate-at-s at `turns` fractions of the way: 1/2, 0 and 1, in this order (see [`Stages`]).
+//! rotate-at-s at `turns` fractions of the way: 1/2, 0 and 1, in this order (see [`StagedConnector`]).
 //!
 //! The path found is verified; an edge that fails is blocked. Obstacles here are what hangs together
 //! ([`ObstacleGeometry`]); where the centre of one is outside of the space, or does not collide, points of surfaces stand in.
@@ -76,8 +76,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::mixed::{drew_uniform, part, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Among, Candidate, Kind, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Stages,
-    Steer, Turns,
+    AStar, Candidate, EdgeChecker, Kind, NeighborSet, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
+    RoadmapPlanner, StagedConnector, Turns,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter, PlannerInfo, PointOf,
@@ -121,7 +121,7 @@ pub struct OnSurfaces {
     /// Part of the attempts that are uniform samples.
     pub uniform: f64,
     /// To which nodes a new one is connected.
-    pub among: Among,
+    pub among: NeighborSet,
     /// How many fractions of the way are tried for a turn in place: at most 3.
     pub turns: usize,
 }
@@ -135,7 +135,7 @@ impl Default for OnSurfaces {
             gap: Step::Fraction(0.01),
             shells: 3,
             uniform: 0.1,
-            among: Among::Nearest,
+            among: NeighborSet::NearestConnector,
             turns: 1,
         }
     }
@@ -200,9 +200,9 @@ impl OnSurfaces {
             "surface" => Some(PointOf::Surface),
             _ => None,
         };
-        let each = Among::EachObstacle(settings.count_of(&PER_OBSTACLE)? as usize);
+        let each = NeighborSet::EachObstacle(settings.count_of(&PER_OBSTACLE)? as usize);
         let among = |word: &str| match word {
-            "nearest" => Some(Among::Nearest),
+            "nearest" => Some(NeighborSet::NearestConnector),
             "obstacles" => Some(each),
             _ => None,
         };
@@ -267,7 +267,12 @@ impl<H> OnObstacles<H> {
     }
 
     /// C_in: a configuration within the space that collides with the obstacle, or with others near it.
-    fn inside<C, L>(&self, obstacle: usize, steer: &mut Steer<'_, C, L>, rng: &mut Rng) -> Option<C::State>
+    fn inside<C, L>(
+        &self,
+        obstacle: usize,
+        steer: &mut EdgeChecker<'_, C, L>,
+        rng: &mut Rng,
+    ) -> Option<C::State>
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
@@ -293,7 +298,7 @@ impl<H> OnObstacles<H> {
         &self,
         obstacle: usize,
         [inside, toward]: [&C::State; 2],
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
     ) -> Option<f64>
     where
         C: Space,
@@ -336,7 +341,7 @@ where
         &mut self,
         attempt: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
@@ -352,7 +357,7 @@ where
             let toward = space.sample_uniform(rng);
             let Some(contact) = self.contact(obstacle, [&inside, &toward], steer) else { continue };
             let gap = self.gap / space.distance(&inside, &toward);
-            let mut take = |at: f64, kind: Kind, steer: &mut Steer<'_, C, L>| {
+            let mut take = |at: f64, kind: Kind, steer: &mut EdgeChecker<'_, C, L>| {
                 let q = space.interpolate(&inside, &toward, at);
                 // In contact it was found free already.
                 if at <= 1.0 && (kind == Kind::Contact || steer.admits(&q)) {
@@ -378,7 +383,7 @@ where
 }
 
 /// OBPRM: see the [module](self).
-pub type Obprm<'c, C, L, N, H> = RoadmapPlanner<'c, C, L, OnObstacles<H>, Stages<H>, AStar, N>;
+pub type Obprm<'c, C, L, N, H> = RoadmapPlanner<'c, C, L, OnObstacles<H>, StagedConnector<H>, AStar, N>;
 
 impl<'c, C, L, N, H> Obprm<'c, C, L, N, H>
 where
@@ -415,12 +420,12 @@ pub fn recipe<C: Space, H: Clone>(
     hints: H,
     reach: Reachable,
     with: OnSurfaces,
-) -> Result<Recipe<OnObstacles<H>, Stages<H>, AStar>, BuildError> {
+) -> Result<Recipe<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
     let turns = Turns::At(AT[..with.turns].to_vec());
     Ok(Recipe {
         generate: OnObstacles::new(space, hints.clone(), with)?,
-        connect: Stages::new(hints, reach, with.among, turns)?,
+        connect: StagedConnector::new(hints, reach, with.among, turns)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
@@ -431,6 +436,6 @@ fn read<C: Space, H: Clone>(
     space: &C,
     hints: H,
     settings: &Settings,
-) -> Result<Recipe<OnObstacles<H>, Stages<H>, AStar>, BuildError> {
+) -> Result<Recipe<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     recipe(space, hints, reachable(space, settings)?, OnSurfaces::read(settings)?)
 }

@@ -23,7 +23,7 @@
 //!    straightness by one golden angle more each time; take the first configuration that is free.
 //!
 //! Each node is connected to its nearest nodes by the local planner; where that fails and one of the two is far, by turning
-//! in place there (see [`Stages`]).
+//! in place there (see [`StagedConnector`]).
 //!
 //! The paper is followed where it speaks. Left open there, and decided here: how MIN and MAX depend on the
 //! volume, in which steps the vector is scaled (the listing sets `scalar` to MIN and never changes it), and how far the robot is
@@ -68,12 +68,12 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
 use crate::{
-    AStar, Among, Candidate, Kind, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Stages,
-    Steer, Turns,
+    AStar, Candidate, EdgeChecker, Kind, NeighborSet, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
+    RoadmapPlanner, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Outline, Parameter, PlannerInfo,
-    Problem, Reversible, Rng, Settings, Space,
+    BodyFeatures, BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter,
+    PlannerInfo, Problem, Reversible, Rng, Settings, Space,
 };
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -134,8 +134,8 @@ pub struct AroundObstacles<H> {
 }
 
 /// MIN and MAX of the elastic band between robot and obstacle, metres.
-fn limits(robot: &Outline, obstacle: &Outline) -> [f64; 2] {
-    let equal = |body: &Outline| body.radius * body.fullness.cbrt();
+fn limits(robot: &BodyFeatures, obstacle: &BodyFeatures) -> [f64; 2] {
+    let equal = |body: &BodyFeatures| body.radius * body.volume_ratio.cbrt();
     [equal(robot) + equal(obstacle), robot.radius + obstacle.radius]
 }
 
@@ -168,7 +168,7 @@ impl<H> AroundObstacles<H> {
         &self,
         obstacle: usize,
         (q, kind): (&C::State, Kind),
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) where
@@ -205,7 +205,7 @@ where
         &mut self,
         attempt: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
@@ -233,7 +233,7 @@ where
 
 /// Obstacle-geometry PRM: see the [module](self).
 pub type ObstacleGeometryPrm<'c, C, L, N, H> =
-    RoadmapPlanner<'c, C, L, AroundObstacles<H>, Stages<H>, AStar, N>;
+    RoadmapPlanner<'c, C, L, AroundObstacles<H>, StagedConnector<H>, AStar, N>;
 
 impl<'c, C, L, N, H> ObstacleGeometryPrm<'c, C, L, N, H>
 where
@@ -269,10 +269,10 @@ pub fn recipe<H: Clone>(
     hints: H,
     reach: Reachable,
     with: ByGeometry,
-) -> Result<Recipe<AroundObstacles<H>, Stages<H>, AStar>, BuildError> {
+) -> Result<Recipe<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     Ok(Recipe {
         generate: AroundObstacles::new(hints.clone(), with)?,
-        connect: Stages::new(hints, reach, Among::Nearest, Turns::WhereFar)?,
+        connect: StagedConnector::new(hints, reach, NeighborSet::NearestConnector, Turns::WhereFar)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
@@ -283,7 +283,7 @@ fn read<C: Space, H: Clone>(
     space: &C,
     hints: H,
     settings: &Settings,
-) -> Result<Recipe<AroundObstacles<H>, Stages<H>, AStar>, BuildError> {
+) -> Result<Recipe<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
     recipe(hints, reachable(space, settings)?, with)
 }

@@ -64,8 +64,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Came, Candidate, Free, Kind, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner, Steer,
+    AStar, Candidate, EdgeChecker, Free, Kind, NearestConnector, NodeGenerator, Pace, ParentMotion,
+    Reachable, Recipe, Roadmap, RoadmapPlanner,
 };
 use mp_cspace::{
     BuildError, DefaultNn, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo,
@@ -212,7 +212,7 @@ where
         &mut self,
         attempt: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
@@ -241,7 +241,7 @@ where
                 here = motion.end.clone();
                 let from = (bounce == 0 || out.is_empty()).then_some(first);
                 let mut candidate = Candidate::new(here.clone(), Kind::Expanded);
-                candidate.came = Some(Came { from, motion });
+                candidate.came = Some(ParentMotion { from, motion });
                 out.push(candidate);
                 break;
             }
@@ -258,7 +258,7 @@ where
 }
 
 /// PRM: see the [module](self).
-pub type Prm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Learn<'c, C>, Nearest, AStar, N>;
+pub type Prm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Learn<'c, C>, NearestConnector, AStar, N>;
 
 impl<'c, C, L, N> Prm<'c, C, L, N>
 where
@@ -301,10 +301,10 @@ pub fn recipe<C: Space>(
     space: &C,
     reach: Reachable,
     learning: Learning,
-) -> Result<Recipe<Learn<'_, C>, Nearest, AStar>, BuildError> {
+) -> Result<Recipe<Learn<'_, C>, NearestConnector, AStar>, BuildError> {
     Ok(Recipe {
         generate: Learn::new(space, learning)?,
-        connect: Nearest::new(reach)?,
+        connect: NearestConnector::new(reach)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
@@ -314,6 +314,6 @@ pub fn recipe<C: Space>(
 fn read<'c, C: Space>(
     space: &'c C,
     settings: &Settings,
-) -> Result<Recipe<Learn<'c, C>, Nearest, AStar>, BuildError> {
+) -> Result<Recipe<Learn<'c, C>, NearestConnector, AStar>, BuildError> {
     recipe(space, reachable(space, settings)?, Learning::read(settings)?)
 }

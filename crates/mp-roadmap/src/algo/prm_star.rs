@@ -46,7 +46,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::UNDIRECTED;
 use crate::{
-    AStar, Candidate, Connector, Foreseeing, Free, Growing, Nearest, Pace, Reachable, Recipe, RoadmapPlanner,
+    AStar, Candidate, Connector, Free, Growing, NearestConnector, Pace, Prefetching, Reachable, Recipe,
+    RoadmapPlanner,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
@@ -79,7 +80,7 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 /// Every candidate becomes a node, and is connected to as many neighbours as shortest paths need.
 #[derive(Clone, Debug)]
 pub struct Star {
-    nearest: Nearest,
+    nearest: NearestConnector,
     /// k₀.
     per_log: f64,
 }
@@ -96,7 +97,7 @@ impl Star {
         }
         let within = Reachable { neighbours: 1, radius: f64::INFINITY, cycles: true };
         let per_log = factor * std::f64::consts::E * (1.0 + 1.0 / dim.max(1) as f64);
-        Ok(Self { nearest: Nearest::new(within)?, per_log })
+        Ok(Self { nearest: NearestConnector::new(within)?, per_log })
     }
 
     /// k(n).
@@ -118,7 +119,7 @@ where
         Some(self.adopt(candidate, growing))
     }
 
-    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Foreseeing<'_, '_, C, L, N>) {
+    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Prefetching<'_, '_, C, L, N>) {
         let k = self.neighbours(ahead.nodes() + 1);
         ahead.near(k, f64::INFINITY).iter().for_each(|hit| {
             ahead.reach(hit.id);

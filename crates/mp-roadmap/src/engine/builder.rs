@@ -1,7 +1,7 @@
 //! The one loop that builds roadmaps.
 
-use super::ahead::{Ahead, Answers, Look};
-use super::{Candidate, Connector, Growing, NodeGenerator, Roadmap, Steer};
+use super::prefetch::{Look, Prefetched, Prefetcher};
+use super::{Candidate, Connector, EdgeChecker, Growing, NodeGenerator, Roadmap};
 use mp_cspace::{
     BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
     Stop, StopReason,
@@ -39,7 +39,7 @@ pub struct Pace {
 /// the first step.
 #[derive(Debug)]
 pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
-    pub(crate) steer: Steer<'c, C, L>,
+    pub(crate) steer: EdgeChecker<'c, C, L>,
     pub(crate) map: Roadmap<C::State, L::Edge>,
     pub(crate) index: N,
     generate: G,
@@ -47,7 +47,7 @@ pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     seed: Option<u64>,
     attempts: u64,
     candidates: Vec<Candidate<C::State, L::Edge>>,
-    pub(crate) ahead: Ahead<'c, C, L, G, K, N>,
+    pub(crate) ahead: Prefetcher<'c, C, L, G, K, N>,
 }
 
 impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
@@ -59,7 +59,7 @@ where
     N: NearestNeighbors<C>,
 {
     /// With no nodes yet; `index` is empty.
-    pub fn new(steer: Steer<'c, C, L>, generate: G, connect: K, index: N) -> Self {
+    pub fn new(steer: EdgeChecker<'c, C, L>, generate: G, connect: K, index: N) -> Self {
         let map = Roadmap::new();
         Self {
             steer,
@@ -70,7 +70,7 @@ where
             seed: None,
             attempts: 0,
             candidates: Vec::new(),
-            ahead: Ahead::default(),
+            ahead: Prefetcher::default(),
         }
     }
 
@@ -200,7 +200,7 @@ where
     fn take(
         &mut self,
         mut candidate: Candidate<C::State, L::Edge>,
-        answers: Answers<C::State, L::Edge>,
+        answers: Prefetched<C::State, L::Edge>,
         last: Option<NodeId>,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<NodeId> {

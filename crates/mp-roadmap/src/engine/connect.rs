@@ -1,7 +1,7 @@
 //! How candidates become nodes, and which edges they get.
 
-use super::ahead::{Answers, Foreseeing};
-use super::{Came, Candidate, Roadmap, Steer, Tag};
+use super::prefetch::{Prefetched, Prefetching};
+use super::{Candidate, EdgeChecker, ParentMotion, Roadmap, Tag};
 use mp_cspace::{
     BuildError, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible, Space,
 };
@@ -11,10 +11,10 @@ use mp_cspace::{
 pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     pub(crate) map: &'a mut Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a mut N,
-    pub(crate) steer: &'a mut Steer<'c, C, L>,
+    pub(crate) steer: &'a mut EdgeChecker<'c, C, L>,
     pub(crate) observer: &'a mut dyn Observer<C::State>,
     /// Motions to the candidate that were asked for ahead.
-    pub(crate) answers: Answers<C::State, L::Edge>,
+    pub(crate) answers: Prefetched<C::State, L::Edge>,
 }
 
 impl<'c, C, L, N> Growing<'_, 'c, C, L, N>
@@ -35,7 +35,7 @@ where
     }
 
     /// How it moves.
-    pub fn steer(&mut self) -> &mut Steer<'c, C, L> {
+    pub fn steer(&mut self) -> &mut EdgeChecker<'c, C, L> {
         self.steer
     }
 
@@ -70,7 +70,7 @@ where
         let id = self.map.add(candidate.state, tag);
         self.index.inserted(self.steer.space(), self.map.states(), id);
         self.observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
-        if let Some(Came { from: Some(from), motion }) = candidate.came {
+        if let Some(ParentMotion { from: Some(from), motion }) = candidate.came {
             self.link(from, id, motion);
         }
         id
@@ -120,7 +120,7 @@ pub trait Connector<C: Space, L: LocalPlanner<C::State>> {
 
     /// Asks for the motions that connecting a candidate will probably ask for. What it does not ask for
     /// ahead is asked for later; so nothing depends on it but the time.
-    fn foresee<N: NearestNeighbors<C>>(&self, _ahead: &mut Foreseeing<'_, '_, C, L, N>) {}
+    fn foresee<N: NearestNeighbors<C>>(&self, _ahead: &mut Prefetching<'_, '_, C, L, N>) {}
 
     /// Goes on with a roadmap that it did not connect, or not all of it.
     fn resumed(&mut self, _map: &Roadmap<C::State, L::Edge>) {}
@@ -157,14 +157,14 @@ impl Reachable {
 
 /// Every candidate becomes a node, and is connected to its nearest neighbours in order of distance.
 #[derive(Clone, Debug)]
-pub struct Nearest {
+pub struct NearestConnector {
     pub(crate) within: Reachable,
     near: Vec<Hit>,
     /// Edges are not checked.
     lazy: bool,
 }
 
-impl Nearest {
+impl NearestConnector {
     /// # Errors
     /// When there are no neighbours, or the radius is not positive.
     pub fn new(within: Reachable) -> Result<Self, BuildError> {
@@ -181,7 +181,7 @@ impl Nearest {
     }
 }
 
-impl<C, L> Connector<C, L> for Nearest
+impl<C, L> Connector<C, L> for NearestConnector
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
@@ -194,7 +194,7 @@ where
         Some(self.adopt(candidate, growing))
     }
 
-    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Foreseeing<'_, '_, C, L, N>) {
+    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Prefetching<'_, '_, C, L, N>) {
         if self.lazy {
             return;
         }

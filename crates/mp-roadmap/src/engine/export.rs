@@ -1,10 +1,10 @@
 //! Roadmaps for other programs: GraphML and DOT.
 
 use super::{LinkState, Roadmap};
-use mp_cspace::Numbers;
+use mp_cspace::StateVector;
 use std::fmt::Write;
 
-impl<S: Numbers, E> Roadmap<S, E> {
+impl<S: StateVector, E> Roadmap<S, E> {
     /// The numbers of a state with a space between them.
     fn written(&self, index: usize) -> String {
         let mut numbers = Vec::new();

@@ -1,7 +1,7 @@
 //! Roadmaps in files. `docs/formats/roadmap.md` describes them.
 
 use super::{Kind, Link, LinkState, Roadmap, Tag};
-use mp_cspace::{NodeId, Numbers};
+use mp_cspace::{NodeId, StateVector};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
@@ -76,7 +76,7 @@ pub struct RoadmapFileError {
 }
 
 /// Roadmaps in files.
-impl<S: Numbers, E: Numbers> Roadmap<S, E> {
+impl<S: StateVector, E: StateVector> Roadmap<S, E> {
     /// The roadmap as bytes, with the fingerprint of the scene and robot it was made for: the same bytes for
     /// the same roadmap.
     #[must_use]
@@ -242,7 +242,7 @@ impl Reader<'_> {
         Ok(numbers)
     }
 
-    fn link<E: Numbers>(&mut self, nodes: u32) -> Result<([NodeId; 2], Link<E>), RoadmapError> {
+    fn link<E: StateVector>(&mut self, nodes: u32) -> Result<([NodeId; 2], Link<E>), RoadmapError> {
         let at = self.at;
         let wrong = |expected| RoadmapError::Invalid { at, expected };
         let ends = [self.u32()?, self.u32()?];

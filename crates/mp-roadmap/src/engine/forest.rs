@@ -1,6 +1,6 @@
 //! The only way between two nodes of a roadmap without cycles.
 
-use super::{EdgeId, Roadmap, Way};
+use super::{EdgeId, GraphPath, Roadmap};
 use mp_cspace::NodeId;
 
 /// How the trees of a roadmap hang, so that the way between two nodes is found in time by their depth, where A* would
@@ -54,7 +54,7 @@ impl Forest {
 
     /// The way from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in
     /// different trees. Time by the depth of the nodes.
-    pub(crate) fn way<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<Way> {
+    pub(crate) fn way<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<GraphPath> {
         let (mut a, mut b) = (from, to);
         let (mut head, mut tail) = (Vec::new(), Vec::new());
         while a != b {
@@ -69,7 +69,7 @@ impl Forest {
         let nodes = head.iter().map(|step| step.0).chain([a]).chain(tail.iter().rev().map(|step| step.0));
         let edges: Vec<EdgeId> = head.iter().chain(tail.iter().rev()).map(|step| step.1).collect();
         let length = edges.iter().map(|&edge| map.edge(edge).length).sum();
-        Some(Way { nodes: nodes.collect(), edges, length })
+        Some(GraphPath { nodes: nodes.collect(), edges, length })
     }
 }
 
@@ -102,7 +102,7 @@ mod tests {
                     let (a, b) = (rng.random_range(0..n), rng.random_range(0..n));
                     let star = AStar::new().shortest(map, &space, &[(a, 0.0)], &[(b, 0.0)]);
                     let way = forest.way(map, a, b);
-                    let parts = |way: &Way| (way.nodes.clone(), way.edges.clone());
+                    let parts = |way: &GraphPath| (way.nodes.clone(), way.edges.clone());
                     assert_eq!(way.as_ref().map(parts), star.as_ref().map(parts));
                     let lengths = way.zip(star).map(|(w, s)| (w.length - s.length).abs());
                     assert!(lengths.is_none_or(|off| off < 1e-12));

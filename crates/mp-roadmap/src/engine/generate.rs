@@ -1,24 +1,24 @@
 //! Where nodes come from.
 
-use super::{Kind, Roadmap, Steer};
+use super::{EdgeChecker, Kind, Roadmap};
 use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, Uniform};
 
 /// A configuration that may become a node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate<S, E> {
-    /// The configuration: free, by [`Steer::admits`].
+    /// The configuration: free, by [`EdgeChecker::admits`].
     pub state: S,
     /// What it is there for.
     pub kind: Kind,
     /// The obstacle it belongs to, if any.
     pub obstacle: Option<u32>,
     /// How it was come to, when from a node; that edge is kept.
-    pub came: Option<Came<S, E>>,
+    pub came: Option<ParentMotion<S, E>>,
 }
 
 /// How a candidate was come to.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Came<S, E> {
+pub struct ParentMotion<S, E> {
     /// From which node; `None`: from the candidate before it.
     pub from: Option<NodeId>,
     /// By which motion, which ends in the candidate.
@@ -41,14 +41,14 @@ impl<S, E> Candidate<S, E> {
 /// A slot: what configurations are tried as nodes.
 pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
     /// The candidates of attempt number `attempt`, in order, into `out`, which is empty: none when the
-    /// attempt misses. Each must be [admitted](Steer::admits).
+    /// attempt misses. Each must be [admitted](EdgeChecker::admits).
     ///
     /// `rng` is the stream of this attempt.
     fn generate(
         &mut self,
         attempt: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     );
@@ -92,7 +92,7 @@ where
         &mut self,
         _: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {

@@ -2,7 +2,8 @@
 
 use super::settings::{length, reachable};
 use super::{
-    AStar, Candidate, Kind, Nearest, NodeGenerator, Pace, Reachable, Recipe, Roadmap, RoadmapPlanner, Steer,
+    AStar, Candidate, EdgeChecker, Kind, NearestConnector, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
+    RoadmapPlanner,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, Problem, Reversible, Rng, Settings,
@@ -100,10 +101,10 @@ impl<R: PairRule> Pairs<R> {
         space: &C,
         reach: Reachable,
         mixing: Mixing,
-    ) -> Result<Recipe<Self, Nearest, AStar>, BuildError> {
+    ) -> Result<Recipe<Self, NearestConnector, AStar>, BuildError> {
         Ok(Recipe {
             generate: Self::new(space, mixing)?,
-            connect: Nearest::new(reach)?,
+            connect: NearestConnector::new(reach)?,
             query: AStar::new(),
             pace: Pace::default(),
             improves: false,
@@ -114,7 +115,7 @@ impl<R: PairRule> Pairs<R> {
         space: &C,
         settings: &Settings,
         mixing: Mixing,
-    ) -> Result<Recipe<Self, Nearest, AStar>, BuildError> {
+    ) -> Result<Recipe<Self, NearestConnector, AStar>, BuildError> {
         Self::recipe(space, reachable(space, settings)?, mixing.read(settings)?)
     }
 }
@@ -129,7 +130,7 @@ where
         &mut self,
         _: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
@@ -146,7 +147,7 @@ where
     }
 }
 
-impl<'c, C, L, R, N> RoadmapPlanner<'c, C, L, Pairs<R>, Nearest, AStar, N>
+impl<'c, C, L, R, N> RoadmapPlanner<'c, C, L, Pairs<R>, NearestConnector, AStar, N>
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
@@ -183,7 +184,7 @@ where
 /// Whether this attempt is to be a uniform sample; if so, and it is free, it goes into `out`.
 pub(crate) fn drew_uniform<C, L>(
     probability: f64,
-    steer: &mut Steer<'_, C, L>,
+    steer: &mut EdgeChecker<'_, C, L>,
     rng: &mut Rng,
     out: &mut Vec<Candidate<C::State, L::Edge>>,
 ) -> bool

@@ -1,6 +1,8 @@
 //! Roadmaps as planners of one path: they grow until start and goal are connected.
 
-use super::{Builder, Candidate, Connector, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap, Steer, Way};
+use super::{
+    Builder, Candidate, Connector, EdgeChecker, GraphPath, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap,
+};
 use mp_cspace::{
     BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
     ProblemParts, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
@@ -60,7 +62,7 @@ where
 
     /// Builds on several threads: see [`Builder::on`].
     #[must_use]
-    pub fn on(self, workers: Workers, hands: impl IntoIterator<Item = Steer<'c, C, L>>) -> Self
+    pub fn on(self, workers: Workers, hands: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self
     where
         C::State: 'c,
         L: Send + 'c,
@@ -159,21 +161,21 @@ where
 /// How a problem is moved in, and from where to where.
 pub(crate) fn taken_apart<'c, C, L>(
     problem: Problem<'c, C, L>,
-) -> (Steer<'c, C, L>, C::State, Goals<'c, C::State>)
+) -> (EdgeChecker<'c, C, L>, C::State, Goals<'c, C::State>)
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
     let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
-    (Steer::boxed(space, local, verify, PATIENCE), start, goals)
+    (EdgeChecker::boxed(space, local, verify, PATIENCE), start, goals)
 }
 
 /// Verifies the edges of a way that have not passed yet, in the direction in which they are run. Blocks
 /// the first that fails; whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
-    steer: &mut Steer<'_, C, L>,
-    way: &Way,
+    steer: &mut EdgeChecker<'_, C, L>,
+    way: &GraphPath,
 ) -> bool
 where
     C: Space,

@@ -391,7 +391,7 @@ impl<S, E> Roadmap<S, E> {
 
 /// A way through a roadmap: the nodes it visits and the edges between them.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Way {
+pub struct GraphPath {
     /// The nodes, one more than edges.
     pub nodes: Vec<NodeId>,
     /// The edges.
@@ -413,7 +413,7 @@ impl<S: Clone, E: Clone + Reversible> Roadmap<S, E> {
 
     /// The path along a way; `None` when some edge of it has no motion.
     #[must_use]
-    pub fn path(&self, way: &Way) -> Option<Path<S, E>> {
+    pub fn path(&self, way: &GraphPath) -> Option<Path<S, E>> {
         let mut states = vec![self.state(*way.nodes.first()?).clone()];
         let mut edges = Vec::with_capacity(way.edges.len());
         for (&edge, &from) in way.edges.iter().zip(&way.nodes) {

@@ -1,6 +1,6 @@
 //! Shortest ways through a roadmap.
 
-use super::{EdgeId, LinkState, Roadmap, Steer, Way};
+use super::{EdgeChecker, EdgeId, GraphPath, LinkState, Roadmap};
 use mp_cspace::{LocalPlanner, Metric, NodeId, Reversible, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -15,10 +15,10 @@ pub trait Query<C: Space, L: LocalPlanner<C::State>> {
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         from: &[Entry],
         to: &[Entry],
-    ) -> Option<Way>;
+    ) -> Option<GraphPath>;
 }
 
 /// A place in the queue: the least estimate first, ties by node.
@@ -86,7 +86,7 @@ impl AStar {
         metric: &impl Metric<S>,
         from: &[Entry],
         to: &[Entry],
-    ) -> Option<Way> {
+    ) -> Option<GraphPath> {
         self.marks.resize(self.marks.len().max(map.len()), UNSEEN);
         self.search = self.search.wrapping_add(1);
         if self.search == 0 {
@@ -122,7 +122,7 @@ impl AStar {
             }
         }
         let (length, end) = best?;
-        let mut way = Way { nodes: vec![end], edges: Vec::new(), length };
+        let mut way = GraphPath { nodes: vec![end], edges: Vec::new(), length };
         let mut at = end;
         while let Some(edge) = self.marks[at as usize].came {
             let [a, b] = map.ends(edge);
@@ -159,10 +159,10 @@ where
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         from: &[Entry],
         to: &[Entry],
-    ) -> Option<Way> {
+    ) -> Option<GraphPath> {
         loop {
             let way = self.shortest(map, steer.space(), from, to)?;
             if self.check(map, steer, &way) {
@@ -182,8 +182,8 @@ impl AStar {
     pub(crate) fn check<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
-        way: &Way,
+        steer: &mut EdgeChecker<'_, C, L>,
+        way: &GraphPath,
     ) -> bool
     where
         C: Space,
@@ -197,8 +197,8 @@ impl AStar {
     fn nodes_pass<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut Steer<'_, C, L>,
-        way: &Way,
+        steer: &mut EdgeChecker<'_, C, L>,
+        way: &GraphPath,
     ) -> bool
     where
         C: Space,
@@ -225,7 +225,11 @@ impl AStar {
 }
 
 /// Checks the unchecked edges of a way, whose nodes are free. Blocks the first that fails; whether none did.
-fn edges_pass<C, L>(map: &mut Roadmap<C::State, L::Edge>, steer: &mut Steer<'_, C, L>, way: &Way) -> bool
+fn edges_pass<C, L>(
+    map: &mut Roadmap<C::State, L::Edge>,
+    steer: &mut EdgeChecker<'_, C, L>,
+    way: &GraphPath,
+) -> bool
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,

@@ -5,7 +5,7 @@ mod state;
 pub use state::{AnyRoadmap, RoadmapState};
 
 use crate::algo;
-use crate::by_name::{AnyPlanner, Given, Team};
+use crate::by_name::{AnyPlanner, Given, ParallelProblem};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, PlannerInfo, Problem, Reversible, Settings, Space,
     closest,
@@ -52,13 +52,13 @@ where
     build_with(name, problem, C::Nn::default(), settings)
 }
 
-/// As [`build`], with an empty index of your choice, and for a problem or a [`Team`].
+/// As [`build`], with an empty index of your choice, and for a problem or a [`ParallelProblem`].
 ///
 /// # Errors
 /// As [`build`].
 pub fn build_with<'c, C, L, N>(
     name: &str,
-    team: impl Into<Team<'c, C, L>>,
+    team: impl Into<ParallelProblem<'c, C, L>>,
     index: N,
     settings: &Settings,
 ) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>

@@ -1,6 +1,9 @@
 //! Planners by name of erased problems: compiled here, for the kinds of state that robots have.
 
-use crate::{AnyIndex, AnyPlanner, AnySteer, AnyTeam, BuildError, IndexedRoadmap, Settings, Unanswered};
+use crate::{
+    AnyEdgeChecker, AnyIndex, AnyParallelProblem, AnyPlanner, BuildError, IndexedRoadmap, Settings,
+    Unanswered,
+};
 use mp_cspace::Path;
 use std::fmt::Debug;
 
@@ -13,7 +16,7 @@ pub type AnyRoadmap<S> = IndexedRoadmap<S, (), AnyIndex<S>>;
 /// ```
 /// use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 /// use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Settings, Straight};
-/// use mp_roadmap::{AnyTeam, RoadmapState};
+/// use mp_roadmap::{AnyParallelProblem, RoadmapState};
 /// use nalgebra::Vector2;
 ///
 /// let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
@@ -22,7 +25,7 @@ pub type AnyRoadmap<S> = IndexedRoadmap<S, (), AnyIndex<S>>;
 /// let check: AnyCheck<_> = Box::new(Discrete::new(&space, free, Resolution::Fraction(0.01))?);
 /// let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
 /// let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
-/// let team = AnyTeam::from(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?);
+/// let team = AnyParallelProblem::from(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?);
 ///
 /// let mut planner = Vector2::roadmap_planner("prm", team, AnyIndex::of(&space), &Settings::default())?;
 /// let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
@@ -41,7 +44,7 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// As [`build`](crate::build).
     fn roadmap_planner<'c>(
         name: &str,
-        team: AnyTeam<'c, Self>,
+        team: AnyParallelProblem<'c, Self>,
         index: AnyIndex<Self>,
         settings: &Settings,
     ) -> Result<AnyPlanner<'c, Self, ()>, BuildError>
@@ -54,13 +57,13 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// When the roadmap has no path, with the reason.
     fn answer(
         roadmap: &mut AnyRoadmap<Self>,
-        steer: &mut AnySteer<'_, Self>,
+        steer: &mut AnyEdgeChecker<'_, Self>,
         start: &Self,
         goal: &Self,
     ) -> Result<Path<Self>, Unanswered>;
 
     /// As [`IndexedRoadmap::verify`].
-    fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, steer: &mut AnySteer<'_, Self>) -> usize;
+    fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, steer: &mut AnyEdgeChecker<'_, Self>) -> usize;
 }
 
 /// Compiles the planners by name for states of your own: implements [`RoadmapState`] for them.
@@ -76,7 +79,7 @@ macro_rules! compile_for {
         impl $crate::RoadmapState for $state {
             fn roadmap_planner<'c>(
                 name: &str,
-                team: $crate::AnyTeam<'c, Self>,
+                team: $crate::AnyParallelProblem<'c, Self>,
                 index: $crate::AnyIndex<Self>,
                 settings: &$crate::Settings,
             ) -> ::core::result::Result<$crate::AnyPlanner<'c, Self, ()>, $crate::BuildError>
@@ -87,7 +90,7 @@ macro_rules! compile_for {
             }
             fn answer(
                 roadmap: &mut $crate::AnyRoadmap<Self>,
-                steer: &mut $crate::AnySteer<'_, Self>,
+                steer: &mut $crate::AnyEdgeChecker<'_, Self>,
                 start: &Self,
                 goal: &Self,
             ) -> ::core::result::Result<$crate::Path<Self>, $crate::Unanswered> {
@@ -95,7 +98,7 @@ macro_rules! compile_for {
             }
             fn verify_roadmap(
                 roadmap: &mut $crate::AnyRoadmap<Self>,
-                steer: &mut $crate::AnySteer<'_, Self>,
+                steer: &mut $crate::AnyEdgeChecker<'_, Self>,
             ) -> usize {
                 roadmap.verify(steer)
             }

@@ -105,7 +105,7 @@ fn a_team_finds_what_one_finds() {
     for name in ["prm", "obprm", "geometry-prm"] {
         let found = |hands: usize| {
             let workers = Workers::new(hands).unwrap();
-            let team = Team::new(workers, hands, || Ok(problem(&space, &robot))).unwrap();
+            let team = ParallelProblem::new(workers, hands, || Ok(problem(&space, &robot))).unwrap();
             let index = <Se2 as DefaultNn>::Nn::default();
             let mut planner = build_with(name, team, index, &Settings::default()).unwrap();
             let outcome = planner.solve(&mut Rng::seed(5), &mut Iterations(20_000), &mut ());
@@ -146,7 +146,7 @@ fn a_bar_goes_through_a_window() {
             Box::new(Certified::new(&space, robot.clone(), robot.tolerance()).unwrap());
         let verifier = Verifier::new(&space, &robot).unwrap();
         let problem = Problem::new(&any, Straight::new(&any, check), verifier, start, goal).unwrap();
-        let team = AnyTeam::from(knowing(problem, &robot));
+        let team = AnyParallelProblem::from(knowing(problem, &robot));
         let (index, settings) = (AnyIndex::of(&space), Settings::default());
         let mut planner = Isometry3::roadmap_planner(name, team, index, &settings).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40_000), &mut ());
@@ -163,7 +163,7 @@ fn candidates<'c, G: NodeGenerator<Se2, Local<'c>>>(
 ) -> Vec<Candidate<Se2State, ()>> {
     let check = Certified::new(space, robot.clone(), TOLERANCE).unwrap();
     let verifier = Verifier::new(space, robot).unwrap();
-    let mut steer = Steer::new(space, Straight::new(space, check), verifier, 10);
+    let mut steer = EdgeChecker::new(space, Straight::new(space, check), verifier, 10);
     let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
     for attempt in attempts {
         let mut rng = Rng::stream(7, attempt);
@@ -211,7 +211,7 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
     };
     let check = || Discrete::new(&space, counts, Resolution::Fraction(0.1)).unwrap();
     let mut steer =
-        Steer::new(&space, Straight::new(&space, check()), Verifier::new(&space, &robot).unwrap(), 10);
+        EdgeChecker::new(&space, Straight::new(&space, check()), Verifier::new(&space, &robot).unwrap(), 10);
     let (map, mut out, mut first) = (Roadmap::new(), Vec::new(), generate());
     for attempt in 0..400 {
         first.generate(attempt, &map, &mut steer, &mut Rng::stream(7, attempt), &mut out);
@@ -238,7 +238,7 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
     let space = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
     let check = Certified::new(&space, rod.clone(), rod.tolerance()).unwrap();
     let mut steer =
-        Steer::new(&space, Straight::new(&space, check), Verifier::new(&space, &rod).unwrap(), 10);
+        EdgeChecker::new(&space, Straight::new(&space, check), Verifier::new(&space, &rod).unwrap(), 10);
     let mut generate = AroundObstacles::new(rod.clone(), ByGeometry { far: 0, bands: 20 }).unwrap();
     let (map, mut pairs) = (Roadmap::new(), 0);
     for attempt in (0..200).step_by(2) {
@@ -253,7 +253,7 @@ fn out_of(
     generate: &mut AroundObstacles<FreeFlyer>,
     attempt: u64,
     map: &Roadmap<Isometry3<f64>>,
-    steer: &mut Steer<'_, Se3, Rod<'_>>,
+    steer: &mut EdgeChecker<'_, Se3, Rod<'_>>,
     pairs: &mut u32,
 ) {
     let mut out = Vec::new();
@@ -301,10 +301,13 @@ fn what_cannot_be_made_says_why() {
     {
         assert!(refused(name, setting).is_some(), "{name} {setting}");
     }
-    let each = Among::EachObstacle(0);
+    let each = NeighborSet::EachObstacle(0);
     let within = Reachable { neighbours: 5, radius: 1.0, cycles: false };
-    assert!(Stages::new(robot.clone(), within, each, Turns::WhereFar).is_err());
-    assert!(Stages::new(robot, within, Among::Nearest, Turns::At(vec![0.5, 1.5])).is_err());
+    assert!(StagedConnector::new(robot.clone(), within, each, Turns::WhereFar).is_err());
+    assert!(
+        StagedConnector::new(robot, within, NeighborSet::NearestConnector, Turns::At(vec![0.5, 1.5]))
+            .is_err()
+    );
     // Tables and defaults agree.
     for (info, read) in [(obprm::INFO, true), (obstacle_geometry_prm::INFO, false)] {
         let all = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));
@@ -329,9 +332,9 @@ fn erased_problems_are_planned_the_same() {
         for hands in [1, 2] {
             let workers = || Workers::new(hands).unwrap();
             let settings = Settings::default();
-            let team = Team::new(workers(), hands, || Ok(problem(&space, &robot))).unwrap();
+            let team = ParallelProblem::new(workers(), hands, || Ok(problem(&space, &robot))).unwrap();
             let mut one = build_with(info.name, team, <Se2 as DefaultNn>::Nn::default(), &settings).unwrap();
-            let team = Team::new(workers(), hands, erased).unwrap();
+            let team = ParallelProblem::new(workers(), hands, erased).unwrap();
             let mut other =
                 Se2State::roadmap_planner(info.name, team, AnyIndex::of(&space), &settings).unwrap();
             let found = [&mut one, &mut other].map(|planner| {

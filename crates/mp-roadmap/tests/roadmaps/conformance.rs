@@ -3,7 +3,7 @@
 use crate::common::*;
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::*;
-use mp_roadmap::{AnyPlanner, AnyTeam, RoadmapState};
+use mp_roadmap::{AnyParallelProblem, AnyPlanner, RoadmapState};
 use std::f64::consts::FRAC_PI_2;
 
 const SEEDS: u64 = 20;
@@ -54,7 +54,8 @@ where
         };
         let [start, goal] = self.ends.clone();
         let local = Straight::new(&self.erased, check);
-        let team = AnyTeam::from(Problem::new(&self.erased, local, verifier, start, goal).unwrap());
+        let team =
+            AnyParallelProblem::from(Problem::new(&self.erased, local, verifier, start, goal).unwrap());
         C::State::roadmap_planner(name, team, AnyIndex::of(self.space), &settings(name)).unwrap()
     }
 

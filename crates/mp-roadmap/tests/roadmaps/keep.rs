@@ -12,12 +12,21 @@ type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Point>>;
 
 const PRINT: u64 = 0x1234;
 
-fn steer<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Steer<'c, Rn<2>, Local<'c>> {
-    Steer::new(space, Straight::new(space, Box::new(Exact(boxes.clone()))), Exact(boxes.clone()), PATIENCE)
+fn steer<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> EdgeChecker<'c, Rn<2>, Local<'c>> {
+    EdgeChecker::new(
+        space,
+        Straight::new(space, Box::new(Exact(boxes.clone()))),
+        Exact(boxes.clone()),
+        PATIENCE,
+    )
 }
 
-fn answers<'c>(space: &'c Rn<2>, boxes: &Boxes<2>, map: Map) -> Answers<'c, Rn<2>, Local<'c>, KdTree<2>> {
-    Answers::new(steer(space, boxes), map, KdTree::new(), 10).unwrap()
+fn answers<'c>(
+    space: &'c Rn<2>,
+    boxes: &Boxes<2>,
+    map: Map,
+) -> RoadmapQueries<'c, Rn<2>, Local<'c>, KdTree<2>> {
+    RoadmapQueries::new(steer(space, boxes), map, KdTree::new(), 10).unwrap()
 }
 
 /// A roadmap with cycles of so many nodes.
@@ -65,7 +74,7 @@ fn a_roadmap_answers_many_queries() {
 fn unanswered_queries_say_why() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.0));
     let mut answers = answers(&space, &boxes, map(&space, &boxes, 300, 1));
-    let ask = |answers: &mut Answers<'_, _, _, _>, a: [f64; 2], b: [f64; 2]| {
+    let ask = |answers: &mut RoadmapQueries<'_, _, _, _>, a: [f64; 2], b: [f64; 2]| {
         answers.answer(&Point::from(a), &Point::from(b)).unwrap_err()
     };
     assert_eq!(ask(&mut answers, [0.1, 0.1], [0.9, 0.1]), Unanswered::Apart);
@@ -75,7 +84,7 @@ fn unanswered_queries_say_why() {
     assert_eq!(ask(&mut none, [0.1, 0.1], [0.9, 0.1]), Unanswered::Unreached(Endpoint::Start));
     let small = Rn::<2>::new([0.0; 2], [0.5; 2]).unwrap();
     let foreign = map(&space, &boxes, 50, 1);
-    assert!(Answers::new(steer(&small, &boxes), foreign, KdTree::<2>::new(), 10).is_err());
+    assert!(RoadmapQueries::new(steer(&small, &boxes), foreign, KdTree::<2>::new(), 10).is_err());
 }
 
 #[test]
@@ -236,7 +245,7 @@ fn threads_change_nothing() {
         (builder.map().to_bytes(PRINT), builder.progress())
     }
     let reach = Reachable { neighbours: 8, radius: 0.3, cycles: false };
-    let nearest = || Nearest::new(reach).unwrap();
+    let nearest = || NearestConnector::new(reach).unwrap();
     let star = || Star::new(2, 1.1).unwrap();
     let alone = (built(&space, &boxes, nearest(), 0, 1), built(&space, &boxes, star(), 0, 1));
     for (hands, threads) in [(1, 1), (2, 2), (5, 3)] {

@@ -2,7 +2,9 @@
 
 use super::Arm;
 use super::travel::axes_into;
-use mp_cspace::{Clearance, Coordinates, MotionBound, ObstacleHints, Rng, Room, Stretch, Validity};
+use mp_cspace::{
+    Clearance, Coordinates, IntervalClearance, MotionBound, MotionInterval, ObstacleHints, Rng, Validity,
+};
 
 impl Arm {
     /// Whether `q`, a configuration, is in collision.
@@ -77,13 +79,13 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
 
     /// Link by link and pair by pair, each by how far it moves itself: a link near the base may be near an
     /// obstacle without holding up the rest. Pairs move relative to each other by the joints between them only.
-    fn room(&mut self, stretch: &Stretch<'_, Q>) -> Room {
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, Q>) -> IntervalClearance {
         self.counters.clearance_checks += 1;
-        let [from, to, middle] = [stretch.from, stretch.to, stretch.middle].map(Q::as_slice);
+        let [from, to, middle] = [interval.from, interval.to, interval.middle].map(Q::as_slice);
         let Self { robot, world, query, scratch, .. } = self;
         let kinematics = &robot.kinematics;
         if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
-            return Room::Contact { at: 0.0 };
+            return IntervalClearance::Collision { at: 0.0 };
         }
         kinematics.frames_into(middle, &mut scratch.frames);
         axes_into(kinematics, &scratch.frames, &mut scratch.axes);
@@ -94,11 +96,11 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         for body in &robot.bodies {
             let ball = body.ball_at(&scratch.frames);
             body.chain.far(ways, &mut scratch.far);
-            body.chain.near(|i| ways(i) * stretch.half, &ball, &scratch.axes, &mut scratch.near);
+            body.chain.near(|i| ways(i) * interval.half, &ball, &scratch.axes, &mut scratch.near);
             scratch.balls.push(ball);
         }
         let frames = &scratch.frames;
-        let mut cover = Cover { margin: stretch.margin, half: stretch.half, part: f64::INFINITY };
+        let mut cover = Cover { margin: interval.margin, half: interval.half, part: f64::INFINITY };
         for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
             let last = body.first + body.chain.steps.len();
             let (near, far) = (scratch.near[last], scratch.far[last]);
@@ -118,7 +120,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
                 return room;
             }
         }
-        Room::Over { part: cover.part }
+        IntervalClearance::FreeOver { part: cover.part }
     }
 }
 
@@ -131,10 +133,16 @@ struct Cover {
 }
 
 impl Cover {
-    /// Takes into account a distance that changes by at most `near` over half the stretch and at most `far`
-    /// over the whole motion; over a smaller part of the stretch by a smaller part of `near`. It is at least
+    /// Takes into account a distance that changes by at most `near` over half the interval and at most `far`
+    /// over the whole motion; over a smaller part of the interval by a smaller part of `near`. It is at least
     /// `known`, and otherwise to be asked for. An answer when the rest need not be looked at.
-    fn add(&mut self, near: f64, far: f64, known: f64, clearance: impl FnOnce(f64) -> f64) -> Option<Room> {
+    fn add(
+        &mut self,
+        near: f64,
+        far: f64,
+        known: f64,
+        clearance: impl FnOnce(f64) -> f64,
+    ) -> Option<IntervalClearance> {
         let margin = self.margin;
         // Others may have shown already that less will do.
         let wanted = self.half.min(self.part);
@@ -142,13 +150,13 @@ impl Cover {
         let enough = near.max(margin) + margin;
         let clearance = if known >= enough { known } else { clearance(enough) };
         let part = if clearance <= 0.0 {
-            return Some(Room::Contact { at: 0.0 });
+            return Some(IntervalClearance::Collision { at: 0.0 });
         } else if clearance >= near + margin {
             wanted.max((clearance - margin) / far)
         } else if clearance >= 2.0 * margin {
             wanted * (clearance - margin) / near
         } else {
-            return Some(Room::Tight { at: 0.0 });
+            return Some(IntervalClearance::TooClose { at: 0.0 });
         };
         // 0/0 where nothing moves: clear all along.
         self.part = self.part.min(if far > 0.0 { part } else { f64::INFINITY });

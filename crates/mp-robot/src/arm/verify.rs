@@ -186,7 +186,7 @@ struct Pair {
 /// interpolation is what a motion *is*, and the list of [pairs of links](Arm::checked_pairs) that must not touch.
 ///
 /// - free means: links keep at least the tolerance from obstacles and from each other all along;
-/// - a motion with a tested state of less than twice the tolerance is [`Undecided`](MotionCheck::Undecided), as
+/// - a motion with a tested state of less than twice the tolerance is [`Undecided`](MotionCheck::Unproven), as
 ///   are motions that take more than a million parts, or of a million radians.
 ///
 /// Coordinates must go at constant speed, and by no more than a turn, as in [`Arm::space`].
@@ -304,7 +304,7 @@ where
             let at = 0.5 * (a + b);
             self.parts += 1;
             if self.parts > limit {
-                return MotionCheck::Undecided { at };
+                return MotionCheck::Unproven { at };
             }
             let [qa, qm, qb] = [a, at, b].map(|t| self.space.interpolate(from, to, t));
             let (before, after) = (self.ways(&qa, &qm), self.ways(&qm, &qb));
@@ -318,10 +318,10 @@ where
                     Ok(distance) => least = least.min(distance - approach),
                     // What was found first need not be the nearest.
                     Err(_) if self.distance(pair, &places, 0.0).is_err() => {
-                        return MotionCheck::Collides { at };
+                        return MotionCheck::Collision { at };
                     }
                     Err(distance) if distance < 2.0 * self.tolerance => {
-                        return MotionCheck::Undecided { at };
+                        return MotionCheck::Unproven { at };
                     }
                     Err(_) => near.push(i),
                 }
@@ -358,17 +358,17 @@ where
         let count = self.tree.coordinates.len();
         let is_sound = |q: &[f64]| q.len() == count && q.iter().all(|x| x.is_finite());
         if !(is_sound(from.as_slice()) && is_sound(to.as_slice())) {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         let mut ways = from.as_slice().iter().zip(to.as_slice()).map(|(a, b)| (b - a).abs());
         let provable = ways.all(|way| way < MAX_WAY);
         if !provable {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         match self.prove(from, to) {
             MotionCheck::Free { clearance } => MotionCheck::Free { clearance },
-            _ if self.touches(from) => MotionCheck::Collides { at: 0.0 },
-            _ if self.touches(to) => MotionCheck::Collides { at: 1.0 },
+            _ if self.touches(from) => MotionCheck::Collision { at: 0.0 },
+            _ if self.touches(to) => MotionCheck::Collision { at: 1.0 },
             other => other,
         }
     }

@@ -2,8 +2,8 @@
 
 use crate::CheckCounters;
 use mp_cspace::{
-    Clearance, ClearanceGradient, KnownFree, MotionBound, MotionCheck, MotionValidity, ParameterError, Room,
-    Stretch, Validity,
+    Clearance, ClearanceGradient, IntervalClearance, KnownFree, MotionBound, MotionCheck, MotionInterval,
+    MotionValidity, ParameterError, Validity,
 };
 use mp_geom::flat::FlatWorld;
 use nalgebra::{Point2, Vector2};
@@ -131,18 +131,18 @@ impl Clearance<Vector2<f64>> for DiscRobot {
         if finite(q) { self.signed_clearance(q).max(0.0) } else { 0.0 }
     }
 
-    /// By the whole stretch at once.
-    fn room(&mut self, stretch: &Stretch<'_, Vector2<f64>>) -> Room {
-        let half = (stretch.to - stretch.from) * stretch.half;
-        let [a, b] = [stretch.middle - half, stretch.middle + half].map(Point2::from);
-        let margin = stretch.margin;
-        let clearance = self.clearance(stretch.middle, f64::INFINITY);
+    /// By the whole interval at once.
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, Vector2<f64>>) -> IntervalClearance {
+        let half = (interval.to - interval.from) * interval.half;
+        let [a, b] = [interval.middle - half, interval.middle + half].map(Point2::from);
+        let margin = interval.margin;
+        let clearance = self.clearance(interval.middle, f64::INFINITY);
         if clearance >= 2.0 * margin && self.world.nearest_to_segment(&a, &b, self.radius + margin).is_none()
         {
-            let travel = (stretch.to - stretch.from).norm();
-            return Room::Over { part: stretch.half.max((clearance - margin) / travel) };
+            let travel = (interval.to - interval.from).norm();
+            return IntervalClearance::FreeOver { part: interval.half.max((clearance - margin) / travel) };
         }
-        Room::of(clearance, margin)
+        IntervalClearance::of(clearance, margin)
     }
 }
 
@@ -169,19 +169,19 @@ impl MotionValidity<Vector2<f64>> for DiscRobot {
     fn check_extension(&mut self, from: &Vector2<f64>, to: &Vector2<f64>, known: KnownFree) -> MotionCheck {
         self.counters.collision_checks += 1;
         if !(finite(from) && finite(to)) {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         let [a, b] = [from, to].map(|q| Point2::from(*q));
         if a == b {
             return match self.world.is_clear(&a, self.radius + self.tolerance) {
                 true => MotionCheck::Free { clearance: self.tolerance },
-                false if self.world.is_clear(&a, self.radius) => MotionCheck::Undecided { at: 0.0 },
-                false => MotionCheck::Collides { at: 0.0 },
+                false if self.world.is_clear(&a, self.radius) => MotionCheck::Unproven { at: 0.0 },
+                false => MotionCheck::Collision { at: 0.0 },
             };
         }
         // A segment that crosses no boundary is where one of its ends is.
         if known == KnownFree::Neither && self.world.contains(&a) {
-            return MotionCheck::Collides { at: 0.0 };
+            return MotionCheck::Collision { at: 0.0 };
         }
         match self.world.nearest_to_segment(&a, &b, self.radius + self.tolerance) {
             None => MotionCheck::Free { clearance: self.tolerance },
@@ -189,8 +189,8 @@ impl MotionValidity<Vector2<f64>> for DiscRobot {
                 let length = (b - a).norm();
                 let at = if length > 0.0 { ((near.on_segment - a).norm() / length).min(1.0) } else { 0.0 };
                 match near.distance <= self.radius {
-                    true => MotionCheck::Collides { at },
-                    false => MotionCheck::Undecided { at },
+                    true => MotionCheck::Collision { at },
+                    false => MotionCheck::Unproven { at },
                 }
             }
         }

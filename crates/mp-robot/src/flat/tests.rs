@@ -47,8 +47,8 @@ fn discs_pass_where_there_is_room_and_nowhere_else() {
             let room = robot.signed_clearance(&a);
             match robot.check_motion(&a, &a) {
                 MotionCheck::Free { .. } => assert!(room > robot.tolerance()),
-                MotionCheck::Collides { .. } => assert!(room <= 0.0),
-                MotionCheck::Undecided { .. } => assert!(room > 0.0 && room <= robot.tolerance()),
+                MotionCheck::Collision { .. } => assert!(room <= 0.0),
+                MotionCheck::Unproven { .. } => assert!(room > 0.0 && room <= robot.tolerance()),
             }
             if robot.is_valid(&a) {
                 let known = robot.check_extension(&a, &b, KnownFree::From);
@@ -168,7 +168,7 @@ fn one_within_the_other_is_collision() {
     let inside = Vector2::new(1.5, 1.5);
     let mut disc = DiscRobot::new(Arc::clone(&room), 0.1).unwrap();
     assert!(!disc.is_valid(&inside) && disc.touching(&inside) == Some(Some(0)));
-    assert_eq!(disc.check_motion(&inside, &Vector2::new(1.6, 1.5)), MotionCheck::Collides { at: 0.0 });
+    assert_eq!(disc.check_motion(&inside, &Vector2::new(1.6, 1.5)), MotionCheck::Collision { at: 0.0 });
     assert!(!DiscVerifier::new(&disc).check_motion(&inside, &inside).is_free());
     assert!(disc.touching(&Vector2::new(0.5, 0.5)).is_none() && disc.is_valid(&Vector2::new(0.5, 0.5)));
     let space = Se2::new([-5.0, -5.0], [5.0, 5.0]).unwrap();

@@ -38,17 +38,17 @@ impl MotionValidity<Vector2<f64>> for DiscVerifier {
         // Written so that NaN is refused.
         let finite = way.iter().all(|p| p.x.abs() + p.y.abs() < 1e60);
         if !finite {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         if self.plain.inside(&way[0]) {
-            return MotionCheck::Collides { at: 0.0 };
+            return MotionCheck::Collision { at: 0.0 };
         }
         let clearance = self.plain.nearest(&way) - self.radius;
         if clearance >= self.tolerance {
             return MotionCheck::Free { clearance };
         }
         let at = self.nearest_fraction(&way);
-        if clearance <= 0.0 { MotionCheck::Collides { at } } else { MotionCheck::Undecided { at } }
+        if clearance <= 0.0 { MotionCheck::Collision { at } } else { MotionCheck::Unproven { at } }
     }
 }
 
@@ -128,10 +128,10 @@ impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_
         let length = (way[1] - way[0]).norm();
         let finite = way.iter().all(|p| p.x.abs() + p.y.abs() < 1e60) && (from.angle + to.angle).is_finite();
         if !finite {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         if self.nested(from) {
-            return MotionCheck::Collides { at: 0.0 };
+            return MotionCheck::Collision { at: 0.0 };
         }
         // Edges that the robot can come near to.
         let reach = self.radius + self.tolerance;
@@ -147,12 +147,12 @@ impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_
             let travel = 0.5 * (b - a) * (length + self.radius * turn);
             let distance = self.distance(&self.space.interpolate(from, to, at), &near);
             if distance <= 0.0 {
-                return MotionCheck::Collides { at };
+                return MotionCheck::Collision { at };
             }
             if distance - travel >= self.tolerance {
                 least = least.min(distance - travel);
             } else if distance < self.tolerance || depth == MAX_DEPTH {
-                return MotionCheck::Undecided { at };
+                return MotionCheck::Unproven { at };
             } else {
                 open.extend([(at, b, depth + 1), (a, at, depth + 1)]);
             }

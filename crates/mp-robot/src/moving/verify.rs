@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// obstacle can come nearer, halving the motion until all of it is shown free. Only the space and the
 /// trajectories are shared: they are what the motions *are*.
 ///
-/// It answers [`Undecided`](MotionCheck::Undecided) to motions back in time and beyond the speed limit, and
+/// It answers [`Undecided`](MotionCheck::Unproven) to motions back in time and beyond the speed limit, and
 /// to those with a tested moment of less clearance than its tolerance.
 #[derive(Clone, Debug)]
 pub struct MovingVerifier<'c, C, P> {
@@ -72,9 +72,9 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             let pose: Isometry3<f64> = P::pose(&q);
             match self.robot.at_least(&pose, &mover.reference, &mover.trajectory.pose(time), needed) {
                 Ok(distance) => least = least.min(distance - approach),
-                Err(distance) if distance <= 0.0 => return Err(MotionCheck::Collides { at }),
+                Err(distance) if distance <= 0.0 => return Err(MotionCheck::Collision { at }),
                 Err(distance) if distance < self.tolerance || half < SHORTEST => {
-                    return Err(MotionCheck::Undecided { at });
+                    return Err(MotionCheck::Unproven { at });
                 }
                 Err(_) => open.extend([(at, b), (a, at)]),
             }
@@ -86,7 +86,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
 impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> for MovingVerifier<'_, C, P> {
     fn check_motion(&mut self, from: &(P::State, f64), to: &(P::State, f64)) -> MotionCheck {
         if !(self.space.contains(from) && self.space.contains(to) && self.space.leads(from, to)) {
-            return MotionCheck::Undecided { at: 0.0 };
+            return MotionCheck::Unproven { at: 0.0 };
         }
         let standing = self.standing.check_motion(&from.0, &to.0);
         let MotionCheck::Free { clearance: mut least } = standing else { return standing };

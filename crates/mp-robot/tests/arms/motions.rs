@@ -126,11 +126,11 @@ fn agree(arm: &Arm, space: &Joints<Six>, motions: usize) -> [usize; 2] {
                     assert!(found >= clearance * (1.0 - 1e-9), "{found} {clearance}");
                 }
             }
-            MotionCheck::Collides { at: t } => {
+            MotionCheck::Collision { at: t } => {
                 counts[0] += 1;
                 assert!(!exact.is_valid(&at(t)));
             }
-            MotionCheck::Undecided { at: t } => {
+            MotionCheck::Unproven { at: t } => {
                 assert!(exact.clearance(&at(t), 1.0) < 2.0 * tolerance);
             }
         }

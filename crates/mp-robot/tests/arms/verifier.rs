@@ -40,11 +40,11 @@ fn agree<C: Space<State = DVector<f64>> + TrueMetric<DVector<f64>>>(
                     assert!(exact.clearance(&q, 1e9) >= clearance - 1e-9);
                 }
             }
-            MotionCheck::Collides { at } => {
+            MotionCheck::Collision { at } => {
                 counts[0] += 1;
                 assert!(exact.clearance(&space.interpolate(&a, &b, at), 1.0) < 1e-11);
             }
-            MotionCheck::Undecided { at } => {
+            MotionCheck::Unproven { at } => {
                 assert!(exact.clearance(&space.interpolate(&a, &b, at), 1.0) < 2.0 * tolerance);
             }
         }
@@ -98,10 +98,10 @@ fn it_sees_thin_walls_and_edges_whose_ends_are_free() {
     let at = |turn: f64| Six::from([turn, 1.2, 0.4, 0.0, 0.0, 0.0]);
     assert!(arm.is_valid(&at(-1.0)) && arm.is_valid(&at(1.0)));
     let found = verifier.check_motion(&at(-1.0), &at(1.0));
-    let MotionCheck::Collides { at: t } = found else { panic!("{found:?}") };
+    let MotionCheck::Collision { at: t } = found else { panic!("{found:?}") };
     assert!(!arm.is_valid(&space.interpolate(&at(-1.0), &at(1.0), t)));
     assert!(verifier.check_motion(&at(1.0), &at(2.0)).is_free());
-    assert_eq!(verifier.check_motion(&at(0.0), &at(0.0)), MotionCheck::Collides { at: 0.0 });
+    assert_eq!(verifier.check_motion(&at(0.0), &at(0.0)), MotionCheck::Collision { at: 0.0 });
 }
 
 #[test]

@@ -86,7 +86,7 @@ impl MotionValidity<Point> for Judge<'_> {
         for (middle, radius) in &self.0.discs {
             let t = if square > 0.0 { ((middle - from).dot(&along) / square).clamp(0.0, 1.0) } else { 0.0 };
             if (from + along * t - middle).norm_squared() <= radius * radius {
-                return MotionCheck::Collides { at: t };
+                return MotionCheck::Collision { at: t };
             }
         }
         for (middle, half) in &self.0.boxes {
@@ -104,7 +104,7 @@ impl MotionValidity<Point> for Judge<'_> {
                 leave = leave.min(a.max(b));
             }
             if enter <= leave {
-                return MotionCheck::Collides { at: enter };
+                return MotionCheck::Collision { at: enter };
             }
         }
         MotionCheck::Free { clearance: 0.0 }

@@ -1,7 +1,9 @@
 //! A bug trap in the plane, and how to tell what a planner made of it.
 #![allow(clippy::print_stdout, dead_code, unreachable_pub)] // examples talk, and use their part
 
-use mp_cspace::inputs::{Along, DoubleIntegrator, InputPlanner, InputSet, Leg, OnPosition, ReplayFinely};
+use mp_cspace::inputs::{
+    ControlSegment, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely,
+};
 use mp_cspace::{
     Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Product, Resolution, Rn, Rng, Straight,
 };
@@ -75,7 +77,7 @@ pub type State = (Point, Point);
 type Moving = Product<Rn<2>, Rn<2>>;
 type Positions = OnPosition<fn(&Point) -> bool>;
 type ByInputs<'c> =
-    InputPlanner<'c, Moving, DoubleIntegrator<'c, Rn<2>>, Point, Along<'c, Moving, Positions>>;
+    InputPlanner<'c, Moving, DoubleIntegrator<'c, Rn<2>>, Point, DiscreteFlowCheck<'c, Moving, Positions>>;
 
 /// The unit square with velocities.
 pub fn moving() -> Result<Moving> {
@@ -86,7 +88,7 @@ pub fn moving() -> Result<Moving> {
 pub fn moving_trap(space: &Moving) -> Result<Problem<'_, Moving, ByInputs<'_>>> {
     let system = DoubleIntegrator::new(space.spaces().0)?;
     let valid = OnPosition(free as fn(&Point) -> bool);
-    let check = Along::new(space, valid.clone(), Resolution::Length(0.005))?;
+    let check = DiscreteFlowCheck::new(space, valid.clone(), Resolution::Length(0.005))?;
     let local = InputPlanner::new(space, system, InputSet::grid([1.0, 1.0], 3)?, 0.15, check)?;
     let verifier = ReplayFinely::new(space, system, valid, Resolution::Length(0.0005))?;
     let beyond = Goals::region(|(q, _): &State| q.x < 0.15);
@@ -94,7 +96,7 @@ pub fn moving_trap(space: &Moving) -> Result<Problem<'_, Moving, ByInputs<'_>>> 
 }
 
 /// Plans with the seed given as the first argument, and prints the path with its inputs.
-pub fn run_legs(mut planner: impl Planner<State, Edge = Leg<Point>>) -> Result {
+pub fn run_legs(mut planner: impl Planner<State, Edge = ControlSegment<Point>>) -> Result {
     let seed = std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?;
     match planner.solve(&mut Rng::seed(seed), &mut Iterations(500_000), &mut ()) {
         Outcome::Solved(path) => {

@@ -61,8 +61,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::engine::{constructors, joined};
 use crate::{
-    Append, Attach, Branch, BuildError, Connect, Core, Growing, Grown, Growth, Informed, Nearest,
-    PlannerInfo, Selector, Tree, Tuning,
+    Append, BuildError, Connect, Core, Extender, Growing, Grown, Informed, Inserter, NearestSelector,
+    PlannerInfo, SearchTree, Selector, Tree, Tuning,
 };
 use mp_cspace::{
     Direction, Event, Extension, Hit, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
@@ -118,8 +118,10 @@ fn nearest_within<C: Space, E, Se: Selector<C>>(
 /// One step, whose end is hung on ever cheaper parents.
 struct Resampled<F>(F);
 
-impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Growth<C, L> for Resampled<F> {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Extender<C, L>
+    for Resampled<F>
+{
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -157,7 +159,7 @@ impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Gr
 #[derive(Debug)]
 pub struct Aorrtc<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
-    trees: [Branch<C, L, Nearest<N>, Append>; 2],
+    trees: [SearchTree<C, L, NearestSelector<N>, Append>; 2],
     /// An empty index.
     index: N,
     informed: Informed<'c, C>,
@@ -193,8 +195,8 @@ constructors! {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Aorrtc<'c, C, L, N> {
-    fn trees_with(index: &N) -> [Branch<C, L, Nearest<N>, Append>; 2] {
-        let tree = |i, direction| Branch::new(i, direction, Nearest(index.clone()), Append);
+    fn trees_with(index: &N) -> [SearchTree<C, L, NearestSelector<N>, Append>; 2] {
+        let tree = |i, direction| SearchTree::new(i, direction, NearestSelector(index.clone()), Append);
         [tree(0, Direction::Forward), tree(1, Direction::Backward)]
     }
 

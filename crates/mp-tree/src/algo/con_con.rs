@@ -43,7 +43,7 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, Connect, Nearest, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use crate::{Append, Connect, NearestSelector, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -63,14 +63,14 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 
 /// RRTConCon: see the [module](self).
 pub type RrtConCon<'c, C, L, N> =
-    TwoTrees<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Connect, Connect, Append>;
+    TwoTrees<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Connect, Connect, Append>;
 
 constructors! {
     "RRTConCon" RrtConCon<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let grow = (Connect::default(), Connect::default());
-        let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };
+        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
         Self::assemble(INFO.name, problem, recipe)
     }
 }

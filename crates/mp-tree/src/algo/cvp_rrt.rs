@@ -26,7 +26,7 @@
 //!
 //! A car leaves a dead end that opens behind it:
 //! ```
-//! use mp_cspace::inputs::{Along, Car, InputPlanner, ReplayFinely};
+//! use mp_cspace::inputs::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
 //! use mp_tree::{CvpRrt, Goals, Problem, Tuning};
 //!
@@ -36,7 +36,7 @@
 //!     !((3.0..7.0).contains(&x) && (1.0..5.0).contains(&y)) || (x < 6.5 && (2.2..3.8).contains(&y))
 //! };
 //! let car = Car::new(1.0)?;
-//! let check = Along::new(&space, free, Resolution::Length(0.05))?;
+//! let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.05))?;
 //! let local = InputPlanner::new(&space, car, Car::inputs(1.0, 0.6, 1)?, 0.7, check)?;
 //! let verifier = ReplayFinely::new(&space, car, free, Resolution::Length(0.01))?;
 //! let beyond = Goals::region(|q: &Se2State| q.translation.x > 8.0);
@@ -52,7 +52,8 @@ use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, Nearest, PlannerInfo, Purpose, Recipe, Samples, Selector, SingleTree, Tuning, Untried,
+    AppendApart, NearestSelector, PlannerInfo, Purpose, Recipe, Samples, Selector, SingleTree, Tuning,
+    Untried,
 };
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
@@ -76,13 +77,13 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 
 /// CVP-RRT: see the [module](self).
 pub type CvpRrt<'c, C, L, N> =
-    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, LeastViolated<Nearest<N>>, Untried, AppendApart>;
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, LeastViolated<NearestSelector<N>>, Untried, AppendApart>;
 
 constructors! {
     "CVP-RRT" CvpRrt<C, L, N> where [L: EachOnce],
     |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
-        let select = LeastViolated::new(Nearest(index), problem.local().count());
+        let select = LeastViolated::new(NearestSelector(index), problem.local().count());
         let attach = AppendApart::default();
         Self::assemble(problem, Recipe { propose, select, grow: Untried::one(), attach, tuning })
     }

@@ -60,8 +60,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo, Recipe,
-    Samples, Selector, SingleTree, Steer, Tree, Tuning,
+    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo,
+    Recipe, Samples, Selector, SingleTree, Tree, TreeEdgeChecker, Tuning,
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
@@ -169,7 +169,12 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
     }
 
     /// Verifies an edge in one direction; once. Whether that changes what there is to choose from.
-    fn ask<C, L>(&mut self, tree: &Tree<S, E>, steer: &mut Steer<'_, C, L>, (from, to): Ends) -> bool
+    fn ask<C, L>(
+        &mut self,
+        tree: &Tree<S, E>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
+        (from, to): Ends,
+    ) -> bool
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -198,8 +203,8 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Cyclic<C::State, L::Edge> {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L::Edge> {
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -237,7 +242,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Cyclic<C::State, L::E
 }
 
 type Inner<'c, C, L, N, S, E> =
-    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Cyclic<S, E>, AppendDistinct>;
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Cyclic<S, E>, AppendDistinct>;
 
 /// The cyclic variant of RRT: see the [module](self).
 #[derive(Debug)]
@@ -262,7 +267,7 @@ constructors! {
             near: Vec::new(),
         };
         let (propose, attach) = (Samples(Uniform(problem.space())), AppendDistinct::default());
-        let recipe = Recipe { propose, select: Nearest(index), grow, attach, tuning };
+        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach, tuning };
         Ok(Self { inner: SingleTree::assemble(problem, recipe)?, arrived: Vec::new() })
     }
 }

@@ -53,8 +53,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
-    Acceptable, Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Purpose, Recipe,
-    Samples, Selector, Settings, Tuning, TwoTrees,
+    Acceptable, Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose,
+    Recipe, Samples, Selector, Settings, Tuning, TwoTrees,
 };
 use mp_cspace::{Hit, NearestNeighbors, NodeId, Rng, Space, Uniform};
 
@@ -126,7 +126,7 @@ impl Domain {
 /// the nearest node.
 #[derive(Clone, Debug)]
 pub struct DynamicDomain<S, N> {
-    nearest: Nearest<N>,
+    nearest: NearestSelector<N>,
     domain: Domain,
     radii: Vec<f64>,
     refused: u64,
@@ -149,7 +149,7 @@ impl<S, N> DynamicDomain<S, N> {
             return Err(BuildError::OutOfRange { name: "adapt", value: domain.adapt, range });
         }
         let domain = Domain { radius: radius * step, least: domain.least * step, ..domain };
-        Ok(Self { nearest: Nearest(index), domain, radii: Vec::new(), refused: 0, accepted: None })
+        Ok(Self { nearest: NearestSelector(index), domain, radii: Vec::new(), refused: 0, accepted: None })
     }
 }
 

@@ -52,7 +52,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    Extend, Improving, Near, Nearest, PlannerInfo, Problem, Propose, Recipe, Rewire, Selector, Tuning,
+    Extend, Improving, Near, NearestSelector, PlannerInfo, Problem, Recipe, Rewire, Selector, TargetSampler,
+    Tuning,
 };
 use mp_cspace::{Direction, LocalPlanner, Rng, Space};
 
@@ -137,7 +138,7 @@ impl<'c, C: Space> Informed<'c, C> {
     }
 }
 
-impl<C: Space> Propose<C> for Informed<'_, C> {
+impl<C: Space> TargetSampler<C> for Informed<'_, C> {
     fn propose<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
         self.sample(rng)
     }
@@ -147,13 +148,14 @@ impl<C: Space> Propose<C> for Informed<'_, C> {
 }
 
 /// Informed RRT*: see the [module](self).
-pub type InformedRrtStar<'c, C, L, N> = Improving<'c, C, L, Informed<'c, C>, Nearest<N>, Extend, Rewire>;
+pub type InformedRrtStar<'c, C, L, N> =
+    Improving<'c, C, L, Informed<'c, C>, NearestSelector<N>, Extend, Rewire>;
 
 constructors! {
     "Informed RRT*" InformedRrtStar<C, L, N>,
     |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
         let propose = Informed::of(&problem);
         let attach = Rewire::new(near)?;
-        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
+        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
     }
 }

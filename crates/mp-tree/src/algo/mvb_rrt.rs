@@ -53,8 +53,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
-    Append, BuildError, Connect, Extend, Nearest, Parameter, PlannerInfo, Propose, Purpose, Recipe, Selector,
-    Tuning, TwoTrees,
+    Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose, Recipe, Selector,
+    TargetSampler, Tuning, TwoTrees,
 };
 use mp_cspace::{Hit, NodeId, Rng, Space};
 
@@ -90,7 +90,7 @@ pub struct VoronoiBias {
     hits: Vec<Hit>,
 }
 
-impl<C: Space> Propose<C> for VoronoiBias {
+impl<C: Space> TargetSampler<C> for VoronoiBias {
     fn propose<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
@@ -124,7 +124,7 @@ impl<C: Space> Propose<C> for VoronoiBias {
 }
 
 /// Multi-sample RRT: see the [module](self).
-pub type MvbRrt<'c, C, L, N> = TwoTrees<'c, C, L, VoronoiBias, Nearest<N>, Extend, Connect, Append>;
+pub type MvbRrt<'c, C, L, N> = TwoTrees<'c, C, L, VoronoiBias, NearestSelector<N>, Extend, Connect, Append>;
 
 constructors! {
     "Multi-sample RRT" MvbRrt<C, L, N> where [N: Clone],
@@ -132,7 +132,7 @@ constructors! {
         let samples = BuildError::count_within(SAMPLES.name, samples, 1, 100_000)?;
         let propose = VoronoiBias { samples, hits: Vec::new() };
         let grow = (Extend, Connect::default());
-        let recipe = Recipe { propose, select: Nearest(index), grow, attach: Append, tuning };
+        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
         Self::assemble(INFO.name, problem, recipe)
     }
 }

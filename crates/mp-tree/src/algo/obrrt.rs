@@ -100,8 +100,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Growing, Grown, Growth, Nearest, PlannerInfo, Recipe, Samples,
-    Selector, SingleTree, Tuning,
+    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo, Recipe,
+    Samples, Selector, SingleTree, Tuning,
 };
 use mp_cspace::{LocalPlanner, NodeId, ObstacleHints, Rng, Space, Uniform};
 use rand::RngExt;
@@ -233,7 +233,7 @@ where
     C: Space,
     L: LocalPlanner<C::State>,
     Se: Selector<C>,
-    A: Attach<C, L>,
+    A: Inserter<C, L>,
 {
     let (space, step) = (growing.steer().space(), growing.steer().step());
     let state = growing.tree().state(from);
@@ -249,8 +249,8 @@ where
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Growth<C, L> for ObstacleGuided<H> {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C, L> for ObstacleGuided<H> {
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -305,13 +305,13 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Growth<C, 
 
 /// Obstacle-based RRT: see the [module](self).
 pub type Obrrt<'c, C, L, N, H> =
-    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, ObstacleGuided<H>, AppendDistinct>;
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, ObstacleGuided<H>, AppendDistinct>;
 
 constructors! {
     "Obstacle-based RRT" Obrrt<C, L, N, H> where [H: ObstacleHints<C::State>],
     |problem, index, hints: H, tuning: Tuning, weights: GrowthWeights| {
         let (propose, grow) = (Samples(Uniform(problem.space())), ObstacleGuided::new(hints, weights)?);
         let attach = AppendDistinct::default();
-        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow, attach, tuning })
+        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow, attach, tuning })
     }
 }

@@ -28,7 +28,7 @@
 //!
 //! A point finds out that it cannot leave a closed ring:
 //! ```
-//! use mp_cspace::inputs::{Along, InputPlanner, InputSet, Kinematic, ReplayFinely};
+//! use mp_cspace::inputs::{DiscreteFlowCheck, InputPlanner, InputSet, Kinematic, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rn, Rng, StopReason};
 //! use mp_tree::{Goals, Problem, RcRrt, Tuning};
 //! use nalgebra::Vector2;
@@ -36,7 +36,7 @@
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
 //! let free = |q: &Vector2<f64>| !(0.2..0.3).contains(&(q - Vector2::new(0.5, 0.5)).norm());
 //! let flow = Kinematic::new(&space)?;
-//! let check = Along::new(&space, free, Resolution::Length(0.005))?;
+//! let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.005))?;
 //! let local = InputPlanner::new(&space, flow, InputSet::spread([0.05, 0.05], 8)?, 1.0, check)?;
 //! let verifier = ReplayFinely::new(&space, flow, free, Resolution::Length(0.0005))?;
 //! let outside = Goals::region(|q: &Vector2<f64>| q.x < 0.1);
@@ -52,8 +52,8 @@ use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, BuildError, Nearest, Parameter, PlannerInfo, Purpose, Recipe, Samples, Selector, Settings,
-    SingleTree, Tuning, Untried,
+    AppendApart, BuildError, NearestSelector, Parameter, PlannerInfo, Purpose, Recipe, Samples, Selector,
+    Settings, SingleTree, Tuning, Untried,
 };
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
@@ -90,13 +90,13 @@ pub(crate) fn apart<C: Space>(space: &C, tuning: &Tuning, settings: &Settings) -
 
 /// RC-RRT: see the [module](self).
 pub type RcRrt<'c, C, L, N> =
-    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Unexhausted<Nearest<N>>, Untried, AppendApart>;
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Unexhausted<NearestSelector<N>>, Untried, AppendApart>;
 
 constructors! {
     "RC-RRT, where states within `apart` count as one," RcRrt<C, L, N> where [L: EachOnce],
     |problem, index, apart: f64, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
-        let (select, attach) = (Unexhausted::new(Nearest(index)), AppendApart::within(apart)?);
+        let (select, attach) = (Unexhausted::new(NearestSelector(index)), AppendApart::within(apart)?);
         Self::assemble(problem, Recipe { propose, select, grow: Untried::until_new(), attach, tuning })
     }
 }

@@ -45,7 +45,7 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{Append, Extend, Nearest, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{Append, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -64,13 +64,13 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 }
 
 /// RRT: see the [module](self).
-pub type Rrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Append>;
+pub type Rrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Extend, Append>;
 
 constructors! {
     "RRT" Rrt<C, L, N>,
     |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
-        let recipe = Recipe { propose, select: Nearest(index), grow: Extend, attach: Append, tuning };
+        let recipe = Recipe { propose, select: NearestSelector(index), grow: Extend, attach: Append, tuning };
         Self::assemble(problem, recipe)
     }
 }

@@ -33,7 +33,7 @@
 //!
 //! A point with velocities goes around a disc, by accelerations:
 //! ```
-//! use mp_cspace::inputs::{Along, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely};
+//! use mp_cspace::inputs::{DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Product, Resolution, Rn, Rng};
 //! use mp_tree::{Goals, Problem, RrtInputs, Tuning};
 //! use nalgebra::Vector2;
@@ -42,7 +42,7 @@
 //! let space = Product::with_velocity(Rn::new([0.0, 0.0], [1.0, 1.0])?, [0.5, 0.5])?;
 //! let free = OnPosition(|q: &Vector2<f64>| (q - Vector2::new(0.5, 0.5)).norm() > 0.3);
 //! let system = DoubleIntegrator::new(space.spaces().0)?;
-//! let check = Along::new(&space, free.clone(), Resolution::Fraction(0.01))?;
+//! let check = DiscreteFlowCheck::new(&space, free.clone(), Resolution::Fraction(0.01))?;
 //! let inputs = InputSet::grid([1.0, 1.0], 3)?;
 //! let local = InputPlanner::new(&space, system, inputs, 0.2, check)?;
 //! let verifier = ReplayFinely::new(&space, system, free, Resolution::Fraction(0.0005))?;
@@ -60,7 +60,7 @@
 use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{AppendDistinct, Extend, Nearest, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{AppendDistinct, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
 use mp_cspace::Uniform;
 use mp_cspace::inputs::{Order, TestOrder};
 
@@ -82,7 +82,7 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 
 /// RRT by inputs: see the [module](self).
 pub type RrtInputs<'c, C, L, N> =
-    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, AppendDistinct>;
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Extend, AppendDistinct>;
 
 constructors! {
     "RRT by inputs" RrtInputs<C, L, N> where [L: TestOrder],
@@ -91,6 +91,6 @@ constructors! {
         problem.local_mut().set_order(Order::TestAll);
         let propose = Samples(Uniform(problem.space()));
         let attach = AppendDistinct::default();
-        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
+        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
     }
 }

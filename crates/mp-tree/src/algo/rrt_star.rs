@@ -53,12 +53,12 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    BuildError, Extend, Improving, Near, Nearest, Parameter, PlannerInfo, Recipe, Rewire, Samples, Settings,
-    Tuning,
+    BuildError, Extend, Improving, Near, NearestSelector, Parameter, PlannerInfo, Recipe, Rewire, Samples,
+    Settings, Tuning,
 };
 use mp_cspace::Uniform;
 
-/// [`Near::Nearest`] by name.
+/// [`Near::NearestSelector`] by name.
 pub const NEAR: Parameter = Parameter {
     name: "near",
     range: "in (0, 1000]",
@@ -97,19 +97,20 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 pub fn near(settings: &Settings) -> Result<Near, BuildError> {
     Ok(match (settings.number(GAMMA.name)?, settings.number(NEAR.name)?) {
         (Some(gamma), _) if gamma != 0.0 => Near::Radius { gamma },
-        (_, Some(factor)) => Near::Nearest { factor },
+        (_, Some(factor)) => Near::NearestSelector { factor },
         _ => Near::default(),
     })
 }
 
 /// RRT*: see the [module](self).
-pub type RrtStar<'c, C, L, N> = Improving<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, Rewire>;
+pub type RrtStar<'c, C, L, N> =
+    Improving<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Extend, Rewire>;
 
 constructors! {
     "RRT*" RrtStar<C, L, N>,
     |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
         let propose = Samples(Uniform(problem.space()));
         let attach = Rewire::new(near)?;
-        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
+        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
     }
 }

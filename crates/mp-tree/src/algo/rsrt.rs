@@ -35,13 +35,13 @@
 //!
 //! A car turns round in a lane too narrow to do so in one go:
 //! ```
-//! use mp_cspace::inputs::{Along, Car, InputPlanner, ReplayFinely};
+//! use mp_cspace::inputs::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
 //! use mp_tree::{Goals, Problem, Rsrt, Tuning};
 //!
 //! let space = Se2::new([0.0, 0.0], [8.0, 3.0])?;
 //! let (car, free) = (Car::new(1.0)?, |q: &Se2State| (q.translation.y - 1.5).abs() < 1.2);
-//! let check = Along::new(&space, free, Resolution::Length(0.1))?;
+//! let check = DiscreteFlowCheck::new(&space, free, Resolution::Length(0.1))?;
 //! let mut local = InputPlanner::new(&space, car, Car::inputs(1.0, 0.6, 2)?, 0.5, check)?;
 //! let verifier = ReplayFinely::new(&space, car, free, Resolution::Length(0.005))?;
 //! let turned = Goals::region(|q: &Se2State| q.angle.abs() > 3.0);
@@ -60,7 +60,7 @@
 use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{AppendApart, Extend, Nearest, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{AppendApart, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
 use mp_cspace::Uniform;
 use mp_cspace::inputs::{Order, TestOrder};
 
@@ -81,7 +81,8 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 }
 
 /// RSRT: see the [module](self).
-pub type Rsrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Extend, AppendApart>;
+pub type Rsrt<'c, C, L, N> =
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Extend, AppendApart>;
 
 constructors! {
     "RSRT" Rsrt<C, L, N> where [L: TestOrder],
@@ -90,6 +91,6 @@ constructors! {
         problem.local_mut().set_order(Order::SortFirst);
         let propose = Samples(Uniform(problem.space()));
         let attach = AppendApart::default();
-        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow: Extend, attach, tuning })
+        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
     }
 }

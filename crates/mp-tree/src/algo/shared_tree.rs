@@ -62,8 +62,8 @@
 //! ```
 
 use crate::{
-    AppendDistinct, Attach, Branch, BuildError, Core, Growing, Grown, Growth, Nearest, Parameter, Problem,
-    Purpose, Selector, Tree, Tuning, Workers,
+    AppendDistinct, BuildError, Core, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
+    Problem, Purpose, SearchTree, Selector, Tree, Tuning, Workers,
 };
 use mp_cspace::{
     DefaultNn, Direction, Event, Extension, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
@@ -113,8 +113,8 @@ impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
 /// The extension found before.
 struct Found<S, E>(Option<Extension<S, E>>);
 
-impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Found<C::State, L::Edge> {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Found<C::State, L::Edge> {
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -126,7 +126,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Found<C::State, L::Ed
 /// One RRT grown by all threads: see the [module](self).
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
-    branch: Branch<C, L, Nearest<N>, AppendDistinct>,
+    branch: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
     slots: Vec<Slot<C::State, L>>,
     workers: Workers,
     seed: Option<u64>,
@@ -181,7 +181,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         let slots = (1..=batch).map(slot).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {
             core,
-            branch: Branch::new(0, Direction::Forward, Nearest(index), AppendDistinct::default()),
+            branch: SearchTree::new(0, Direction::Forward, NearestSelector(index), AppendDistinct::default()),
             slots,
             workers,
             seed: None,

@@ -67,8 +67,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP, constructors};
 use crate::{
-    Append, Attach, BuildError, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo, Purpose, Recipe,
-    Samples, Selector, SingleTree, Tuning,
+    Append, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo, Purpose,
+    Recipe, Samples, Selector, SingleTree, Tuning,
 };
 use mp_cspace::{ClearanceGradient, Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform};
 use rand::RngExt;
@@ -243,8 +243,8 @@ impl<F> Transition<F> {
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Growth<C, L> for Transition<F> {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C, L> for Transition<F> {
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -281,12 +281,12 @@ impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Growth<C, 
 
 /// T-RRT: see the [module](self).
 pub type TRrt<'c, C, L, N, F> =
-    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Nearest<N>, Transition<F>, Append>;
+    SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Transition<F>, Append>;
 
 constructors! {
     "T-RRT by the cost of states" TRrt<C, L, N, F> where [F: FnMut(&C::State) -> f64],
     |problem, index, cost: F, tuning: Tuning, with: Temperature| {
         let (propose, grow) = (Samples(Uniform(problem.space())), Transition::new(cost, with)?);
-        Self::assemble(problem, Recipe { propose, select: Nearest(index), grow, attach: Append, tuning })
+        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning })
     }
 }

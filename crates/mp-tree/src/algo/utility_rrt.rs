@@ -57,8 +57,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, Attach, BuildError, Connect, Growing, Grown, Growth, Nearest, Parameter, PlannerInfo,
-    Recipe, Samples, Selector, Tuning, TwoTrees,
+    AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
+    PlannerInfo, Recipe, Samples, Selector, Tuning, TwoTrees,
 };
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space, Uniform};
 use rand::RngExt;
@@ -147,8 +147,8 @@ impl<S: Clone> UtilityGuided<S> {
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for UtilityGuided<C::State> {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for UtilityGuided<C::State> {
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -211,7 +211,7 @@ pub type UtilityRrt<'c, C, L, N> = TwoTrees<
     C,
     L,
     Samples<Uniform<'c, C>>,
-    Nearest<N>,
+    NearestSelector<N>,
     UtilityGuided<<C as Space>::State>,
     Connect,
     AppendDistinct,
@@ -224,7 +224,7 @@ constructors! {
         let explore = UtilityGuided { candidates, past: [Vec::new(), Vec::new()] };
         let recipe = Recipe {
             propose: Samples(Uniform(problem.space())),
-            select: Nearest(index),
+            select: NearestSelector(index),
             grow: (explore, Connect::default()),
             attach: AppendDistinct::default(),
             tuning,

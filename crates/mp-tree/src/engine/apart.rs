@@ -1,6 +1,6 @@
 //! Slot: motions that only join the tree where nothing is yet.
 
-use super::{Attach, Attached, Selector, Steer, Tree};
+use super::{Inserted, Inserter, Selector, Tree, TreeEdgeChecker};
 use mp_cspace::{BuildError, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// Under the node it came from, unless another node of the tree is there already: up to rounding, or
@@ -32,23 +32,23 @@ impl AppendApart {
 /// States this part of the extent of the space apart, or less, are similar.
 const SIMILAR: f64 = 1e-9;
 
-impl<C: Space, L: LocalPlanner<C::State>> Attach<C, L> for AppendApart {
+impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendApart {
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
-    ) -> Attached {
+    ) -> Inserted {
         let radius = self.radius.unwrap_or(SIMILAR * steer.space().extent());
         select.near(steer.space(), tree.states(), &motion.end, radius, &mut self.near);
         let same = |hit: &&Hit| *tree.state(hit.id) == motion.end;
         // A motion to a state similar to where it began is as short as it is meant to be.
         let similar = |hit: &&Hit| hit.id != from;
         match self.near.iter().find(same).or_else(|| self.near.iter().find(similar)) {
-            Some(hit) => Attached::Known(hit.id),
-            None => Attached::New(tree.push(from, motion)),
+            Some(hit) => Inserted::Known(hit.id),
+            None => Inserted::New(tree.push(from, motion)),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What the loops have in common: the ends of the path, the straight way between them, verified paths.
 
-use super::{Attach, Branch, Grown, Selector, Steer, Tuning};
+use super::{Grown, Inserter, SearchTree, Selector, TreeEdgeChecker, Tuning};
 use mp_cspace::{
     BuildError, Goals, LocalPlanner, NodeId, Observer, Path, Problem, ProblemParts, Progress, Rng, Space,
 };
@@ -15,7 +15,7 @@ pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
     /// Where they end.
     pub goals: Goals<'c, C::State>,
     /// How trees move, and the verifier.
-    pub steer: Steer<'c, C, L>,
+    pub steer: TreeEdgeChecker<'c, C, L>,
     /// The probability of aiming at a goal; zero where there is none to aim at.
     pub goal_bias: f64,
     /// Iterations so far.
@@ -33,7 +33,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         let goal_bias = tuning.checked_bias()?;
         let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
         Ok(Self {
-            steer: Steer::new(space, local, verify, tuning)?,
+            steer: TreeEdgeChecker::new(space, local, verify, tuning)?,
             start,
             goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
             goals,
@@ -43,9 +43,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     }
 
     /// Plants the root of the first tree at the start, if there is none. The root, where that is in the goal.
-    pub fn plant<Se: Selector<C>, A: Attach<C, L>>(
+    pub fn plant<Se: Selector<C>, A: Inserter<C, L>>(
         &self,
-        branch: &mut Branch<C, L, Se, A>,
+        branch: &mut SearchTree<C, L, Se, A>,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<NodeId> {
         if !branch.tree().is_empty() {
@@ -58,9 +58,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
 
     /// Tries to go straight from the start to the next listed goal state; `None` when all have been tried. What a
     /// panic of the user's code interrupts is not tried again.
-    pub fn leap<Se: Selector<C>, A: Attach<C, L>>(
+    pub fn leap<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut Branch<C, L, Se, A>,
+        branch: &mut SearchTree<C, L, Se, A>,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Grown> {
@@ -75,9 +75,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     }
 
     /// Roots the tree from the goal at a new sample of the goal, now and then, and always where it has no root.
-    pub fn sample_goal<Se: Selector<C>, A: Attach<C, L>>(
+    pub fn sample_goal<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut Branch<C, L, Se, A>,
+        branch: &mut SearchTree<C, L, Se, A>,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) {
@@ -93,10 +93,10 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     }
 
     /// The path from the root to `id`, if it passes verification; otherwise its bad part is pruned, of which `pruned`
-    /// is told as by [`Branch::verify`].
-    pub fn path<Se: Selector<C>, A: Attach<C, L>>(
+    /// is told as by [`SearchTree::verify`].
+    pub fn path<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut Branch<C, L, Se, A>,
+        branch: &mut SearchTree<C, L, Se, A>,
         id: NodeId,
         observer: &mut dyn Observer<C::State>,
         pruned: impl FnMut(&[NodeId]),

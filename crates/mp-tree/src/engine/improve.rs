@@ -1,6 +1,6 @@
 //! The loop with one tree that goes on after a solution, for better ones.
 
-use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Tree};
+use super::{Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree};
 use mp_cspace::{
     BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
     Space, Stop, StopReason,
@@ -19,7 +19,7 @@ const GAIN: f64 = 1e-9;
 #[derive(Debug)]
 pub struct Improving<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
-    branch: Branch<C, L, Se, A>,
+    branch: SearchTree<C, L, Se, A>,
     propose: P,
     growth: G,
     /// The nodes in the goal, in the order in which they were found.
@@ -33,10 +33,10 @@ impl<'c, C, L, P, Se, G, A> Improving<'c, C, L, P, Se, G, A>
 where
     C: Space,
     L: LocalPlanner<C::State>,
-    P: Propose<C>,
+    P: TargetSampler<C>,
     Se: Selector<C>,
-    G: Growth<C, L>,
-    A: Attach<C, L>,
+    G: Extender<C, L>,
+    A: Inserter<C, L>,
 {
     /// The planner made by a recipe.
     ///
@@ -45,7 +45,7 @@ where
     pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
         Ok(Self {
             core: Core::new(problem, &recipe.tuning)?,
-            branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
+            branch: SearchTree::new(0, Direction::Forward, recipe.select, recipe.attach),
             propose: recipe.propose,
             growth: recipe.grow,
             arrived: Vec::new(),
@@ -128,10 +128,10 @@ impl<C, L, P, Se, G, A> Planner<C::State> for Improving<'_, C, L, P, Se, G, A>
 where
     C: Space,
     L: LocalPlanner<C::State>,
-    P: Propose<C>,
+    P: TargetSampler<C>,
     Se: Selector<C>,
-    G: Growth<C, L>,
-    A: Attach<C, L>,
+    G: Extender<C, L>,
+    A: Inserter<C, L>,
 {
     type Edge = L::Edge;
 

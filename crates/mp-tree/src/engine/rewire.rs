@@ -1,6 +1,6 @@
 //! Attach by the cheapest way: what makes RRT* of RRT.
 
-use super::{Attach, Attached, Selector, Steer, Tree};
+use super::{Inserted, Inserter, Selector, Tree, TreeEdgeChecker};
 use mp_cspace::{BuildError, Direction, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// Which nodes of a tree of n nodes, in a space of dimension d, count as near a new one.
@@ -8,7 +8,7 @@ use mp_cspace::{BuildError, Direction, Hit, LocalPlanner, Motion, NodeId, Space}
 pub enum Near {
     /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; any factor above 1 makes the best path
     /// converge to an optimal one (k-nearest RRT*).
-    Nearest {
+    NearestSelector {
         /// In (0, 1000]; 1.1 is customary.
         factor: f64,
     },
@@ -23,7 +23,7 @@ pub enum Near {
 
 impl Default for Near {
     fn default() -> Self {
-        Self::Nearest { factor: 1.1 }
+        Self::NearestSelector { factor: 1.1 }
     }
 }
 
@@ -38,7 +38,7 @@ impl Near {
     ) {
         let (n, d) = (points.len() as f64 + 1.0, space.dim() as f64);
         match self {
-            Self::Nearest { factor } => {
+            Self::NearestSelector { factor } => {
                 let k = (factor * std::f64::consts::E * (1.0 + 1.0 / d) * n.ln()).ceil();
                 select.k_nearest(space, points, q, k as usize, out);
             }
@@ -72,14 +72,14 @@ impl Rewire {
     /// When a number in `near` is out of range.
     pub fn new(near: Near) -> Result<Self, BuildError> {
         let (name, value, most) = match near {
-            Near::Nearest { factor } => ("near", factor, 1000.0),
+            Near::NearestSelector { factor } => ("near", factor, 1000.0),
             Near::Radius { gamma } => ("gamma", gamma, f64::MAX),
         };
         if value > 0.0 && value <= most {
             return Ok(Self { near, ..Self::default() });
         }
         let range = match near {
-            Near::Nearest { .. } => "in (0, 1000]",
+            Near::NearestSelector { .. } => "in (0, 1000]",
             Near::Radius { .. } => "a finite number above zero",
         };
         Err(BuildError::OutOfRange { name, value, range: range.to_owned() })
@@ -94,23 +94,23 @@ fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: 
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State>> Attach<C, L> for Rewire {
+impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
-    ) -> Attached {
+    ) -> Inserted {
         self.rewired.clear();
         if motion.end == *tree.state(from) {
-            return Attached::Known(from);
+            return Inserted::Known(from);
         }
         let (space, direction) = (steer.space(), tree.direction());
         self.near.find((space, steer.step()), tree.states(), select, &motion.end, &mut self.hits);
         if let Some(hit) = self.hits.iter().find(|hit| *tree.state(hit.id) == motion.end) {
-            return Attached::Known(hit.id);
+            return Inserted::Known(hit.id);
         }
 
         // All that asks the user's code comes first, so that a panic finds the tree as it was.
@@ -160,7 +160,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Attach<C, L> for Rewire {
                 }
             }
         }
-        Attached::New(new)
+        Inserted::New(new)
     }
 
     fn rewired(&self) -> &[NodeId] {

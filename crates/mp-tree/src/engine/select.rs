@@ -51,9 +51,9 @@ pub trait Selector<C: Space> {
 
 /// The nearest node.
 #[derive(Clone, Debug, Default)]
-pub struct Nearest<N>(pub N);
+pub struct NearestSelector<N>(pub N);
 
-impl<C: Space, N: NearestNeighbors<C>> Selector<C> for Nearest<N> {
+impl<C: Space, N: NearestNeighbors<C>> Selector<C> for NearestSelector<N> {
     #[inline]
     fn select(
         &mut self,

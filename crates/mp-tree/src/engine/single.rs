@@ -1,6 +1,9 @@
 //! The loop with one tree, grown from the start.
 
-use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Steer, Tree};
+use super::{
+    Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree,
+    TreeEdgeChecker,
+};
 use mp_cspace::{
     BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
     Space,
@@ -9,14 +12,14 @@ use mp_cspace::{
 /// A planner that grows one tree from the start until it enters the goal.
 ///
 /// The first iteration tries to go straight from the start to each listed goal state, unless the growth
-/// [declines](Growth::leaps). Each one
+/// [declines](Extender::leaps). Each one
 /// then proposes a target (with probability [`goal_bias`](crate::Tuning::goal_bias) a goal),
 /// grows the tree toward it, and verifies the path to what entered the goal. Stepping on after a
 /// solution grows the same tree on; the same path may be found again.
 #[derive(Debug)]
 pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
-    branch: Branch<C, L, Se, A>,
+    branch: SearchTree<C, L, Se, A>,
     propose: P,
     growth: G,
 }
@@ -24,7 +27,7 @@ pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
 /// A tree, how it moves and how it grows.
 type Parts<'a, 'c, C, L, G> = (
     &'a Tree<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>,
-    &'a mut Steer<'c, C, L>,
+    &'a mut TreeEdgeChecker<'c, C, L>,
     &'a mut G,
 );
 
@@ -32,10 +35,10 @@ impl<'c, C, L, P, Se, G, A> SingleTree<'c, C, L, P, Se, G, A>
 where
     C: Space,
     L: LocalPlanner<C::State>,
-    P: Propose<C>,
+    P: TargetSampler<C>,
     Se: Selector<C>,
-    G: Growth<C, L>,
-    A: Attach<C, L>,
+    G: Extender<C, L>,
+    A: Inserter<C, L>,
 {
     /// The planner made by a recipe.
     ///
@@ -44,7 +47,7 @@ where
     pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
         Ok(Self {
             core: Core::new(problem, &recipe.tuning)?,
-            branch: Branch::new(0, Direction::Forward, recipe.select, recipe.attach),
+            branch: SearchTree::new(0, Direction::Forward, recipe.select, recipe.attach),
             propose: recipe.propose,
             growth: recipe.grow,
         })
@@ -125,10 +128,10 @@ impl<C, L, P, Se, G, A> Planner<C::State> for SingleTree<'_, C, L, P, Se, G, A>
 where
     C: Space,
     L: LocalPlanner<C::State>,
-    P: Propose<C>,
+    P: TargetSampler<C>,
     Se: Selector<C>,
-    G: Growth<C, L>,
-    A: Attach<C, L>,
+    G: Extender<C, L>,
+    A: Inserter<C, L>,
 {
     type Edge = L::Edge;
 

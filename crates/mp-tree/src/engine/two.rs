@@ -1,7 +1,7 @@
 //! The loop with two trees, grown from the start and from the goal.
 
 use super::core::joined;
-use super::{Attach, Branch, Core, Grown, Growth, Propose, Purpose, Recipe, Selector, Tree};
+use super::{Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree};
 use mp_cspace::{
     BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
     Space,
@@ -10,7 +10,7 @@ use mp_cspace::{
 /// A planner that grows one tree from the start and one from the goal until they meet.
 ///
 /// The first iteration tries to go straight from the start to each listed goal state, unless one of the growths
-/// [declines](Growth::leaps). Each one
+/// [declines](Extender::leaps). Each one
 /// then grows one tree toward a proposed target, and the other toward what was reached; the trees
 /// take turns. Where they meet, the path is verified. The goal tree has a root for each listed
 /// goal state; where goals come from a sampler, a root is added with probability
@@ -19,7 +19,7 @@ use mp_cspace::{
 #[derive(Debug)]
 pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
     core: Core<'c, C, L>,
-    trees: [Branch<C, L, Se, A>; 2],
+    trees: [SearchTree<C, L, Se, A>; 2],
     /// How many listed goal states have been looked at, how many roots that gave, and how many of
     /// those have been tried straight from the start.
     planted: usize,
@@ -35,11 +35,11 @@ impl<'c, C, L, P, Se, GA, GB, A> TwoTrees<'c, C, L, P, Se, GA, GB, A>
 where
     C: Space,
     L: LocalPlanner<C::State>,
-    P: Propose<C>,
+    P: TargetSampler<C>,
     Se: Selector<C>,
-    GA: Growth<C, L>,
-    GB: Growth<C, L>,
-    A: Attach<C, L>,
+    GA: Extender<C, L>,
+    GB: Extender<C, L>,
+    A: Inserter<C, L>,
 {
     /// The planner made by a recipe. `planner` names it in errors.
     ///
@@ -57,8 +57,8 @@ where
         if !problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner });
         }
-        let forward = Branch::new(0, Direction::Forward, recipe.select.clone(), recipe.attach.clone());
-        let backward = Branch::new(1, Direction::Backward, recipe.select, recipe.attach);
+        let forward = SearchTree::new(0, Direction::Forward, recipe.select.clone(), recipe.attach.clone());
+        let backward = SearchTree::new(1, Direction::Backward, recipe.select, recipe.attach);
         Ok(Self {
             core: Core::new(problem, &recipe.tuning)?,
             trees: [forward, backward],
@@ -135,11 +135,11 @@ impl<C, L, P, Se, GA, GB, A> Planner<C::State> for TwoTrees<'_, C, L, P, Se, GA,
 where
     C: Space,
     L: LocalPlanner<C::State>,
-    P: Propose<C>,
+    P: TargetSampler<C>,
     Se: Selector<C>,
-    GA: Growth<C, L>,
-    GB: Growth<C, L>,
-    A: Attach<C, L>,
+    GA: Extender<C, L>,
+    GB: Extender<C, L>,
+    A: Inserter<C, L>,
 {
     type Edge = L::Edge;
 

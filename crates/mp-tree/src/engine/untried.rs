@@ -1,6 +1,6 @@
 //! Slot: growth by inputs none of which is tried twice at the same node.
 
-use super::{Attach, Growing, Grown, Growth, Selector};
+use super::{Extender, Growing, Grown, Inserter, Selector};
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
@@ -26,8 +26,8 @@ impl Untried {
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State> + EachOnce> Growth<C, L> for Untried {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State> + EachOnce> Extender<C, L> for Untried {
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,

@@ -4,7 +4,7 @@ mod state;
 mod wrap;
 
 pub use state::{ProblemFactory, TreeState};
-pub use wrap::{Named, Wrapper, build_from, wrappers};
+pub use wrap::{MetaPlanner, PlannerSpec, build_from, wrappers};
 
 use crate::algo;
 use crate::by_name::{AnyPlanner, Given};

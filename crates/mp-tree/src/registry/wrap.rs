@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// A way to run another planner, named by what is put before that one's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wrapper {
+pub struct MetaPlanner {
     /// Before the name of the planner it runs.
     pub prefix: &'static str,
     /// What it is and when to use it, in a line.
@@ -28,7 +28,7 @@ pub struct Wrapper {
     pub around: Option<&'static [&'static str]>,
 }
 
-const OR: Wrapper = Wrapper {
+const OR: MetaPlanner = MetaPlanner {
     prefix: "or-",
     summary: "independent runs on all threads, of which the one with the fewest iterations wins",
     citation: "Carpin and Pagello 2002",
@@ -36,7 +36,7 @@ const OR: Wrapper = Wrapper {
     around: None,
 };
 
-const SHARED: Wrapper = Wrapper {
+const SHARED: MetaPlanner = MetaPlanner {
     prefix: "shared-",
     summary: "one tree grown by all threads, many samples at a time",
     citation: "Carpin and Pagello 2002",
@@ -44,7 +44,7 @@ const SHARED: Wrapper = Wrapper {
     around: Some(&[rrt::INFO.name, rrs::INFO.name]),
 };
 
-const RESTART: Wrapper = Wrapper {
+const RESTART: MetaPlanner = MetaPlanner {
     prefix: "restart-",
     summary: "begins anew when it takes too long: fewer very long runs",
     citation: "Luby, Sinclair and Zuckerman 1993; Amato, Ashur and Har-Peled 2025",
@@ -55,30 +55,30 @@ const RESTART: Wrapper = Wrapper {
 /// All wrappers of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
 /// that restart.
 #[must_use]
-pub fn wrappers() -> &'static [Wrapper] {
+pub fn wrappers() -> &'static [MetaPlanner] {
     &[OR, SHARED, RESTART]
 }
 
 /// A planner by name, with what it is wrapped in: `rrt`, `or-rrt-connect`, `restart-rrt`, …
 ///
 /// ```
-/// use mp_tree::{Named, Settings};
-/// let named = Named::new("restart-rrt-connect")?;
+/// use mp_tree::{PlannerSpec, Settings};
+/// let named = PlannerSpec::new("restart-rrt-connect")?;
 /// assert_eq!(named.to_string(), "restart-rrt-connect");
 /// assert!(named.check(&Settings::parse(["unit=500", "step=10%"])?).is_ok());
 /// assert!(named.check(&Settings::parse(["runs=2"])?).is_err());
-/// assert!(Named::new("or-dijkstra").is_err());
+/// assert!(PlannerSpec::new("or-dijkstra").is_err());
 /// # Ok::<(), mp_tree::BuildError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Named {
+pub struct PlannerSpec {
     /// The wrappers, the outermost first.
-    pub wrappers: Vec<&'static Wrapper>,
+    pub wrappers: Vec<&'static MetaPlanner>,
     /// The planner inside.
     pub planner: &'static PlannerInfo,
 }
 
-impl Named {
+impl PlannerSpec {
     /// Most wrappers around one planner.
     const DEEPEST: usize = 4;
 
@@ -92,7 +92,7 @@ impl Named {
         loop {
             if let Ok(inner) = planner(rest) {
                 let innermost = wrappers.len().wrapping_sub(1);
-                let runs = |(i, wrapper): (usize, &&Wrapper)| {
+                let runs = |(i, wrapper): (usize, &&MetaPlanner)| {
                     wrapper.around.is_none_or(|names| i == innermost && names.contains(&inner.name))
                 };
                 if !wrappers.iter().enumerate().all(runs) {
@@ -129,7 +129,7 @@ impl Named {
     }
 }
 
-impl fmt::Display for Named {
+impl fmt::Display for PlannerSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.wrappers.iter().try_for_each(|wrapper| f.write_str(wrapper.prefix))?;
         f.write_str(self.planner.name)
@@ -153,7 +153,7 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
-    let named = Named::new(name)?;
+    let named = PlannerSpec::new(name)?;
     named.check(settings)?;
     let factory =
         Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), named };
@@ -168,7 +168,7 @@ struct Factory<'c, C: Space, M: MotionValidity<C::State>, N> {
     index: N,
     settings: Settings,
     workers: Workers,
-    named: Named,
+    named: PlannerSpec,
 }
 
 impl<'c, C: Space, M: MotionValidity<C::State>, N: Clone> Clone for Factory<'c, C, M, N> {

@@ -71,7 +71,7 @@ pub(crate) struct Exact<const N: usize>(pub(crate) Boxes<N>);
 impl<const N: usize> MotionValidity<SVector<f64, N>> for Exact<N> {
     fn check_motion(&mut self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> MotionCheck {
         match self.0.hit(from, to) {
-            true => MotionCheck::Collides { at: 0.5 },
+            true => MotionCheck::Collision { at: 0.5 },
             false => MotionCheck::Free { clearance: 0.0 },
         }
     }

@@ -215,7 +215,7 @@ fn finitely_many_moves_make_no_duplicates_either() {
     let space = Rn::<2>::new([0.0; 2], [10.0; 2]).unwrap();
     let recipe = Recipe {
         propose: Samples(Uniform(&space)),
-        select: Nearest(Linear::new()),
+        select: NearestSelector(Linear::new()),
         grow: Extend,
         attach: AppendDistinct::default(),
         tuning: Tuning { step: Step::Length(1.0), ..Tuning::default() },

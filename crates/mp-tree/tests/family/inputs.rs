@@ -17,7 +17,12 @@ fn tuning(step: f64) -> Tuning {
 }
 
 /// A point moved by velocities among boxes, straight edges that remember their input.
-fn plan_positions<C>(space: &C, boxes: &Boxes<2>, order: Order, seed: u64) -> Run<Point, Leg<SVector<f64, 2>>>
+fn plan_positions<C>(
+    space: &C,
+    boxes: &Boxes<2>,
+    order: Order,
+    seed: u64,
+) -> Run<Point, ControlSegment<SVector<f64, 2>>>
 where
     C: DefaultNn + Space<State = Point>,
 {
@@ -74,7 +79,7 @@ fn velocities_by_accelerations() {
     for seed in 0..3 {
         for order in [Order::TestAll, Order::SortFirst] {
             let valid = OnPosition(boxes.clone());
-            let check = Along::new(&space, valid.clone(), Resolution::Fraction(0.005)).unwrap();
+            let check = DiscreteFlowCheck::new(&space, valid.clone(), Resolution::Fraction(0.005)).unwrap();
             let inputs = InputSet::grid([1.0, 1.0], 3).unwrap();
             let mut local = InputPlanner::new(&space, flow, inputs, 0.2, check).unwrap();
             let fine = Resolution::Fraction(0.0005);
@@ -173,7 +178,7 @@ fn drawn<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Problem<'c, Rn<2>, Drawn<'c>
 }
 
 /// No input is tried twice at a node, so no two children of one have the same.
-fn each_once<E: PartialEq>(tree: &Tree<Point, Leg<E>>) {
+fn each_once<E: PartialEq>(tree: &Tree<Point, ControlSegment<E>>) {
     for a in 0..tree.len() as u32 {
         for b in 0..a {
             let twice = tree.parent(a).is_some() && tree.parent(a) == tree.parent(b);
@@ -238,7 +243,7 @@ fn resolution_completeness_ends_where_there_is_no_path() {
 #[test]
 fn violations_are_passed_on_to_ancestors() {
     let space = square();
-    let mut select = LeastViolated::new(Nearest(Linear::new()), 4);
+    let mut select = LeastViolated::new(NearestSelector(Linear::new()), 4);
     let points = [Point::new(0.1, 0.1), Point::new(0.2, 0.1), Point::new(0.3, 0.1)];
     for (id, parent) in [(0, None), (1, Some(0)), (2, Some(1))] {
         select.inserted(&space, &points[..=id as usize], id, parent);

@@ -101,7 +101,7 @@ fn two_trees_grow_along_obstacles() {
     for seed in 0..20 {
         let recipe = Recipe {
             propose: Samples(Uniform(&space)),
-            select: Nearest(Linear::new()),
+            select: NearestSelector(Linear::new()),
             grow: (ObstacleGuided::new(boxes.clone(), GrowthWeights::default()).unwrap(), Connect::default()),
             attach: AppendDistinct::default(),
             tuning: step(0.1),
@@ -128,7 +128,7 @@ fn a_closed_box_is_never_entered() {
 /// Proposes one state.
 struct Always(Vector2<f64>);
 
-impl Propose<Rn<2>> for Always {
+impl TargetSampler<Rn<2>> for Always {
     fn propose<Se: Selector<Rn<2>>>(
         &mut self,
         _: &mut Rng,
@@ -149,7 +149,7 @@ fn methods_do_as_they_say() {
         let only = GrowthWeights(std::array::from_fn(|i| f64::from(u8::from(i == method))));
         let recipe = Recipe {
             propose: Always([0.9, 0.5].into()),
-            select: Nearest(Linear::new()),
+            select: NearestSelector(Linear::new()),
             grow: ObstacleGuided::new(wall.clone(), only).unwrap(),
             attach: AppendDistinct::default(),
             tuning: Tuning { goal_bias: 0.0, ..step(0.1) },

@@ -184,7 +184,7 @@ fn rewired_edges_are_in_forward_time_in_trees_of_both_directions() {
     let problem = Problem::new(&space, Remembers(local), Anything, START.into(), Point::from(GOAL)).unwrap();
     let recipe = Recipe {
         propose: Samples(Uniform(&space)),
-        select: Nearest(Linear::new()),
+        select: NearestSelector(Linear::new()),
         grow: (Extend, Connect::default()),
         attach: Rewire::default(),
         tuning: Tuning { step: Step::Length(0.05), ..Tuning::default() },
@@ -237,7 +237,7 @@ fn goals_of_every_kind_improve() {
 #[test]
 fn what_counts_as_near_must_be_in_range() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        for near in [Near::Nearest { factor: bad }, Near::Radius { gamma: bad }] {
+        for near in [Near::NearestSelector { factor: bad }, Near::Radius { gamma: bad }] {
             assert!(matches!(Rewire::new(near), Err(BuildError::OutOfRange { .. })));
         }
     }

@@ -36,7 +36,7 @@ fn solves<P: Planner<Point>>(mut planner: P, boxes: &Boxes<2>) -> Progress {
 /// Select: dynamic-domain RRT (Yershova et al. 2005). A node that failed refuses far samples.
 #[derive(Clone)]
 struct DynamicDomain {
-    nearest: Nearest<Linear>,
+    nearest: NearestSelector<Linear>,
     radius: f64,
     radii: Vec<f64>,
 }
@@ -78,7 +78,7 @@ fn a_selector_that_learns() {
     let plain = RrtConnect::with_index(problem(&space, &boxes, start, goal), Linear::new(), short()).unwrap();
     let recipe = Recipe {
         propose: Samples(Uniform(&space)),
-        select: DynamicDomain { nearest: Nearest::default(), radius: 0.1, radii: Vec::new() },
+        select: DynamicDomain { nearest: NearestSelector::default(), radius: 0.1, radii: Vec::new() },
         grow: (Extend, Connect::default()),
         attach: Append,
         tuning: short(),
@@ -92,7 +92,7 @@ fn a_selector_that_learns() {
 /// at several (Lindemann and LaValle 2004).
 struct Farthest(usize);
 
-impl<C: Space> Propose<C> for Farthest {
+impl<C: Space> TargetSampler<C> for Farthest {
     fn propose<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
@@ -122,8 +122,8 @@ struct Sidestep {
     prunings: usize,
 }
 
-impl<L: LocalPlanner<Point>> Growth<Rn<2>, L> for Sidestep {
-    fn grow<Se: Selector<Rn<2>>, A: Attach<Rn<2>, L>>(
+impl<L: LocalPlanner<Point>> Extender<Rn<2>, L> for Sidestep {
+    fn grow<Se: Selector<Rn<2>>, A: Inserter<Rn<2>, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, Rn<2>, L, Se, A>,
@@ -147,7 +147,7 @@ fn proposals_and_growths_of_ones_own() {
     let (space, (boxes, start, goal)) = (square(), trap());
     let recipe = Recipe {
         propose: Farthest(4),
-        select: Nearest(Linear::new()),
+        select: NearestSelector(Linear::new()),
         grow: Sidestep::default(),
         attach: Append,
         tuning: short(),
@@ -155,7 +155,7 @@ fn proposals_and_growths_of_ones_own() {
     solves(SingleTree::assemble(problem(&space, &boxes, start, goal), recipe).unwrap(), &boxes);
     let both = Recipe {
         propose: Samples(Uniform(&space)),
-        select: Nearest(Linear::new()),
+        select: NearestSelector(Linear::new()),
         grow: (Connect::default(), Connect::default()),
         attach: Append,
         tuning: short(),
@@ -219,13 +219,13 @@ impl Verify<Se2State, f64> for Car<'_> {
     fn verify_state(&mut self, q: &Se2State) -> MotionCheck {
         match self.boxes.distance(&q.translation) > 0.01 {
             true => MotionCheck::Free { clearance: 0.0 },
-            false => MotionCheck::Collides { at: 0.0 },
+            false => MotionCheck::Collision { at: 0.0 },
         }
     }
     fn verify_edge(&mut self, from: &Se2State, turn: &f64, to: &Se2State) -> MotionCheck {
         match drive(from, *turn, 1.0) == *to && self.free(from, *turn) {
             true => MotionCheck::Free { clearance: 0.0 },
-            false => MotionCheck::Collides { at: 1.0 },
+            false => MotionCheck::Collision { at: 1.0 },
         }
     }
 }
@@ -239,7 +239,7 @@ fn inputs_instead_of_straight_lines() {
     let problem = Problem::new(&space, car.clone(), car.clone(), start, beyond).unwrap();
     let recipe = Recipe {
         propose: Samples(Uniform(&space)),
-        select: Nearest(Linear::new()),
+        select: NearestSelector(Linear::new()),
         grow: Extend,
         attach: AppendDistinct::default(),
         tuning: Tuning::default(),
@@ -255,8 +255,8 @@ fn inputs_instead_of_straight_lines() {
 #[derive(Clone, Copy)]
 struct OneStep;
 
-impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for OneStep {
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for OneStep {
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -294,8 +294,11 @@ fn leaps_can_be_declined() {
         let local = NeverFar(certified(&space, boxes.clone(), 1e-3));
         Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap()
     };
-    fn recipe<G>(space: &Rn<2>, grow: G) -> Recipe<Samples<Uniform<'_, Rn<2>>>, Nearest<Linear>, G, Append> {
-        let (propose, select) = (Samples(Uniform(space)), Nearest(Linear::new()));
+    fn recipe<G>(
+        space: &Rn<2>,
+        grow: G,
+    ) -> Recipe<Samples<Uniform<'_, Rn<2>>>, NearestSelector<Linear>, G, Append> {
+        let (propose, select) = (Samples(Uniform(space)), NearestSelector(Linear::new()));
         Recipe { propose, select, grow, attach: Append, tuning: short() }
     }
     solves(SingleTree::assemble(problem(), recipe(&space, OneStep)).unwrap(), &boxes);

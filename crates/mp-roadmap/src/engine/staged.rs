@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 
 /// To which nodes a candidate is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Among {
+pub enum NeighborSet {
     /// The nearest.
-    Nearest,
+    NearestConnector,
     /// The nearest of each obstacle, so many of each (and of those of none); of all these the nearest.
     /// Costs a distance to every node.
     EachObstacle(usize),
@@ -30,10 +30,10 @@ pub enum Turns {
 ///
 /// Each node goes through the stages as it comes, rather than all through one after the other.
 #[derive(Clone, Debug)]
-pub struct Stages<H> {
+pub struct StagedConnector<H> {
     hints: H,
     within: Reachable,
-    among: Among,
+    among: NeighborSet,
     turns: Turns,
     near: Vec<Hit>,
     scratch: Vec<(f64, NodeId)>,
@@ -42,11 +42,11 @@ pub struct Stages<H> {
     grouped: NodeId,
 }
 
-impl<H> Stages<H> {
+impl<H> StagedConnector<H> {
     /// # Errors
     /// When there are no neighbours, the radius is not positive, or a fraction is not in \[0, 1\].
-    pub fn new(hints: H, within: Reachable, among: Among, turns: Turns) -> Result<Self, BuildError> {
-        if let Among::EachObstacle(most) = among {
+    pub fn new(hints: H, within: Reachable, among: NeighborSet, turns: Turns) -> Result<Self, BuildError> {
+        if let NeighborSet::EachObstacle(most) = among {
             BuildError::count_within("per-obstacle", most as u64, 1, 1_000_000)?;
         }
         if let Turns::At(fractions) = &turns {
@@ -66,7 +66,7 @@ impl<H> Stages<H> {
         N: NearestNeighbors<C>,
     {
         let Reachable { neighbours, radius, .. } = self.within;
-        let Among::EachObstacle(most) = self.among else {
+        let NeighborSet::EachObstacle(most) = self.among else {
             return growing.near(q, neighbours, radius, &mut self.near);
         };
         let (space, map) = (growing.space(), growing.map());
@@ -130,7 +130,7 @@ impl<H> Stages<H> {
     }
 }
 
-impl<C, L, H> Connector<C, L> for Stages<H>
+impl<C, L, H> Connector<C, L> for StagedConnector<H>
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,

@@ -4,29 +4,29 @@
 //! what the attempts to come will probably ask, of the roadmap as it is, and keep the answers. The attempts are
 //! then made one after the other as ever, and take the answers that are there.
 
-use super::{Builder, Candidate, Connector, NodeGenerator, Roadmap, Steer};
+use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Roadmap};
 use mp_cspace::{Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers};
 use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
 
 /// What the local planner answered, by the node that a motion leads from.
-pub(crate) type Answers<S, E> = Vec<(NodeId, Option<Motion<S, E>>)>;
+pub(crate) type Prefetched<S, E> = Vec<(NodeId, Option<Motion<S, E>>)>;
 
 /// The candidates of an attempt, and what was asked about each.
-pub(crate) type Foreseen<S, E> = Vec<(Candidate<S, E>, Answers<S, E>)>;
+pub(crate) type PrefetchedAttempt<S, E> = Vec<(Candidate<S, E>, Prefetched<S, E>)>;
 
 /// What a connector has to look ahead with: the roadmap as it is, to which candidates are not added.
 #[allow(missing_debug_implementations)] // verifiers need not have any
-pub struct Foreseeing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
+pub struct Prefetching<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     map: &'a Roadmap<C::State, L::Edge>,
     index: &'a N,
-    steer: &'a mut Steer<'c, C, L>,
+    steer: &'a mut EdgeChecker<'c, C, L>,
     q: &'a C::State,
-    answers: Answers<C::State, L::Edge>,
+    answers: Prefetched<C::State, L::Edge>,
 }
 
-impl<C, L, N> Foreseeing<'_, '_, C, L, N>
+impl<C, L, N> Prefetching<'_, '_, C, L, N>
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
@@ -73,27 +73,27 @@ pub(crate) struct Look<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
 }
 
 /// What was made of some attempts, in order.
-type Made<C, L> = Vec<Foreseen<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
+type Made<C, L> = Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
 
 type Work<'c, C, L, G, K, N> = Box<dyn FnMut(Look<'_, C, L, G, K, N>) -> Made<C, L> + Send + 'c>;
 
 /// Threads that make attempts ahead, and what they have made.
-pub(crate) struct Ahead<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
-    pub(crate) ready: VecDeque<Foreseen<C::State, L::Edge>>,
+pub(crate) struct Prefetcher<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+    pub(crate) ready: VecDeque<PrefetchedAttempt<C::State, L::Edge>>,
     pub(crate) work: Option<Work<'c, C, L, G, K, N>>,
     /// Most attempts made ahead.
     pub(crate) most: u64,
 }
 
-impl<C: Space, L: LocalPlanner<C::State>, G, K, N> Default for Ahead<'_, C, L, G, K, N> {
+impl<C: Space, L: LocalPlanner<C::State>, G, K, N> Default for Prefetcher<'_, C, L, G, K, N> {
     fn default() -> Self {
         Self { ready: VecDeque::new(), work: None, most: 0 }
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Ahead<'_, C, L, G, K, N> {
+impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Prefetcher<'_, C, L, G, K, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Ahead")
+        f.debug_struct("Prefetcher")
             .field("ready", &self.ready.len())
             .field("most", &self.most)
             .finish_non_exhaustive()
@@ -102,10 +102,10 @@ impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Ahead<'_, C, L
 
 /// One thread's part of the work.
 struct Hand<'c, C: Space, L: LocalPlanner<C::State>, G> {
-    steer: Steer<'c, C, L>,
+    steer: EdgeChecker<'c, C, L>,
     generate: Option<G>,
     attempts: Range<u64>,
-    made: Vec<Foreseen<C::State, L::Edge>>,
+    made: Vec<PrefetchedAttempt<C::State, L::Edge>>,
 }
 
 /// Attempts that one hand makes at a time.
@@ -126,7 +126,7 @@ where
     /// time; give at least as many as there are threads. The roadmap is the same to the bit as without,
     /// whatever their number and that of the threads.
     #[must_use]
-    pub fn on(mut self, workers: Workers, hands: impl IntoIterator<Item = Steer<'c, C, L>>) -> Self {
+    pub fn on(mut self, workers: Workers, hands: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
         let none = 0..0;
         let hands = hands.into_iter().map(|steer| Hand {
             steer,
@@ -166,7 +166,7 @@ where
             let foreseen = candidates.into_iter().map(|candidate| {
                 let (map, index) = (look.map, look.index);
                 let q = &candidate.state;
-                let mut ahead = Foreseeing { map, index, steer: &mut self.steer, q, answers: Vec::new() };
+                let mut ahead = Prefetching { map, index, steer: &mut self.steer, q, answers: Vec::new() };
                 look.connect.foresee(&mut ahead);
                 let answers = ahead.answers;
                 (candidate, answers)

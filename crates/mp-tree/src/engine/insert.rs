@@ -1,11 +1,11 @@
 //! Slot: how a new motion joins the tree.
 
-use super::{Selector, Steer, Tree};
+use super::{Selector, Tree, TreeEdgeChecker};
 use mp_cspace::{Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// What became of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Attached {
+pub enum Inserted {
     /// Its end is this new node, the last of the tree.
     New(NodeId),
     /// Its end is the state of this node, or one that counts as the same, which was there before:
@@ -16,16 +16,16 @@ pub enum Attached {
 /// Adds the end of a motion to a tree, under the node it came from or a better one.
 ///
 /// Adds at most one node. The caller tells the selector of it afterwards.
-pub trait Attach<C: Space, L: LocalPlanner<C::State>> {
+pub trait Inserter<C: Space, L: LocalPlanner<C::State>> {
     /// Attaches `motion`, which leaves (in time: enters, in a backward tree) node `from`.
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
-    ) -> Attached;
+    ) -> Inserted;
     /// The nodes that the last motion attached gave another parent, in the order in which it did.
     fn rewired(&self) -> &[NodeId] {
         &[]
@@ -40,20 +40,20 @@ pub trait Attach<C: Space, L: LocalPlanner<C::State>> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Append;
 
-impl<C: Space, L: LocalPlanner<C::State>> Attach<C, L> for Append {
+impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Append {
     #[inline]
     fn attach<Se: Selector<C>>(
         &mut self,
-        _: &mut Steer<'_, C, L>,
+        _: &mut TreeEdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         _: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
-    ) -> Attached {
+    ) -> Inserted {
         if motion.end == *tree.state(from) {
-            return Attached::Known(from);
+            return Inserted::Known(from);
         }
-        Attached::New(tree.push(from, motion))
+        Inserted::New(tree.push(from, motion))
     }
 }
 
@@ -64,19 +64,19 @@ pub struct AppendDistinct {
     near: Vec<Hit>,
 }
 
-impl<C: Space, L: LocalPlanner<C::State>> Attach<C, L> for AppendDistinct {
+impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendDistinct {
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
-    ) -> Attached {
+    ) -> Inserted {
         select.near(steer.space(), tree.states(), &motion.end, 0.0, &mut self.near);
         match self.near.iter().find(|hit| *tree.state(hit.id) == motion.end) {
-            Some(hit) => Attached::Known(hit.id),
-            None => Attached::New(tree.push(from, motion)),
+            Some(hit) => Inserted::Known(hit.id),
+            None => Inserted::New(tree.push(from, motion)),
         }
     }
 }

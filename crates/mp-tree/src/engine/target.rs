@@ -4,7 +4,7 @@ use super::{Purpose, Selector};
 use mp_cspace::{Hit, Rng, Sampler, Space};
 
 /// Proposes the next target of exploration, seeing the tree that is about to grow.
-pub trait Propose<C: Space> {
+pub trait TargetSampler<C: Space> {
     /// The next target.
     fn propose<Se: Selector<C>>(
         &mut self,
@@ -21,7 +21,7 @@ pub trait Propose<C: Space> {
 #[derive(Clone, Debug, Default)]
 pub struct Samples<Sa>(pub Sa);
 
-impl<C: Space, Sa: Sampler<C::State>> Propose<C> for Samples<Sa> {
+impl<C: Space, Sa: Sampler<C::State>> TargetSampler<C> for Samples<Sa> {
     #[inline]
     fn propose<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
         self.0.sample(rng)
@@ -44,7 +44,7 @@ impl<P> Acceptable<P> {
     }
 }
 
-impl<C: Space, P: Propose<C>> Propose<C> for Acceptable<P> {
+impl<C: Space, P: TargetSampler<C>> TargetSampler<C> for Acceptable<P> {
     fn propose<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,

@@ -2,7 +2,7 @@
 
 use super::forest::Forest;
 use super::planner::verify;
-use super::{AStar, Builder, EdgeId, LinkState, Query, Roadmap, Steer, Way};
+use super::{AStar, Builder, EdgeChecker, EdgeId, GraphPath, LinkState, Query, Roadmap};
 use mp_cspace::shortest::shortest_paths;
 use mp_cspace::{
     BuildError, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible, Space,
@@ -33,12 +33,12 @@ pub enum Unanswered {
 /// that passed once are not verified again, and one that fails is blocked for good. A direct motion from
 /// start to goal is tried first.
 #[derive(Debug)]
-pub struct Answers<'c, C: Space, L: LocalPlanner<C::State>, N> {
-    steer: Steer<'c, C, L>,
+pub struct RoadmapQueries<'c, C: Space, L: LocalPlanner<C::State>, N> {
+    steer: EdgeChecker<'c, C, L>,
     indexed: IndexedRoadmap<C::State, L::Edge, N>,
 }
 
-/// A roadmap, an index of its nodes and what searches have learnt: what of [`Answers`] outlives a local planner. It
+/// A roadmap, an index of its nodes and what searches have learnt: what of [`RoadmapQueries`] outlives a local planner. It
 /// answers the same queries to whoever brings one, always for the same space and scene.
 #[derive(Clone, Debug)]
 pub struct IndexedRoadmap<S, E, N> {
@@ -57,9 +57,9 @@ where
 {
     /// What was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
     #[must_use]
-    pub fn into_answers(self, neighbours: usize) -> Answers<'c, C, L, N> {
+    pub fn into_answers(self, neighbours: usize) -> RoadmapQueries<'c, C, L, N> {
         let Self { steer, map, index, .. } = self;
-        Answers { steer, indexed: IndexedRoadmap::filled(map, index, neighbours) }
+        RoadmapQueries { steer, indexed: IndexedRoadmap::filled(map, index, neighbours) }
     }
 }
 
@@ -76,7 +76,7 @@ struct Joined<S, E> {
     nodes: [NodeId; 2],
 }
 
-impl<'c, C, L, N> Answers<'c, C, L, N>
+impl<'c, C, L, N> RoadmapQueries<'c, C, L, N>
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
@@ -88,7 +88,7 @@ where
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
     pub fn new(
-        steer: Steer<'c, C, L>,
+        steer: EdgeChecker<'c, C, L>,
         map: Roadmap<C::State, L::Edge>,
         index: N,
         neighbours: usize,
@@ -199,7 +199,7 @@ where
     ///
     /// A planner of one path is better off with the verification of that path; of thousands each edge is on
     /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
-    pub fn verify<C, L>(&mut self, steer: &mut Steer<'_, C, L>) -> usize
+    pub fn verify<C, L>(&mut self, steer: &mut EdgeChecker<'_, C, L>) -> usize
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -212,7 +212,7 @@ where
             }
             let [a, b] = self.map.ends(edge);
             for nodes in [vec![a, b], vec![b, a]] {
-                let way = Way { nodes, edges: vec![edge], length: self.map.edge(edge).length };
+                let way = GraphPath { nodes, edges: vec![edge], length: self.map.edge(edge).length };
                 if !self.star.check(&mut self.map, steer, &way) || !verify(&mut self.map, steer, &way) {
                     break;
                 }
@@ -227,7 +227,7 @@ where
     /// When there is none in the roadmap, with the reason.
     pub fn answer<C, L>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
     ) -> Result<Path<S, E>, Unanswered>
@@ -256,7 +256,7 @@ where
     }
 
     /// A shortest way between two nodes, all of whose edges have motions.
-    fn way<C, L>(&mut self, steer: &mut Steer<'_, C, L>, [from, to]: [NodeId; 2]) -> Option<Way>
+    fn way<C, L>(&mut self, steer: &mut EdgeChecker<'_, C, L>, [from, to]: [NodeId; 2]) -> Option<GraphPath>
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -279,7 +279,7 @@ where
     /// When there is none in the roadmap, with the reason.
     pub fn alternatives<C, L>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
         k: usize,
@@ -304,10 +304,10 @@ where
     /// blocked on the way.
     fn ways<C, L>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         [from, to]: [NodeId; 2],
         k: usize,
-    ) -> Option<Vec<Way>>
+    ) -> Option<Vec<GraphPath>>
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -327,7 +327,7 @@ where
         for (length, nodes) in shortest_paths(&arcs, from, to, k) {
             let edges =
                 nodes.windows(2).map(|pair| self.shortest_edge(pair[0], pair[1])).collect::<Option<_>>()?;
-            let way = Way { nodes, edges, length };
+            let way = GraphPath { nodes, edges, length };
             if !self.star.check(&mut self.map, steer, &way) {
                 return None;
             }
@@ -346,7 +346,12 @@ where
     }
 
     /// Looks at the ends, and for the nodes nearest to them.
-    fn prepare<C, L>(&mut self, steer: &mut Steer<'_, C, L>, start: &S, goal: &S) -> Result<(), Unanswered>
+    fn prepare<C, L>(
+        &mut self,
+        steer: &mut EdgeChecker<'_, C, L>,
+        start: &S,
+        goal: &S,
+    ) -> Result<(), Unanswered>
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -369,7 +374,7 @@ where
     /// the query.
     fn join<C, L>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
     ) -> Result<Joined<S, E>, Unanswered>
@@ -406,7 +411,7 @@ where
     /// Why the ends cannot be joined.
     fn why<C, L>(
         &mut self,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
         reached: [bool; 2],
@@ -426,7 +431,13 @@ where
     }
 
     /// A verified motion from an end to a node, or with `back` from the node to it.
-    fn hop<C, L>(&self, steer: &mut Steer<'_, C, L>, q: &S, node: NodeId, back: bool) -> Option<Hop<S, E>>
+    fn hop<C, L>(
+        &self,
+        steer: &mut EdgeChecker<'_, C, L>,
+        q: &S,
+        node: NodeId,
+        back: bool,
+    ) -> Option<Hop<S, E>>
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,

@@ -6,7 +6,7 @@ use mp_cspace::{
 use std::fmt;
 
 /// The space, the local planner with a count of what it was asked, and the verifier of what is answered.
-pub struct Steer<'c, C: Space, L: LocalPlanner<C::State>> {
+pub struct EdgeChecker<'c, C: Space, L: LocalPlanner<C::State>> {
     space: &'c C,
     local: L,
     verify: BoxedVerify<'c, C, L>,
@@ -15,7 +15,7 @@ pub struct Steer<'c, C: Space, L: LocalPlanner<C::State>> {
     pub(crate) rejected: u64,
 }
 
-impl<'c, C: Space, L: LocalPlanner<C::State, Edge: Reversible>> Steer<'c, C, L> {
+impl<'c, C: Space, L: LocalPlanner<C::State, Edge: Reversible>> EdgeChecker<'c, C, L> {
     /// The verifier should share no code with the check inside `local`. After `patience` rejected
     /// paths every new motion is verified as well.
     pub fn new(
@@ -112,9 +112,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State, Edge: Reversible>> Steer<'c, C, L> 
     }
 }
 
-impl<C: Space + fmt::Debug, L: LocalPlanner<C::State> + fmt::Debug> fmt::Debug for Steer<'_, C, L> {
+impl<C: Space + fmt::Debug, L: LocalPlanner<C::State> + fmt::Debug> fmt::Debug for EdgeChecker<'_, C, L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Steer")
+        f.debug_struct("EdgeChecker")
             .field("space", &self.space)
             .field("local", &self.local)
             .field("motions", &self.motions)

@@ -1,6 +1,6 @@
 //! Slot: how far to grow in one iteration.
 
-use super::{Attach, Growing, Selector};
+use super::{Growing, Inserter, Selector};
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
 /// What became of growing toward a target.
@@ -16,9 +16,9 @@ pub enum Grown {
 
 /// Grows a tree from a selected node toward the target. Implementations decide which steps are
 /// made; [`Growing`] makes them.
-pub trait Growth<C: Space, L: LocalPlanner<C::State>> {
+pub trait Extender<C: Space, L: LocalPlanner<C::State>> {
     /// Grows from `from`.
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -37,9 +37,9 @@ pub trait Growth<C: Space, L: LocalPlanner<C::State>> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extend;
 
-impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Extend {
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Extend {
     #[inline]
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -65,9 +65,9 @@ impl Default for Connect {
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State>> Growth<C, L> for Connect {
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Connect {
     #[inline]
-    fn grow<Se: Selector<C>, A: Attach<C, L>>(
+    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,

@@ -1,6 +1,6 @@
 //! One growing tree with its policies, and the loop body every planner of the family shares.
 
-use super::{Attach, Attached, Grown, Growth, Purpose, Selector, Tree, Tuning};
+use super::{Extender, Grown, Inserted, Inserter, Purpose, Selector, Tree, Tuning};
 use mp_cspace::{
     BuildError, Direction, Event, Extension, Hit, LocalPlanner, Motion, MotionCheck, NodeId, Observer, Reach,
     Rng, Space, Verify,
@@ -8,7 +8,7 @@ use mp_cspace::{
 use std::fmt;
 
 /// How trees move: the space, the local planner, the step; and the verifier of what they find.
-pub struct Steer<'c, C: Space, L: LocalPlanner<C::State>> {
+pub struct TreeEdgeChecker<'c, C: Space, L: LocalPlanner<C::State>> {
     space: &'c C,
     local: L,
     verify: Box<dyn Verify<C::State, L::Edge> + Send + 'c>,
@@ -18,7 +18,7 @@ pub struct Steer<'c, C: Space, L: LocalPlanner<C::State>> {
     rejected: u64,
 }
 
-impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
+impl<'c, C: Space, L: LocalPlanner<C::State>> TreeEdgeChecker<'c, C, L> {
     /// To move in `space` by `local`.
     ///
     /// # Errors
@@ -113,7 +113,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
     }
 
     /// The whole motion from `from`, a node or about to be one, to `to`, if the local planner has
-    /// one. Once the local planner is [no longer believed](Steer::distrusts) it is verified too.
+    /// one. Once the local planner is [no longer believed](TreeEdgeChecker::distrusts) it is verified too.
     pub fn reach(
         &mut self,
         from: &C::State,
@@ -131,9 +131,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Steer<'c, C, L> {
     }
 }
 
-impl<C: Space + fmt::Debug, L: LocalPlanner<C::State> + fmt::Debug> fmt::Debug for Steer<'_, C, L> {
+impl<C: Space + fmt::Debug, L: LocalPlanner<C::State> + fmt::Debug> fmt::Debug for TreeEdgeChecker<'_, C, L> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Steer")
+        f.debug_struct("TreeEdgeChecker")
             .field("space", &self.space)
             .field("local", &self.local)
             .field("step", &self.step)
@@ -146,7 +146,7 @@ impl<C: Space + fmt::Debug, L: LocalPlanner<C::State> + fmt::Debug> fmt::Debug f
 
 /// A tree, the policies that belong to it, and its number in events.
 #[derive(Clone, Debug)]
-pub struct Branch<C: Space, L: LocalPlanner<C::State>, Se, A> {
+pub struct SearchTree<C: Space, L: LocalPlanner<C::State>, Se, A> {
     index: usize,
     tree: Tree<C::State, L::Edge>,
     select: Se,
@@ -154,7 +154,7 @@ pub struct Branch<C: Space, L: LocalPlanner<C::State>, Se, A> {
     candidates: Vec<Hit>,
 }
 
-impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Branch<C, L, Se, A> {
+impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> SearchTree<C, L, Se, A> {
     /// An empty tree. `index` is its number in events.
     pub fn new(index: usize, direction: Direction, select: Se, attach: A) -> Self {
         Self { index, tree: Tree::new(direction), select, attach, candidates: Vec::new() }
@@ -195,11 +195,11 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
 
     /// Grows toward `target`: selects candidates, tries them in order until one grows.
     #[inline]
-    pub fn toward<G: Growth<C, L>>(
+    pub fn toward<G: Extender<C, L>>(
         &mut self,
         target: &C::State,
         why: Purpose,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         growth: &mut G,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
@@ -228,11 +228,11 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
     }
 
     /// Grows from node `from` toward `target`, whatever the selector would choose.
-    pub fn grow_from<G: Growth<C, L>>(
+    pub fn grow_from<G: Extender<C, L>>(
         &mut self,
         from: NodeId,
         target: &C::State,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         growth: &mut G,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
@@ -252,7 +252,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         &mut self,
         from: NodeId,
         target: &C::State,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Grown {
@@ -269,7 +269,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
     pub fn verify(
         &mut self,
         id: NodeId,
-        steer: &mut Steer<'_, C, L>,
+        steer: &mut TreeEdgeChecker<'_, C, L>,
         observer: &mut dyn Observer<C::State>,
         mut pruned: impl FnMut(&[NodeId]),
     ) -> bool {
@@ -295,7 +295,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
         &'a mut self,
         target: &'a C::State,
         why: Purpose,
-        steer: &'a mut Steer<'c, C, L>,
+        steer: &'a mut TreeEdgeChecker<'c, C, L>,
         rng: &'a mut Rng,
         observer: &'a mut dyn Observer<C::State>,
     ) -> Growing<'a, 'c, C, L, Se, A> {
@@ -313,7 +313,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Bran
     }
 }
 
-/// A tree in the act of growing toward a target: what a [`Growth`] works with.
+/// A tree in the act of growing toward a target: what a [`Extender`] works with.
 pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     index: usize,
     tree: &'a mut Tree<C::State, L::Edge>,
@@ -321,12 +321,14 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     attach: &'a mut A,
     target: &'a C::State,
     why: Purpose,
-    steer: &'a mut Steer<'c, C, L>,
+    steer: &'a mut TreeEdgeChecker<'c, C, L>,
     rng: &'a mut Rng,
     observer: &'a mut dyn Observer<C::State>,
 }
 
-impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> Growing<'_, 'c, C, L, Se, A> {
+impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>>
+    Growing<'_, 'c, C, L, Se, A>
+{
     /// What the tree grows toward.
     #[must_use]
     pub fn target(&self) -> &C::State {
@@ -346,7 +348,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
     }
 
     /// The local planner and its settings.
-    pub fn steer(&mut self) -> &mut Steer<'c, C, L> {
+    pub fn steer(&mut self) -> &mut TreeEdgeChecker<'c, C, L> {
         self.steer
     }
 
@@ -392,9 +394,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Attach<C, L>> 
             return Grown::Trapped;
         }
         match self.attach.attach(self.steer, self.tree, self.select, from, motion) {
-            Attached::Known(id) if reached && self.tree.state(id) == self.target => Grown::Reached(id),
-            Attached::Known(_) => Grown::Trapped,
-            Attached::New(id) => {
+            Inserted::Known(id) if reached && self.tree.state(id) == self.target => Grown::Reached(id),
+            Inserted::Known(_) => Grown::Trapped,
+            Inserted::New(id) => {
                 let parent = self.tree.parent(id);
                 if distrusts && parent == Some(from) {
                     self.tree.set_verified(id);
