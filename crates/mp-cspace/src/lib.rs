@@ -50,8 +50,8 @@ pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use gradient::ClearanceGradient;
 pub use hints::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf};
 pub use local::{
-    Direction, Extension, LocalPlanner, Motion, PoseSpace, Reach, Reversible, RotateAtS, Straight, Via,
-    turn_at,
+    Direction, Extension, LocalPlanner, Motion, PolylineEdge, PoseSpace, Reach, Reversible, RotateAtS,
+    Straight, turn_at,
 };
 pub use metric::{
     Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, SweptVolume,

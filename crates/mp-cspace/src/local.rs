@@ -1,8 +1,10 @@
 //! Local planners: how one configuration reaches for another.
 
+mod polyline;
 mod rotate;
 
-pub use rotate::{PoseSpace, RotateAtS, Via, turn_at};
+pub use polyline::PolylineEdge;
+pub use rotate::{PoseSpace, RotateAtS, turn_at};
 
 use crate::{KnownFree, MotionValidity, Space};
 use std::fmt::Debug;

@@ -14,10 +14,10 @@
 mod aabb;
 mod build;
 mod features;
-pub mod flat;
 mod mass;
 mod mesh;
 mod obb;
+pub mod planar;
 mod pose;
 pub mod primitives;
 mod sphere;

@@ -6,7 +6,7 @@
 
 use crate::collada::Scene;
 use crate::{
-    Environment, Error, FlatFile, GridMap, JointPath, OffDocument, OmplProblem, PathFile, RobotFile, RosMap,
+    Environment, Error, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile, RobotFile, RosMap,
 };
 use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
@@ -28,7 +28,7 @@ pub const TARGETS: [(&str, Target); 15] = [
     ("robot-problem", robot_problem),
     ("joint-path", joint_path),
     ("json-joint-path", json_joint_path),
-    ("flat-world", flat_world),
+    ("planar-world", planar_world),
     ("ros-map", ros_map),
     ("map-image", map_image),
 ];
@@ -120,8 +120,8 @@ pub fn csv_path(bytes: &[u8]) -> bool {
 }
 
 /// Worlds in the plane.
-pub fn flat_world(bytes: &[u8]) -> bool {
-    good(FlatFile::parse("f.toml", bytes)).is_some()
+pub fn planar_world(bytes: &[u8]) -> bool {
+    good(PlanarFile::parse("f.toml", bytes)).is_some()
 }
 
 /// Maps of ROS.

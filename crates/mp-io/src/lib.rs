@@ -2,7 +2,7 @@
 //!
 //! - [`Problem::load`] reads a problem and its meshes, whatever the format.
 //! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
-//! - [`FlatProblem::load`] reads a world in the plane.
+//! - [`PlanarProblem::load`] reads a world in the plane.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
 //! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: mesh formats.
@@ -15,7 +15,6 @@
 mod collada;
 mod csv;
 mod error;
-mod flat;
 pub mod fuzz;
 mod gempa;
 mod json;
@@ -24,6 +23,7 @@ mod number;
 mod obj;
 mod off;
 mod ompl;
+mod planar;
 mod problem;
 mod robot;
 mod source;
@@ -34,12 +34,14 @@ mod text;
 pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
 pub use error::{Error, ErrorKind};
-pub use flat::{FlatBody, FlatFile, FlatMap, FlatObstacle, FlatPart, FlatProblem, GridMap, RosMap};
 pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
 pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh};
 pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
+pub use planar::{
+    GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
+};
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
 pub use robot::{JointPath, ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
 pub use source::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};

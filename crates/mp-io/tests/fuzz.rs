@@ -55,7 +55,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             "motion = { start = [0], goals = [[1], [2]] }\nrobot = { urdf = \"a\" }\n[[obstacle]]\ncylinder = [0.1, 1]\n\
              [[obstacle]]\nmesh = \"w.off\"\n",
         ],
-        "flat-world" => &[
+        "planar-world" => &[
             "[world]\nwalls = [[0, 0], [4, 3]]\n[robot]\ndisc = 0.07\n[motion]\nstart = [1, 1]\ngoal = [2, 2]\n[[obstacle]]\n\
              rectangle = [[1, 1], [2, 1.5]]\n[[obstacle]]\npolygon = [[2, 2], [3, 2], [3, 2.5]]\nholes = [[[2.8, 2.1], [2.9, 2.1], [2.9, 2]]]\n",
             "world = { image = \"a.png\", scale = 0.01, origin = [0, 1], threshold = 0.4 }\nrobot = { polygon = [[0, 0], [1, 0], [0, 1]] }\n\

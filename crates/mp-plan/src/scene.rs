@@ -11,7 +11,7 @@ use crate::{
 };
 use mp_cspace::{MotionBound, Rng, Space, Validity};
 use mp_geom::{Aabb, evenly};
-use mp_io::{Disk, Files, FlatBody, FlatProblem, Problem, RobotProblem, SpaceKind};
+use mp_io::{Disk, Files, PlanarProblem, PlanarShape, Problem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -88,8 +88,8 @@ impl Scene {
         let files: &dyn Files = &recording;
         let mut named = Vec::new();
         let scene = match RobotProblem::is_named(file) {
-            true if FlatProblem::is_one_of(files, file) => {
-                Self::from_world(FlatProblem::load_from(files, file)?).map_err(of)?
+            true if PlanarProblem::is_one_of(files, file) => {
+                Self::from_world(PlanarProblem::load_from(files, file)?).map_err(of)?
             }
             true => {
                 let arm = ArmScene::from_problem(RobotProblem::load_from(files, file)?)?;
@@ -138,11 +138,11 @@ impl Scene {
     ///
     /// # Errors
     /// When world, robot or bounds make no sense.
-    pub fn from_world(problem: FlatProblem) -> Result<Self, Error> {
+    pub fn from_world(problem: PlanarProblem) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         Ok(match problem.file.robot {
-            FlatBody::Disc(_) => Self::new(PlanarScene::<DiscRobot>::new(problem)?),
-            FlatBody::Polygon(_) => Self::new(PlanarScene::<PolygonRobot>::new(problem)?),
+            PlanarShape::Disc(_) => Self::new(PlanarScene::<DiscRobot>::new(problem)?),
+            PlanarShape::Polygon(_) => Self::new(PlanarScene::<PolygonRobot>::new(problem)?),
         })
     }
 
@@ -478,7 +478,7 @@ pub(crate) fn foreign(file: &Path) -> Error {
             format!(
                 "write a world around it, a file `world.toml` beside it:\n    [world]\n    map = \"{name}\"\n    \
                  [robot]\n    disc = 0.2          # radius, metres\n    [motion]\n    start = [0, 0]\n    \
-                 goal = [1, 0]\n  docs/formats/flat-world.md has all of it"
+                 goal = [1, 0]\n  docs/formats/planar-world.md has all of it"
             ),
         ),
         _ => error("an XML file", "name a scene: .env, .cfg or .toml".to_owned()),

@@ -5,7 +5,7 @@ use crate::error::{RenderError, check_range, check_size};
 use crate::palette::{INK, OBSTACLE};
 use crate::picture::Picture;
 use crate::text;
-use mp_geom::flat::FlatWorld;
+use mp_geom::planar::PlanarWorld;
 use nalgebra::Point2;
 use std::fmt::Write as _;
 
@@ -78,7 +78,7 @@ impl Drawing {
     /// The obstacles and walls of `world`, shown from `low` to `high` (metres) and as far as the walls.
     #[must_use]
     pub fn of_world(
-        world: &FlatWorld,
+        world: &PlanarWorld,
         [low, high]: [Point2<f64>; 2],
         title: impl Into<String>,
         subtitle: impl Into<String>,
@@ -311,9 +311,9 @@ mod tests {
 
     #[test]
     fn a_world_has_its_obstacles_and_walls() {
-        use mp_geom::flat::Polygon;
+        use mp_geom::planar::Polygon;
         let obstacle = Polygon::rectangle([0.5, 0.5], [1.0, 1.0]).unwrap();
-        let world = FlatWorld::new(vec![obstacle], Some([[0.0; 2], [2.0; 2]])).unwrap();
+        let world = PlanarWorld::new(vec![obstacle], Some([[0.0; 2], [2.0; 2]])).unwrap();
         let drawing = Drawing::of_world(&world, [Point2::new(0.5, 0.5), Point2::new(3.0, 1.5)], "a", "b");
         assert_eq!((drawing.low, drawing.high), (Point2::new(0.0, 0.0), Point2::new(3.0, 2.0)));
         assert_eq!(drawing.items.len(), 2);

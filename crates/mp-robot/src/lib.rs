@@ -41,12 +41,12 @@
 mod arm;
 mod bounds;
 mod explain;
-mod flat;
 mod gradient;
 mod hints;
 mod moving;
 mod outlines;
 mod placement;
+mod planar;
 mod rigid;
 mod solid;
 mod verify;
@@ -55,8 +55,8 @@ pub use arm::{
     Arm, ArmContact, ArmError, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Kinematics, Link, Mimic,
     UrdfError,
 };
-pub use flat::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
 pub use placement::{Placement, Planar, Point, Shape, Spatial};
+pub use planar::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
 pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
 pub use verify::Verifier;

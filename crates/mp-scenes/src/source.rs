@@ -9,10 +9,10 @@ mod arm;
 mod bugtrap;
 pub mod courses;
 mod cubicles;
-mod flat;
 mod furniture;
 mod gempa;
 mod piano;
+mod planar;
 mod scene;
 mod shape;
 #[cfg(test)]
@@ -52,7 +52,7 @@ pub fn generate() -> Files {
     bugtrap::add(&mut files);
     apartment::add(&mut files);
     alpha::add(&mut files);
-    flat::add(&mut files);
+    planar::add(&mut files);
     arm::add(&mut files);
     courses::add(&mut files);
     files

@@ -10,7 +10,7 @@
 //! | push it | a [`Field`]: [`Repulsion`] by a clearance gradient, a [`Grid`], a closure, two of them [`With`] each other |
 //! | make fields of pictures | [`Grid`], [`outline_energy`] (eq. 3), [`signed_distance`], [`blurred`], [`laplacian`] |
 //! | judge risk | [`risk`]: motion noise times range noise, a field and a path cost |
-//! | plan with edges that bend | [`SnakePlanner`], whose edges are [`Curve`]s; [`Pieces`] verifies them, [`unbent`] makes them plain |
+//! | plan with edges that bend | [`SnakePlanner`], whose edges are [`PolylineEdge`](mp_cspace::PolylineEdge)s |
 //! | relax a whole path | [`relax`] |
 //!
 //! A snake guides, and promises nothing about collisions: [`SnakePlanner`] and [`relax`] accept what the motion check
@@ -42,7 +42,7 @@
 //! let mut local = SnakePlanner::new(&space, Certified::new(&space, Disc, 1e-3)?, field, 0.2)?;
 //! let (from, to) = (Vector2::new(-1.0, -0.05), Vector2::new(1.0, -0.05));
 //! let Extension::Reached(motion) = local.extend(&from, &to, Direction::Forward, Reach::Full) else { panic!() };
-//! assert!(motion.cost > 2.0 && !motion.edge.states().is_empty());
+//! assert!(motion.cost > 2.0 && !motion.edge.vertices().is_empty());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -66,7 +66,7 @@ pub use distance::{signed_distance, squared_distance};
 pub use field::{Field, Nothing, Repulsion, With};
 pub use grid::Grid;
 pub use image::{blurred, laplacian, outline_energy};
-pub use local::{Curve, Pieces, SnakeCounters, SnakePlanner, unbent};
+pub use local::{SnakeCounters, SnakePlanner};
 pub use params::{Params, SnakeError};
 pub use relax::{Relaxed, relax};
 pub use snake::{Energy, Moment, Rest, Snake};

@@ -4,82 +4,8 @@ use crate::snake::NODES;
 use crate::{Bulged, Params, Repulsion, Rest, Snake, SnakeError};
 use mp_cspace::{
     ClearanceGradient, Direction, Extension, KnownFree, LocalPlanner, Motion, MotionCheck, MotionValidity,
-    Path, Reach, Space, Verify,
+    PolylineEdge, Reach, Space,
 };
-use std::sync::Arc;
-
-/// An edge of a [`SnakePlanner`]: the states it passes between its two ends, in forward time; none when it is
-/// straight.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Curve<S>(Option<Arc<[S]>>);
-
-impl<S> Curve<S> {
-    /// The straight edge.
-    #[must_use]
-    pub fn straight() -> Self {
-        Self(None)
-    }
-
-    /// The edge through `states`.
-    #[must_use]
-    pub fn through(states: &[S]) -> Self
-    where
-        S: Clone,
-    {
-        Self((!states.is_empty()).then(|| states.into()))
-    }
-
-    /// The states between the ends.
-    #[must_use]
-    pub fn states(&self) -> &[S] {
-        self.0.as_deref().unwrap_or_default()
-    }
-
-    /// Checks each piece of the edge from `from` to `to`. Fractions are of the number of pieces.
-    pub fn check(&self, from: &S, to: &S, check: &mut impl MotionValidity<S>) -> MotionCheck {
-        self.along(from, to, |a, b| check.check_motion(a, b))
-    }
-
-    fn along(&self, from: &S, to: &S, mut check: impl FnMut(&S, &S) -> MotionCheck) -> MotionCheck {
-        let through = self.states();
-        let pieces = (through.len() + 1) as f64;
-        let (mut here, mut least) = (from, f64::INFINITY);
-        for (i, next) in through.iter().chain([to]).enumerate() {
-            let whole = |at: f64| (i as f64 + at) / pieces;
-            match check(here, next) {
-                MotionCheck::Free { clearance } => least = least.min(clearance),
-                MotionCheck::Collision { at } => return MotionCheck::Collision { at: whole(at) },
-                MotionCheck::Unproven { at } => return MotionCheck::Unproven { at: whole(at) },
-            }
-            here = next;
-        }
-        MotionCheck::Free { clearance: least }
-    }
-}
-
-/// The same path with the states its curves pass, straight between them.
-#[must_use]
-pub fn unbent<S: Clone>(path: &Path<S, Curve<S>>) -> Path<S> {
-    let mut states: Vec<S> = path.states.first().cloned().into_iter().collect();
-    for (edge, next) in path.edges.iter().zip(path.states.iter().skip(1)) {
-        states.extend_from_slice(edge.states());
-        states.push(next.clone());
-    }
-    Path::straight(states)
-}
-
-/// Verifies edges that are [`Curve`]s, piece by piece, with a verifier of straight ones.
-#[derive(Clone, Debug)]
-pub struct Pieces<V>(pub V);
-
-impl<S, V: Verify<S, ()>> Verify<S, Curve<S>> for Pieces<V> {
-    fn verify_state(&mut self, q: &S) -> MotionCheck {
-        self.0.verify_state(q)
-    }
-    fn verify_edge(&mut self, from: &S, edge: &Curve<S>, to: &S) -> MotionCheck {
-        edge.along(from, to, |a, b| self.0.verify_edge(a, &(), b))
-    }
-}
 
 /// What a [`SnakePlanner`] did so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,11 +15,11 @@ pub struct SnakeCounters {
     /// Motions that were bent free.
     pub bent: u64,
     /// Motions given up at once: their end is not free, they are too long, or too many were lost.
-    pub hopeless: u64,
+    pub not_tried: u64,
     /// Motions that could not be bent free.
-    pub lost: u64,
+    pub not_bent: u64,
     /// Those of them for which a snake relaxed.
-    pub vain: u64,
+    pub relaxed_in_vain: u64,
     /// Steps of all snakes.
     pub iterations: u64,
 }
@@ -102,7 +28,7 @@ impl SnakeCounters {
     /// All motions.
     #[must_use]
     pub fn motions(&self) -> u64 {
-        self.straight + self.bent + self.hopeless + self.lost
+        self.straight + self.bent + self.not_tried + self.not_bent
     }
 }
 
@@ -116,7 +42,7 @@ impl SnakeCounters {
 ///
 /// A motion ends where the straight one would. Each piece of a bent one has been found free by `check`; the field
 /// only guides. Its cost is its length in the metric of the space. Motions of more than 24 nodes are not bent. Paths are
-/// made plain by [`unbent`].
+/// made plain by [`Path::flattened`](mp_cspace::Path::flattened).
 #[derive(Clone, Debug)]
 pub struct SnakePlanner<'c, C: Space, M, F> {
     /// The motion check: discrete, certified or a user's own.
@@ -204,7 +130,7 @@ where
             Bulged::Nowhere => return false,
             Bulged::Laid => {}
         }
-        if counters.vain > counters.bent / VAIN {
+        if counters.relaxed_in_vain > counters.bent / VAIN {
             return false;
         }
         let gain = GAIN * field.range();
@@ -222,7 +148,7 @@ where
         });
         counters.iterations += u64::from(iterations);
         passed = passed || rest != Rest::Stopped && all_free(check, curve);
-        counters.vain += u64::from(!passed);
+        counters.relaxed_in_vain += u64::from(!passed);
         passed
     }
 }
@@ -242,7 +168,7 @@ where
     M: MotionValidity<C::State>,
     F: ClearanceGradient<C::State>,
 {
-    type Edge = Curve<C::State>;
+    type Edge = PolylineEdge<C::State>;
 
     fn extend(
         &mut self,
@@ -250,7 +176,7 @@ where
         toward: &C::State,
         direction: Direction,
         reach: Reach,
-    ) -> Extension<C::State, Curve<C::State>> {
+    ) -> Extension<C::State, PolylineEdge<C::State>> {
         let space = self.snake.space();
         let distance = space.distance(from, toward);
         let (end, length, reached) = match reach {
@@ -269,26 +195,26 @@ where
         };
         // The end first: one question, and where it is not free nothing can be saved.
         if !self.check.check_motion(&end, &end).is_free() {
-            self.counters.hopeless += 1;
+            self.counters.not_tried += 1;
             return Extension::Trapped;
         }
         if self.check.check_extension(a, b, known).is_free() {
             self.counters.straight += 1;
-            return found(Curve::straight(), length);
+            return found(PolylineEdge::straight(), length);
         }
         let long = length > LONGEST * self.snake.params().spacing;
-        if length <= 0.0 || long || self.counters.lost > FIRST + self.counters.motions() / LOST {
-            self.counters.hopeless += 1;
+        if length <= 0.0 || long || self.counters.not_bent > FIRST + self.counters.motions() / LOST {
+            self.counters.not_tried += 1;
             return Extension::Trapped;
         }
         if !self.bend(a, b) {
-            self.counters.lost += 1;
+            self.counters.not_bent += 1;
             return Extension::Trapped;
         }
         self.counters.bent += 1;
         let curve = &self.curve;
         let cost = curve.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
-        found(Curve::through(&curve[1..curve.len() - 1]), cost)
+        found(PolylineEdge::through(&curve[1..curve.len() - 1]), cost)
     }
 
     fn admits(&mut self, q: &C::State) -> bool {

@@ -155,26 +155,26 @@ fn edges_of_the_tree_are_curves() {
     let check = Certified::new(&space, boxes.clone(), 1e-3).unwrap();
     let local = SnakePlanner::new(&space, check, field(&boxes), 0.03).unwrap();
     let [start, goal] = ENDS.map(Point::from);
-    let problem = Problem::new(&space, local, Pieces(Exact(boxes.clone())), start, goal).unwrap();
+    let problem = Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap();
     let tuning = Tuning { step: Step::Length(0.4), ..Tuning::default() };
     let mut planner = Rrs::with_index(problem, <KdTree>::default(), tuning).unwrap();
     let Outcome::Solved(path) = planner.solve(&mut Rng::seed(4), &mut Iterations(10_000), &mut ()) else {
         panic!("not solved")
     };
-    assert!(path.edges.iter().any(|edge| !edge.states().is_empty()));
-    let plain = unbent(&path);
+    assert!(path.edges.iter().any(|edge| !edge.vertices().is_empty()));
+    let plain = path.flattened();
     assert!(!plain.states.windows(2).any(|w| boxes.hit(&w[0], &w[1])));
     assert_eq!(
         plain.states.len(),
-        path.states.len() + path.edges.iter().map(|e| e.states().len()).sum::<usize>()
+        path.states.len() + path.edges.iter().map(|e| e.vertices().len()).sum::<usize>()
     );
 
     // A world with one more obstacle, of which the local planner knows nothing, on a bend.
-    let bend = path.edges.iter().find_map(|edge| edge.states().get(1)).unwrap();
+    let bend = path.edges.iter().find_map(|edge| edge.vertices().get(1)).unwrap();
     let mut wider = boxes.clone();
     wider.0.push((bend.map(|x| x - 1e-3).into(), bend.map(|x| x + 1e-3).into()));
-    let i = path.edges.iter().position(|edge| edge.states().contains(bend)).unwrap();
-    let verdict = Pieces(Exact(wider)).verify_edge(&path.states[i], &path.edges[i], &path.states[i + 1]);
+    let i = path.edges.iter().position(|edge| edge.vertices().contains(bend)).unwrap();
+    let verdict = Exact(wider).verify_edge(&path.states[i], &path.edges[i], &path.states[i + 1]);
     assert!(matches!(verdict, MotionCheck::Collision { at } if (0.0..=1.0).contains(&at)), "{verdict:?}");
 }
 

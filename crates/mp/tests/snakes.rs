@@ -3,7 +3,7 @@
 use mp::cspace::{Direction, Extension, Verify, verify_path};
 use mp::io;
 use mp::prelude::*;
-use mp::snake::{Params, Pieces, Repulsion, SnakePlanner, relax};
+use mp::snake::{Params, Repulsion, SnakePlanner, relax};
 
 fn scene(name: &str) -> (Se3, FreeFlyer, io::Problem) {
     let file = format!("{}/../mp-scenes/assets/scenes/{name}.env", env!("CARGO_MANIFEST_DIR"));
@@ -21,7 +21,7 @@ fn a_snake_bends_edges_around_columns() {
     let check = Certified::new(&space, robot.clone(), robot.tolerance()).unwrap();
     let range = 0.03 * space.extent();
     let mut local = SnakePlanner::new(&space, check, robot.clone(), range).unwrap();
-    let mut verifier = Pieces(Verifier::new(&space, &robot).unwrap());
+    let mut verifier = Verifier::new(&space, &robot).unwrap();
     let mut rng = Rng::seed(1);
     let mut bent = 0;
     for _ in 0..3000 {
@@ -32,7 +32,7 @@ fn a_snake_bends_edges_around_columns() {
         let step = mp::cspace::Reach::Step(0.4 * space.extent());
         let extension = local.extend(&from, &toward, Direction::Forward, step);
         let (Extension::Advanced(motion) | Extension::Reached(motion)) = extension else { continue };
-        if motion.edge.states().is_empty() {
+        if motion.edge.vertices().is_empty() {
             continue;
         }
         bent += 1;

@@ -8,7 +8,7 @@ use super::solve::{Case, Place, planned};
 use crate::error::{IntoError, Result};
 use mp_cspace::shorten::{Effort, simplify};
 use mp_cspace::{Cancel, Path, Rn, Rng, least_clearance};
-use mp_geom::flat::FlatWorld;
+use mp_geom::planar::PlanarWorld;
 use mp_robot::DiscRobot;
 use mp_scenes::source::courses::Course;
 use nalgebra::{Point2, Vector2};
@@ -66,7 +66,7 @@ impl Pose {
 }
 
 /// The distance that a beam goes until it is within a millimetre of an obstacle.
-fn range(world: &FlatWorld, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
+fn range(world: &PlanarWorld, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
     let mut gone = 0.0;
     while gone < REACH {
         let free = world.signed_distance(&Point2::from(from + along * gone));
@@ -102,7 +102,7 @@ impl Belief {
     }
 
     /// Moves all poses as the wheels may have, and keeps those that explain what the laser saw.
-    fn update(&mut self, command: [f64; 2], seen: &[f64], world: &FlatWorld, rng: &mut Rng) {
+    fn update(&mut self, command: [f64; 2], seen: &[f64], world: &PlanarWorld, rng: &mut Rng) {
         let mut weights = Vec::with_capacity(self.poses.len());
         for pose in &mut self.poses {
             *pose = pose.driven(command, rng);
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn beams_end_at_walls() {
-        let world = FlatWorld::new(vec![], Some([[0.0, 0.0], [3.0, 2.0]])).unwrap();
+        let world = PlanarWorld::new(vec![], Some([[0.0, 0.0], [3.0, 2.0]])).unwrap();
         let from = Vector2::new(1.0, 1.0);
         assert!((range(&world, from, Vector2::new(1.0, 0.0)) - 2.0).abs() < 2e-3);
         assert!((range(&world, from, Vector2::new(0.6, 0.8)) - 1.25).abs() < 2e-3);

@@ -7,7 +7,6 @@ use crate::plot::save_drawing;
 use mp_cspace::{Iterations, Outcome, Planner, Rn, Rng};
 use mp_render::{Drawing, Item};
 use mp_scenes::source::courses::course;
-use mp_snake::unbent;
 use nalgebra::{Point2, Vector2};
 
 const WORLD: &str = "high";
@@ -86,9 +85,9 @@ fn tree(place: &Place) -> Result<Drawing> {
     let (mut straight, mut bent) = (Vec::new(), Vec::new());
     for id in 1..tree.len() as u32 {
         let (Some(parent), Some(edge)) = (tree.parent(id), tree.edge(id)) else { continue };
-        let through = [tree.state(parent)].into_iter().chain(edge.states()).chain([tree.state(id)]);
+        let through = [tree.state(parent)].into_iter().chain(edge.vertices()).chain([tree.state(id)]);
         let line: Vec<Point2<f64>> = through.map(|q| Point2::from(*q)).collect();
-        if edge.states().is_empty() { straight.push(line) } else { bent.push(line) }
+        if edge.vertices().is_empty() { straight.push(line) } else { bent.push(line) }
     }
     let subtitle = format!(
         "{} straight edges and {} bent ones, after {} iterations",
@@ -100,7 +99,7 @@ fn tree(place: &Place) -> Result<Drawing> {
     drawing.items.push(Item::lines(straight, STRAIGHT, 1.5));
     drawing.items.push(Item::lines(bent, BENT, 1.5));
     if let Outcome::Solved(path) = outcome {
-        let line = unbent(&path).states.iter().map(|q| Point2::from(*q)).collect();
+        let line = path.flattened().states.iter().map(|q| Point2::from(*q)).collect();
         drawing.items.push(Item::lines(vec![line], PATH, 3.5));
     }
     Ok(drawing)

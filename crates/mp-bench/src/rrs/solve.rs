@@ -9,7 +9,7 @@ use mp_cspace::{
 use mp_plan::Error;
 use mp_robot::{DiscRobot, DiscVerifier};
 use mp_scenes::source::courses::Course;
-use mp_snake::{Grid, Pieces, SnakePlanner, unbent};
+use mp_snake::{Grid, SnakePlanner};
 use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -140,7 +140,7 @@ pub(super) fn planned(place: &Place, case: &Case, cancel: &Cancel) -> Result<Opt
                 _ => how.run(Rrt::new(problem, tuning), |path| path),
             }
         }
-        "rrs" | "rrs-upto" => how.run(rrs(place, &space, step, exactly), |path| unbent(&path)),
+        "rrs" | "rrs-upto" => how.run(rrs(place, &space, step, exactly), |path| path.flattened()),
         other => Err(Error::new(format!("there is no planner `{other}` here"))),
     }
 }
@@ -157,7 +157,7 @@ pub(super) fn rrs<'a>(
     let snakes = SnakePlanner::new(space, robot.clone(), &**map, RANGE);
     let local = snakes.map_err(|e| BuildError::Unmade { reason: e.to_string() })?;
     let local = Steps { space, goal, step, exactly, local };
-    let problem = Problem::new(space, local, Pieces(DiscVerifier::new(robot)), start, goal)?;
+    let problem = Problem::new(space, local, DiscVerifier::new(robot), start, goal)?;
     Rrt::new(problem, Tuning { step: Step::Length(step), ..Tuning::default() })
 }
 

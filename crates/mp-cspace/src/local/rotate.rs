@@ -1,8 +1,8 @@
 //! Rotate-at-s: translation, rotation in place, translation.
 
-use super::{Direction, Extension, LocalPlanner, Motion, Reach, Reversible};
+use super::{Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach};
 use crate::{
-    KnownFree, MotionValidity, ParameterError, Path, Se2, Se2State, Se3, Space, WithMetric, metric::MetricOn,
+    KnownFree, MotionValidity, ParameterError, Se2, Se2State, Se3, Space, WithMetric, metric::MetricOn,
 };
 use nalgebra::Isometry3;
 
@@ -39,32 +39,6 @@ pub fn turn_at<C: PoseSpace>(space: &C, from: &C::State, to: &C::State, at: f64)
     [space.posed(&middle, from), space.posed(&middle, to)]
 }
 
-/// What an edge by way of other states remembers: these states, in forward time. Between one and the next the
-/// space interpolates. None at all is the straight motion.
-///
-/// Every [`MotionValidity`] verifies such edges, motion by motion.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Via<S>(pub Vec<S>);
-
-impl<S: Clone> Reversible for Via<S> {
-    fn reversed(&self) -> Self {
-        Self(self.0.iter().rev().cloned().collect())
-    }
-}
-
-impl<S: Clone> Path<S, Via<S>> {
-    /// The same path with the states in between as states of its own.
-    #[must_use]
-    pub fn straightened(&self) -> Path<S> {
-        let mut states = Vec::with_capacity(self.states.len());
-        for (i, q) in self.states.iter().enumerate() {
-            states.push(q.clone());
-            states.extend(self.edges.get(i).into_iter().flat_map(|via| via.0.iter().cloned()));
-        }
-        Path::straight(states)
-    }
-}
-
 /// The rotate-at-s local planner (Amato, Bayazit, Dale, Jones and Vallejo 1998, *Choosing good distance metrics
 /// and local planners for probabilistic roadmap methods*): the straight line cut in three. The robot moves the fraction `s`
 /// of the way without turning, turns in place, and moves on.
@@ -83,7 +57,7 @@ impl<S: Clone> Path<S, Via<S>> {
 /// let (from, to) = (Se2State::new(0.0, 1.0, 0.0), Se2State::new(4.0, 1.0, 1.5));
 /// let mut local = RotateAtS::new(&space, check, 0.25)?;
 /// let Extension::Reached(motion) = local.extend(&from, &to, Direction::Forward, Reach::Full) else { panic!() };
-/// assert_eq!(motion.edge.0, [Se2State::new(1.0, 1.0, 0.0), Se2State::new(1.0, 1.0, 1.5)]);
+/// assert_eq!(motion.edge.vertices(), [Se2State::new(1.0, 1.0, 0.0), Se2State::new(1.0, 1.0, 1.5)]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -138,7 +112,7 @@ impl<'c, C: PoseSpace, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
 }
 
 impl<C: PoseSpace, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS<'_, C, M> {
-    type Edge = Via<C::State>;
+    type Edge = PolylineEdge<C::State>;
     fn extend(
         &mut self,
         from: &C::State,
@@ -167,7 +141,7 @@ impl<C: PoseSpace, M: MotionValidity<C::State>> LocalPlanner<C::State> for Rotat
         if direction == Direction::Backward {
             via.reverse();
         }
-        let motion = Motion { end, edge: Via(via), cost };
+        let motion = Motion { end, edge: PolylineEdge::through(&via), cost };
         if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) }
     }
     fn admits(&mut self, q: &C::State) -> bool {
@@ -179,7 +153,9 @@ impl<C: PoseSpace, M: MotionValidity<C::State>> LocalPlanner<C::State> for Rotat
 mod tests {
     use super::*;
     use crate::testkit::check_local_planner;
-    use crate::{Discrete, FineDiscrete, Resolution, Rng, Straight, Verify, rotation_angle};
+    use crate::{
+        Discrete, FineDiscrete, Path, Resolution, Reversible, Rng, Straight, Verify, rotation_angle,
+    };
     use nalgebra::{Point2, Point3, Vector3};
 
     /// A rod of length 1.6 in a box with a wall across that leaves a gap of 0.5.
@@ -216,8 +192,7 @@ mod tests {
                     };
                     assert!(verifier.verify_edge(&ends[0], &motion.edge, &ends[1]).is_free());
                     assert!(verifier.verify_edge(&ends[1], &motion.edge.reversed(), &ends[0]).is_free());
-                    let path =
-                        Path { states: ends.to_vec(), edges: vec![motion.edge.clone()] }.straightened();
+                    let path = Path { states: ends.to_vec(), edges: vec![motion.edge.clone()] }.flattened();
                     assert!((path.length(&space) - motion.cost).abs() < 1e-9);
                     // No part both moves and turns.
                     for w in path.states.windows(2) {
@@ -268,7 +243,7 @@ mod tests {
         assert_eq!((before.rotation, after.rotation), (from.rotation, to.rotation));
         let middle = space.interpolate(&before, &after, 0.5);
         assert!((rotation_angle(&middle.rotation, &from.rotation) - 0.5).abs() < 1e-12);
-        let no_edge = Path { states: vec![from], edges: Vec::<Via<_>>::new() };
-        assert_eq!(no_edge.straightened().states, [from]);
+        let no_edge = Path { states: vec![from], edges: Vec::<PolylineEdge<_>>::new() };
+        assert_eq!(no_edge.flattened().states, [from]);
     }
 }

@@ -1,12 +1,12 @@
 //! The independent check of finished paths.
 
 use crate::inputs::{ControlSegment, Flow, ReplayFinely, ReplayMotions};
-use crate::{MotionCheck, MotionValidity, Space, Validity, Via};
+use crate::{MotionCheck, MotionValidity, Space, Validity};
 
 /// Verifies states and edges of a candidate path, sharing nothing with the local planner.
 ///
 /// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`), also by way of other
-/// states ([`Via`]).
+/// states ([`PolylineEdge`](crate::PolylineEdge)).
 /// Local planners with other edges bring a verifier that replays them.
 pub trait Verify<S, E> {
     /// Checks one state.
@@ -21,25 +21,6 @@ impl<S, V: MotionValidity<S>> Verify<S, ()> for V {
     }
     fn verify_edge(&mut self, from: &S, _: &(), to: &S) -> MotionCheck {
         self.check_motion(from, to)
-    }
-}
-
-impl<S, V: MotionValidity<S>> Verify<S, Via<S>> for V {
-    fn verify_state(&mut self, q: &S) -> MotionCheck {
-        self.check_motion(q, q)
-    }
-    fn verify_edge(&mut self, from: &S, edge: &Via<S>, to: &S) -> MotionCheck {
-        let mut least = f64::INFINITY;
-        let ends = std::iter::once(from).chain(&edge.0).zip(edge.0.iter().chain([to]));
-        for (part, (a, b)) in ends.enumerate() {
-            let whole = |at| (part as f64 + at) / (edge.0.len() + 1) as f64;
-            match self.check_motion(a, b) {
-                MotionCheck::Free { clearance } => least = least.min(clearance),
-                MotionCheck::Collision { at } => return MotionCheck::Collision { at: whole(at) },
-                MotionCheck::Unproven { at } => return MotionCheck::Unproven { at: whole(at) },
-            }
-        }
-        MotionCheck::Free { clearance: least }
     }
 }
 

@@ -9,8 +9,8 @@ use mp_cspace::{
     StateVector,
 };
 use mp_geom::Aabb;
-use mp_geom::flat::FlatWorld;
-use mp_io::{FlatBody, FlatPart, FlatProblem};
+use mp_geom::planar::PlanarWorld;
+use mp_io::{PlanarPart, PlanarProblem, PlanarShape};
 use mp_robot::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
 use mp_tree::TreeState;
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, Translation3, UnitQuaternion, Vector2, Vector3};
@@ -46,7 +46,7 @@ pub trait PlanarBody:
     ///
     /// # Errors
     /// When it is the other kind of robot, or has no size.
-    fn among(world: Arc<FlatWorld>, body: &FlatBody) -> Result<Self, Error>;
+    fn among(world: Arc<PlanarWorld>, body: &PlanarShape) -> Result<Self, Error>;
     /// The space between two corners, metres.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ pub trait PlanarBody:
     /// A verifier.
     fn verifier<'c>(&self, space: &'c Self::Space) -> Self::Verifier<'c>;
     /// The world around it.
-    fn world(&self) -> &Arc<FlatWorld>;
+    fn world(&self) -> &Arc<PlanarWorld>;
     /// The clearance that certified checks resolve, metres.
     fn tolerance(&self) -> f64;
     /// The largest distance of a point of the robot from its origin, metres.
@@ -93,10 +93,10 @@ impl PlanarBody for DiscRobot {
     const SPACE: &'static str = "R2";
     const COLUMNS: &'static [(&'static str, &'static str)] = &[("x", "m"), ("y", "m")];
 
-    fn among(world: Arc<FlatWorld>, body: &FlatBody) -> Result<Self, Error> {
+    fn among(world: Arc<PlanarWorld>, body: &PlanarShape) -> Result<Self, Error> {
         match body {
-            FlatBody::Disc(radius) => Ok(Self::new(world, *radius)?),
-            FlatBody::Polygon(_) => Err(Error::new("the robot is a polygon, not a disc")),
+            PlanarShape::Disc(radius) => Ok(Self::new(world, *radius)?),
+            PlanarShape::Polygon(_) => Err(Error::new("the robot is a polygon, not a disc")),
         }
     }
     fn space([low, high]: [[f64; 2]; 2]) -> Result<Rn<2>, Error> {
@@ -105,7 +105,7 @@ impl PlanarBody for DiscRobot {
     fn verifier(&self, _: &Rn<2>) -> DiscVerifier {
         DiscVerifier::new(self)
     }
-    fn world(&self) -> &Arc<FlatWorld> {
+    fn world(&self) -> &Arc<PlanarWorld> {
         self.world()
     }
     fn tolerance(&self) -> f64 {
@@ -142,10 +142,10 @@ impl PlanarBody for PolygonRobot {
     const SPACE: &'static str = "SE2";
     const COLUMNS: &'static [(&'static str, &'static str)] = &[("x", "m"), ("y", "m"), ("yaw", "rad")];
 
-    fn among(world: Arc<FlatWorld>, body: &FlatBody) -> Result<Self, Error> {
+    fn among(world: Arc<PlanarWorld>, body: &PlanarShape) -> Result<Self, Error> {
         match body {
-            FlatBody::Polygon(polygon) => Ok(Self::new(world, polygon.clone())),
-            FlatBody::Disc(_) => Err(Error::new("the robot is a disc, not a polygon")),
+            PlanarShape::Polygon(polygon) => Ok(Self::new(world, polygon.clone())),
+            PlanarShape::Disc(_) => Err(Error::new("the robot is a disc, not a polygon")),
         }
     }
     fn space([low, high]: [[f64; 2]; 2]) -> Result<Se2, Error> {
@@ -154,7 +154,7 @@ impl PlanarBody for PolygonRobot {
     fn verifier<'c>(&self, space: &'c Se2) -> PolygonVerifier<'c, Se2> {
         PolygonVerifier::new(space, self)
     }
-    fn world(&self) -> &Arc<FlatWorld> {
+    fn world(&self) -> &Arc<PlanarWorld> {
         self.world()
     }
     fn tolerance(&self) -> f64 {
@@ -183,7 +183,7 @@ impl PlanarBody for PolygonRobot {
 /// A robot of the plane among polygons, with a start and goals.
 #[derive(Clone, Debug)]
 pub struct PlanarScene<B: PlanarBody> {
-    problem: FlatProblem,
+    problem: PlanarProblem,
     robot: B,
     space: B::Space,
     start: B::State,
@@ -195,9 +195,9 @@ impl<B: PlanarBody> PlanarScene<B> {
     ///
     /// # Errors
     /// When the robot is of the other kind, or world, robot or bounds make no sense.
-    pub fn new(problem: FlatProblem) -> Result<Self, Error> {
+    pub fn new(problem: PlanarProblem) -> Result<Self, Error> {
         let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
-        let world = FlatWorld::new(polygons, problem.file.walls).map_err(|e| Error::new(e.to_string()))?;
+        let world = PlanarWorld::new(polygons, problem.file.walls).map_err(|e| Error::new(e.to_string()))?;
         let robot = B::among(Arc::new(world), &problem.file.robot)?;
         let space = B::space(problem.bounds)?;
         let start = B::state(&problem.file.start);
@@ -207,7 +207,7 @@ impl<B: PlanarBody> PlanarScene<B> {
 
     /// What it was made of.
     #[must_use]
-    pub fn problem(&self) -> &FlatProblem {
+    pub fn problem(&self) -> &PlanarProblem {
         &self.problem
     }
 
@@ -328,8 +328,8 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     }
     fn fault(&self, end: End, message: String, help: String) -> Error {
         let part = match end {
-            End::Start => FlatPart::Start,
-            End::Goal(i) => FlatPart::Goal(i),
+            End::Start => PlanarPart::Start,
+            End::Goal(i) => PlanarPart::Goal(i),
         };
         Error::from(self.problem.file.fault(part, &message, &help))
             .context(format!("cannot plan in {}", self.problem.name))

@@ -5,7 +5,7 @@
 use super::Error;
 use super::scene::Files;
 use mp_cspace::{Clearance, MotionValidity, Rng, Validity};
-use mp_geom::flat::{FlatWorld, Polygon};
+use mp_geom::planar::{PlanarWorld, Polygon};
 use mp_robot::DiscRobot;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
@@ -37,7 +37,7 @@ impl Course {
     pub fn robot(&self) -> Result<DiscRobot, Error> {
         let polygons = self.obstacles.iter().map(|ring| Polygon::outlined(ring.iter().copied()));
         let polygons = polygons.collect::<Result<Vec<_>, _>>().map_err(Error::new)?;
-        let world = FlatWorld::new(polygons, Some([[0.0; 2], self.size])).map_err(Error::new)?;
+        let world = PlanarWorld::new(polygons, Some([[0.0; 2], self.size])).map_err(Error::new)?;
         DiscRobot::new(Arc::new(world), RADIUS).map_err(Error::new)
     }
 
@@ -160,9 +160,9 @@ fn scattered(mut course: Course, count: usize, radii: [f64; 2], gap: f64, seed: 
         });
         let ends = [course.start, course.goal].map(Point2::from);
         let Ok(polygon) = Polygon::outlined(ring.iter().copied()) else { continue };
-        let Ok(own) = FlatWorld::new(vec![polygon], None) else { continue };
+        let Ok(own) = PlanarWorld::new(vec![polygon], None) else { continue };
         let others = course.obstacles.iter().filter_map(|r| Polygon::outlined(r.iter().copied()).ok());
-        let Ok(others) = FlatWorld::new(others.collect(), None) else { continue };
+        let Ok(others) = PlanarWorld::new(others.collect(), None) else { continue };
         let sides = ring.iter().zip(ring.iter().skip(1).chain(ring.first()));
         let mut sides = sides.map(|(a, b)| (Point2::from(*a), Point2::from(*b)));
         let apart =
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn files_read_back() {
         let course = high();
-        let file = mp_io::FlatFile::parse("high.toml", course.text("48").as_bytes()).unwrap();
+        let file = mp_io::PlanarFile::parse("high.toml", course.text("48").as_bytes()).unwrap();
         let rings = |p: &Polygon| p.rings()[0].iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
         assert_eq!(file.obstacles.iter().map(|o| rings(&o.polygon)).collect::<Vec<_>>(), course.obstacles);
         assert_eq!((file.walls, file.start), (Some([[0.0; 2], course.size]), course.start.to_vec()));

@@ -7,7 +7,7 @@ use mp_cspace::inputs::{
 use mp_cspace::{
     Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Product, Resolution, Rn, Rng, Straight,
 };
-use mp_snake::{Pieces, SnakePlanner};
+use mp_snake::SnakePlanner;
 use mp_tree::{Goals, Problem, Step, Tuning};
 use nalgebra::Vector2;
 
@@ -46,7 +46,7 @@ pub fn bending_trap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Bending<'_>>> {
         (from.norm() - 0.25).abs() - 0.05
     };
     let check = Discrete::new(space, free as fn(&Point) -> bool, Resolution::Fraction(0.005))?;
-    let verifier = Pieces(FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?);
+    let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?;
     let (start, goal) = (Point::new(0.5, 0.5), Point::new(0.05, 0.5));
     Ok(Problem::new(space, SnakePlanner::new(space, check, field, 0.05)?, verifier, start, goal)?)
 }

@@ -40,7 +40,7 @@
 //! A point goes around a disc in the unit square, in one bend:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng};
-//! use mp_snake::{Pieces, SnakePlanner, unbent};
+//! use mp_snake::SnakePlanner;
 //! use mp_tree::{Problem, Rrs, Tuning};
 //! use nalgebra::Vector2;
 //!
@@ -53,14 +53,14 @@
 //! };
 //! let check = Discrete::new(&space, free, Resolution::Fraction(0.01))?;
 //! let local = SnakePlanner::new(&space, check, field, 0.1)?;
-//! let verifier = Pieces(FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?);
+//! let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
 //! let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //!
 //! let mut planner = Rrs::new(Problem::new(&space, local, verifier, start, goal)?, Tuning::default())?;
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(1), &mut ());
 //! let Outcome::Solved(path) = outcome else { panic!("{outcome:?}") };
 //! assert_eq!((path.edges.len(), planner.tree().len()), (1, 2));
-//! assert!(unbent(&path).states.iter().all(free));
+//! assert!(path.flattened().states.iter().all(free));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -68,8 +68,10 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, Settings, Verify};
 use mp_cspace::erased::AnyGradient;
-use mp_cspace::{MotionCheck, MotionValidity, Observer, Path, Planner, Progress, Rng, Space, Straight};
-use mp_snake::{Curve, Params, Pieces, Repulsion, SnakePlanner, unbent};
+use mp_cspace::{
+    MotionCheck, MotionValidity, Observer, Path, Planner, PolylineEdge, Progress, Rng, Space, Straight,
+};
+use mp_snake::{Params, Repulsion, SnakePlanner};
 
 /// How far obstacles push snakes.
 pub const RANGE: Parameter = Parameter {
@@ -131,7 +133,7 @@ where
     let local =
         SnakePlanner::with_params(space, parts.local.check, repulsion, Params { iterations, ..params })
             .map_err(|e| unmade(e.to_string()))?;
-    Problem::new(space, local, Pieces(Boxed(parts.verify)), parts.start, parts.goals)
+    Problem::new(space, local, Boxed(parts.verify), parts.start, parts.goals)
 }
 
 /// A verifier behind a pointer.
@@ -146,10 +148,10 @@ impl<S> MotionValidity<S> for Boxed<'_, S> {
 /// A planner whose paths are made plain: straight between the nodes of the snakes.
 pub(crate) struct Plain<P>(pub(crate) P);
 
-impl<S: Clone, P: Planner<S, Edge = Curve<S>>> Planner<S> for Plain<P> {
+impl<S: Clone, P: Planner<S, Edge = PolylineEdge<S>>> Planner<S> for Plain<P> {
     type Edge = ();
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S>> {
-        self.0.step(rng, observer).map(|path| unbent(&path))
+        self.0.step(rng, observer).map(|path| path.flattened())
     }
     fn progress(&self) -> Progress {
         self.0.progress()

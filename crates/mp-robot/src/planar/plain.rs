@@ -1,6 +1,6 @@
 //! Geometry for verifiers: plain loops over all edges, sharing no code with the world's queries.
 
-use mp_geom::flat::{FlatWorld, Polygon};
+use mp_geom::planar::{PlanarWorld, Polygon};
 use nalgebra::{Point2, Vector2};
 use std::ops::Range;
 
@@ -25,7 +25,7 @@ pub(super) struct Plain {
 }
 
 impl Plain {
-    pub(super) fn new(world: &FlatWorld) -> Self {
+    pub(super) fn new(world: &PlanarWorld) -> Self {
         let polygons: Vec<Vec<Vec<Point2<f64>>>> =
             world.polygons().iter().map(|p| p.rings().to_vec()).collect();
         let (mut edges, mut ends, mut boxes) = (Vec::new(), Vec::new(), Vec::new());

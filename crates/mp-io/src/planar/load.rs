@@ -1,14 +1,14 @@
 //! Worlds in the plane and the files they name.
 
-use super::{FlatFile, FlatMap, FlatObstacle, FlatPart, FlatProblem, GridMap, RosMap};
+use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, RosMap};
 use crate::error::Error;
 use crate::problem::MAX_COORDINATE;
 use crate::source::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES};
-use mp_geom::flat::Polygon;
+use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 use std::path::Path;
 
-impl FlatProblem {
+impl PlanarProblem {
     /// Whether a file is a world in the plane: its name ends in `.toml`, and it has a table `world`.
     #[must_use]
     pub fn is_one(path: &Path) -> bool {
@@ -43,7 +43,7 @@ impl FlatProblem {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
-        let file = FlatFile::parse(&path.display().to_string(), &files.read(path, MAX_TEXT_BYTES)?)?;
+        let file = PlanarFile::parse(&path.display().to_string(), &files.read(path, MAX_TEXT_BYTES)?)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         let mut obstacles = file.obstacles.clone();
         let mut extent = None;
@@ -52,19 +52,23 @@ impl FlatProblem {
                 read_map(files, map, file.unknown_is_free, folder).map_err(|e| match e {
                     Fault::File(e) => {
                         let help = e.remedy().unwrap_or("check the name of the file").to_owned();
-                        file.fault(FlatPart::Map, &format!("this file is not usable: {e}"), &help)
+                        file.fault(PlanarPart::Map, &format!("this file is not usable: {e}"), &help)
                             .with_kind(e.kind())
                     }
                     Fault::Size(message) => {
-                        file.fault(FlatPart::Map, &message, "coordinates are metres: check the scale")
+                        file.fault(PlanarPart::Map, &message, "coordinates are metres: check the scale")
                     }
                 })?;
             extent = Some(corners);
-            obstacles.extend(polygon.map(|polygon| FlatObstacle { name: "the map".into(), polygon }));
+            obstacles.extend(polygon.map(|polygon| PlanarObstacle { name: "the map".into(), polygon }));
         }
         let Some(bounds) = file.bounds.or(file.walls).or(extent) else {
             let message = "the world has no bounds";
-            return Err(file.fault(FlatPart::World, message, "say `walls = [[x, y], [x, y]]`, or `bounds`"));
+            return Err(file.fault(
+                PlanarPart::World,
+                message,
+                "say `walls = [[x, y], [x, y]]`, or `bounds`",
+            ));
         };
         let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         Ok(Self { name, file, obstacles, bounds })
@@ -86,20 +90,20 @@ impl From<Error> for Fault {
 /// The polygon of a map, and the box around it.
 fn read_map(
     files: &dyn Files,
-    map: &FlatMap,
+    map: &PlanarMap,
     unknown_is_free: bool,
     folder: &Path,
 ) -> Result<(Option<Polygon>, [[f64; 2]; 2]), Fault> {
     let grid =
         |place: &Path| GridMap::parse(&place.display().to_string(), &files.read(place, MAX_MESH_BYTES)?);
     let (grid, scale, origin, polygon) = match map {
-        FlatMap::Image { file, scale, origin: [x, y], threshold } => {
+        PlanarMap::Image { file, scale, origin: [x, y], threshold } => {
             let grid = grid(&folder.join(file))?;
             let dark = |brightness: f32| f64::from(brightness) < 255.0 * threshold;
             let polygon = grid.outline(*scale, [*x, *y], dark);
             (grid, *scale, [*x, *y, 0.0], polygon)
         }
-        FlatMap::Ros(name) => {
+        PlanarMap::Ros(name) => {
             let place = folder.join(name);
             let map = RosMap::parse(&place.display().to_string(), &files.read(&place, MAX_TEXT_BYTES)?)?;
             let image = place.parent().unwrap_or(Path::new("")).join(&map.image);

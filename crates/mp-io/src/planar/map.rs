@@ -4,11 +4,11 @@ use super::GridMap;
 use crate::error::{Error, ErrorKind};
 use crate::problem::MAX_COORDINATE;
 use crate::source::decode;
-use mp_geom::flat::Polygon;
+use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 
 /// The page that describes the format.
-const GUIDE: &str = "the format is described in docs/formats/flat-world.md";
+const GUIDE: &str = "the format is described in docs/formats/planar-world.md";
 
 /// What the YAML file of a map says.
 #[derive(Clone, Debug, PartialEq)]
@@ -142,7 +142,7 @@ impl RosMap {
         &self,
         grid: &GridMap,
         unknown_is_free: bool,
-    ) -> Result<Option<Polygon>, mp_geom::flat::PolygonError> {
+    ) -> Result<Option<Polygon>, mp_geom::planar::PolygonError> {
         let occupied = |brightness: f32| {
             let v = f64::from(brightness) / 255.0;
             let probability = if self.negate { v } else { 1.0 - v };

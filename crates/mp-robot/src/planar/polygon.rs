@@ -2,7 +2,7 @@
 
 use crate::CheckCounters;
 use mp_cspace::{Clearance, ClearanceGradient, Metric, MotionBound, Se2State, So2, Validity};
-use mp_geom::flat::{FlatWorld, Polygon};
+use mp_geom::planar::{PlanarWorld, Polygon};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
@@ -15,11 +15,11 @@ use std::sync::Arc;
 ///
 /// ```
 /// use mp_cspace::{Certified, MotionValidity, Se2, Se2State};
-/// use mp_geom::flat::{FlatWorld, Polygon};
+/// use mp_geom::planar::{PlanarWorld, Polygon};
 /// use mp_robot::{PolygonRobot, PolygonVerifier};
 ///
 /// let gate = [[1.0, 0.0], [1.0, 1.3]].map(|[x, y]| Polygon::rectangle([x, y], [x + 0.1, y + 0.7]));
-/// let world = FlatWorld::new(gate.into_iter().collect::<Result<_, _>>()?, Some([[0.0, 0.0], [3.0, 2.0]]))?;
+/// let world = PlanarWorld::new(gate.into_iter().collect::<Result<_, _>>()?, Some([[0.0, 0.0], [3.0, 2.0]]))?;
 /// let rod = Polygon::rectangle([-0.4, -0.05], [0.4, 0.05])?;
 /// let robot = PolygonRobot::new(world, rod);
 /// let space = Se2::new([0.0, 0.0], [3.0, 2.0])?;
@@ -34,7 +34,7 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug)]
 pub struct PolygonRobot {
-    world: Arc<FlatWorld>,
+    world: Arc<PlanarWorld>,
     body: Arc<Polygon>,
     radius: f64,
     counters: CheckCounters,
@@ -66,14 +66,14 @@ impl Place {
 impl PolygonRobot {
     /// `body`, in its own frame, in `world`. It turns about the origin of its frame.
     #[must_use]
-    pub fn new(world: impl Into<Arc<FlatWorld>>, body: Polygon) -> Self {
+    pub fn new(world: impl Into<Arc<PlanarWorld>>, body: Polygon) -> Self {
         let radius = body.radius_about(&Point2::origin());
         Self { world: world.into(), body: body.into(), radius, counters: CheckCounters::default() }
     }
 
     /// What it moves in.
     #[must_use]
-    pub fn world(&self) -> &Arc<FlatWorld> {
+    pub fn world(&self) -> &Arc<PlanarWorld> {
         &self.world
     }
 

@@ -1,15 +1,15 @@
 //! The plane: polygons, and worlds of them that answer distances fast.
 //!
 //! - [`Polygon`]: rings of points, holes included.
-//! - [`FlatWorld`]: polygons, and perhaps walls around, with what is nearest to a point or a segment.
+//! - [`PlanarWorld`]: polygons, and perhaps walls around, with what is nearest to a point or a segment.
 //! - [`outline`]: the polygon of the occupied squares of a grid map.
 //!
 //! ```
-//! use mp_geom::flat::{FlatWorld, Polygon};
+//! use mp_geom::planar::{PlanarWorld, Polygon};
 //! use nalgebra::Point2;
 //!
 //! let crate_ = Polygon::rectangle([1.0, 1.0], [2.0, 2.0])?;
-//! let world = FlatWorld::new(vec![crate_], Some([[0.0, 0.0], [4.0, 3.0]]))?;
+//! let world = PlanarWorld::new(vec![crate_], Some([[0.0, 0.0], [4.0, 3.0]]))?;
 //! assert!(world.contains(&Point2::new(1.5, 1.5)));
 //! assert_eq!(world.signed_distance(&Point2::new(2.5, 1.5)), 0.5);
 //! let near = world.nearest_to_segment(&Point2::new(0.5, 0.5), &Point2::new(3.5, 0.5), f64::INFINITY);
@@ -26,4 +26,4 @@ mod world;
 
 pub use outline::outline;
 pub use polygon::{Polygon, PolygonError};
-pub use world::{FlatWorld, FlatWorldError, Nearest, NearestToSegment};
+pub use world::{Nearest, NearestToSegment, PlanarWorld, PlanarWorldError};

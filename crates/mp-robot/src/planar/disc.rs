@@ -5,7 +5,7 @@ use mp_cspace::{
     Clearance, ClearanceGradient, IntervalClearance, KnownFree, MotionBound, MotionCheck, MotionInterval,
     MotionValidity, ParameterError, Validity,
 };
-use mp_geom::flat::FlatWorld;
+use mp_geom::planar::PlanarWorld;
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
@@ -18,12 +18,12 @@ use std::sync::Arc;
 ///
 /// ```
 /// use mp_cspace::{MotionValidity, Validity};
-/// use mp_geom::flat::{FlatWorld, Polygon};
+/// use mp_geom::planar::{PlanarWorld, Polygon};
 /// use mp_robot::{DiscRobot, DiscVerifier};
 /// use nalgebra::Vector2;
 ///
 /// let wall = Polygon::rectangle([1.0, 0.0], [1.1, 2.0])?;
-/// let world = FlatWorld::new(vec![wall], Some([[0.0, 0.0], [3.0, 3.0]]))?;
+/// let world = PlanarWorld::new(vec![wall], Some([[0.0, 0.0], [3.0, 3.0]]))?;
 /// let mut robot = DiscRobot::new(world, 0.07)?;
 /// let (left, right) = (Vector2::new(0.5, 1.0), Vector2::new(1.5, 1.0));
 /// assert!(robot.is_valid(&left) && robot.is_valid(&right));
@@ -36,7 +36,7 @@ use std::sync::Arc;
 /// ```
 #[derive(Clone, Debug)]
 pub struct DiscRobot {
-    world: Arc<FlatWorld>,
+    world: Arc<PlanarWorld>,
     radius: f64,
     tolerance: f64,
     counters: CheckCounters,
@@ -47,7 +47,7 @@ impl DiscRobot {
     ///
     /// # Errors
     /// When the radius is negative or not finite.
-    pub fn new(world: impl Into<Arc<FlatWorld>>, radius: f64) -> Result<Self, ParameterError> {
+    pub fn new(world: impl Into<Arc<PlanarWorld>>, radius: f64) -> Result<Self, ParameterError> {
         if !(0.0..1e60).contains(&radius) {
             let (name, expected) = ("the radius", "zero or more and finite");
             return Err(ParameterError { name, expected, value: radius });
@@ -59,7 +59,7 @@ impl DiscRobot {
 
     /// What it moves in.
     #[must_use]
-    pub fn world(&self) -> &Arc<FlatWorld> {
+    pub fn world(&self) -> &Arc<PlanarWorld> {
         &self.world
     }
 

@@ -2,7 +2,7 @@
 
 use super::pnm;
 use crate::error::{Error, ErrorKind};
-use mp_geom::flat::{Polygon, PolygonError, outline};
+use mp_geom::planar::{Polygon, PolygonError, outline};
 use std::io::Cursor;
 
 /// The widest and highest image, pixels.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::FlatProblem;
+use crate::PlanarProblem;
 
 const GOOD: &str = "[world]\nwalls = [[0, 0], [4, 3]]\n\n[robot]\ndisc = 0.07\n\n[motion]\nstart = [0.3, 0.3]\n\
                     goal = [3.5, 2.5]\n\n[[obstacle]]\nname = \"box\"\nrectangle = [[1, 1], [2, 1.5]]\n\n\
@@ -21,9 +21,9 @@ fn folder(problem: &str) -> (tempfile::TempDir, std::path::PathBuf) {
 #[test]
 fn a_world_of_polygons() {
     let (_dir, path) = folder(GOOD);
-    assert!(FlatProblem::is_one(&path));
-    let problem = FlatProblem::load(&path).unwrap();
-    assert_eq!((problem.name.as_str(), &problem.file.robot), ("room", &FlatBody::Disc(0.07)));
+    assert!(PlanarProblem::is_one(&path));
+    let problem = PlanarProblem::load(&path).unwrap();
+    assert_eq!((problem.name.as_str(), &problem.file.robot), ("room", &PlanarShape::Disc(0.07)));
     assert_eq!(problem.bounds, [[0.0, 0.0], [4.0, 3.0]]);
     let names: Vec<_> = problem.obstacles.iter().map(|o| o.name.as_str()).collect();
     assert_eq!(names, ["box", "obstacle 2", "obstacle 3"]);
@@ -31,12 +31,12 @@ fn a_world_of_polygons() {
     assert!((areas[0] - 0.5).abs() < 1e-12 && (areas[1] - 0.245).abs() < 1e-12);
     // Around the circle.
     assert!(areas[2] > 0.19635 && areas[2] < 0.2);
-    let fault = problem.file.fault(FlatPart::Goal(0), "no", "move it");
+    let fault = problem.file.fault(PlanarPart::Goal(0), "no", "move it");
     assert_eq!((fault.line(), fault.column(), fault.remedy()), (Some(9), Some(8), Some("move it")));
     let polygon = GOOD.replace("disc = 0.07", "polygon = [[0, 0], [1, 0], [0, 1]]");
     let turned = polygon.replace("[0.3, 0.3]", "[0.3, 0.3, 0]").replace("[3.5, 2.5]", "[3.5, 2.5, 1.5]");
-    let file = FlatFile::parse("f", turned.as_bytes()).unwrap();
-    assert!(matches!(file.robot, FlatBody::Polygon(_)) && file.goals == [[3.5, 2.5, 1.5]]);
+    let file = PlanarFile::parse("f", turned.as_bytes()).unwrap();
+    assert!(matches!(file.robot, PlanarShape::Polygon(_)) && file.goals == [[3.5, 2.5, 1.5]]);
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn worlds_of_pixels() {
         ("map = \"map.yaml\"\nunknown = \"free\"", false),
     ] {
         let (_dir, path) = folder(&GOOD.replace("walls = [[0, 0], [4, 3]]", world));
-        let problem = FlatProblem::load(&path).unwrap();
+        let problem = PlanarProblem::load(&path).unwrap();
         assert_eq!(problem.bounds, [[-1.0, 2.0], [0.5, 3.0]]);
         let map = &problem.obstacles[3].polygon;
         assert!(at(map, -0.75, 2.75) && at(map, 0.25, 2.25), "{world}");
@@ -90,7 +90,7 @@ fn faults_have_their_place() {
     ] {
         assert!(good.contains(from), "{from}");
         let (_dir, path) = folder(&good.replacen(from, to, 1));
-        let error = FlatProblem::load(&path).unwrap_err();
+        let error = PlanarProblem::load(&path).unwrap_err();
         let shown = error.to_string();
         let placed = error.line() == Some(line) && shown.contains(words);
         if !placed || error.remedy().is_none() || shown.contains('\n') {

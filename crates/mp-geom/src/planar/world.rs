@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Why a world could not be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
-pub enum FlatWorldError {
+pub enum PlanarWorldError {
     /// Bounds that hold nothing.
     #[error("the bounds from ({}, {}) to ({}, {}) must be finite, the first corner below the second", .low[0], .low[1], .high[0], .high[1])]
     Bounds {
@@ -72,7 +72,7 @@ pub struct NearestToSegment {
 /// nanoseconds for a point, and for a segment about as many times that as there are cells near obstacles on
 /// its way.
 #[derive(Clone, Debug)]
-pub struct FlatWorld {
+pub struct PlanarWorld {
     polygons: Vec<Polygon>,
     walls: Option<[Point2<f64>; 2]>,
     edges: Vec<Edge>,
@@ -84,22 +84,22 @@ pub struct FlatWorld {
     high: Point2<f64>,
 }
 
-impl FlatWorld {
+impl PlanarWorld {
     /// `polygons`, and `walls` from a lower to an upper corner around what is free.
     ///
     /// # Errors
     /// When the walls are not finite or hold nothing, or there are more than 2·10⁷ edges.
-    pub fn new(polygons: Vec<Polygon>, walls: Option<[[f64; 2]; 2]>) -> Result<Self, FlatWorldError> {
+    pub fn new(polygons: Vec<Polygon>, walls: Option<[[f64; 2]; 2]>) -> Result<Self, PlanarWorldError> {
         let mut edges = Vec::new();
         for (i, polygon) in polygons.iter().enumerate() {
             edges.extend(polygon.edges().map(|e| Edge::new(e, i as u32)));
             if edges.len() > MAX_EDGES {
-                return Err(FlatWorldError::TooManyEdges { edges: edges.len(), max: MAX_EDGES });
+                return Err(PlanarWorldError::TooManyEdges { edges: edges.len(), max: MAX_EDGES });
             }
         }
         let solid = edges.len();
         if let Some([low, high]) = walls {
-            let room = Polygon::rectangle(low, high).map_err(|_| FlatWorldError::Bounds { low, high })?;
+            let room = Polygon::rectangle(low, high).map_err(|_| PlanarWorldError::Bounds { low, high })?;
             edges.extend(room.edges().map(|e| Edge::new(e, WALLS)));
         }
         let (mut low, mut high) = (Point2::from([f64::INFINITY; 2]), Point2::from([f64::NEG_INFINITY; 2]));
@@ -338,7 +338,7 @@ mod tests {
             below in (-12.0..0.5_f64).prop_map(|e| 10.0_f64.powf(e)),
         ) {
             let walls = walled.then_some([[0.0, 0.0], [10.0, 6.0]]);
-            let world = FlatWorld::new(polygons, walls).unwrap();
+            let world = PlanarWorld::new(polygons, walls).unwrap();
             let points: Vec<_> = points.iter().map(|p| Point2::new(p.0, p.1)).collect();
             for p in &points {
                 let outside = walled && !(p.x > 0.0 && p.x < 10.0 && p.y > 0.0 && p.y < 6.0);
@@ -377,7 +377,7 @@ mod tests {
     #[test]
     fn rings_wholly_inside_are_found() {
         let small = Polygon::rectangle([1.0, 1.0], [1.1, 1.1]).unwrap();
-        let world = FlatWorld::new(vec![small], None).unwrap();
+        let world = PlanarWorld::new(vec![small], None).unwrap();
         let big = Polygon::rectangle([0.0, 0.0], [2.0, 2.0]).unwrap();
         assert_eq!(world.ring_in(big.bounds(), |p| big.contains(p)), Some(Point2::new(1.0, 1.0)));
         let beside = Polygon::rectangle([0.0, 1.05], [2.0, 2.0]).unwrap();
@@ -386,18 +386,18 @@ mod tests {
 
     #[test]
     fn worlds_of_nothing_and_of_lines() {
-        let empty = FlatWorld::new(vec![], None).unwrap();
+        let empty = PlanarWorld::new(vec![], None).unwrap();
         let p = Point2::new(1.0, 2.0);
         assert!(
             !empty.contains(&p) && empty.signed_distance(&p) == f64::INFINITY && empty.bounds().is_none()
         );
         let line = Polygon::outlined([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).unwrap();
-        let world = FlatWorld::new(vec![line], None).unwrap();
+        let world = PlanarWorld::new(vec![line], None).unwrap();
         assert_eq!((world.signed_distance(&p), world.contains(&Point2::new(1.0, 0.0))), (2.0, false));
         let far = Point2::new(1.0, -1e9);
         assert_eq!(world.nearest_to_segment(&p, &far, 5.0).unwrap().distance, 0.0);
         for bad in [f64::NAN, f64::INFINITY, -1.0, 0.0] {
-            assert!(FlatWorld::new(vec![], Some([[0.0, 0.0], [1.0, bad]])).is_err());
+            assert!(PlanarWorld::new(vec![], Some([[0.0, 0.0], [1.0, bad]])).is_err());
         }
     }
 }

@@ -4,13 +4,13 @@ use mp_cspace::{
     Certified, Clearance, KnownFree, MotionCheck, MotionValidity, ObstacleHints, Rn, Rng, Se2, Se2State,
     Space, Validity,
 };
-use mp_geom::flat::Polygon;
+use mp_geom::planar::Polygon;
 use nalgebra::Vector2;
 use rand::RngExt;
 use std::sync::Arc;
 
 /// Triangles and rectangles in a room of 4 × 3 m, some overlapping.
-fn world(rng: &mut Rng, obstacles: usize) -> Arc<FlatWorld> {
+fn world(rng: &mut Rng, obstacles: usize) -> Arc<PlanarWorld> {
     let mut polygons = Vec::new();
     for _ in 0..obstacles {
         let (x, y) = (rng.random_range(0.0..4.0), rng.random_range(0.0..3.0));
@@ -22,7 +22,7 @@ fn world(rng: &mut Rng, obstacles: usize) -> Arc<FlatWorld> {
         };
         polygons.push(ring.unwrap());
     }
-    FlatWorld::new(polygons, Some([[0.0, 0.0], [4.0, 3.0]])).unwrap().into()
+    PlanarWorld::new(polygons, Some([[0.0, 0.0], [4.0, 3.0]])).unwrap().into()
 }
 
 /// What the two checks of a disc say agrees with places along the way, and with each other but for what is within
@@ -163,7 +163,7 @@ fn gradients_are_those_of_the_clearance() {
 
 #[test]
 fn one_within_the_other_is_collision() {
-    let room = FlatWorld::new(vec![Polygon::rectangle([1.0, 1.0], [2.0, 2.0]).unwrap()], None).unwrap();
+    let room = PlanarWorld::new(vec![Polygon::rectangle([1.0, 1.0], [2.0, 2.0]).unwrap()], None).unwrap();
     let room = Arc::new(room);
     let inside = Vector2::new(1.5, 1.5);
     let mut disc = DiscRobot::new(Arc::clone(&room), 0.1).unwrap();
@@ -212,7 +212,7 @@ fn what_is_no_number_is_not_free() {
 fn hints_lead_along_boundaries() {
     let mut rng = Rng::seed(7);
     let wall = Polygon::rectangle([1.0, 0.0], [1.2, 3.0]).unwrap();
-    let world = Arc::new(FlatWorld::new(vec![wall], None).unwrap());
+    let world = Arc::new(PlanarWorld::new(vec![wall], None).unwrap());
     let mut disc = DiscRobot::new(Arc::clone(&world), 0.1).unwrap();
     let (from, toward, hit) = (Vector2::new(0.5, 1.0), Vector2::new(1.5, 1.0), Vector2::new(0.95, 1.0));
     assert!(disc.touches(&hit) && !disc.touches(&from));

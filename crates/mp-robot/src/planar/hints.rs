@@ -2,12 +2,12 @@
 
 use super::{DiscRobot, PolygonRobot};
 use mp_cspace::{ObstacleHints, Rng, Se2State, Validity};
-use mp_geom::flat::FlatWorld;
+use mp_geom::planar::PlanarWorld;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 
 /// A unit vector along a boundary, either way: that nearest to `hit`, or an edge of any obstacle, each as likely.
-fn along(world: &FlatWorld, hit: Option<Vector2<f64>>, rng: &mut Rng) -> Option<Vector2<f64>> {
+fn along(world: &PlanarWorld, hit: Option<Vector2<f64>>, rng: &mut Rng) -> Option<Vector2<f64>> {
     let along = match hit {
         Some(q) => {
             let p = Point2::from(q);

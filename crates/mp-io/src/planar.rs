@@ -13,30 +13,30 @@ pub use map::RosMap;
 use crate::error::Error;
 use crate::source::decode;
 use crate::tables::Source;
-use mp_geom::flat::Polygon;
+use mp_geom::planar::Polygon;
 use nalgebra::Point2;
 use serde::Deserialize;
 use std::ops::Range;
 use toml::Spanned;
 
 /// The page that describes the format.
-const GUIDE: &str = "the format is described in docs/formats/flat-world.md";
+const GUIDE: &str = "the format is described in docs/formats/planar-world.md";
 
 /// Corners of a polygon around a circle.
 const CORNERS: usize = 32;
 
 /// A robot in the plane, in its own frame, metres.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FlatBody {
+pub enum PlanarShape {
     /// A disc of this radius, which does not turn.
     Disc(f64),
     /// A polygon, which turns about the origin.
     Polygon(Polygon),
 }
 
-/// An obstacle of a [`FlatFile`].
+/// An obstacle of a [`PlanarFile`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct FlatObstacle {
+pub struct PlanarObstacle {
     /// What messages call it.
     pub name: String,
     /// Its shape in the world, metres.
@@ -45,7 +45,7 @@ pub struct FlatObstacle {
 
 /// The image of a world, as the file says it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FlatMap {
+pub enum PlanarMap {
     /// An image with its scale.
     Image {
         /// The name of the file.
@@ -63,19 +63,19 @@ pub enum FlatMap {
 
 /// What a file of a world in the plane says, other files not yet read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FlatFile {
+pub struct PlanarFile {
     /// Lower and upper corner of walls around everything.
     pub walls: Option<[[f64; 2]; 2]>,
     /// Lower and upper corner of where the origin of the robot may be.
     pub bounds: Option<[[f64; 2]; 2]>,
     /// An image whose dark pixels are obstacles.
-    pub map: Option<FlatMap>,
+    pub map: Option<PlanarMap>,
     /// Whether what a ROS map does not know is free.
     pub unknown_is_free: bool,
     /// The polygons.
-    pub obstacles: Vec<FlatObstacle>,
+    pub obstacles: Vec<PlanarObstacle>,
     /// The robot.
-    pub robot: FlatBody,
+    pub robot: PlanarShape,
     /// The start: x and y, and for a polygon the angle (rad).
     pub start: Vec<f64>,
     /// The goals, at least one.
@@ -94,9 +94,9 @@ struct Places {
     goals: Vec<Range<usize>>,
 }
 
-/// A part of a [`FlatFile`] that an error can point at.
+/// A part of a [`PlanarFile`] that an error can point at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FlatPart {
+pub enum PlanarPart {
     /// The table `world`.
     World,
     /// The name of the image or map.
@@ -158,7 +158,7 @@ struct ObstacleTable {
     circle: Option<Spanned<[f64; 3]>>,
 }
 
-impl FlatFile {
+impl PlanarFile {
     /// Reads `bytes`, the content of a world in the plane that errors call `file`. No other file is read.
     ///
     /// # Errors
@@ -183,7 +183,7 @@ impl FlatFile {
         places.map = world.image.as_ref().or(world.map.as_ref()).map_or(0..0, Spanned::span);
         let map = map_of(&source, world, &places)?;
         let body = body(&source, robot)?;
-        let numbers = if matches!(body, FlatBody::Disc(_)) { 2 } else { 3 };
+        let numbers = if matches!(body, PlanarShape::Disc(_)) { 2 } else { 3 };
         let state = |what: &str, q: &Spanned<Vec<f64>>| {
             source.check(what, q.get_ref(), &q.span())?;
             if q.get_ref().len() == numbers {
@@ -231,12 +231,12 @@ impl FlatFile {
 
     /// An error about a part of the file, for faults that show only when the world is made.
     #[must_use]
-    pub fn fault(&self, part: FlatPart, message: &str, help: &str) -> Error {
+    pub fn fault(&self, part: PlanarPart, message: &str, help: &str) -> Error {
         let span = match part {
-            FlatPart::World => &self.places.world,
-            FlatPart::Map => &self.places.map,
-            FlatPart::Start => &self.places.start,
-            FlatPart::Goal(i) => self.places.goals.get(i).unwrap_or(&self.places.start),
+            PlanarPart::World => &self.places.world,
+            PlanarPart::Map => &self.places.map,
+            PlanarPart::Start => &self.places.start,
+            PlanarPart::Goal(i) => self.places.goals.get(i).unwrap_or(&self.places.start),
         };
         Source { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
     }
@@ -254,7 +254,7 @@ fn corners(source: &Source<'_>, what: &str, given: Option<&Corners>) -> Result<O
 }
 
 /// The image or map, and that nothing is said of another kind.
-fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Option<FlatMap>, Error> {
+fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Option<PlanarMap>, Error> {
     let of_image = [
         ("scale", world.scale.as_ref().map(Spanned::span)),
         ("origin", world.origin.as_ref().map(Spanned::span)),
@@ -270,7 +270,7 @@ fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Opt
             let message = format!("`{name}` is of an image, and there is none");
             Err(source.error(&span, message).expected("`image = \"FILE\"` beside it"))
         }
-        (None, map, None) => Ok(map.map(|name| FlatMap::Ros(name.into_inner()))),
+        (None, map, None) => Ok(map.map(|name| PlanarMap::Ros(name.into_inner()))),
         (Some(image), None, _) => {
             let Some(scale) = world.scale else {
                 let message = "the image has no scale";
@@ -294,7 +294,7 @@ fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Opt
                 }
                 None => 0.5,
             };
-            Ok(Some(FlatMap::Image {
+            Ok(Some(PlanarMap::Image {
                 file: image.into_inner(),
                 scale: scale.into_inner(),
                 origin,
@@ -304,15 +304,15 @@ fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Opt
     }
 }
 
-fn body(source: &Source<'_>, robot: Spanned<RobotTable>) -> Result<FlatBody, Error> {
+fn body(source: &Source<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape, Error> {
     let span = robot.span();
     match robot.into_inner() {
         RobotTable { disc: Some(radius), polygon: None } => {
             source.positive("the radius", &[*radius.get_ref()], &radius.span())?;
-            Ok(FlatBody::Disc(radius.into_inner()))
+            Ok(PlanarShape::Disc(radius.into_inner()))
         }
         RobotTable { disc: None, polygon: Some(ring) } => {
-            Ok(FlatBody::Polygon(polygon(source, "the robot", vec![ring])?))
+            Ok(PlanarShape::Polygon(polygon(source, "the robot", vec![ring])?))
         }
         _ => {
             let message = "the robot is not one of a disc and a polygon";
@@ -339,18 +339,18 @@ fn polygon(source: &Source<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) 
     Polygon::new(points).map_err(|e| source.error(&whole, format!("{what}: {e}")).expected("a polygon"))
 }
 
-fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<FlatObstacle, Error> {
+fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<PlanarObstacle, Error> {
     let span = table.span();
     let table = table.into_inner();
     let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
     let shown = crate::text::clipped(&name).to_string();
-    let made = |span: &Range<usize>, made: Result<Polygon, mp_geom::flat::PolygonError>| {
+    let made = |span: &Range<usize>, made: Result<Polygon, mp_geom::planar::PolygonError>| {
         made.map_err(|e| source.error(span, format!("{shown}: {e}")).expected("sizes above zero, in metres"))
     };
     let polygon = match (table.polygon, table.rectangle, table.circle) {
         (Some(outline), None, None) => {
             let rings = [outline].into_iter().chain(table.holes).collect();
-            return Ok(FlatObstacle { polygon: polygon(source, &shown, rings)?, name });
+            return Ok(PlanarObstacle { polygon: polygon(source, &shown, rings)?, name });
         }
         (None, Some(rectangle), None) => {
             let span = rectangle.span();
@@ -370,7 +370,7 @@ fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Re
         }
     };
     match table.holes.first() {
-        None => Ok(FlatObstacle { name, polygon }),
+        None => Ok(PlanarObstacle { name, polygon }),
         Some(hole) => {
             let message = format!("{shown} has holes, but is no polygon");
             Err(source.error(&hole.span(), message).expected("`holes` beside `polygon` only"))
@@ -380,13 +380,13 @@ fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Re
 
 /// A world in the plane, all files read.
 #[derive(Clone, Debug)]
-pub struct FlatProblem {
+pub struct PlanarProblem {
     /// The name of the file, without extension.
     pub name: String,
     /// What the file says.
-    pub file: FlatFile,
+    pub file: PlanarFile,
     /// The obstacles: those of the file, then that of the image or map.
-    pub obstacles: Vec<FlatObstacle>,
+    pub obstacles: Vec<PlanarObstacle>,
     /// Lower and upper corner of where the origin of the robot may be: as the file says, else within the walls,
     /// else on the image.
     pub bounds: [[f64; 2]; 2],

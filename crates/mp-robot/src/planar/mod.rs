@@ -1,4 +1,4 @@
-//! Robots in the plane: discs and polygons in a [`FlatWorld`](mp_geom::flat::FlatWorld).
+//! Robots in the plane: discs and polygons in a [`PlanarWorld`](mp_geom::planar::PlanarWorld).
 
 mod disc;
 mod hints;
@@ -10,11 +10,11 @@ pub use disc::DiscRobot;
 pub use polygon::PolygonRobot;
 pub use verify::{DiscVerifier, PolygonVerifier};
 
-use mp_geom::flat::FlatWorld;
+use mp_geom::planar::PlanarWorld;
 
 /// The tolerance (m) of checks for a robot of this radius: a millionth of it, and never so small that coordinates
 /// could not resolve it.
-fn tolerance(world: &FlatWorld, radius: f64) -> f64 {
+fn tolerance(world: &PlanarWorld, radius: f64) -> f64 {
     let far = world.bounds().map_or(0.0, |[low, high]| low.coords.amax().max(high.coords.amax()));
     (1e-6 * radius).max(1e-9 * (far + radius)).max(1e-12)
 }
