@@ -2,10 +2,10 @@
 
 use nalgebra::{Isometry3, Vector3};
 
+use crate::bvh::Tree;
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
 use crate::query::Query;
-use crate::wide::Tree;
 
 /// The first step of the search along a direction is this part of the way that surely separates.
 const FIRST_STEP: f64 = 1.0 / 4096.0;

@@ -54,21 +54,42 @@
 //! collision with everything*: `intersects` is `true`,
 //! distance and clearance are 0. A planner can so never pass through what cannot be decided.
 
-mod batch;
+/// An array of three, for `k` 0, 1, 2. A closure would be compiled without the instruction set of the kernel
+/// around it unless it happens to be inlined.
+macro_rules! three {
+    ($k:ident => $value:expr) => {
+        [
+            {
+                let $k = 0;
+                $value
+            },
+            {
+                let $k = 1;
+                $value
+            },
+            {
+                let $k = 2;
+                $value
+            },
+        ]
+    };
+}
+
 mod broad;
+mod bvh;
+mod counters;
 mod depth;
-mod distance;
 mod filled;
+mod kernels;
 mod mesh;
-mod motion;
-mod obb;
+mod mesh_obb;
 mod pose;
 mod query;
 mod save;
 mod scene;
+mod separation;
 mod simd;
 mod solid;
-mod wide;
 
 pub mod fuzz;
 #[cfg(feature = "parry")]
@@ -76,11 +97,13 @@ pub mod parry;
 pub mod reference;
 pub mod triangle;
 
+pub use counters::Counters;
 pub use filled::FillError;
 pub use mesh::CollisionMesh;
-pub use motion::{IntervalCheck, RigidMotion};
-pub use query::{Counters, Query, Separation};
+pub use query::Query;
+pub use query::interval::{IntervalCheck, RigidMotion};
 pub use save::{TreeError, TreeFileError};
 pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};
+pub use separation::Separation;
 pub use simd::Isa;
 pub use solid::Solid;

@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 use mp_geom::TriMesh;
 use nalgebra::Point3;
 
+use crate::bvh::Tree;
 use crate::triangle::Triangle;
-use crate::wide::Tree;
 
 /// A mesh with its tree of oriented boxes: built once, immutable, cheap to clone, shared between threads.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Vector3};
 
-use crate::obb::Obb;
+use crate::mesh_obb::MeshObb;
 use crate::triangle::Triangle;
 
 /// Coordinates beyond this could overflow in the exact predicates; see the contract in the crate docs.
@@ -77,9 +77,9 @@ impl Relative {
     }
 
     /// A box of `b` in the frame of `a`.
-    pub(crate) fn obb(&self, obb: &Obb) -> Obb {
+    pub(crate) fn obb(&self, obb: &MeshObb) -> MeshObb {
         let r = &self.rotation;
-        Obb {
+        MeshObb {
             center: self.point(&obb.center),
             axes: [r * obb.axes[0], r * obb.axes[1], r * obb.axes[2]],
             half: obb.half,

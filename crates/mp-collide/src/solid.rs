@@ -8,13 +8,14 @@
 use mp_geom::primitives::{PrimitiveError, cuboid};
 use nalgebra::{Isometry3, Point3, Vector3};
 
+use crate::bvh::frames::Frames;
 use crate::mesh::CollisionMesh;
 use crate::pose::{Relative, to_world};
-use crate::query::{Query, Separation};
+use crate::query::Query;
+use crate::query::inside::{Inside, is_inside};
+use crate::query::revolved::{Apart, Frustum, Revolved};
+use crate::separation::Separation;
 use crate::simd::run;
-use crate::wide::frames::Frames;
-use crate::wide::inside::{Inside, is_inside};
-use crate::wide::revolved::{Apart, Frustum, Revolved};
 
 /// A primitive in a frame of its own: a closed *solid*, unlike a mesh, which is a surface.
 ///

@@ -6,7 +6,7 @@
 //! - [`MassProperties`]: volume, centroid, inertia, principal axes.
 //! - [`Features`]: what obstacle-geometry planners know of a body, and [`TriMesh::parts`] of its parts.
 //! - [`primitives`]: closed solids.
-//! - [`flat`]: polygons in the plane.
+//! - [`planar`]: polygons in the plane.
 //! - [`pose_from_six`] and its kin: poses to and from numbers.
 //!
 //! Lengths are metres, angles radians.

@@ -3,9 +3,9 @@
 
 use nalgebra::{Point3, Vector3};
 
+use crate::bvh::frames::fits;
+use crate::bvh::{LEAF, NodeBox, Tree};
 use crate::pose::LIMIT;
-use crate::wide::frames::fits;
-use crate::wide::{LEAF, Obb, Tree};
 
 /// No node, no leaf.
 pub(super) const NONE: u32 = u32::MAX;
@@ -112,7 +112,7 @@ struct Wide {
 }
 
 impl Wide {
-    fn new(obb: &Obb, radius: f64) -> Result<Self, BoxFault> {
+    fn new(obb: &NodeBox, radius: f64) -> Result<Self, BoxFault> {
         let column = |k: usize| Vector3::from([0, 1, 2].map(|d| f64::from(obb.frame[d][k])));
         let (center, axes) = (column(0), [column(1), column(2), column(3)]);
         let at = axes.map(|u| u.dot(&center));

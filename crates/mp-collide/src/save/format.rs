@@ -11,9 +11,9 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::TreeError;
 use super::check::{self, NONE, Parents};
 use super::reader::{Reader, invalid};
+use crate::bvh::build::{Size, leaf};
+use crate::bvh::{LEAF, Node, NodeBox, Tree, WIDTH};
 use crate::mesh::CollisionMesh;
-use crate::wide::build::{Size, leaf};
-use crate::wide::{LEAF, Node, Obb, Tree, WIDTH};
 
 const MAGIC: [u8; 8] = *b"\x89MPT\r\n\x1a\n";
 const VERSION: u32 = 1;
@@ -123,7 +123,7 @@ pub(super) fn write(mesh: &CollisionMesh) -> Vec<u8> {
         f64s(&mut bytes, p.coords.as_slice());
     }
     bytes.extend(triangles.iter().flatten().chain(&tree.ids).flat_map(|i| i.to_le_bytes()));
-    let obb = |bytes: &mut Vec<u8>, obb: &Obb| {
+    let obb = |bytes: &mut Vec<u8>, obb: &NodeBox| {
         bytes.extend(obb.frame.iter().flatten().chain(&obb.half).flat_map(|x| x.to_le_bytes()));
     };
     let mut first = 0;
@@ -158,7 +158,7 @@ pub(crate) fn read(bytes: &[u8], checked: bool) -> Result<CollisionMesh, TreeErr
         }
     }
     let mut reader = Reader::new(content, HEADER);
-    let bounding = crate::obb::Obb {
+    let bounding = crate::mesh_obb::MeshObb {
         center: Point3::from(reader.f64s()?),
         axes: [Vector3::from(reader.f64s()?), Vector3::from(reader.f64s()?), Vector3::from(reader.f64s()?)],
         half: Vector3::from(reader.f64s()?),

@@ -1,7 +1,7 @@
 //! Numbers from bytes, with the place of each.
 
 use super::TreeError;
-use crate::wide::Obb;
+use crate::bvh::NodeBox;
 
 /// Reads little-endian numbers one after another.
 pub(super) struct Reader<'b> {
@@ -57,9 +57,9 @@ impl<'b> Reader<'b> {
         Ok(self.u32s()?.map(f32::from_bits))
     }
 
-    pub(super) fn obb(&mut self) -> Result<Obb, TreeError> {
+    pub(super) fn obb(&mut self) -> Result<NodeBox, TreeError> {
         let frame = [self.f32s()?, self.f32s()?, self.f32s()?];
-        Ok(Obb::new(frame, self.f32s()?))
+        Ok(NodeBox::new(frame, self.f32s()?))
     }
 }
 

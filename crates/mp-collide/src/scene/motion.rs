@@ -5,8 +5,8 @@ use nalgebra::{Isometry3, Vector3};
 use super::{BodyId, Groups, Scene, View, bounds};
 use crate::broad::Bounds;
 use crate::mesh::CollisionMesh;
-use crate::motion::{IntervalCheck, RigidMotion};
 use crate::query::Query;
+use crate::query::interval::{IntervalCheck, RigidMotion};
 
 impl View<'_> {
     /// The index of the first of `poses_wm` at which `mesh` collides with a body, and the body. Much faster than

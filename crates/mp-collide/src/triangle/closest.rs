@@ -8,7 +8,7 @@
 use nalgebra::{Point3, Vector3};
 
 use super::{Triangle, intersect};
-use crate::query::Separation;
+use crate::separation::Separation;
 
 /// Squared distance and the points where it is taken.
 #[derive(Clone, Copy, Debug)]

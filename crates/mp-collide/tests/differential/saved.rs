@@ -194,7 +194,7 @@ fn errors_say_what_was_expected_where() {
     byte 16: expected at least one triangle, found 0
     byte 20: expected at least one leaf, no more than triangles and 2³¹ − 1, found 13
     byte 24: expected fewer nodes than leaves, found 3
-    byte 28: expected a box with orthonormal axes that is no larger than the mesh, found Obb { center: [NaN, 0.0, 0.0], axes: [[[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]]], half: [[1.0, 2.0, 3.0]] }
+    byte 28: expected a box with orthonormal axes that is no larger than the mesh, found MeshObb { center: [NaN, 0.0, 0.0], axes: [[[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]]], half: [[1.0, 2.0, 3.0]] }
     byte 148: expected finite coordinates, found [inf, -2.0, -3.0]
     byte 28: expected a box around all triangles below it, found corner {65536, -2, -3} outside
     byte 340: expected three numbers of vertices, found [8, 1, 2]

@@ -1,6 +1,6 @@
 //! Edges by way of other states.
 
-use crate::{MotionCheck, MotionValidity, Path, Reversible, Verify};
+use crate::{MotionCheck, MotionValidity, Path, Reversible};
 use std::sync::Arc;
 
 /// An edge that goes from one end to the other by way of vertices: states in forward time, between which the space
@@ -65,15 +65,6 @@ impl<S: Clone> Reversible for PolylineEdge<S> {
     fn reversed(&self) -> Self {
         let backward: Vec<S> = self.vertices().iter().rev().cloned().collect();
         Self::through(&backward)
-    }
-}
-
-impl<S, V: MotionValidity<S>> Verify<S, PolylineEdge<S>> for V {
-    fn verify_state(&mut self, q: &S) -> MotionCheck {
-        self.check_motion(q, q)
-    }
-    fn verify_edge(&mut self, from: &S, edge: &PolylineEdge<S>, to: &S) -> MotionCheck {
-        edge.check(from, to, self)
     }
 }
 

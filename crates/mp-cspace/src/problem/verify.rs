@@ -1,12 +1,12 @@
 //! The independent check of finished paths.
 
 use crate::inputs::{ControlSegment, Flow, ReplayFinely, ReplayMotions};
-use crate::{MotionCheck, MotionValidity, Space, Validity};
+use crate::{MotionCheck, MotionValidity, PolylineEdge, Space, Validity};
 
 /// Verifies states and edges of a candidate path, sharing nothing with the local planner.
 ///
 /// Every [`MotionValidity`] verifies edges that are the space's own interpolation (`E = ()`), also by way of other
-/// states ([`PolylineEdge`](crate::PolylineEdge)).
+/// states ([`PolylineEdge`]).
 /// Local planners with other edges bring a verifier that replays them.
 pub trait Verify<S, E> {
     /// Checks one state.
@@ -21,6 +21,15 @@ impl<S, V: MotionValidity<S>> Verify<S, ()> for V {
     }
     fn verify_edge(&mut self, from: &S, _: &(), to: &S) -> MotionCheck {
         self.check_motion(from, to)
+    }
+}
+
+impl<S, V: MotionValidity<S>> Verify<S, PolylineEdge<S>> for V {
+    fn verify_state(&mut self, q: &S) -> MotionCheck {
+        self.check_motion(q, q)
+    }
+    fn verify_edge(&mut self, from: &S, edge: &PolylineEdge<S>, to: &S) -> MotionCheck {
+        edge.check(from, to, self)
     }
 }
 

@@ -2,13 +2,13 @@
 
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 
+use crate::bvh::Tree;
+use crate::bvh::frames::Frames;
+use crate::kernels::swept_interval::{Parts, SweptInterval, Travel};
 use crate::mesh::CollisionMesh;
 use crate::pose::{Relative, is_rigid};
 use crate::query::Query;
-use crate::wide::Tree;
-use crate::wide::frames::Frames;
-use crate::wide::span::{Parts, SweptInterval, Travel};
-use crate::wide::sweep::Schedule;
+use crate::query::sweep::Schedule;
 
 /// Poses are taken so many at a time.
 const CHUNK: usize = 64;

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use nalgebra::{Point3, Vector3};
 
-use super::collapse::{Choice, children, choose};
-use super::split::{Binary, Item, split_all};
-use super::{LEAF, Leaf, Node, Obb, Tree, WIDTH};
+use crate::bvh::collapse::{Choice, children, choose};
+use crate::bvh::split::{Binary, Item, split_all};
+use crate::bvh::{LEAF, Leaf, Node, NodeBox, Tree, WIDTH};
 use crate::triangle::Triangle;
 
 /// What a tree knows of all its corners.
@@ -58,7 +58,7 @@ impl Tree {
             node_boxes: Vec::new(),
             leaf_boxes: Vec::with_capacity(leaves),
             root: 0,
-            bounding: crate::obb::Obb::fit(triangles.iter()),
+            bounding: crate::mesh_obb::MeshObb::fit(triangles.iter()),
             triangles: items.iter().map(|i| triangles[i.id as usize]).collect(),
             ids: items.iter().map(|i| i.id).collect(),
             center,
@@ -73,7 +73,7 @@ impl Tree {
     }
 
     /// Adds binary node `n`, whose box is `obb`, and all below; returns the reference to it.
-    fn emit(&mut self, items: &[Item], binary: &[Binary], choices: &[Choice], n: usize, obb: Obb) -> u32 {
+    fn emit(&mut self, items: &[Item], binary: &[Binary], choices: &[Choice], n: usize, obb: NodeBox) -> u32 {
         let b = &binary[n];
         if b.children == 0 {
             self.leaves.push(leaf(&self.triangles, &self.center, &b.range, &obb));
@@ -93,7 +93,12 @@ impl Tree {
 }
 
 /// The leaf of `triangles[range]`, neither none nor more than eight, with the box around them.
-pub(crate) fn leaf(triangles: &[Triangle], center: &Point3<f64>, range: &Range<usize>, obb: &Obb) -> Leaf {
+pub(crate) fn leaf(
+    triangles: &[Triangle],
+    center: &Point3<f64>,
+    range: &Range<usize>,
+    obb: &NodeBox,
+) -> Leaf {
     let (first, count) = (range.start, range.len());
     let middle: [f64; 3] = std::array::from_fn(|d| center[d] + f64::from(obb.frame[d][0]));
     let mut leaf = Leaf {

@@ -2,11 +2,11 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::boxes::touching;
-use super::frames::{FrameTransform, Frames, fits};
-use super::{LEAF, Tree, WIDTH};
+use crate::bvh::frames::{FrameTransform, Frames, fits};
+use crate::bvh::{LEAF, Tree, WIDTH};
+use crate::counters::Counters;
+use crate::kernels::separating_axes::touching;
 use crate::pose::Relative;
-use crate::query::Counters;
 use crate::simd::{Kernel, Lanes};
 use crate::triangle::passes;
 
@@ -99,7 +99,7 @@ impl Tree {
             let node = &self.nodes[x as usize];
             let from = stack.len();
             for lane in (0..WIDTH).filter(|&lane| node.half[0][lane] >= 0.0) {
-                let along = |v: &[super::Lane; 3]| {
+                let along = |v: &[crate::bvh::Lane; 3]| {
                     f64::from(v[0][lane]) * up.x + f64::from(v[1][lane]) * up.y + f64::from(v[2][lane]) * up.z
                 };
                 let mut low = along(&node.center);

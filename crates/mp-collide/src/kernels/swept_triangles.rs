@@ -2,10 +2,10 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::gaps::{Bounds, DistanceKernel, SeparatingDirection};
-use super::span::{Drift, SweptInterval};
-use super::{LEAF, Obb, Tree};
-use crate::query::Counters;
+use crate::bvh::{LEAF, NodeBox, Tree};
+use crate::counters::Counters;
+use crate::kernels::swept_interval::{Drift, SweptInterval};
+use crate::kernels::triangle_distance::{Bounds, DistanceKernel, SeparatingDirection};
 use crate::simd::Lanes;
 use crate::triangle::{Triangle, closest_within, intersect};
 
@@ -27,7 +27,7 @@ pub(crate) enum LeafCheck {
 ///
 /// Those that may come that near by distance are kept apart along a direction, where only what moves along it counts.
 #[inline(always)]
-pub(super) fn triangles<L: Lanes>(
+pub(crate) fn triangles<L: Lanes>(
     ((a, x, mask_a), (b, y, mask_b)): ((&Tree, u32, u32), (&Tree, u32, u32)),
     span: &SweptInterval,
     (most, keep): (f32, f64),
@@ -80,7 +80,7 @@ struct SweepCheck<'s> {
 
 impl<'s> SweepCheck<'s> {
     #[inline(always)]
-    fn new(a: &'s Tree, own: &Obb, span: &'s SweptInterval, most: f32, keep: f64) -> Self {
+    fn new(a: &'s Tree, own: &NodeBox, span: &'s SweptInterval, most: f32, keep: f64) -> Self {
         let center = three!(d => f64::from(own.frame[d][0]));
         let far = span.in_a.at_point(&center.into()).norm() + f64::from(span.slop(own));
         // Rounding of the transform is on top of what is to be kept.

@@ -5,15 +5,16 @@
 //! along that axis. Where they may not stay apart, the largest of three is divided: one box, the other, or
 //! the part of the motion; so motions are cut into short parts only where and when bodies are near.
 
-use super::boxes::{cross, dot, sub, touching};
-use super::frames::{FrameTransform, Placed};
-use super::intersect::{ahead, leaf_pair};
-use super::leaves::{Corners, Near, corners};
-use super::meeting::TriangleFilter;
-use super::span::{Parts, SweptInterval};
-use super::swept::{LeafCheck, triangles};
-use super::{LEAF, Node, Tree};
-use crate::query::{Counters, Query};
+use crate::bvh::frames::{FrameTransform, Placed};
+use crate::bvh::{LEAF, Node, Tree};
+use crate::counters::Counters;
+use crate::kernels::leaf_pair::{Corners, Near, corners};
+use crate::kernels::separating_axes::{cross, dot, sub, touching};
+use crate::kernels::swept_interval::{Parts, SweptInterval};
+use crate::kernels::swept_triangles::{LeafCheck, triangles};
+use crate::kernels::triangle_pair::TriangleFilter;
+use crate::query::Query;
+use crate::query::intersect::{ahead, leaf_pair};
 use crate::simd::{Kernel, Lanes, Mask, run};
 
 /// A pair of nodes during a part of the motion.

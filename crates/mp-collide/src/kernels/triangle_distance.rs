@@ -5,9 +5,9 @@
 
 use nalgebra::Vector3;
 
-use super::boxes::{cross, dot, sub};
-use super::leaves::corners;
-use super::{Lane, Leaf};
+use crate::bvh::{Lane, Leaf};
+use crate::kernels::leaf_pair::corners;
+use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 use crate::triangle::Triangle;
 
@@ -272,9 +272,9 @@ fn cross_scalar(a: &[f32; 3], b: &[f32; 3]) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bvh::{NodeBox, build::leaf};
     use crate::simd::{Isa, Kernel, run};
     use crate::triangle::closest_within;
-    use crate::wide::{Obb, build::leaf};
     use nalgebra::{Point3, UnitQuaternion};
     use rand::{RngExt, SeedableRng};
     use rand_pcg::Pcg64;
@@ -300,7 +300,7 @@ mod tests {
         let mut power = |low: f64, high: f64| 10f64.powf(rng.random_range(low..high));
         let mut other = Pcg64::seed_from_u64(9);
         let mut any = || Vector3::from_fn(|_, _| other.random_range(-1.0..1.0));
-        let obb = Obb::new([[0.0; 4]; 3], [0.0; 3]);
+        let obb = NodeBox::new([[0.0; 4]; 3], [0.0; 3]);
         let (mut tight, mut far) = (0, 0);
         for round in 0..20_000 {
             let size = power(-6.0, 4.0);

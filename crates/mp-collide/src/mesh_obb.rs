@@ -9,13 +9,13 @@ use crate::triangle::Triangle;
 
 /// A box: centre, three orthonormal axes, half its extent along each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Obb {
+pub(crate) struct MeshObb {
     pub(crate) center: Point3<f64>,
     pub(crate) axes: [Vector3<f64>; 3],
     pub(crate) half: Vector3<f64>,
 }
 
-impl Obb {
+impl MeshObb {
     /// A small box around `triangles`: the one of least surface among several frames (the axes of the
     /// mesh, the principal axes of the surface, the largest triangle's).
     pub(crate) fn fit<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> Self {

@@ -2,15 +2,16 @@
 
 use nalgebra::{Isometry3, Point3};
 
+use crate::bvh::Tree;
+use crate::bvh::frames::Frames;
 use crate::mesh::CollisionMesh;
 use crate::pose::{Relative, to_world};
-use crate::query::{Query, Separation};
+use crate::query::Query;
+use crate::query::nearest::Nearest;
+use crate::query::within::Within;
+use crate::separation::Separation;
 use crate::simd::run;
 use crate::triangle::{Closest, closest_within, crossing};
-use crate::wide::Tree;
-use crate::wide::frames::Frames;
-use crate::wide::nearest::Nearest;
-use crate::wide::within::Within;
 
 impl Query {
     /// The distance of the meshes with nearest points, in the world.

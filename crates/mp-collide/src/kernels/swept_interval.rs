@@ -3,8 +3,8 @@
 
 use nalgebra::Vector3;
 
-use super::frames::Frames;
-use super::{Obb, Tree};
+use crate::bvh::frames::Frames;
+use crate::bvh::{NodeBox, Tree};
 use crate::pose::Relative;
 use crate::simd::Lanes;
 
@@ -19,7 +19,7 @@ pub(crate) struct Drift {
 
 impl Drift {
     /// `shift` is that of the point `origin`.
-    pub(super) fn new(turn: &Vector3<f64>, shift: &Vector3<f64>, origin: &Vector3<f64>) -> Self {
+    pub(crate) fn new(turn: &Vector3<f64>, shift: &Vector3<f64>, origin: &Vector3<f64>) -> Self {
         let shift = shift - turn.cross(origin);
         Self { shift: shift.map(|x| x as f32).into(), turn: turn.map(|x| x as f32).into() }
     }
@@ -115,7 +115,7 @@ impl SweptInterval {
 
     /// How much farther than the drift of its centre a point of a box of `a` may move.
     #[inline(always)]
-    pub(crate) fn slop(&self, obb: &Obb) -> f32 {
+    pub(crate) fn slop(&self, obb: &NodeBox) -> f32 {
         self.rate * (obb.size.sqrt() * 1.000_001) + self.rest
     }
 }

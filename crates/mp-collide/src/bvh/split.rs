@@ -4,8 +4,8 @@
 
 use std::ops::Range;
 
-use super::fit::{self, Frame};
-use super::{Obb, WIDTH};
+use crate::bvh::fit::{self, Frame};
+use crate::bvh::{NodeBox, WIDTH};
 
 /// Bins along an axis: a power of two.
 const BINS: usize = 32;
@@ -21,20 +21,20 @@ const WORTH: f32 = 1.1;
 const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 
 /// Three coordinates in a register of four.
-pub(super) type Vec4 = [f32; 4];
+pub(crate) type Vec4 = [f32; 4];
 
 /// A triangle on its way through the build.
 #[derive(Clone, Copy)]
-pub(super) struct Item {
-    pub(super) corners: [Vec4; 3],
-    pub(super) id: u32,
+pub(crate) struct Item {
+    pub(crate) corners: [Vec4; 3],
+    pub(crate) id: u32,
 }
 
-pub(super) struct Binary {
+pub(crate) struct Binary {
     /// Children, which are neighbours; 0 in a leaf.
-    pub(super) children: usize,
-    pub(super) range: Range<usize>,
-    pub(super) surface: f32,
+    pub(crate) children: usize,
+    pub(crate) range: Range<usize>,
+    pub(crate) surface: f32,
     frame: Frame,
     lo: Vec4,
     hi: Vec4,
@@ -47,7 +47,7 @@ impl Binary {
 
     /// The box around these of `items`, whatever was rounded: of a mesh whose radius is `unit` metres, relative
     /// to the centre of the mesh.
-    pub(super) fn obb(&self, items: &[Item], unit: f64) -> Obb {
+    pub(crate) fn obb(&self, items: &[Item], unit: f64) -> NodeBox {
         let items = &items[self.range.clone()];
         let (f, lo, hi) = match fit::refine(items, &self.frame) {
             Some(frame) => {
@@ -72,12 +72,12 @@ impl Binary {
             ((hi[k] - at).max(at - lo[k]) * (1.0 + 3e-7)) as f32
         });
         let frame = std::array::from_fn(|d| [center[d], f[0][d], f[1][d], f[2][d]]);
-        Obb::new(frame, half)
+        NodeBox::new(frame, half)
     }
 }
 
 /// The binary tree, parents before children, its leaves of at most [`WIDTH`] items.
-pub(super) fn split_all(items: &mut [Item]) -> Vec<Binary> {
+pub(crate) fn split_all(items: &mut [Item]) -> Vec<Binary> {
     let mut own = Vec::with_capacity(items.len());
     let mut aside = items.to_vec();
     let mut binary = Vec::with_capacity(items.len() / 2 + 1);
@@ -136,25 +136,25 @@ impl Bounds {
 }
 
 #[inline(always)]
-pub(super) fn min(a: &Vec4, b: &Vec4) -> Vec4 {
+pub(crate) fn min(a: &Vec4, b: &Vec4) -> Vec4 {
     std::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
 }
 
 #[inline(always)]
-pub(super) fn max(a: &Vec4, b: &Vec4) -> Vec4 {
+pub(crate) fn max(a: &Vec4, b: &Vec4) -> Vec4 {
     std::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
 }
 
 /// Half the surface of a box: enough to compare by.
 #[inline(always)]
-pub(super) fn surface(lo: &Vec4, hi: &Vec4) -> f32 {
+pub(crate) fn surface(lo: &Vec4, hi: &Vec4) -> f32 {
     let [x, y, z] = [hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]];
     x * y + y * z + z * x
 }
 
 /// Coordinates of `p` along three axes, which come as columns.
 #[inline(always)]
-pub(super) fn along(columns: &[Vec4; 3], p: &Vec4) -> Vec4 {
+pub(crate) fn along(columns: &[Vec4; 3], p: &Vec4) -> Vec4 {
     std::array::from_fn(|k| columns[0][k] * p[0] + columns[1][k] * p[1] + columns[2][k] * p[2])
 }
 

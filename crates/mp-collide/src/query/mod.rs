@@ -1,48 +1,31 @@
-//! Queries between two meshes.
+//! Queries between two meshes: intersection, distance, tolerance, batches of poses, intervals of motions.
 
-use nalgebra::{Isometry3, Point3};
+#![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.
 
+mod batch;
+mod distance;
+pub(crate) mod inside;
+mod intersect;
+pub(crate) mod interval;
+mod nearest;
+pub(crate) mod revolved;
+mod sweep;
+mod within;
+
+use nalgebra::Isometry3;
+
+use crate::bvh::Tree;
+use crate::bvh::frames::Frames;
+use crate::counters::Counters;
+use crate::kernels::swept_interval::Parts;
+use crate::kernels::triangle_pair::TriangleFilter;
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
+use crate::query::intersect::Intersect;
+use crate::query::nearest::Scratch;
+use crate::query::sweep::Item;
 use crate::simd::{Isa, run};
 use crate::triangle::intersect;
-use crate::wide::Tree;
-use crate::wide::frames::Frames;
-use crate::wide::intersect::Intersect;
-use crate::wide::meeting::TriangleFilter;
-use crate::wide::nearest::Scratch;
-use crate::wide::span::Parts;
-use crate::wide::sweep::Item;
-
-/// How much work queries have done: the same for the same queries, on any machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Queries answered (each pose of a batch counts).
-    pub queries: u64,
-    /// Pairs of boxes compared.
-    pub box_tests: u64,
-    /// Pairs of triangles compared.
-    pub triangle_tests: u64,
-}
-
-impl std::ops::AddAssign for Counters {
-    fn add_assign(&mut self, other: Self) {
-        self.queries += other.queries;
-        self.box_tests += other.box_tests;
-        self.triangle_tests += other.triangle_tests;
-    }
-}
-
-/// How far two bodies are apart, and where.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Separation {
-    /// The distance (metres); 0 exactly when they intersect.
-    pub distance: f64,
-    /// A nearest point of the first, in the world; a common point when they intersect.
-    pub point_a: Point3<f64>,
-    /// A nearest point of the second, in the world.
-    pub point_b: Point3<f64>,
-}
 
 /// Scratch and counters of one thread: make one per thread and keep it.
 ///

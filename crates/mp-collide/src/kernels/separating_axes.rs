@@ -1,7 +1,7 @@
 //! One box against eight: the separating-axis test (Gottschalk, Lin, Manocha 1996) in lanes.
 
-use super::Node;
-use super::frames::Placed;
+use crate::bvh::Node;
+use crate::bvh::frames::Placed;
 use crate::simd::{Lanes, Mask};
 
 /// Bit `i` is set unless child `i` of `node` is surely farther than `margin` from `q`.

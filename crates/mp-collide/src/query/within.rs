@@ -1,11 +1,11 @@
 //! Do two trees come within a tolerance?
 
-use super::frames::{FrameTransform, Frames};
-use super::gaps::{Bounds, DistanceKernel, SeparatingDirection};
-use super::intersect::push;
-use super::leaves::near_each_other;
-use super::{LEAF, Tree};
-use crate::query::Counters;
+use crate::bvh::frames::{FrameTransform, Frames};
+use crate::bvh::{LEAF, Tree};
+use crate::counters::Counters;
+use crate::kernels::leaf_pair::near_each_other;
+use crate::kernels::triangle_distance::{Bounds, DistanceKernel, SeparatingDirection};
+use crate::query::intersect::push;
 use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{closest_within, intersect};
 

@@ -2,11 +2,11 @@
 
 use nalgebra::{Point3, Vector3};
 
-use super::boxes::distances;
-use super::frames::{FrameTransform, Frames};
-use super::{LEAF, Tree, WIDTH};
+use crate::bvh::frames::{FrameTransform, Frames};
+use crate::bvh::{LEAF, Tree, WIDTH};
+use crate::counters::Counters;
+use crate::kernels::separating_axes::distances;
 use crate::pose::Relative;
-use crate::query::Counters;
 use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::Triangle;
 

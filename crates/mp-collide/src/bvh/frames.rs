@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Obb, Tree};
+use crate::bvh::{NodeBox, Tree};
 use crate::pose::Relative;
 use crate::simd::Lanes;
 
@@ -49,7 +49,7 @@ impl<L: Lanes> FrameTransform<L> {
     }
 
     #[inline(always)]
-    pub(crate) fn place<'b>(&self, b: &'b Obb) -> Placed<'b> {
+    pub(crate) fn place<'b>(&self, b: &'b NodeBox) -> Placed<'b> {
         let v: [L; 3] = three!(d => L::twice(&b.frame[d]));
         let mut rows = [[0.0; 8]; 2];
         for i in 0..2 {
@@ -64,7 +64,7 @@ impl<L: Lanes> FrameTransform<L> {
 /// A box carried into the frame of another tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'b> {
-    /// As [`Obb::frame`], the first two rows side by side.
+    /// As [`NodeBox::frame`], the first two rows side by side.
     rows: [[f32; 8]; 2],
     pub(crate) half: &'b [f32; 3],
 }
@@ -72,7 +72,7 @@ pub(crate) struct Placed<'b> {
 impl<'b> Placed<'b> {
     /// A box in the frame of its own tree, moved there so that its centre is the origin.
     #[inline(always)]
-    pub(crate) fn at_origin(b: &'b Obb) -> Self {
+    pub(crate) fn at_origin(b: &'b NodeBox) -> Self {
         let [x, y, z] = &b.frame;
         Self {
             rows: [

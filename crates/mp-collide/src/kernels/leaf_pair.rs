@@ -1,13 +1,13 @@
 //! Leaves: eight triangles, carried into another frame, and against a box. A filter that never loses a triangle
 //! that meets the box.
 
-use super::boxes::{cross, dot, sub};
-use super::frames::{FrameTransform, Frames, Placed};
-use super::{Leaf, Obb};
+use crate::bvh::frames::{FrameTransform, Frames, Placed};
+use crate::bvh::{Leaf, NodeBox};
+use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 
 /// Added to every margin: products of lengths so small that they underflow decide nothing.
-pub(super) const TINY: f32 = 1e-34;
+pub(crate) const TINY: f32 = 1e-34;
 
 /// Corners of eight triangles: `[k][d]` is coordinate `d` of corner `k`.
 pub(crate) type Corners<L> = [[L; 3]; 3];
@@ -23,7 +23,7 @@ pub(crate) fn corners<L: Lanes>(leaf: &Leaf) -> Corners<L> {
 }
 
 /// u: the relative rounding of `f32`.
-pub(super) const U: f32 = 6e-8;
+pub(crate) const U: f32 = 6e-8;
 
 /// Two leaves in the frame of the first, its origin moved to that leaf's centre, and how wrong `f32` makes
 /// what is computed there.
@@ -36,9 +36,9 @@ pub(crate) struct Near {
     /// Centre of the second leaf.
     pub(crate) shift: [f32; 3],
     /// The largest coordinate of that.
-    pub(super) t: f32,
+    pub(crate) t: f32,
     /// How wrong a coordinate of the first may be together with one of the second.
-    pub(super) wrong: f32,
+    pub(crate) wrong: f32,
 }
 
 impl Near {
@@ -97,7 +97,7 @@ pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed<'_>, near
 #[inline(always)]
 pub(crate) fn near_each_other<L: Lanes>(
     (a, b): (&Leaf, &Leaf),
-    (box_a, box_b): (&Obb, &Obb),
+    (box_a, box_b): (&NodeBox, &NodeBox),
     frames: &Frames,
     into_a: &FrameTransform<L>,
     margin: f32,

@@ -1,11 +1,11 @@
 //! Do two trees meet?
 
-use super::boxes::touching;
-use super::frames::{FrameTransform, Frames, Placed};
-use super::leaves::{Near, corners, near_box};
-use super::meeting::{TriangleFilter, Verdict};
-use super::{LEAF, Leaf, Node, Tree};
-use crate::query::Counters;
+use crate::bvh::frames::{FrameTransform, Frames, Placed};
+use crate::bvh::{LEAF, Leaf, Node, Tree};
+use crate::counters::Counters;
+use crate::kernels::leaf_pair::{Near, corners, near_box};
+use crate::kernels::separating_axes::touching;
+use crate::kernels::triangle_pair::{TriangleFilter, Verdict};
 use crate::simd::{Kernel, Lanes, prefetch};
 use crate::triangle::intersect;
 
@@ -63,12 +63,12 @@ impl Kernel for Intersect<'_> {
 
 /// Calls `push` for every child of `node` (of `tree`) that may come within `margin` of `other`.
 #[inline(always)]
-pub(super) fn push<L: Lanes>(
+pub(crate) fn push<L: Lanes>(
     tree: &Tree,
     far: bool,
     node: &Node,
     frame: &FrameTransform<L>,
-    other: &super::Obb,
+    other: &crate::bvh::NodeBox,
     margin: f32,
     mut push: impl FnMut(u32),
 ) {
@@ -85,7 +85,7 @@ pub(super) fn push<L: Lanes>(
 
 /// Fetches a node or leaf that will be looked at soon.
 #[inline(always)]
-pub(super) fn ahead(tree: &Tree, reference: u32) {
+pub(crate) fn ahead(tree: &Tree, reference: u32) {
     if reference & LEAF != 0 {
         prefetch::<Leaf>(&tree.leaves[(reference & !LEAF) as usize]);
     } else {
@@ -96,7 +96,7 @@ pub(super) fn ahead(tree: &Tree, reference: u32) {
 
 /// Two triangles of two leaves that meet: the first two, or any that surely do.
 #[inline(always)]
-pub(super) fn leaf_pair<L: Lanes>(
+pub(crate) fn leaf_pair<L: Lanes>(
     (a, i): (&Tree, usize),
     (b, j): (&Tree, usize),
     frames: &Frames,

@@ -1,46 +1,12 @@
-//! The engine: trees of oriented boxes with eight children, tested eight at a time in `f32` with error
-//! margins, and triangles eight at a time; what is too close to call is decided in `f64`.
+//! Bounding volume hierarchies: trees of oriented boxes with eight children, and eight triangles to a leaf.
 
 #![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.
 
-/// An array of three, for `k` 0, 1, 2. A closure would be compiled without the instruction set of the kernel
-/// around it unless it happens to be inlined.
-macro_rules! three {
-    ($k:ident => $value:expr) => {
-        [
-            {
-                let $k = 0;
-                $value
-            },
-            {
-                let $k = 1;
-                $value
-            },
-            {
-                let $k = 2;
-                $value
-            },
-        ]
-    };
-}
-
-pub(crate) mod boxes;
 pub(crate) mod build;
 mod collapse;
 mod fit;
 pub(crate) mod frames;
-pub(crate) mod gaps;
-pub(crate) mod inside;
-pub(crate) mod intersect;
-pub(crate) mod leaves;
-pub(crate) mod meeting;
-pub(crate) mod nearest;
-pub(crate) mod revolved;
-pub(crate) mod span;
 mod split;
-pub(crate) mod sweep;
-pub(crate) mod swept;
-pub(crate) mod within;
 
 use crate::triangle::Triangle;
 use nalgebra::Point3;
@@ -57,7 +23,7 @@ pub(crate) type Lane = [f32; WIDTH];
 /// A box, alone, in the centred frame of its tree. 64 bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Obb {
+pub(crate) struct NodeBox {
     /// `frame[d]`: coordinate `d` of the centre, then of the three axes.
     pub(crate) frame: [[f32; 4]; 3],
     pub(crate) half: [f32; 3],
@@ -65,7 +31,7 @@ pub(crate) struct Obb {
     pub(crate) size: f32,
 }
 
-impl Obb {
+impl NodeBox {
     pub(crate) fn new(frame: [[f32; 4]; 3], half: [f32; 3]) -> Self {
         Self { frame, half, size: half[0] * half[0] + half[1] * half[1] + half[2] * half[2] }
     }
@@ -93,7 +59,7 @@ impl Node {
     };
 
     /// Makes `child`, with its box, the child in `lane`.
-    pub(crate) fn set(&mut self, lane: usize, child: u32, obb: &Obb) {
+    pub(crate) fn set(&mut self, lane: usize, child: u32, obb: &NodeBox) {
         self.child[lane] = child;
         for d in 0..3 {
             self.center[d][lane] = obb.frame[d][0];
@@ -143,11 +109,11 @@ pub(crate) struct Tree {
     pub(crate) nodes: Vec<Node>,
     pub(crate) leaves: Vec<Leaf>,
     /// The box around each node and around each leaf.
-    pub(crate) node_boxes: Vec<Obb>,
-    pub(crate) leaf_boxes: Vec<Obb>,
+    pub(crate) node_boxes: Vec<NodeBox>,
+    pub(crate) leaf_boxes: Vec<NodeBox>,
     pub(crate) root: u32,
     /// The box around everything, in `f64`, in the frame of the mesh.
-    pub(crate) bounding: crate::obb::Obb,
+    pub(crate) bounding: crate::mesh_obb::MeshObb,
     /// In the order of the leaves.
     pub(crate) triangles: Vec<Triangle>,
     /// The index of each triangle in the mesh it came from.
@@ -163,7 +129,7 @@ pub(crate) struct Tree {
 impl Tree {
     /// The box around a node or leaf.
     #[inline(always)]
-    pub(crate) fn own(&self, reference: u32) -> &Obb {
+    pub(crate) fn own(&self, reference: u32) -> &NodeBox {
         if reference & LEAF != 0 {
             &self.leaf_boxes[(reference & !LEAF) as usize]
         } else {
@@ -172,7 +138,7 @@ impl Tree {
     }
 
     /// Whether the tree is too large for the caches near the core, so that it pays to fetch ahead.
-    fn is_large(&self) -> bool {
+    pub(crate) fn is_large(&self) -> bool {
         size_of_val(&self.nodes[..]) + size_of_val(&self.leaves[..]) > 1 << 18
     }
 

@@ -1,10 +1,10 @@
 //! Eight triangles against eight others: a filter that never loses a pair that meets, and never finds one that
 //! does not.
 
-use super::boxes::{cross, dot, sub};
-use super::frames::Frames;
-use super::leaves::{Corners, Near, TINY, U};
-use super::{Lane, Leaf, WIDTH};
+use crate::bvh::frames::Frames;
+use crate::bvh::{Lane, Leaf, WIDTH};
+use crate::kernels::leaf_pair::{Corners, Near, TINY, U};
+use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 
 /// How wrong heights over the planes of the first leaf, over those of the second, and volumes may be.

@@ -3,13 +3,13 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::boxes::distances;
-use super::frames::{FrameTransform, Frames};
-use super::gaps::{Bounds, DistanceKernel, SeparatingDirection};
-use super::intersect::ahead;
-use super::leaves::near_each_other;
-use super::{LEAF, Tree, WIDTH};
-use crate::query::Counters;
+use crate::bvh::frames::{FrameTransform, Frames};
+use crate::bvh::{LEAF, Tree, WIDTH};
+use crate::counters::Counters;
+use crate::kernels::leaf_pair::near_each_other;
+use crate::kernels::separating_axes::distances;
+use crate::kernels::triangle_distance::{Bounds, DistanceKernel, SeparatingDirection};
+use crate::query::intersect::ahead;
 use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{Closest, closest_within, is_farther, is_nearest};
 

@@ -2,13 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::split::{Item, Vec4, along, max, min, surface};
+use crate::bvh::split::{Item, Vec4, along, max, min, surface};
 
 /// Three orthonormal axes.
-pub(super) type Frame = [[f32; 3]; 3];
+pub(crate) type Frame = [[f32; 3]; 3];
 
 /// The axes of the mesh.
-pub(super) const MESH: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const MESH: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// At most so many triangles are looked at.
 const SAMPLE: usize = 48;
@@ -18,7 +18,7 @@ const TURNS: [f64; 3] = [0.05, 0.025, 0.0125];
 
 /// The axes of a small box around `items`: the axes of the mesh; principal axes of surface, corners and
 /// normals; or the largest triangle's normal and shortest edge.
-pub(super) fn frame(items: &[Item]) -> Frame {
+pub(crate) fn frame(items: &[Item]) -> Frame {
     let (sample, count) = sample(items);
     let mut best = Best { corners: sample[..count].as_flattened(), surface: f32::INFINITY, frame: MESH };
     best.offer(&MESH);
@@ -40,7 +40,7 @@ fn sample(items: &[Item]) -> ([[Vec4; 3]; SAMPLE], usize) {
 
 /// Turns `frame` a little about one axis after the other as long as the box around `items` shrinks. `None`
 /// where it does not.
-pub(super) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
+pub(crate) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
     let (sample, count) = sample(items);
     let corners = sample[..count].as_flattened();
     let mut axes = frame.map(|u| Vector3::from(u.map(f64::from)));
@@ -78,7 +78,7 @@ pub(super) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
 
 /// The least and the greatest coordinate along each axis.
 #[inline(always)]
-pub(super) fn extent<'a>(corners: impl IntoIterator<Item = &'a Vec4>, columns: &[Vec4; 3]) -> (Vec4, Vec4) {
+pub(crate) fn extent<'a>(corners: impl IntoIterator<Item = &'a Vec4>, columns: &[Vec4; 3]) -> (Vec4, Vec4) {
     let (mut lo, mut hi) = ([f32::INFINITY; 4], [f32::NEG_INFINITY; 4]);
     for p in corners {
         let x = along(columns, p);
@@ -89,7 +89,7 @@ pub(super) fn extent<'a>(corners: impl IntoIterator<Item = &'a Vec4>, columns: &
 
 /// The columns of a frame, to multiply four at a time.
 #[inline(always)]
-pub(super) fn columns(frame: &Frame) -> [Vec4; 3] {
+pub(crate) fn columns(frame: &Frame) -> [Vec4; 3] {
     std::array::from_fn(|d| [frame[0][d], frame[1][d], frame[2][d], 0.0])
 }
 

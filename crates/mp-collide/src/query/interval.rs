@@ -2,14 +2,14 @@
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
+use crate::bvh::Tree;
+use crate::bvh::frames::Frames;
+use crate::kernels::swept_interval::{Parts, SweptInterval, Travel};
+use crate::kernels::swept_triangles::LeafCheck;
 use crate::mesh::CollisionMesh;
 use crate::pose::{LIMIT, Relative};
 use crate::query::Query;
-use crate::wide::Tree;
-use crate::wide::frames::Frames;
-use crate::wide::span::{Parts, SweptInterval, Travel};
-use crate::wide::sweep::{Met, Schedule};
-use crate::wide::swept::LeafCheck;
+use crate::query::sweep::{Met, Schedule};
 
 /// An interval of a rigid motion about a pose in its middle: from there the body moves on at constant speed to
 /// one end of the interval, and back likewise to the other.
