@@ -54,7 +54,7 @@ pub trait Clearance<S> {
     }
 
     /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
-    /// [`room`](Clearance::interval_clearance) that contact is looked for all along a motion, every two strides
+    /// [`interval_clearance`](Clearance::interval_clearance) that contact is looked for all along a motion, every two strides
     /// of [`Certified`](crate::Certified), before anything else.
     fn contact_first(&self) -> bool {
         false

@@ -41,7 +41,7 @@
 //! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
 //! A variant is a [`Recipe`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
-//! which goes on for better paths.
+//! the loop of anytime planners, which go on for better paths.
 //!
 //! # Writing your own planner
 //! A variant of the family is made of slots, those here or your own. RRT whose tree is as greedy as those of

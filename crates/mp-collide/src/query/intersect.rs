@@ -77,7 +77,7 @@ pub(crate) fn push<L: Lanes>(
         let child = node.child[mask.trailing_zeros() as usize & 7];
         mask &= mask - 1;
         if far {
-            ahead(tree, child);
+            prefetch_node(tree, child);
         }
         push(child);
     }
@@ -85,7 +85,7 @@ pub(crate) fn push<L: Lanes>(
 
 /// Fetches a node or leaf that will be looked at soon.
 #[inline(always)]
-pub(crate) fn ahead(tree: &Tree, reference: u32) {
+pub(crate) fn prefetch_node(tree: &Tree, reference: u32) {
     if reference & LEAF != 0 {
         prefetch::<Leaf>(&tree.leaves[(reference & !LEAF) as usize]);
     } else {

@@ -9,7 +9,7 @@ use crate::counters::Counters;
 use crate::kernels::leaf_pair::near_each_other;
 use crate::kernels::separating_axes::distances;
 use crate::kernels::triangle_distance::{Bounds, DistanceKernel, SeparatingDirection};
-use crate::query::intersect::ahead;
+use crate::query::intersect::prefetch_node;
 use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{Closest, closest_within, is_farther, is_nearest};
 
@@ -93,8 +93,8 @@ impl Kernel for Nearest<'_> {
             self.counters.box_tests += 1;
             let (x, y) = (pair.a, pair.b);
             if far && let Some(then) = self.scratch.pairs.peek() {
-                ahead(a, then.a);
-                ahead(b, then.b);
+                prefetch_node(a, then.a);
+                prefetch_node(b, then.b);
             }
             if x & y & LEAF != 0 {
                 let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);

@@ -14,7 +14,7 @@ use crate::kernels::swept_interval::{Parts, SweptInterval};
 use crate::kernels::swept_triangles::{LeafCheck, triangles};
 use crate::kernels::triangle_pair::TriangleFilter;
 use crate::query::Query;
-use crate::query::intersect::{ahead, leaf_pair};
+use crate::query::intersect::{leaf_pair, prefetch_node};
 use crate::simd::{Kernel, Lanes, Mask, run};
 
 /// A pair of nodes during a part of the motion.
@@ -211,7 +211,7 @@ impl<C: Schedule> Kernel for Sweep<'_, C> {
                     let child = node.child[mask.trailing_zeros() as usize & 7];
                     mask &= mask - 1;
                     if far_a {
-                        ahead(a, child);
+                        prefetch_node(a, child);
                     }
                     stack.push(Item { a: child, b: y, part: index });
                 }
@@ -227,7 +227,7 @@ impl<C: Schedule> Kernel for Sweep<'_, C> {
                     let child = node.child[mask.trailing_zeros() as usize & 7];
                     mask &= mask - 1;
                     if far_b {
-                        ahead(b, child);
+                        prefetch_node(b, child);
                     }
                     stack.push(Item { a: x, b: child, part: index });
                 }

@@ -82,7 +82,7 @@ impl Chain {
         }
     }
 
-    /// The same over a stretch of the motion that turns the joints by `ways` to either side of a configuration,
+    /// The same over an interval of the motion that turns the joints by `ways` to either side of a configuration,
     /// in which the link is within `ball` and the joints have these axes, all in the world.
     pub(super) fn near(
         &self,
