@@ -3,13 +3,13 @@
 use crate::error::Result;
 use crate::output::note;
 use mp_cspace::{Cancel, Outcome, Space, StopReason};
-use mp_io::{Problem, SpaceKind};
+use mp_io::{RigidProblem, SpaceKind};
 use mp_plan::{Budget, Control, Finish, Request, RigidScene, RobotKind, Scene, search};
 use mp_robot::{Planar, Spatial};
 use serde::{Deserialize, Serialize};
 
 /// The problem of a shipped scene, or of a file.
-pub(crate) fn problem(name: &str) -> Result<Problem> {
+pub(crate) fn problem(name: &str) -> Result<RigidProblem> {
     mp_plan::find_problem(name)
 }
 
@@ -63,14 +63,14 @@ impl Rigid {
     }
 
     /// Makes `problem` ready.
-    pub(crate) fn new(problem: Problem) -> Result<Self> {
+    pub(crate) fn new(problem: RigidProblem) -> Result<Self> {
         Ok(match problem.space {
             SpaceKind::Se3 => Self::Space(Box::new(RigidScene::new(problem)?)),
             SpaceKind::Se2 => Self::Plane(Box::new(RigidScene::new(problem)?)),
         })
     }
 
-    pub(crate) fn problem(&self) -> &Problem {
+    pub(crate) fn problem(&self) -> &RigidProblem {
         either!(self, scene => scene.problem())
     }
 

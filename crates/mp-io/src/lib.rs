@@ -1,6 +1,6 @@
 //! File formats of motion planning: meshes, scenes, problems, paths.
 //!
-//! - [`Problem::load`] reads a problem and its meshes, whatever the format.
+//! - [`RigidProblem::load`] reads a problem and its meshes, whatever the format.
 //! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
 //! - [`PlanarProblem::load`] reads a world in the plane.
 //! - [`read_mesh`] reads a mesh, whatever the format.
@@ -42,7 +42,7 @@ pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
 pub use planar::{
     GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
 };
-pub use problem::{Body, MAX_COORDINATE, PlacedBody, Problem, SpaceKind};
+pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use robot::{JointPath, ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
 pub use source::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use stl::{parse_stl, stl_text, write_stl};

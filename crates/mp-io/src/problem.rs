@@ -59,7 +59,7 @@ pub struct PlacedBody {
 
 /// A robot, obstacles, a start and a goal.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Problem {
+pub struct RigidProblem {
     /// The name of the file, without extension.
     pub name: String,
     /// Where the robot moves.
@@ -98,7 +98,7 @@ impl ProblemFormat {
     }
 }
 
-impl Problem {
+impl RigidProblem {
     /// Reads a problem and its meshes: a GEMPA environment file (`.env`, `.txt`) or an OMPL.app problem
     /// (`.cfg`). Files of other names are told apart by their content.
     ///
@@ -303,7 +303,7 @@ mod tests {
         let dir = folder();
         let path = dir.path().join("scene.env");
         std::fs::write(&path, ENV).unwrap();
-        let p = Problem::load(&path).unwrap();
+        let p = RigidProblem::load(&path).unwrap();
         assert_eq!((p.name.as_str(), p.space), ("scene", SpaceKind::Se3));
         assert_eq!(p.robot.mesh.triangles().len(), 12);
         assert_eq!(
@@ -319,12 +319,12 @@ mod tests {
         let dir = folder();
         let path = dir.path().join("scene.env");
         std::fs::write(&path, ENV.replacen("wall.off", "wal.off", 1)).unwrap();
-        let e = Problem::load(&path).unwrap_err();
+        let e = RigidProblem::load(&path).unwrap_err();
         assert_eq!((e.kind(), e.line(), e.column()), (ErrorKind::Io, Some(6), Some(1)));
         assert!(e.message().contains("no such file"), "{e}");
         std::fs::write(&path, ENV).unwrap();
         std::fs::write(dir.path().join("wall.off"), "OFF 1 1 0\n0 0 0\n3 0 0 1\n").unwrap();
-        let e = Problem::load(&path).unwrap_err();
+        let e = RigidProblem::load(&path).unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(3), Some(7)));
         assert!(e.file().ends_with("wall.off") && e.to_string().ends_with("scene.env:6:1)"), "{e}");
     }

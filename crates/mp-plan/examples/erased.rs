@@ -27,7 +27,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (scene, seeds) in [("cubicles", 40), ("twisty", 20), ("apartment", 4)] {
         let file = mp_scenes::scene(scene).ok_or("no such scene")?;
         let files = mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes));
-        let problem = mp_io::Problem::load_from(&files, std::path::Path::new(file.path))?;
+        let problem = mp_io::RigidProblem::load_from(&files, std::path::Path::new(file.path))?;
         let scene_of = RigidScene::<Spatial>::new(problem)?;
         let times = in_turn(&|by_name| seeded(seeds, &|seed| solve(&scene_of, seed, by_name)))?;
         report(&mut out, &format!("{scene}, {seeds} seeds"), times)?;

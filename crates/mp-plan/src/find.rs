@@ -33,11 +33,11 @@ impl Scene {
 ///
 /// # Errors
 /// When there is no such scene, or it is not one of a rigid body among meshes.
-pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::Problem, Error> {
+pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Error> {
     Ok(match locate(given.as_ref())? {
-        Place::Disk(file) => mp_io::Problem::load(file)?,
+        Place::Disk(file) => mp_io::RigidProblem::load(file)?,
         #[cfg(feature = "scenes")]
-        Place::Memory(file) => mp_io::Problem::load_from(&shipped_files(), Path::new(file))?,
+        Place::Memory(file) => mp_io::RigidProblem::load_from(&shipped_files(), Path::new(file))?,
     })
 }
 

@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use mp_geom::primitives::cuboid;
-//! use mp_io::{Body, PlacedBody, Problem, SpaceKind};
+//! use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};
 //! use mp_plan::{Request, Scene};
 //! use nalgebra::Isometry3;
 //!
@@ -13,7 +13,7 @@
 //! let robot = Body { name: "stick".into(), file: "".into(), mesh: cuboid(0.5, 0.1, 0.1)? };
 //! let post = cuboid(0.2, 1.0, 4.0)?;
 //! let post = PlacedBody { name: "post".into(), file: "".into(), mesh: post, pose: Isometry3::identity() };
-//! let scene = Scene::from_problem(Problem {
+//! let scene = Scene::from_problem(RigidProblem {
 //!     name: "post".into(),
 //!     space: SpaceKind::Se3,
 //!     robot,

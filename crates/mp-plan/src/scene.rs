@@ -11,7 +11,7 @@ use crate::{
 };
 use mp_cspace::{MotionBound, Rng, Space, Validity};
 use mp_geom::{Aabb, evenly};
-use mp_io::{Disk, Files, PlanarProblem, PlanarShape, Problem, RobotProblem, SpaceKind};
+use mp_io::{Disk, Files, PlanarProblem, PlanarShape, RigidProblem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -96,7 +96,7 @@ impl Scene {
                 named.extend(arm.mesh_files().iter().cloned());
                 Self::new(arm)
             }
-            false => Self::from_problem(Problem::load_from(files, file)?).map_err(of)?,
+            false => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
         let mut inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -126,7 +126,7 @@ impl Scene {
     ///
     /// # Errors
     /// When the bounds of the position are empty, or a mesh or pose makes no sense.
-    pub fn from_problem(problem: Problem) -> Result<Self, Error> {
+    pub fn from_problem(problem: RigidProblem) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         Ok(match problem.space {
             SpaceKind::Se3 => Self::new(RigidScene::<Spatial>::new(problem)?),

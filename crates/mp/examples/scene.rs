@@ -7,7 +7,7 @@ use mp::prelude::*;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let file = std::env::args().nth(1).unwrap_or_else(|| "crates/mp-scenes/assets/scenes/gempa-1.env".into());
-    let scene = io::Problem::load(&file)?;
+    let scene = io::RigidProblem::load(&file)?;
     if scene.space != SpaceKind::Se3 {
         return Err(format!("{file} moves in the plane; this example flies").into());
     }

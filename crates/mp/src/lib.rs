@@ -53,7 +53,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Scenes from files are [`io::Problem`]s, those of arms [`io::RobotProblem`]s; `examples/scene.rs` and
+//! Scenes from files are [`io::RigidProblem`]s, those of arms [`io::RobotProblem`]s; `examples/scene.rs` and
 //! `examples/arm.rs` plan on one. With [`plan::Scene`] it is three lines, shortening, pictures and a report
 //! included; the program `mp` is made of it.
 

@@ -5,9 +5,9 @@ use mp::io;
 use mp::prelude::*;
 use mp::snake::{Params, Repulsion, SnakePlanner, relax};
 
-fn scene(name: &str) -> (Se3, FreeFlyer, io::Problem) {
+fn scene(name: &str) -> (Se3, FreeFlyer, io::RigidProblem) {
     let file = format!("{}/../mp-scenes/assets/scenes/{name}.env", env!("CARGO_MANIFEST_DIR"));
-    let scene = io::Problem::load(&file).unwrap();
+    let scene = io::RigidProblem::load(&file).unwrap();
     let bounds = scene.position_bounds();
     let space = Se3::new(bounds.min.coords, bounds.max.coords).unwrap();
     let obstacles = scene.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));

@@ -11,7 +11,7 @@ use crate::scenes::{Rigid, bare, either};
 use mp_cspace::{DefaultNn, Iterations, Nodes, ObstacleGeometry, Outcome, Rng, Stop};
 use mp_geom::Aabb;
 use mp_geom::primitives::cuboid;
-use mp_io::{Body, PlacedBody, Problem, SpaceKind};
+use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};
 use mp_plan::{Control, Error, RigidScene, RigidSpace, RobotKind, search};
 use mp_roadmap::algo::{prm, visibility_prm};
 use mp_roadmap::{
@@ -101,7 +101,7 @@ where
     Ok(builder.into_map())
 }
 
-fn obstacles(drawing: &mut Drawing, problem: &Problem) {
+fn obstacles(drawing: &mut Drawing, problem: &RigidProblem) {
     drawing.silhouette(problem.obstacles.iter().map(|o| (&o.mesh, o.pose)), OBSTACLE, 0.6);
 }
 
@@ -148,11 +148,11 @@ fn passed<M: RigidSpace>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Res
 }
 
 /// One long block, and a rod about it.
-fn pillar() -> Result<Problem> {
+fn pillar() -> Result<RigidProblem> {
     let mesh = cuboid(1.4, 0.45, 0.45).into_error()?;
     let rod = cuboid(0.5, 0.06, 0.06).into_error()?;
     let high = Point3::new(1.5, 1.3, 1.1);
-    Ok(Problem {
+    Ok(RigidProblem {
         name: "pillar".to_owned(),
         space: SpaceKind::Se3,
         robot: Body { name: "rod".to_owned(), file: PathBuf::new(), mesh: rod },

@@ -4,7 +4,7 @@ use crate::error::{IntoError, Result};
 use crate::scenes::Rigid;
 use mp_geom::primitives::cuboid;
 use mp_geom::{Aabb, pose_from_six};
-use mp_io::{Body, PlacedBody, Problem, SpaceKind};
+use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};
 use nalgebra::{Isometry3, Point3};
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub(super) struct Corridors {
     pub(super) title: &'static str,
     /// By how much they are wider than the robot, metres: halves first, then nearer to each other, where planners fail.
     pub(super) slacks: [f64; 11],
-    make: fn(&str, f64) -> Result<Problem>,
+    make: fn(&str, f64) -> Result<RigidProblem>,
 }
 
 /// All kinds of corridors.
@@ -69,10 +69,10 @@ fn problem(
     obstacles: Vec<PlacedBody>,
     [start, goal]: [[f64; 6]; 2],
     room: [f64; 3],
-) -> Result<Problem> {
+) -> Result<RigidProblem> {
     let mesh = cuboid(robot[0], robot[1], robot[2]).into_error()?;
     let high = Point3::from(room);
-    Ok(Problem {
+    Ok(RigidProblem {
         name: name.to_owned(),
         space,
         robot: Body { name: "robot".to_owned(), file: PathBuf::new(), mesh },
@@ -85,7 +85,7 @@ fn problem(
 
 /// A bar of 0.3 by 0.1 by 0.1 m must pass a square corridor 1 m long. The straight way from start to goal hits the
 /// wall beside it.
-fn bar(name: &str, slack: f64) -> Result<Problem> {
+fn bar(name: &str, slack: f64) -> Result<RigidProblem> {
     let room = [2.0, 1.5, 1.5];
     let half = 0.5 * (0.1 + slack);
     let [_, y, z] = room.map(|r| r + 0.5);
@@ -104,7 +104,7 @@ fn bar(name: &str, slack: f64) -> Result<Problem> {
 }
 
 /// A rod of 0.8 by 0.1 m must pass a corridor 0.8 m long, in the plane, and turn before and behind it.
-fn rod(name: &str, slack: f64) -> Result<Problem> {
+fn rod(name: &str, slack: f64) -> Result<RigidProblem> {
     let y = 1.0 + 0.5 * (0.1 + slack);
     let walls =
         vec![block("low", [0.8, 2.0, 1.0], [0.0, -y, 0.0])?, block("high", [0.8, 2.0, 1.0], [0.0, y, 0.0])?];

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::off::off_text;
-use crate::problem::{Problem, SpaceKind};
+use crate::problem::{RigidProblem, SpaceKind};
 use crate::source::write_atomic;
 use mp_geom::TriMesh;
 use nalgebra::Isometry3;
@@ -72,7 +72,7 @@ struct Mesh {
 /// # Errors
 /// [`Error`] when a file cannot be written, or there is no obstacle.
 pub fn export_ompl(
-    problem: &Problem,
+    problem: &RigidProblem,
     folder: impl AsRef<Path>,
     name: &str,
     options: &OmplExport,

@@ -4,7 +4,7 @@ use super::config;
 use crate::collada::{Scene, center::center_of_mesh};
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{MeshFormat, read_mesh_of};
-use crate::problem::{Body, PlacedBody, Problem, SpaceKind, check_mesh, check_size, cited};
+use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
 use crate::source::{Files, MAX_MESH_BYTES};
 use crate::text::Text;
 use mp_geom::{Aabb, TriMesh};
@@ -15,7 +15,7 @@ use std::path::Path;
 ///
 /// As OMPL.app does: the origin of the robot is the mean of its vertices (in the plane, z stays); the bounds
 /// are the volume, or the box around the world without one, enlarged to contain start and goal.
-pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Problem, Error> {
+pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<RigidProblem, Error> {
     let (read, places) = config::parse(text)?;
     if let (Some(kind), Some(place)) = (&read.control, places.control) {
         return Err(text
@@ -63,7 +63,7 @@ pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Pr
     check_size(text, places.robot, "the volume", bounds.max.coords.as_slice())?;
 
     let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    Ok(Problem {
+    Ok(RigidProblem {
         name: read.name.unwrap_or(stem),
         space: read.space,
         robot,

@@ -2,7 +2,7 @@
 
 use super::{OmplExport, OmplProblem, export_ompl};
 use crate::error::ErrorKind;
-use crate::{Problem, SpaceKind, write_off, write_stl};
+use crate::{RigidProblem, SpaceKind, write_off, write_stl};
 use mp_geom::{TriMesh, primitives};
 use nalgebra::{Isometry3, Point3, Vector3};
 
@@ -25,11 +25,11 @@ fn folder() -> tempfile::TempDir {
     dir
 }
 
-fn load(text: &str) -> Result<Problem, crate::Error> {
+fn load(text: &str) -> Result<RigidProblem, crate::Error> {
     let dir = folder();
     let path = dir.path().join("boxes.cfg");
     std::fs::write(&path, text).unwrap();
-    Problem::load(&path)
+    RigidProblem::load(&path)
 }
 
 fn lowest(mesh: &TriMesh) -> Point3<f64> {

@@ -6,17 +6,17 @@ mod ompl_app;
 mod paths;
 mod scenes;
 
-use mp_io::{Error, PathFile, Problem, read_mesh};
+use mp_io::{Error, PathFile, RigidProblem, read_mesh};
 use std::path::Path;
 
 /// Which reader gets the first file of a case.
 #[derive(Clone, Copy, PartialEq)]
 enum Reader {
-    Problem,
+    RigidProblem,
     Mesh,
     Path,
 }
-use Reader::{Mesh, Path as Route, Problem as Scene};
+use Reader::{Mesh, Path as Route, RigidProblem as Scene};
 
 struct Case {
     reader: Reader,
@@ -81,7 +81,7 @@ fn run(folder: &Path, case: &Case) -> Error {
     }
     let path = folder.join(case.files[0].0);
     match case.reader {
-        Scene => Problem::load(&path).map(drop),
+        Scene => RigidProblem::load(&path).map(drop),
         Mesh => read_mesh(&path).map(drop),
         Route => PathFile::read(&path).map(drop),
     }
@@ -123,7 +123,7 @@ fn files_that_cannot_be_read() {
     let shown = |e: Error| e.to_string().replace(&dir.path().display().to_string(), "DIR");
     let file = |name: &str| dir.path().join(name);
     assert_eq!(
-        shown(Problem::load(file("none.env")).unwrap_err()),
+        shown(RigidProblem::load(file("none.env")).unwrap_err()),
         "DIR/none.env: cannot read the file: no such file"
     );
     assert_eq!(
@@ -134,7 +134,7 @@ fn files_that_cannot_be_read() {
     std::fs::create_dir(file("r.off")).unwrap();
     std::fs::write(file("s.env"), ENV).unwrap();
     assert_eq!(
-        shown(Problem::load(file("s.env")).unwrap_err()),
+        shown(RigidProblem::load(file("s.env")).unwrap_err()),
         "DIR/s.env:2:1: the mesh of the robot is not readable: DIR/r.off: this is a folder, not a file"
     );
     // As large as no mesh may be; nothing of it is on the disk, and nothing of it is read.
@@ -144,7 +144,7 @@ fn files_that_cannot_be_read() {
         "DIR/huge.off: the file has 1099511627776 bytes, more than the 536870912 this reader accepts"
     );
     std::fs::File::create(file("huge.env")).unwrap().set_len(1 << 30).unwrap();
-    assert!(shown(Problem::load(file("huge.env")).unwrap_err()).contains("more than the 67108864"));
+    assert!(shown(RigidProblem::load(file("huge.env")).unwrap_err()).contains("more than the 67108864"));
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(file("loop.off"), file("loop.off")).unwrap();

@@ -14,7 +14,7 @@ use mp_cspace::{
     WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
-use mp_io::{Problem, SpaceKind};
+use mp_io::{RigidProblem, SpaceKind};
 use mp_robot::{Placement, Planar, RigidBody, Spatial, Verifier};
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
@@ -105,7 +105,7 @@ fn swept(robot: &TriMesh) -> Result<SweptVolume, Error> {
 /// A rigid body among meshes, with a start and a goal.
 #[derive(Clone, Debug)]
 pub struct RigidScene<M: RigidSpace> {
-    problem: Problem,
+    problem: RigidProblem,
     space: M::Space,
     robot: RigidBody<M>,
     start: M::State,
@@ -118,7 +118,7 @@ impl<M: RigidSpace> RigidScene<M> {
     ///
     /// # Errors
     /// When the bounds of the position are empty, or a mesh or pose makes no sense.
-    pub fn new(problem: Problem) -> Result<Self, Error> {
+    pub fn new(problem: RigidProblem) -> Result<Self, Error> {
         let space = M::space(&problem.position_bounds())?;
         let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
         let robot = RigidBody::<M>::among(&problem.robot.mesh, obstacles)?;
@@ -129,7 +129,7 @@ impl<M: RigidSpace> RigidScene<M> {
 
     /// What it was made of.
     #[must_use]
-    pub fn problem(&self) -> &Problem {
+    pub fn problem(&self) -> &RigidProblem {
         &self.problem
     }
 

@@ -3,7 +3,7 @@
 use super::{files_rs, generate, stale};
 use mp_cspace::{Clearance, MotionValidity, Se2, Se2State, Se3, Space, Validity};
 use mp_geom::six_from_pose;
-use mp_io::{PathFile, Problem, RobotProblem, SpaceKind};
+use mp_io::{PathFile, RigidProblem, RobotProblem, SpaceKind};
 use mp_plan::{ArmScene, RobotKind};
 use mp_robot::{FreeFlyer, PlanarFlyer, Verifier};
 use nalgebra::Isometry3;
@@ -13,17 +13,17 @@ fn assets() -> PathBuf {
     std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets")
 }
 
-fn scenes() -> Vec<Problem> {
+fn scenes() -> Vec<RigidProblem> {
     let files = generate();
     let scenes = files.keys().filter(|path| path.ends_with(".env"));
-    scenes.map(|path| Problem::load(assets().join(path)).expect(path)).collect()
+    scenes.map(|path| RigidProblem::load(assets().join(path)).expect(path)).collect()
 }
 
-fn obstacles(p: &Problem) -> Vec<(String, mp_geom::TriMesh, Isometry3<f64>)> {
+fn obstacles(p: &RigidProblem) -> Vec<(String, mp_geom::TriMesh, Isometry3<f64>)> {
     p.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose)).collect()
 }
 
-fn space(p: &Problem) -> Se3 {
+fn space(p: &RigidProblem) -> Se3 {
     let b = p.bounds.expect("every scene has bounds");
     Se3::new([b.min.x, b.min.y, b.min.z], [b.max.x, b.max.y, b.max.z]).unwrap()
 }
