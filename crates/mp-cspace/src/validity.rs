@@ -95,7 +95,7 @@ pub enum IntervalClearance {
         /// The fraction; may be more than what is left of the motion.
         part: f64,
     },
-    /// Nothing shown: a shorter interval may be.
+    /// Neither proved nor refuted: a shorter interval may be.
     Unproven,
     /// Less than twice the margin at `at`: not worth a closer look.
     TooClose {

@@ -63,7 +63,8 @@ impl SceneRoadmap {
         Ok(report)
     }
 
-    /// Goes on building until this budget is spent; its nodes are counted with those there are.
+    /// Goes on building until this budget is spent; its nodes are counted with those there are. No file is written: see
+    /// [`save`](Self::save).
     ///
     /// # Errors
     /// When the planner of the request refuses the scene.

@@ -29,8 +29,8 @@
 //! ```
 //!
 //! # The engine
-//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant is: propose a
-//! target, select nodes, grow from them, attach what came of it. Each verb is a slot:
+//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant is: sample a
+//! target, select nodes, extend them toward it, insert what came of it. Each verb is a slot:
 //!
 //! | slot | trait | here |
 //! |---|---|---|

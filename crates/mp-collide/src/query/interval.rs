@@ -1,4 +1,4 @@
-//! Whole motions, proved clear.
+//! Intervals of motions, proved free.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -11,8 +11,8 @@ use crate::pose::{LIMIT, Relative};
 use crate::query::Query;
 use crate::query::sweep::{Met, Schedule};
 
-/// An interval of a rigid motion about a pose in its middle: from there the body moves on at constant speed to
-/// one end of the interval, and back likewise to the other.
+/// How a rigid body moves over an interval of a motion, seen from the pose in its middle: from there it moves at constant
+/// speed to one end of the interval, and likewise back to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion {
     /// How far the origin of the body moves from the middle to the end, in the world (metres).
@@ -55,13 +55,13 @@ impl RigidMotion {
     }
 }
 
-/// Whether a body stays clear all along an interval: a place `at` is a share of the way from its middle to its end,
-/// from −1 to 1.
+/// Whether a body keeps a margin from everything all along an interval of a motion. Where it does not, `at` is the place
+/// as a share of the way from the middle of the interval to its end, from −1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalCheck {
-    /// Surely at least the margin from everything.
+    /// Proved to keep the margin.
     Free,
-    /// Not shown to: a shorter interval may be found clear.
+    /// Neither proved nor refuted: a shorter interval may be found free.
     Unproven,
     /// Nearer than the margin at `at`.
     TooClose {
@@ -76,7 +76,7 @@ pub enum IntervalCheck {
 }
 
 impl IntervalCheck {
-    /// Whether it surely stays clear.
+    /// Whether it is proved to keep the margin.
     #[must_use]
     pub fn is_free(self) -> bool {
         self == Self::Free
