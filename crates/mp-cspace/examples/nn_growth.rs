@@ -9,9 +9,10 @@
 
 use mp_cspace::nn::grow;
 use mp_cspace::{
-    DefaultNn, Embed, KdTree, Linear, MetricTree, NearestNeighbors, Rn, Rng, Se2, Se3, So3, Space,
-    SpaceError, Torus, TrueMetric,
+    DefaultNn, Joints, KdTree, Linear, MetricTree, NearestNeighbors, Rn, Rng, Se2, Se3, So3, Space,
+    SpaceError, TrueMetric, nn::Embed,
 };
+use nalgebra::SVector;
 use rustix::time::{ClockId, clock_gettime};
 
 fn seconds() -> f64 {
@@ -27,7 +28,7 @@ struct Request {
 }
 
 impl Request {
-    fn run<C: DefaultNn + Embed + TrueMetric<C::State>>(&self, space: &C) {
+    fn run<C: DefaultNn + Embed + TrueMetric>(&self, space: &C) {
         match self.index.as_str() {
             "dynamic" => self.time::<C, KdTree>(space),
             "metric" => self.time::<C, MetricTree>(space),
@@ -71,7 +72,7 @@ fn main() -> Result<(), SpaceError> {
         "se2" => request.run(&Se2::new([0.0; 2], [1.0; 2])?),
         "se3" => request.run(&Se3::new([0.0; 3], [1.0; 3])?),
         "so3" => request.run(&So3),
-        "t6" => request.run(&Torus::<6>),
+        "t6" => request.run(&Joints::<SVector<f64, 6>>::circles(6)?),
         other => eprintln!("no space is called {other}"),
     }
     Ok(())

@@ -6,8 +6,8 @@
 //! | a [`Space`](crate::Space) | [`AnySpace`] |
 //! | [`NearestNeighbors`](crate::NearestNeighbors) of that space | [`AnyIndex`], which keeps the space it was made for: the search inside is not erased |
 //! | a [`MotionValidity`] | [`AnyCheck`] |
-//! | [`ObstacleGeometry`](crate::ObstacleGeometry) | [`AnyGeometry`] |
-//! | [`ClearanceGradient`](crate::ClearanceGradient) | [`AnyGradient`] |
+//! | [`ObstacleGeometry`](crate::obstacles::ObstacleGeometry) | [`AnyGeometry`] |
+//! | [`ClearanceGradient`](crate::obstacles::ClearanceGradient) | [`AnyGradient`] |
 //!
 //! One call through a pointer stands before each question to a space or an index, a few nanoseconds. Constructors of
 //! planners by type stay generic.

@@ -66,7 +66,10 @@ pub struct ParameterError {
 
 impl ParameterError {
     /// `value` when it is positive and finite.
-    pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, Self> {
+    ///
+    /// # Errors
+    /// Otherwise.
+    pub fn positive(name: &'static str, value: f64) -> Result<f64, Self> {
         if value > 0.0 && value.is_finite() {
             Ok(value)
         } else {

@@ -156,7 +156,7 @@ impl<C: Factored> Sampler<C::State> for FixedFactors<'_, C> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rn, RnDyn, Se3};
+    use crate::{Joints, Rn, Se3};
     use nalgebra::{DVector, Vector2};
 
     /// Samples have the fixed factors exactly, and all the room there is in the others.
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn some_components_are_fixed_and_others_free() {
         let body = Se3::new([0.0; 3], [1.0; 3]).unwrap();
-        let arm = RnDyn::new(vec![-1.0; 5], vec![1.0; 5]).unwrap();
+        let arm = Joints::<DVector<f64>>::intervals(&[-1.0; 5], &[1.0; 5]).unwrap();
         for fixed in [vec![0, 1, 2], vec![3], vec![1]] {
             holds(&body, &fixed);
             holds(&arm, &fixed);

@@ -1,83 +1,115 @@
 //! The vocabulary of motion planning: spaces, metrics, samplers, validity, local planners, nearest
 //! neighbours, goals, stops, observers and paths.
 //!
-//! Planners know only the traits of this crate; they never see a mesh.
+//! Planners know only the traits of this crate; they never see a mesh. To plan for a robot of your own, say how far it is
+//! from obstacles and how far its points travel. The rest is taken from the shelf:
+//!
+//! ```
+//! use mp_cspace::{Certified, Clearance, FineDiscrete, MotionClearance, Problem, Resolution, Rn, Straight};
+//! use mp_cspace::{Iterations, Outcome, Planner, Rng};
+//! use mp_tree::{RrtConnect, Tuning};
+//! use nalgebra::Vector2;
+//!
+//! /// A disc of radius 0.1 m among pillars of radius 0.3 m. Its configuration is its centre.
+//! #[derive(Clone)]
+//! struct Disc(Vec<Vector2<f64>>);
+//!
+//! impl Clearance<Vector2<f64>> for Disc {
+//!     fn clearance(&mut self, q: &Vector2<f64>, _enough: f64) -> f64 {
+//!         self.0.iter().map(|pillar| (q - pillar).norm() - 0.4).fold(f64::INFINITY, f64::min)
+//!     }
+//! }
+//! impl MotionClearance<Vector2<f64>> for Disc {
+//!     fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+//!         (to - from).norm()
+//!     }
+//! }
+//!
+//! let space = Rn::<2>::new([0.0; 2], [4.0; 2])?;
+//! let disc = Disc(vec![[1.0, 1.2].into(), [2.0, 2.1].into(), [3.0, 2.8].into()]);
+//! // Motions are proved free while planning, and a finished path is checked again, by other code.
+//! let local = Straight::new(&space, Certified::new(&space, disc.clone(), 0.01)?);
+//! let is_free = |q: &Vector2<f64>| disc.0.iter().all(|pillar| (q - pillar).norm() > 0.4);
+//! let verifier = FineDiscrete::new(&space, is_free, Resolution::Length(0.001))?;
+//!
+//! let problem = Problem::new(&space, local, verifier, [0.2, 0.2].into(), Vector2::new(3.8, 3.8))?;
+//! let mut planner = RrtConnect::new(problem, Tuning::default())?;
+//! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
+//! assert!(matches!(outcome, Outcome::Solved(path) if path.states.len() > 2));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! | to say | use |
 //! |---|---|
-//! | what configurations are | [`Rn`], [`RnDyn`], [`So2`], [`So3`], [`Se2`], [`Se3`], [`Torus`], [`Joints`], [`Product`], [`SpaceTime`] |
-//! | how far apart | their own metric, or [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`SweptVolume`], [`Bounded`] |
-//! | which to try | [`Uniform`], [`Halton`], [`GoalBias`], [`Gaussian`], [`Bridge`] |
-//! | when a motion is free | [`Certified`], [`Discrete`]; [`FineDiscrete`] to verify |
-//! | where obstacles lead along, and what they look like | [`ObstacleHints`], [`ObstacleGeometry`] |
-//! | which way clearance grows | [`ClearanceGradient`] |
-//! | how to move | [`Straight`], [`RotateAtS`]; by a set of inputs: [`inputs`] |
-//! | what to reach | [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
-//! | what to plan | [`Problem`], with [`Goals`] and a [verifier](Verify); by names: [`PlannerInfo`], [`Settings`] |
-//! | when to stop | [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
+//! | what configurations are | a [`Space`]: [`Rn`], [`So3`], [`Se2`], [`Se3`], [`Joints`], [`Product`], [`SpaceTime`](space_time::SpaceTime) |
+//! | how far apart they are | the space's own distance, or a [`Metric`] put on it by [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`SweptVolume`], [`MetricFn`] |
+//! | which are near | [`NearestNeighbors`]: [`KdTree`], [`MetricTree`], [`Linear`]; [`DefaultNn`] names the best of a space |
+//! | which to try | a [`Sampler`]: [`Uniform`], [`Halton`], [`GoalBias`], [`Gaussian`], [`Bridge`] |
+//! | when a state is free | [`Validity`], or a [`Clearance`] in metres |
+//! | when a motion is free | [`MotionValidity`]: [`Certified`] proves it by a [`MotionClearance`], [`Discrete`] samples it; [`FineDiscrete`] verifies |
+//! | how to move | a [`LocalPlanner`]: [`Straight`], [`RotateAtS`]; by inputs: the crate `mp-control` |
+//! | what to reach | a [`Goal`]: [`Exactly`], [`Ball`], [`FixedFactors`], a closure |
+//! | what to plan | a [`Problem`], with [`Goals`] and a [verifier](Verify) |
+//! | when to stop | a [`Stop`]: [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
 //! | what to do with a path | [`Path`], [`verify_path`], [`least_clearance`], [`shorten`] |
+//! | what obstacles are like, for planners that ask | [`obstacles`] |
+//! | planners and settings by name | [`registry`] |
 //! | planners compiled once for many spaces | [`erased`] |
-//! | whether your own implementation is right | [`testkit`] |
+//! | whether your own implementation is right | `testkit`, with the feature `testkit` |
 
+pub mod angle;
 pub mod erased;
 mod error;
 mod goal;
-mod gradient;
-mod hints;
-pub mod inputs;
+mod layout;
 mod local;
 mod metric;
 mod motion;
 pub mod nn;
 mod numbers;
 mod observer;
-mod path;
+pub mod obstacles;
+pub mod path;
 mod planner;
 mod problem;
+pub mod registry;
 mod rng;
 mod sampler;
 pub mod shorten;
 pub mod shortest;
 mod space;
-mod space_time;
+pub mod space_time;
 mod stop;
 mod tell;
+#[cfg(any(test, feature = "testkit"))]
 pub mod testkit;
 mod validity;
 
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
-pub use gradient::ClearanceGradient;
-pub use hints::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf};
 pub use local::{
-    Direction, Extension, LocalPlanner, Motion, PolylineEdge, PoseSpace, Reach, Reversible, RotateAtS,
-    Straight, turn_at,
+    Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, Reversible, RotateAtS, Straight, turn_at,
 };
 pub use metric::{
-    Bounded, Euclidean, Manhattan, MaxDisplacement, MetricFn, MetricOn, ScaledEuclidean, SweptVolume,
-    TrueMetricOn, WithMetric,
+    Euclidean, Manhattan, MaxDisplacement, Metric, MetricFn, ScaledEuclidean, SweptVolume, WithMetric,
 };
 pub use motion::{Certified, Discrete, FineDiscrete, Resolution};
-pub use nn::{
-    DefaultNn, Embed, EmbedFactors, Hit, KdTree, Layout, Linear, MetricTree, NearestNeighbors, NnOn, NodeId,
-};
+pub use nn::{DefaultNn, Embed, Hit, KdTree, Linear, MetricTree, NearestNeighbors, NodeId};
 pub use numbers::StateVector;
 pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
-pub use path::{GapError, Path, PathFault, PathReport, Tightest, least_clearance, verify_path};
+pub use path::{Path, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
-    AnyProblem, BoxedHints, BoxedVerify, BuildError, Demand, Endpoint, Goals, ObstacleKnowledge, Parameter,
-    PlannerInfo, Problem, ProblemParts, Settings, Step, Verify, Workers, closest,
+    AnyProblem, BoxedHints, BoxedVerify, BuildError, Endpoint, Goals, ObstacleKnowledge, Problem,
+    ProblemParts, Step, Verify, Workers,
 };
 pub use rng::Rng;
 pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};
 pub use space::{
-    Coordinates, Factored, JointRange, Joints, Metric, Product, Rn, RnDyn, Se2, Se2State, Se3, So2, So3,
-    Space, Torus, TrueMetric, rotation_angle, slerp, wrap_angle,
+    Coordinates, Factored, JointRange, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space, TrueMetric,
 };
-pub use space_time::{AtAnyTime, Forward, SpaceTime};
 pub use stop::{Cancel, Deadline, Iterations, Motions, Nodes, Or, Progress, Stop, StopReason};
 pub use validity::{
-    Clearance, IntervalClearance, KnownFree, MotionBound, MotionCheck, MotionInterval, MotionValidity,
+    Clearance, IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
     Validity,
 };

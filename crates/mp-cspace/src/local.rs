@@ -4,7 +4,7 @@ mod polyline;
 mod rotate;
 
 pub use polyline::PolylineEdge;
-pub use rotate::{PoseSpace, RotateAtS, turn_at};
+pub use rotate::{RotateAtS, turn_at};
 
 use crate::{KnownFree, MotionValidity, Space};
 use std::fmt::Debug;

@@ -90,7 +90,7 @@ impl<C: Space> Sampler<C::State> for Halton<'_, C> {
 }
 
 /// The digits of `n` in `base`, mirrored at the point: in \[0, 1).
-pub(crate) fn radical_inverse(mut n: u64, base: u64) -> f64 {
+fn radical_inverse(mut n: u64, base: u64) -> f64 {
     let step = 1.0 / base as f64;
     let (mut sum, mut scale) = (0.0, step);
     while n > 0 {
@@ -102,7 +102,7 @@ pub(crate) fn radical_inverse(mut n: u64, base: u64) -> f64 {
 }
 
 /// The first `count` primes.
-pub(crate) fn primes(count: usize) -> Vec<u64> {
+fn primes(count: usize) -> Vec<u64> {
     let mut primes: Vec<u64> = Vec::with_capacity(count);
     let mut n = 2;
     while primes.len() < count {
@@ -156,7 +156,8 @@ impl<S, A: Sampler<S>, G: Sampler<S>> Sampler<S> for GoalBias<A, G> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rn, RnDyn};
+    use crate::{Joints, Rn};
+    use nalgebra::DVector;
     use nalgebra::Vector2;
 
     #[test]
@@ -177,7 +178,7 @@ mod tests {
     /// 1/8 of each axis gets its share, in 12 dimensions, with leaps too.
     #[test]
     fn halton_fills_every_axis() {
-        let cube = RnDyn::new(vec![0.0; 12], vec![1.0; 12]).unwrap();
+        let cube = Joints::<DVector<f64>>::intervals(&[0.0; 12], &[1.0; 12]).unwrap();
         assert!(Halton::new(&cube).leap(6).is_err() && Halton::new(&cube).leap(0).is_err());
         let mut rng = Rng::seed(0);
         let n = 4000;

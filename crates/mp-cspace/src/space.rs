@@ -1,55 +1,34 @@
-//! Spaces and metrics: the traits, and the spaces one file each.
+//! Spaces: the traits, and the spaces one file each.
 
 mod ellipsoid;
 mod joints;
 mod product;
 mod rn;
-mod rn_dyn;
 mod se2;
 mod se3;
-mod so2;
 mod so3;
-mod torus;
 
 pub use joints::{Coordinates, JointRange, Joints};
 pub use product::Product;
 pub use rn::Rn;
-pub use rn_dyn::RnDyn;
 pub use se2::{Se2, Se2State};
 pub use se3::Se3;
-pub use so2::{So2, wrap_angle};
-pub use so3::{So3, rotation_angle, slerp};
-pub use torus::Torus;
+pub use so3::So3;
+pub(crate) use so3::twice;
 
-use crate::Rng;
+use crate::{Rng, nn::Layout};
 use std::fmt::Debug;
 
-/// A distance between states.
+/// Marks a distance that is symmetric and satisfies the triangle inequality: that of the space itself, or that of a
+/// [`Metric`](crate::Metric) on the space `C`.
 ///
-/// `distance` is finite, non-negative and zero from a state to itself. It need not be symmetric
-/// nor satisfy the triangle inequality: a metric that does also implements [`TrueMetric`].
-pub trait Metric<S> {
-    /// The distance from `from` to `to`, in the metric's own unit.
-    fn distance(&self, from: &S, to: &S) -> f64;
-}
-
-/// Marker: the metric is symmetric and satisfies the triangle inequality.
-///
-/// Metric trees prune with it, so they demand it. Different states may be at distance zero
+/// Metric trees prune with the triangle inequality, so they demand it. Different states may be at distance zero
 /// (`q` and `-q` of unit quaternions are).
-pub trait TrueMetric<S>: Metric<S> {}
-
-impl<S, M: Metric<S> + ?Sized> Metric<S> for &M {
-    #[inline]
-    fn distance(&self, from: &S, to: &S) -> f64 {
-        (**self).distance(from, to)
-    }
-}
-impl<S, M: TrueMetric<S> + ?Sized> TrueMetric<S> for &M {}
+pub trait TrueMetric<C: ?Sized = Self> {}
 
 /// A configuration space (or state space): what states are, how far apart, and what lies between.
 ///
-/// Contract, checked by the conformance [test kit](crate::testkit):
+/// Contract, checked by the conformance kit (`testkit::SpaceKit`, with the feature `testkit`):
 /// - `interpolate(a, b, 0) = a` and `interpolate(a, b, 1) = b`, exactly;
 /// - constant speed along a shortest curve: `distance(a, interpolate(a, b, t)) = t · distance(a, b)`
 ///   up to rounding (a metric put on by [`WithMetric`](crate::WithMetric) may lack this one:
@@ -61,11 +40,16 @@ impl<S, M: TrueMetric<S> + ?Sized> TrueMetric<S> for &M {}
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no configuration space",
     label = "not a `Space`",
-    note = "implement `Space`, and `Metric` for its states; or take one of `Rn`, `Se2`, `Se3`, `Joints`, `Product`"
+    note = "implement `Space`; or take one of `Rn`, `Se2`, `Se3`, `Joints`, `Product`"
 )]
-pub trait Space: Metric<Self::State> + Sync {
+pub trait Space: Sync {
     /// A configuration. Equality is exact: planners use it to tell a state they already have.
     type State: Clone + Debug + PartialEq + Send + Sync;
+
+    /// The distance from `from` to `to`, in the space's own unit: finite, not negative, and zero from a state to itself.
+    /// It need be neither symmetric nor satisfy the triangle inequality; a space where it does both is marked
+    /// [`TrueMetric`].
+    fn distance(&self, from: &Self::State, to: &Self::State) -> f64;
 
     /// Number of degrees of freedom.
     fn dim(&self) -> usize;
@@ -122,6 +106,15 @@ pub trait Space: Metric<Self::State> + Sync {
         false
     }
 
+    /// The position of `position` with the rotation of `rotation`. In a space without rotations, the default, this is
+    /// `position` itself.
+    ///
+    /// Contract: interpolation between states of the same rotation does not turn, and between states of the same
+    /// position does not move.
+    fn with_rotation_of(&self, position: &Self::State, _rotation: &Self::State) -> Self::State {
+        position.clone()
+    }
+
     /// As [`interpolate_into`](Space::interpolate_into), returning the state.
     #[inline]
     fn interpolate(&self, from: &Self::State, to: &Self::State, t: f64) -> Self::State {
@@ -157,6 +150,13 @@ pub trait Factored: Space {
         t: f64,
         out: &mut Self::State,
     );
+
+    /// How coordinates of each factor bound the distance in it: what a [`KdTree`](crate::KdTree) searches by under a metric
+    /// made of factors.
+    fn factor_layouts(&self) -> Vec<Layout>;
+
+    /// Calls `put(i, x)` with the coordinates `x` of each factor `i`, factors in order.
+    fn embed_factors(&self, state: &Self::State, put: &mut impl FnMut(usize, f64));
 }
 
 /// Linear interpolation that is exact at both ends and never leaves \[a, b\] by rounding.

@@ -2,8 +2,9 @@
 
 use crate::space::lerp;
 use crate::{
-    Embed, Goal, KdTree, KnownFree, Layout, Metric, MotionCheck, MotionValidity, Rng, Sampler, Space,
-    SpaceError, error::weight,
+    Goal, KdTree, KnownFree, MotionCheck, MotionValidity, Rng, Sampler, Space, SpaceError,
+    error::weight,
+    nn::{Embed, Layout},
 };
 use rand::RngExt;
 
@@ -19,7 +20,7 @@ use rand::RngExt;
 /// to those that are possible.
 ///
 /// ```
-/// use mp_cspace::{Metric, Rn, Space, SpaceTime};
+/// use mp_cspace::{Rn, Space, space_time::SpaceTime};
 /// let space = SpaceTime::new(Rn::<1>::new([0.0], [3.0])?, 4.0, 1.0)?;
 /// let (a, b) = (([0.0].into(), 0.0), ([3.0].into(), 4.0));
 /// assert_eq!(space.distance(&a, &b), 5.0);
@@ -82,7 +83,8 @@ impl<C: Space> SpaceTime<C> {
     }
 }
 
-impl<C: Space> Metric<(C::State, f64)> for SpaceTime<C> {
+impl<C: Space> Space for SpaceTime<C> {
+    type State = (C::State, f64);
     #[inline]
     fn distance(&self, from: &(C::State, f64), to: &(C::State, f64)) -> f64 {
         let d = self.positions.distance(&from.0, &to.0);
@@ -91,10 +93,6 @@ impl<C: Space> Metric<(C::State, f64)> for SpaceTime<C> {
         // As far as rounding can tell.
         if d <= way * (1.0 + ROUNDING) + ROUNDING * self.diagonal { length } else { self.diagonal + length }
     }
-}
-
-impl<C: Space> Space for SpaceTime<C> {
-    type State = (C::State, f64);
 
     fn dim(&self) -> usize {
         self.positions.dim() + 1
@@ -121,7 +119,7 @@ impl<C: Space> Space for SpaceTime<C> {
 
 impl<C: Embed> Embed for SpaceTime<C> {
     fn layout(&self) -> Layout {
-        self.positions.layout().beside(Layout::flat(1))
+        self.positions.layout().beside(Layout::euclidean(1))
     }
     #[inline]
     fn embed(&self, state: &Self::State, out: &mut [f64]) -> usize {

@@ -1,6 +1,6 @@
 //! What is told by `tracing`: events at the level of debugging, from functions that are compiled once.
 
-use crate::{PathReport, Progress, StopReason};
+use crate::{Progress, StopReason, path::PathReport};
 
 /// A planner has found a path, or stopped without one.
 pub(crate) fn ended(progress: &Progress, stopped: Option<StopReason>) {

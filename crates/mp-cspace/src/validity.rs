@@ -41,24 +41,6 @@ pub trait Clearance<S> {
     fn in_contact(&mut self, q: &S) -> bool {
         self.clearance(q, f64::MIN_POSITIVE) <= 0.0
     }
-
-    /// What is known about the clearance over an interval of a motion: the one question
-    /// [`Certified`](crate::Certified) asks.
-    ///
-    /// The default asks for the clearance in the middle and trusts no point to travel less than
-    /// the interval's bound. May be overridden where more is known, such as how far each part of
-    /// the robot travels and whether toward the obstacle or along it.
-    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
-        let enough = interval.travel.max(interval.margin) + interval.margin;
-        IntervalClearance::of(self.clearance(interval.middle, enough), interval.margin)
-    }
-
-    /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
-    /// [`interval_clearance`](Clearance::interval_clearance) that contact is looked for all along a motion, every two strides
-    /// of [`Certified`](crate::Certified), before anything else.
-    fn contact_first(&self) -> bool {
-        false
-    }
 }
 
 /// An interval of a motion, about a state in its middle.
@@ -130,27 +112,47 @@ impl<S, V: Clearance<S> + ?Sized> Clearance<S> for &mut V {
     fn in_contact(&mut self, q: &S) -> bool {
         (**self).in_contact(q)
     }
-    fn contact_first(&self) -> bool {
-        (**self).contact_first()
-    }
-    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
-        (**self).interval_clearance(interval)
-    }
 }
 
-/// An upper bound on how far any point of the robot travels, in metres.
-pub trait MotionBound<S> {
-    /// An upper bound on the length of the curve traced by any point of the robot while it moves
+/// Bounds along motions: how far the robot travels, and what clearance it keeps. With these
+/// [`Certified`](crate::Certified) proves motions free.
+///
+/// A robot of your own gives [`motion_bound`](Self::motion_bound); the rest has defaults by its [`Clearance`].
+pub trait MotionClearance<S>: Clearance<S> {
+    /// An upper bound on the length (m) of the curve traced by any point of the robot while it moves
     /// from `from` to `to` along the space's interpolation.
     ///
     /// Travel is at constant speed: over a part `dt` of the motion, no point travels farther
     /// than `dt` times this.
     fn motion_bound(&self, from: &S, to: &S) -> f64;
+
+    /// The clearance over an interval of a motion.
+    ///
+    /// The default takes the clearance in the middle, and assumes that some point travels as far as the interval's bound.
+    /// Override it where more is known, such as how far each part of the robot travels, and whether toward the obstacle or
+    /// along it.
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
+        let enough = interval.travel.max(interval.margin) + interval.margin;
+        IntervalClearance::of(self.clearance(interval.middle, enough), interval.margin)
+    }
+
+    /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
+    /// [`interval_clearance`](Self::interval_clearance) that [`Certified`](crate::Certified) first looks for contact at
+    /// states two strides apart along the whole motion.
+    fn contact_first(&self) -> bool {
+        false
+    }
 }
 
-impl<S, V: MotionBound<S> + ?Sized> MotionBound<S> for &mut V {
+impl<S, V: MotionClearance<S> + ?Sized> MotionClearance<S> for &mut V {
     fn motion_bound(&self, from: &S, to: &S) -> f64 {
         (**self).motion_bound(from, to)
+    }
+    fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
+        (**self).interval_clearance(interval)
+    }
+    fn contact_first(&self) -> bool {
+        (**self).contact_first()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{
-    DefaultNn, Manhattan, MaxDisplacement, Metric, NearestNeighbors, NodeId, Rng, Se2, Se3, Space, WithMetric,
+    DefaultNn, Manhattan, MaxDisplacement, NearestNeighbors, NodeId, Rng, Se2, Se3, Space, WithMetric,
 };
 use nalgebra::Point2;
 

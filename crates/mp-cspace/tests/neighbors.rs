@@ -3,14 +3,34 @@
 
 use mp_cspace::testkit::check_nearest_neighbors;
 use mp_cspace::{
-    Bounded, DefaultNn, Embed, Euclidean, Hit, JointRange, Joints, KdTree, Layout, Linear, Manhattan,
-    MaxDisplacement, Metric, MetricTree, NearestNeighbors, Product, Rn, RnDyn, Rng, ScaledEuclidean, Se2,
-    Se3, So2, So3, Space, Torus, TrueMetric, WithMetric,
+    DefaultNn, Euclidean, Hit, JointRange, Joints, KdTree, Linear, Manhattan, MaxDisplacement, Metric,
+    MetricFn, MetricTree, NearestNeighbors, Product, Rn, Rng, ScaledEuclidean, Se2, Se3, So3, Space,
+    TrueMetric, WithMetric,
+    angle::rotation_angle,
+    nn::{Embed, Layout},
 };
-use nalgebra::{DVector, Point2, Point3, SVector, Vector2};
+use nalgebra::{DVector, Point2, Point3, SVector, UnitQuaternion, Vector2};
 use proptest::prelude::*;
 use rand::RngExt;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// The torus of `N` angles.
+fn circles<const N: usize>() -> Joints<SVector<f64, N>> {
+    Joints::circles(N).unwrap()
+}
+
+/// A true metric of a user's own.
+struct OwnAngle;
+impl Metric<So3> for OwnAngle {
+    type Nn = MetricTree;
+    fn distance(&self, _: &So3, a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
+        2.0 * rotation_angle(a, b)
+    }
+    fn extent(&self, _: &So3) -> f64 {
+        7.0
+    }
+}
+impl TrueMetric<So3> for OwnAngle {}
 
 fn agrees_on<C: DefaultNn>(space: C) {
     check_nearest_neighbors(&space, &mut C::Nn::default(), 500, 1);
@@ -23,12 +43,12 @@ fn default_index_of_every_space() {
     agrees_on(Rn::<3>::new([1e6; 3], [1e6 + 1.0; 3]).unwrap());
     agrees_on(Rn::<6>::new([-1.0; 6], [1.0; 6]).unwrap());
     agrees_on(Rn::<19>::new([-1.0; 19], [1.0; 19]).unwrap());
-    agrees_on(RnDyn::new(vec![0.0; 5], vec![1.0; 5]).unwrap());
-    agrees_on(RnDyn::new(vec![0.0; 20], vec![1.0; 20]).unwrap());
-    agrees_on(So2);
+    agrees_on(Joints::<DVector<f64>>::intervals(&[0.0; 5], &[1.0; 5]).unwrap());
+    agrees_on(Joints::<DVector<f64>>::intervals(&[0.0; 20], &[1.0; 20]).unwrap());
+    agrees_on(circles::<1>());
     agrees_on(So3);
-    agrees_on(Torus::<2>);
-    agrees_on(Torus::<7>);
+    agrees_on(circles::<2>());
+    agrees_on(circles::<7>());
     let ranges = [JointRange::Interval { low: -6.0, high: 6.0 }, JointRange::Circle, JointRange::Circle];
     agrees_on(Joints::<SVector<f64, 3>>::new(ranges).unwrap());
     agrees_on(Joints::<DVector<f64>>::new(ranges.repeat(7)).unwrap());
@@ -37,8 +57,8 @@ fn default_index_of_every_space() {
     agrees_on(Se2::new([0.0; 2], [1.0; 2]).unwrap().with_rotation_weight(3.0).unwrap());
     agrees_on(se3());
     agrees_on(se3().with_rotation_weight(1e-3).unwrap());
-    agrees_on(Product::new(se3(), 2.0, Torus::<2>, 0.1).unwrap());
-    agrees_on(Product::new(So3, 1.0, Product::new(So3, 0.3, So2, 2.0).unwrap(), 1.0).unwrap());
+    agrees_on(Product::new(se3(), 2.0, circles::<2>(), 0.1).unwrap());
+    agrees_on(Product::new(So3, 1.0, Product::new(So3, 0.3, circles::<1>(), 2.0).unwrap(), 1.0).unwrap());
 }
 
 #[test]
@@ -46,22 +66,24 @@ fn default_index_under_other_metrics() {
     agrees_on(WithMetric::new(Rn::<4>::new([0.0; 4], [1.0; 4]).unwrap(), Manhattan));
     agrees_on(WithMetric::new(se3(), Manhattan));
     agrees_on(WithMetric::new(se3(), Euclidean));
-    agrees_on(WithMetric::new(Product::new(So3, 1.0, Torus::<3>, 1.0).unwrap(), Euclidean));
+    agrees_on(WithMetric::new(Product::new(So3, 1.0, circles::<3>(), 1.0).unwrap(), Euclidean));
     let weights = ScaledEuclidean::new(&se3(), [1.0, 10.0, 0.1, 3.0]).unwrap();
     agrees_on(WithMetric::new(se3(), weights));
     let corners = [[0.3, 0.0, 0.0], [0.0, 0.4, 0.0], [0.0, 0.1, -0.5]].map(Point3::from);
     agrees_on(WithMetric::new(se3(), MaxDisplacement::new(corners).unwrap()));
     let rod = MaxDisplacement::planar([Point2::new(-1.0, 0.0), Point2::new(1.0, 0.0)]).unwrap();
     agrees_on(WithMetric::new(Se2::new([0.0; 2], [10.0; 2]).unwrap(), rod));
-    agrees_on(WithMetric::new(So3, Bounded::new(So3, 4.0).unwrap()));
+    agrees_on(WithMetric::new(So3, OwnAngle));
+    let own = MetricFn::new(|a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>| rotation_angle(a, b), 4.0);
+    agrees_on(WithMetric::new(So3, own.unwrap()));
 }
 
 #[test]
 fn metric_tree_of_every_kind() {
     check_nearest_neighbors(&square(), &mut MetricTree::new(), 500, 1);
     check_nearest_neighbors(&se3(), &mut MetricTree::new(), 500, 2);
-    check_nearest_neighbors(&So2, &mut MetricTree::new(), 500, 3);
-    check_nearest_neighbors(&Torus::<5>, &mut MetricTree::new(), 500, 4);
+    check_nearest_neighbors(&circles::<1>(), &mut MetricTree::new(), 500, 3);
+    check_nearest_neighbors(&circles::<5>(), &mut MetricTree::new(), 500, 4);
 }
 
 fn square() -> Rn<2> {
@@ -177,7 +199,7 @@ fn wrong_number_of_coordinates_is_only_slower() {
     check_nearest_neighbors(&se3(), &mut KdTree::<2>::new(), 300, 1);
     check_nearest_neighbors(&se3(), &mut KdTree::<5>::new(), 300, 1);
     check_nearest_neighbors(&se3(), &mut KdTree::<12>::new(), 300, 1);
-    check_nearest_neighbors(&Torus::<3>, &mut KdTree::<99>::new(), 300, 1);
+    check_nearest_neighbors(&circles::<3>(), &mut KdTree::<99>::new(), 300, 1);
 }
 
 /// Counts how often the metric is asked.
@@ -186,14 +208,12 @@ struct Counting<C> {
     calls: AtomicU64,
 }
 
-impl<C: Space> Metric<C::State> for Counting<C> {
+impl<C: Space> Space for Counting<C> {
+    type State = C::State;
     fn distance(&self, from: &C::State, to: &C::State) -> f64 {
         self.calls.fetch_add(1, Relaxed);
         self.space.distance(from, to)
     }
-}
-impl<C: Space> Space for Counting<C> {
-    type State = C::State;
     fn dim(&self) -> usize {
         self.space.dim()
     }
@@ -213,7 +233,7 @@ impl<C: Space> Space for Counting<C> {
         self.space.contains(q)
     }
 }
-impl<C: Space + TrueMetric<C::State>> TrueMetric<C::State> for Counting<C> {}
+impl<C: TrueMetric> TrueMetric for Counting<C> {}
 impl<C: Embed> Embed for Counting<C> {
     fn layout(&self) -> Layout {
         self.space.layout()
@@ -296,7 +316,7 @@ proptest! {
         points in prop::collection::vec(prop::collection::vec(prop::num::f64::ANY, 3), 1..120),
         query in prop::collection::vec(prop::num::f64::ANY, 3),
     ) {
-        let space = RnDyn::new(vec![-1.0; 3], vec![1.0; 3]).unwrap();
+        let space = Joints::<DVector<f64>>::intervals(&[-1.0; 3], &[1.0; 3]).unwrap();
         let points: Vec<_> = points.into_iter().map(DVector::from_vec).collect();
         let query = [DVector::from_vec(query)];
         agrees_along(&space, KdTree::<16>::new(), &points, &query);

@@ -1,14 +1,22 @@
 //! Every space and metric of the crate against the conformance kit and under proptest.
 
+use mp_cspace::angle::{angle_difference, wrap_angle};
+use mp_cspace::nn::Embed;
+use mp_cspace::space_time::{Forward, SpaceTime};
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_true_metric};
 use mp_cspace::*;
-use nalgebra::{DVector, Isometry3, Point2, Point3, UnitQuaternion, Vector3, Vector4};
+use nalgebra::{DVector, Isometry3, Point2, Point3, SVector, UnitQuaternion, Vector3, Vector4};
 use proptest::prelude::*;
+
+/// The torus of `N` angles.
+fn circles<const N: usize>() -> Joints<SVector<f64, N>> {
+    Joints::circles(N).unwrap()
+}
 
 type Ok = Result<(), TestCaseError>;
 
 /// The kit, the true-metric axioms, and the straight planner on one space.
-fn conforms<C: Space + TrueMetric<C::State>>(space: &C, kit: SpaceKit) {
+fn conforms<C: Space + TrueMetric>(space: &C, kit: SpaceKit) {
     kit.run(space);
     let mut rng = mp_cspace::Rng::seed(9);
     let states: Vec<_> = (0..40).map(|_| space.sample_uniform(&mut rng)).collect();
@@ -20,7 +28,7 @@ fn conforms<C: Space + TrueMetric<C::State>>(space: &C, kit: SpaceKit) {
 }
 
 /// The axioms on three states and two times chosen by proptest, which shrinks to simple ones.
-fn axioms<C: Space + TrueMetric<C::State>>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
+fn axioms<C: Space + TrueMetric>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
     let [a, b, c] = [0, 1, 2].map(|i| space.unit_cube_to_state(&u[i]));
     let slack = 1e-12 * space.extent();
     let (ab, bc, ac) = (space.distance(&a, &b), space.distance(&b, &c), space.distance(&a, &c));
@@ -34,7 +42,7 @@ fn axioms<C: Space + TrueMetric<C::State>>(space: &C, u: &[Vec<f64>; 3], t: f64)
 }
 
 /// As [`axioms`], with constant speed.
-fn geodesic_axioms<C: Space + TrueMetric<C::State>>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
+fn geodesic_axioms<C: Space + TrueMetric>(space: &C, u: &[Vec<f64>; 3], t: f64) -> Ok {
     let [a, b] = [0, 1].map(|i| space.unit_cube_to_state(&u[i]));
     let (d, m) = (space.distance(&a, &b), space.interpolate(&a, &b, t));
     prop_assert!((space.distance(&a, &m) - t * d).abs() <= 1e-12 * space.extent());
@@ -90,20 +98,20 @@ fn se3() -> Se3 {
 spaces! {
     rn: r3(), SpaceKit::new(), geodesic_axioms;
     rn_far_from_zero: Rn::<2>::new([1e9, -1e9], [1e9 + 1.0, -1e9 + 3.0]).unwrap(), SpaceKit::new().tolerance(1e-6), axioms;
-    rn_dyn: RnDyn::new(vec![0.0; 7], vec![2.0; 7]).unwrap(), SpaceKit::new(), geodesic_axioms;
-    so2: So2, SpaceKit::new(), geodesic_axioms;
+    rn_dyn: Joints::<DVector<f64>>::intervals(&[0.0; 7], &[2.0; 7]).unwrap(), SpaceKit::new(), geodesic_axioms;
+    so2: circles::<1>(), SpaceKit::new(), geodesic_axioms;
     so3: So3, SpaceKit::new(), geodesic_axioms;
     se2_space: se2(), SpaceKit::new(), geodesic_axioms;
     se3_space: se3(), SpaceKit::new(), geodesic_axioms;
     se3_heavy: se3().with_rotation_weight(30.0).unwrap(), SpaceKit::new(), geodesic_axioms;
-    torus: Torus::<3>, SpaceKit::new(), geodesic_axioms;
+    torus: circles::<3>(), SpaceKit::new(), geodesic_axioms;
     joints_static: joints::<Vector4<f64>>(), SpaceKit::new(), geodesic_axioms;
     joints_dynamic: joints::<DVector<f64>>(), SpaceKit::new(), geodesic_axioms;
     joints_manhattan: WithMetric::new(joints::<Vector4<f64>>(), Manhattan), SpaceKit::new(), geodesic_axioms;
-    product: Product::new(se2(), 1.0, Torus::<2>, 0.25).unwrap(), SpaceKit::new(), geodesic_axioms;
-    nested: Product::new(Product::new(So3, 0.1, So2, 1.0).unwrap(), 2.0, r3(), 1.0).unwrap(), SpaceKit::new(), geodesic_axioms;
+    product: Product::new(se2(), 1.0, circles::<2>(), 0.25).unwrap(), SpaceKit::new(), geodesic_axioms;
+    nested: Product::new(Product::new(So3, 0.1, circles::<1>(), 1.0).unwrap(), 2.0, r3(), 1.0).unwrap(), SpaceKit::new(), geodesic_axioms;
     euclidean: WithMetric::new(se3(), Euclidean), SpaceKit::new(), geodesic_axioms;
-    manhattan: WithMetric::new(Product::new(se3(), 1.0, So2, 1.0).unwrap(), Manhattan), SpaceKit::new(), geodesic_axioms;
+    manhattan: WithMetric::new(Product::new(se3(), 1.0, circles::<1>(), 1.0).unwrap(), Manhattan), SpaceKit::new(), geodesic_axioms;
     scaled: WithMetric::new(se3(), ScaledEuclidean::new(&se3(), [1.0, 2.0, 1.0, 0.3]).unwrap()), SpaceKit::new(), geodesic_axioms;
     displacement: WithMetric::new(se3(), MaxDisplacement::new(hull()).unwrap()), SpaceKit::new().any_speed(), axioms;
     planar_displacement: WithMetric::new(se2(), MaxDisplacement::planar([Point2::new(0.5, 0.0), Point2::new(0.0, 0.2)]).unwrap()), SpaceKit::new().any_speed(), axioms;
@@ -117,7 +125,7 @@ fn displacement_is_attained_at_a_vertex() {
     let space = se3();
     for _ in 0..1000 {
         let (a, b) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
-        let d = metric.distance(&a, &b);
+        let d = metric.distance(&se3(), &a, &b);
         let moved = |p: Point3<f64>| (a * p - b * p).norm();
         let vertices = hull().into_iter().map(moved).fold(0.0, f64::max);
         assert!((d - vertices).abs() < 1e-12);
@@ -126,7 +134,7 @@ fn displacement_is_attained_at_a_vertex() {
     }
     let turned =
         Isometry3::from_parts(Vector3::zeros().into(), UnitQuaternion::from_euler_angles(0.0, 0.0, 3.0));
-    assert!(metric.distance(&Isometry3::identity(), &turned) > 0.6);
+    assert!(metric.distance(&se3(), &Isometry3::identity(), &turned) > 0.6);
 }
 
 /// The default distance of SE(3) is position plus half the angle.
@@ -148,7 +156,7 @@ fn bad_parameters_are_errors() {
     assert!(matches!(Rn::new([0.0], [f64::INFINITY]), Err(SpaceError::NotFinite { axis: 0, .. })));
     assert!(matches!(Rn::new([-1e300], [1e300]), Err(SpaceError::NotFinite { .. })));
     assert!(matches!(Rn::<0>::new([], []), Err(SpaceError::Empty { .. })));
-    assert!(matches!(RnDyn::new(vec![0.0], vec![1.0, 2.0]), Err(SpaceError::Count { .. })));
+    assert!(matches!(Joints::<DVector<f64>>::intervals(&[0.0], &[1.0, 2.0]), Err(SpaceError::Count { .. })));
     let interval = |low, high| JointRange::Interval { low, high };
     assert!(matches!(Joints::<Vector3<f64>>::new([JointRange::Circle]), Err(SpaceError::Count { .. })));
     assert!(matches!(Joints::<DVector<f64>>::new([]), Err(SpaceError::Empty { .. })));
@@ -159,9 +167,12 @@ fn bad_parameters_are_errors() {
     for w in [0.0, -1.0, nan, f64::INFINITY] {
         assert!(matches!(se3().with_rotation_weight(w), Err(SpaceError::Weight { .. })));
         assert!(matches!(se2().with_rotation_weight(w), Err(SpaceError::Weight { .. })));
-        assert!(Product::new(So2, w, So3, 1.0).is_err() && Product::new(So2, 1.0, So3, w).is_err());
-        assert!(ScaledEuclidean::new(&So2, [w]).is_err());
-        assert!(Bounded::new(MetricFn(|_: &f64, _: &f64| 1.0), w).is_err());
+        assert!(
+            Product::new(circles::<1>(), w, So3, 1.0).is_err()
+                && Product::new(circles::<1>(), 1.0, So3, w).is_err()
+        );
+        assert!(ScaledEuclidean::new(&circles::<1>(), [w]).is_err());
+        assert!(MetricFn::new(|_: &f64, _: &f64| 1.0, w).is_err());
     }
     assert!(matches!(
         ScaledEuclidean::new(&se3(), [1.0; 6]),
@@ -175,17 +186,18 @@ fn bad_parameters_are_errors() {
     );
 }
 
-/// Circles as a torus, intervals as a box, to the bit; and mixed as they should.
+/// Intervals are a box, to the bit, and circles measure the shorter arcs; mixed as they should.
 #[test]
 fn joints_are_boxes_and_tori() {
     let mut rng = mp_cspace::Rng::seed(4);
-    let (torus, circles) = (Torus::<3>, Joints::new([JointRange::Circle; 3]).unwrap());
-    let ranges = [(-1.0, 1.0), (0.0, 0.5), (5.0, 25.0)];
-    let intervals = Joints::new(ranges.map(|(low, high)| JointRange::Interval { low, high })).unwrap();
+    let torus = circles::<3>();
+    let intervals = Joints::intervals(&[-1.0, 0.0, 5.0], &[1.0, 0.5, 25.0]).unwrap();
     for t in [0.0, 0.25, 0.7, 1.0] {
         let (a, b) = (torus.sample_uniform(&mut rng), torus.sample_uniform(&mut rng));
-        assert_eq!(circles.distance(&a, &b), torus.distance(&a, &b));
-        assert_eq!(circles.interpolate(&a, &b, t), torus.interpolate(&a, &b, t));
+        let arcs = Vector3::from_fn(|i, _| angle_difference(a[i], b[i]));
+        assert!((torus.distance(&a, &b) - arcs.norm()).abs() < 1e-14);
+        let way = torus.interpolate(&a, &b, t) - (a + arcs * t).map(wrap_angle);
+        assert!(way.amax() < 1e-14, "{way}");
         let (a, b) = (r3().sample_uniform(&mut rng), r3().sample_uniform(&mut rng));
         assert_eq!(intervals.distance(&a, &b), r3().distance(&a, &b));
         assert_eq!(intervals.interpolate(&a, &b, t), r3().interpolate(&a, &b, t));
@@ -208,11 +220,11 @@ fn states_that_are_not_contained() {
         assert!(!r3().contains(&[x, 0.2, 6.0].into()));
     }
     for angle in [nan, inf, 3.2, -3.2, -std::f64::consts::PI] {
-        assert!(!So2.contains(&angle) && !Torus::<2>.contains(&[0.0, angle].into()));
+        assert!(!circles::<2>().contains(&[0.0, angle].into()));
         assert!(!se2().contains(&Se2State { angle, ..Se2State::default() }));
     }
-    assert!(So2.contains(&std::f64::consts::PI));
-    assert!(!RnDyn::new(vec![0.0; 2], vec![1.0; 2]).unwrap().contains(&vec![0.5].into()));
+    assert!(circles::<1>().contains(&[std::f64::consts::PI].into()));
+    assert!(!Joints::<DVector<f64>>::intervals(&[0.0; 2], &[1.0; 2]).unwrap().contains(&vec![0.5].into()));
     let long = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(1.1, 0.0, 0.0, 0.0));
     let bad = UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(nan, 0.0, 0.0, 0.0));
     assert!(!So3.contains(&long) && !So3.contains(&bad));
@@ -224,9 +236,9 @@ proptest! {
     #[test]
     fn angles_wrap(angle in prop_oneof![-10.0..10.0f64, -1e6..1e6f64]) {
         let wrapped = wrap_angle(angle);
-        prop_assert!(So2.contains(&wrapped));
+        prop_assert!(circles::<1>().contains(&[wrapped].into()));
         prop_assert!((wrapped.sin() - angle.sin()).abs() < 1e-9 && (wrapped.cos() - angle.cos()).abs() < 1e-9);
-        prop_assert!(So2.distance(&angle, &wrapped) < 1e-9);
+        prop_assert!(angle_difference(angle, wrapped).abs() < 1e-9);
     }
 }
 
@@ -293,4 +305,30 @@ fn nothing_moves_back_in_time_or_too_fast() {
     let mut goal = space.at_any_time([0.7].into());
     let q = goal.sample(&mut rng);
     assert!(goal.reached(&q) && space.contains(&q) && !goal.reached(&at(0.71, 3.0)));
+}
+
+/// The contract of [`Space::with_rotation_of`], and that wrappers pass it on.
+#[test]
+fn positions_and_rotations_are_taken_apart() {
+    fn holds<C: Space + Clone + Send>(space: &C, turns: bool) {
+        let mut rng = mp_cspace::Rng::seed(6);
+        let erased = erased::AnySpace::new(space);
+        for _ in 0..50 {
+            let [p, q] = [(); 2].map(|()| space.sample_uniform(&mut rng));
+            let mixed = space.with_rotation_of(&p, &q);
+            assert_eq!(mixed != p, turns, "{mixed:?}");
+            assert_eq!(erased.with_rotation_of(&p, &q), mixed);
+            assert_eq!(space.with_rotation_of(&mixed, &p), p);
+            // Interpolation at one rotation does not turn, and at one position does not move.
+            let moved = space.interpolate(&mixed, &q, 0.3);
+            assert!(space.distance(&space.with_rotation_of(&moved, &q), &moved) < 1e-7);
+            let turned = space.interpolate(&p, &mixed, 0.3);
+            assert!(space.distance(&space.with_rotation_of(&p, &turned), &turned) < 1e-12);
+        }
+    }
+    holds(&se2(), true);
+    holds(&se3(), true);
+    holds(&WithMetric::new(se3(), Manhattan), true);
+    holds(&r3(), false);
+    holds(&joints::<DVector<f64>>(), false);
 }

@@ -2,7 +2,7 @@
 
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_nearest_neighbors, check_true_metric};
 use mp_cspace::*;
-use nalgebra::Vector1;
+use nalgebra::{SVector, Vector1};
 
 /// The unit interval, or something almost like it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,7 +16,9 @@ struct Interval {
     negative: bool,
 }
 
-impl Metric<Vector1<f64>> for Interval {
+impl TrueMetric for Interval {}
+impl Space for Interval {
+    type State = Vector1<f64>;
     fn distance(&self, a: &Vector1<f64>, b: &Vector1<f64>) -> f64 {
         let d = (a.x - b.x).abs();
         if self.squared_distance {
@@ -27,10 +29,6 @@ impl Metric<Vector1<f64>> for Interval {
             d
         }
     }
-}
-impl TrueMetric<Vector1<f64>> for Interval {}
-impl Space for Interval {
-    type State = Vector1<f64>;
     fn dim(&self) -> usize {
         1
     }
@@ -126,33 +124,50 @@ fn broken_local_planners_are_caught_by_name() {
     }
 }
 
+type Circle = Joints<Vector1<f64>>;
+
 /// A linear scan that forgets every fourth state.
 #[derive(Debug, Default)]
 struct Forgetful(Linear);
-impl NearestNeighbors<So2> for Forgetful {
-    fn inserted(&mut self, space: &So2, points: &[f64], id: NodeId) {
+impl NearestNeighbors<Circle> for Forgetful {
+    fn inserted(&mut self, space: &Circle, points: &[Vector1<f64>], id: NodeId) {
         if id % 4 != 3 {
             self.0.inserted(space, points, id);
         }
     }
     fn clear(&mut self) {
-        NearestNeighbors::<So2>::clear(&mut self.0);
+        NearestNeighbors::<Circle>::clear(&mut self.0);
     }
-    fn nearest(&self, space: &So2, points: &[f64], q: &f64) -> Option<Hit> {
+    fn nearest(&self, space: &Circle, points: &[Vector1<f64>], q: &Vector1<f64>) -> Option<Hit> {
         self.0.nearest(space, points, q)
     }
-    fn k_nearest(&self, space: &So2, points: &[f64], q: &f64, k: usize, out: &mut Vec<Hit>) {
+    fn k_nearest(
+        &self,
+        space: &Circle,
+        points: &[Vector1<f64>],
+        q: &Vector1<f64>,
+        k: usize,
+        out: &mut Vec<Hit>,
+    ) {
         self.0.k_nearest(space, points, q, k, out);
     }
-    fn within(&self, space: &So2, points: &[f64], q: &f64, radius: f64, out: &mut Vec<Hit>) {
+    fn within(
+        &self,
+        space: &Circle,
+        points: &[Vector1<f64>],
+        q: &Vector1<f64>,
+        radius: f64,
+        out: &mut Vec<Hit>,
+    ) {
         self.0.within(space, points, q, radius, out);
     }
 }
 
 #[test]
 fn neighbours_are_compared_with_the_scan() {
-    check_nearest_neighbors(&So2, &mut Linear::default(), 200, 1);
-    check_nearest_neighbors(&Torus::<4>, &mut Linear::default(), 100, 2);
-    let said = verdict(|| check_nearest_neighbors(&So2, &mut Forgetful::default(), 50, 1));
+    let circle = Circle::circles(1).unwrap();
+    check_nearest_neighbors(&circle, &mut Linear::default(), 200, 1);
+    check_nearest_neighbors(&Joints::<SVector<f64, 4>>::circles(4).unwrap(), &mut Linear::default(), 100, 2);
+    let said = verdict(|| check_nearest_neighbors(&circle, &mut Forgetful::default(), 50, 1));
     assert!(said.contains("agrees with the scan"), "{said}");
 }

@@ -7,7 +7,7 @@
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{
     Cancel, Certified, DefaultNn, Goals, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes, Outcome,
-    Path, Planner, Problem, Rn, Rng, Se3, Settings, Stop, Straight, Workers,
+    Path, Planner, Problem, Rn, Rng, Se3, Stop, Straight, Workers, registry::Settings,
 };
 use mp_plan::{RigidScene, RobotKind};
 use mp_robot::Spatial;

@@ -3,7 +3,11 @@
 use crate::numbers::brief;
 use crate::{End, Error, PathRows, RobotKind, Touch};
 use mp_cspace::erased::AnyCheck;
-use mp_cspace::{Clearance, MotionCheck, Path, PathFault, PathReport, Space, least_clearance, verify_path};
+use mp_cspace::{
+    Clearance, MotionCheck, Path, Space, least_clearance,
+    path::{PathFault, PathReport},
+    verify_path,
+};
 use serde::{Deserialize, Serialize};
 
 /// What the check of a path found. Its JSON form is what `mp check --json` prints.

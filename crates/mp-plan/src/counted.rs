@@ -2,8 +2,8 @@
 
 use crate::Queries;
 use mp_cspace::{
-    BodyFeatures, Clearance, ClearanceGradient, IntervalClearance, MotionBound, MotionInterval,
-    ObstacleGeometry, ObstacleHints, PointOf, Progress, Rng, Stop, StopReason, Validity,
+    Clearance, IntervalClearance, MotionClearance, MotionInterval, Progress, Rng, Stop, StopReason, Validity,
+    obstacles::{BodyFeatures, ClearanceGradient, ObstacleGeometry, ObstacleHints, PointOf},
 };
 use nalgebra::Vector3;
 use std::fmt;
@@ -92,17 +92,17 @@ impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn in_contact(&mut self, q: &S) -> bool {
         self.asked(|checker| checker.in_contact(q))
     }
+}
+
+impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
+    fn motion_bound(&self, from: &S, to: &S) -> f64 {
+        self.checker.motion_bound(from, to)
+    }
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
         self.asked(|checker| checker.interval_clearance(interval))
     }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()
-    }
-}
-
-impl<S, R: MotionBound<S> + Queries> MotionBound<S> for Counted<'_, R> {
-    fn motion_bound(&self, from: &S, to: &S) -> f64 {
-        self.checker.motion_bound(from, to)
     }
 }
 
@@ -112,9 +112,6 @@ impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
     }
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
         self.asked(|checker| checker.along(from, toward, hit, rng))
-    }
-    fn turned(&self, position: &S, rotation: &S) -> S {
-        self.checker.turned(position, rotation)
     }
     fn carried(&self, q: &S, from: &S, to: &S) -> S {
         self.checker.carried(q, from, to)

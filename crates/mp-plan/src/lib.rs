@@ -98,4 +98,7 @@ pub use scene_roadmap::SceneRoadmap;
 pub use search::{Search, search};
 pub use watch::{Control, SearchEvent, Stage, Watch};
 
-pub use mp_cspace::{Cancel, Parameter, PlannerInfo, Progress};
+pub use mp_cspace::{
+    Cancel, Progress,
+    registry::{Parameter, PlannerInfo},
+};

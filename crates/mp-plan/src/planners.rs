@@ -1,7 +1,7 @@
 //! Planners by name: trees, wrapped or not, and roadmaps.
 
 use crate::{Error, roadmaps};
-use mp_cspace::{PlannerInfo, Settings};
+use mp_cspace::registry::{PlannerInfo, Settings};
 use std::fmt;
 
 /// All planners by name, trees first. Before the name of a tree may stand `or-`, `restart-` and, before `rrt`,
@@ -35,7 +35,7 @@ impl PlannerSpec {
             // The trees know only trees.
             let names = planners().flat_map(|p| [p.name].into_iter().chain(p.aliases.iter().copied()));
             let known = planners().map(|p| p.name).collect::<Vec<_>>().join(", ");
-            match (error, mp_cspace::closest(name, names)) {
+            match (error, mp_cspace::registry::closest(name, names)) {
                 (mp_cspace::BuildError::UnknownPlanner { .. }, Some(near)) => {
                     Error::new(format!("there is no planner `{name}`"))
                         .help(format!("did you mean `{near}`? There are: {known}"))

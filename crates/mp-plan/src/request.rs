@@ -1,7 +1,7 @@
 //! How to plan: plain data.
 
 use crate::Error;
-use mp_cspace::Settings;
+use mp_cspace::registry::Settings;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;

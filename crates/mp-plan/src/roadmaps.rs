@@ -2,7 +2,10 @@
 
 use crate::{Error, Request};
 use mp_cspace::erased::AnyIndex;
-use mp_cspace::{AnyProblem, BuildError, Planner, PlannerInfo, Settings, Workers};
+use mp_cspace::{
+    AnyProblem, BuildError, Planner, Workers,
+    registry::{PlannerInfo, Settings},
+};
 #[cfg(feature = "roadmaps")]
 use mp_cspace::{Observer, Rng, Stop, StopReason};
 

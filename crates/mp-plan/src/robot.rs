@@ -14,8 +14,8 @@ use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    Clearance, DefaultNn, Embed, Factored, Metric as _, MotionBound, MotionValidity, ObstacleKnowledge,
-    StateVector, Validity,
+    DefaultNn, Factored, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _, StateVector,
+    Validity, nn::Embed,
 };
 use mp_geom::{Aabb, TriMesh};
 use mp_tree::TreeState;
@@ -116,10 +116,10 @@ pub enum End {
 /// Clones share what is large; each has counters and scratch memory of its own.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot check configurations of type `{S}`",
-    note = "a checker is `Validity + Clearance + MotionBound + Queries + Clone + Send + Sync`"
+    note = "a checker is `Validity + MotionClearance + Queries + Clone + Send + Sync`"
 )]
-pub trait Checker<S>: Validity<S> + Clearance<S> + MotionBound<S> + Queries + Clone + Send + Sync {}
-impl<S, R: Validity<S> + Clearance<S> + MotionBound<S> + Queries + Clone + Send + Sync> Checker<S> for R {}
+pub trait Checker<S>: Validity<S> + MotionClearance<S> + Queries + Clone + Send + Sync {}
+impl<S, R: Validity<S> + MotionClearance<S> + Queries + Clone + Send + Sync> Checker<S> for R {}
 
 /// What counts its queries.
 pub trait Queries {

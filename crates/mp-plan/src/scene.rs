@@ -9,7 +9,7 @@ use crate::scene_roadmap::{Answering, SceneRoadmap};
 use crate::{
     Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Verdict,
 };
-use mp_cspace::{MotionBound, Rng, Space, Validity};
+use mp_cspace::{MotionClearance, Rng, Space, Validity};
 use mp_geom::{Aabb, evenly};
 use mp_io::{Disk, Files, PlanarProblem, PlanarShape, RigidProblem, RobotProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};

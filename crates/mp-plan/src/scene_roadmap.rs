@@ -9,7 +9,7 @@ use crate::scene::state;
 use crate::search::{Search, relax_if_asked};
 use crate::watch::{Events, Telling};
 use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::{Outcome, PlannerInfo, Rng, Stop, StopReason, Workers};
+use mp_cspace::{Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, RoadmapState};
 use std::fmt;
 use std::path::Path;

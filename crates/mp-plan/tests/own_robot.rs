@@ -1,7 +1,7 @@
 //! A kind of robot that is none of ours: a crane with a boom that turns and a trolley that slides, among posts.
 
 use mp_cspace::{
-    Clearance, JointRange, Joints, KnownFree, MotionBound, MotionCheck, MotionValidity, Validity,
+    Clearance, JointRange, Joints, KnownFree, MotionCheck, MotionClearance, MotionValidity, Validity,
 };
 use mp_plan::{
     Body, BodyShape, Column, Error, Measured, Metric, PathRows, Queries, Request, RobotKind, Scene, Touch,
@@ -46,7 +46,7 @@ impl Clearance<Configuration> for Load {
         self.posts.iter().map(|post| (post - load).norm() - LOAD).fold(f64::INFINITY, f64::min)
     }
 }
-impl MotionBound<Configuration> for Load {
+impl MotionClearance<Configuration> for Load {
     fn motion_bound(&self, from: &Configuration, to: &Configuration) -> f64 {
         (to[0] - from[0]).abs() * from[1].max(to[1]) + (to[1] - from[1]).abs()
     }

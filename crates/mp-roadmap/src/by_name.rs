@@ -3,7 +3,9 @@
 use crate::engine::taken_apart;
 use crate::{Connector, EdgeChecker, HasRoadmap, NodeGenerator, Query, Recipe, RoadmapPlanner};
 use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
-use mp_cspace::{BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible, Settings, Space, Workers};
+use mp_cspace::{
+    BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible, Space, Workers, registry::Settings,
+};
 
 /// A planner chosen at run time.
 pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;

@@ -2,12 +2,10 @@
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
 //! [`build`] makes planners of the second kind by name. The last two must know what obstacles look like
-//! ([`ObstacleGeometry`](mp_cspace::ObstacleGeometry)).
+//! ([`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry)).
 //!
 //! ```
-//! use mp_cspace::{
-//!     Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Settings, Straight,
-//! };
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Straight, registry::Settings};
 //! use mp_roadmap::build;
 //! use nalgebra::Vector2;
 //!
@@ -63,5 +61,5 @@ pub use engine::{
     StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
-pub use mp_cspace::{BuildError, Path, Settings};
+pub use mp_cspace::{BuildError, Path, registry::Settings};
 pub use registry::{AnyRoadmap, RoadmapState, build, build_with, planner, planners};

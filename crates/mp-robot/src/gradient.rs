@@ -1,7 +1,7 @@
 //! Which way the clearance of a robot grows: of a rigid body by nearest points, of an arm by differences.
 
 use crate::{Arm, Placement, RigidBody};
-use mp_cspace::{Clearance, ClearanceGradient, Coordinates};
+use mp_cspace::{Clearance, Coordinates, obstacles::ClearanceGradient};
 use nalgebra::{Isometry3, Point3, Vector3};
 
 /// By the nearest points of robot and obstacles.

@@ -1,7 +1,7 @@
 //! Along which way an obstacle runs, by its triangles.
 
 use crate::{Placement, RigidBody};
-use mp_cspace::{ObstacleHints, Rng};
+use mp_cspace::{Rng, obstacles::ObstacleHints};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 
@@ -76,11 +76,6 @@ impl<P: Placement> ObstacleHints<P::State> for RigidBody<P> {
         };
         let translation = Translation3::from(pose.translation.vector + along::<P>(triangle, rng)? * far);
         Some(P::configuration(&Isometry3::from_parts(translation, pose.rotation)))
-    }
-
-    fn turned(&self, position: &P::State, rotation: &P::State) -> P::State {
-        let (position, rotation) = (P::pose(position), P::pose(rotation));
-        P::configuration(&Isometry3::from_parts(position.translation, rotation.rotation))
     }
 
     /// Rotations are carried in the world: by the turn that leads from one to the other.

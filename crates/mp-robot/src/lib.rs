@@ -12,9 +12,9 @@
 //! The first three are a [`RigidBody`]. Obstacles stand still, but for those of [`AmongMoving`], a rigid body
 //! in space and time among bodies on known trajectories. Robots answer the questions of planners:
 //! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
-//! [`MotionBound`](mp_cspace::MotionBound), by the trees of `mp-collide`; a [`RigidBody`] gives
-//! [`ObstacleHints`](mp_cspace::ObstacleHints), [`ObstacleGeometry`](mp_cspace::ObstacleGeometry) and
-//! [`ClearanceGradient`](mp_cspace::ClearanceGradient) too; and of people:
+//! [`MotionClearance`](mp_cspace::MotionClearance), by the trees of `mp-collide`; a [`RigidBody`] gives
+//! [`ObstacleHints`](mp_cspace::obstacles::ObstacleHints), [`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry) and
+//! [`ClearanceGradient`](mp_cspace::obstacles::ClearanceGradient) too; and of people:
 //! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] or
 //! [`ArmVerifier`] proves finished paths by other means.
 //!

@@ -2,7 +2,10 @@
 
 use crate::rigid::Shared;
 use crate::{Placement, RigidBody};
-use mp_cspace::{BodyFeatures, ObstacleGeometry, PointOf, Rng};
+use mp_cspace::{
+    Rng,
+    obstacles::{BodyFeatures, ObstacleGeometry, PointOf},
+};
 use mp_geom::{Features, NO_COMPONENT, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;

@@ -1,6 +1,9 @@
 //! Where configurations put a rigid body, and how far they move it.
 
-use mp_cspace::{Metric, Se2State, So2, rotation_angle};
+use mp_cspace::{
+    Se2State,
+    angle::{angle_difference, rotation_angle},
+};
 use mp_geom::{TriMesh, six_from_pose};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::fmt::Debug;
@@ -122,7 +125,7 @@ impl Placement for Planar {
     }
     #[inline]
     fn travel(shape: &Shape, from: &Se2State, to: &Se2State) -> f64 {
-        let angle = So2.distance(&from.angle, &to.angle);
+        let angle = angle_difference(from.angle, to.angle).abs();
         ((to.translation - from.translation).norm() + shape.radius_about_z * angle) * ROUND_UP
     }
 

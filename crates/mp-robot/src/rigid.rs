@@ -5,7 +5,7 @@ use crate::solid::Solid;
 use crate::{Placement, Planar, Point, Shape, Spatial};
 use mp_collide::reference::RefMesh;
 use mp_collide::{BodyId, CollisionMesh, Counters, IntervalCheck, Query, RigidMotion, Scene, SceneError};
-use mp_cspace::{Clearance, IntervalClearance, MotionBound, MotionInterval, Validity};
+use mp_cspace::{Clearance, IntervalClearance, MotionClearance, MotionInterval, Validity};
 use mp_geom::{Aabb, MeshError, TriMesh};
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
@@ -336,7 +336,14 @@ impl<P: Placement> Clearance<P::State> for RigidBody<P> {
     fn in_contact(&mut self, q: &P::State) -> bool {
         self.collides(&P::pose(q))
     }
+}
 
+impl<P: Placement> MotionClearance<P::State> for RigidBody<P> {
+    /// As [`Placement::travel`]: at most `‖Δp‖ + radius·θ`.
+    #[inline]
+    fn motion_bound(&self, from: &P::State, to: &P::State) -> f64 {
+        P::travel(&self.shared.shape, from, to)
+    }
     /// By one sweep over the interval, in which each part of the body moves as far as it does and as it does
     /// toward the obstacles: an interval found clear so may be much longer than the clearance in its middle. The sweep
     /// ends where it comes upon contact.
@@ -361,16 +368,7 @@ impl<P: Placement> Clearance<P::State> for RigidBody<P> {
         let clearance = self.clearance(interval.middle, travel.max(margin) + margin);
         IntervalClearance::of(clearance, margin)
     }
-
     fn contact_first(&self) -> bool {
         true
-    }
-}
-
-impl<P: Placement> MotionBound<P::State> for RigidBody<P> {
-    /// As [`Placement::travel`]: at most `‖Δp‖ + radius·θ`.
-    #[inline]
-    fn motion_bound(&self, from: &P::State, to: &P::State) -> f64 {
-        P::travel(&self.shared.shape, from, to)
     }
 }

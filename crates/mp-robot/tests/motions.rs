@@ -4,7 +4,7 @@ mod common;
 
 use common::{clutter, obstacle, robot, wall};
 use mp_cspace::{
-    Certified, Discrete, Metric, MotionCheck, MotionValidity, Resolution, Rn, Rng, Se2, Se3, Space, Validity,
+    Certified, Discrete, MotionCheck, MotionValidity, Resolution, Rn, Rng, Se2, Se3, Space, Validity,
 };
 use mp_geom::{pose_from_six, primitives};
 use mp_robot::{FreeFlyer, Placement, PlanarFlyer, PointRobot, RigidBody, Verifier};

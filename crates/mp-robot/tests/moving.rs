@@ -4,8 +4,9 @@ mod common;
 
 use common::{clutter, robot};
 use mp_cspace::{
-    Certified, Clearance, Forward, MotionBound, MotionCheck, MotionValidity, Rng, Se2, Se2State, Se3, Space,
-    SpaceTime, Validity,
+    Certified, Clearance, MotionCheck, MotionClearance, MotionValidity, Rng, Se2, Se2State, Se3, Space,
+    Validity,
+    space_time::{Forward, SpaceTime},
 };
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use mp_robot::{AmongMoving, FreeFlyer, MovingVerifier, PlanarFlyer, Trajectory, TrajectoryError};

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{clutter, obstacle, robot, wall};
-use mp_cspace::{Clearance, Metric, Rn, Rng, Se2, Se2State, Se3, Space, Validity};
+use mp_cspace::{Clearance, Rn, Rng, Se2, Se2State, Se3, Space, Validity};
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use mp_robot::{FreeFlyer, Placement, PlanarFlyer, PointRobot, RigidBody, RobotError};
 use nalgebra::{Isometry3, Point3, Vector3};

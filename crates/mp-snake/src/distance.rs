@@ -49,7 +49,7 @@ fn envelope(from: &[f64], to: &mut [f64], roots: &mut Vec<usize>, bounds: &mut V
 /// above one half: positive outside, negative inside, exact between middles and half a cell less. At most `far` (m),
 /// which is what a map with nothing on it has everywhere.
 ///
-/// As a [clearance gradient](mp_cspace::ClearanceGradient) it is that of a point; that of a disc by
+/// As a [clearance gradient](mp_cspace::obstacles::ClearanceGradient) it is that of a point; that of a disc by
 /// `map(|d| d - radius)`.
 #[must_use]
 pub fn signed_distance(mask: &Grid, far: f64) -> Grid {

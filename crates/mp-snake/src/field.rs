@@ -1,7 +1,7 @@
 //! External energies: what pushes a snake.
 
 use crate::error::{not_negative, positive};
-use mp_cspace::{ClearanceGradient, ParameterError};
+use mp_cspace::{ParameterError, obstacles::ClearanceGradient};
 
 /// An energy of states, which a snake lowers by moving.
 ///

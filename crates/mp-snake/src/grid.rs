@@ -2,7 +2,7 @@
 
 use crate::Field;
 use crate::error::positive;
-use mp_cspace::{ClearanceGradient, ParameterError};
+use mp_cspace::{ParameterError, obstacles::ClearanceGradient};
 use nalgebra::Vector2;
 
 /// Numbers at the middles of square cells, row after row: an image with a place and a scale. Row 0 is the lowest

@@ -18,7 +18,7 @@
 //!
 //! A motion that is blocked by a disc goes around it:
 //! ```
-//! use mp_cspace::{Certified, Clearance, Direction, Extension, LocalPlanner, MotionBound, Reach, Rn};
+//! use mp_cspace::{Certified, Clearance, Direction, Extension, LocalPlanner, MotionClearance, Reach, Rn};
 //! use mp_snake::SnakePlanner;
 //! use nalgebra::Vector2;
 //!
@@ -29,7 +29,7 @@
 //!         q.norm() - 0.3
 //!     }
 //! }
-//! impl MotionBound<Vector2<f64>> for Disc {
+//! impl MotionClearance<Vector2<f64>> for Disc {
 //!     fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
 //!         (to - from).norm()
 //!     }

@@ -3,8 +3,8 @@
 use crate::snake::NODES;
 use crate::{Bulged, Params, Repulsion, Rest, Snake, SnakeError};
 use mp_cspace::{
-    ClearanceGradient, Direction, Extension, KnownFree, LocalPlanner, Motion, MotionCheck, MotionValidity,
-    PolylineEdge, Reach, Space,
+    Direction, Extension, KnownFree, LocalPlanner, Motion, MotionCheck, MotionValidity, PolylineEdge, Reach,
+    Space, obstacles::ClearanceGradient,
 };
 
 /// What a [`SnakePlanner`] did so far.

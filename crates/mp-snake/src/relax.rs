@@ -1,7 +1,7 @@
 //! Whole paths relaxed.
 
 use crate::{Params, Repulsion, Snake, SnakeError};
-use mp_cspace::{ClearanceGradient, MotionValidity, Path, Space};
+use mp_cspace::{MotionValidity, Path, Space, obstacles::ClearanceGradient};
 
 /// A path that was relaxed.
 #[derive(Clone, Debug, PartialEq)]

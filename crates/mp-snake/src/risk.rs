@@ -7,7 +7,7 @@
 
 use crate::error::{not_negative, positive};
 use crate::{Grid, blurred};
-use mp_cspace::{ParameterError, Path, wrap_angle};
+use mp_cspace::{ParameterError, Path, angle::wrap_angle};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 

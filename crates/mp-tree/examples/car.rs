@@ -3,7 +3,7 @@
 //! `cargo run -p mp-tree --example car [SEED]`
 #![allow(clippy::print_stdout)] // an example talks
 
-use mp_cspace::inputs::{Car, DiscreteFlowCheck, InputPlanner, ReplayFinely};
+use mp_control::{Car, DiscreteFlowCheck, InputPlanner, ReplayFinely};
 use mp_cspace::{Exactly, Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
 use mp_tree::{Goals, Problem, Rsrt, Tuning};
 use nalgebra::Point2;

@@ -4,7 +4,7 @@
 
 mod shared;
 
-use mp_cspace::{ObstacleHints, Rng};
+use mp_cspace::{Rng, obstacles::ObstacleHints};
 use mp_tree::{GrowthWeights, Obrrt};
 use rand::RngExt;
 use shared::Point;
@@ -20,9 +20,6 @@ impl ObstacleHints<Point> for Around {
         let out = (from - Point::new(0.5, 0.5)).try_normalize(0.0)? * (toward - from).norm();
         let tangent = Point::new(-out.y, out.x);
         Some(if rng.random_bool(0.5) { from + tangent } else { from - tangent })
-    }
-    fn turned(&self, position: &Point, _: &Point) -> Point {
-        *position
     }
     fn carried(&self, q: &Point, from: &Point, to: &Point) -> Point {
         q + (to - from)

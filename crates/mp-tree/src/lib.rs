@@ -156,8 +156,8 @@ pub use engine::{
 pub use mp_cspace::AnyProblem;
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{
-    BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step, Verify, Workers,
-    closest,
+    BuildError, Endpoint, Goals, Problem, Step, Verify, Workers,
+    registry::{Demand, Parameter, PlannerInfo, Settings, closest},
 };
 pub use registry::{
     MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, planner, planners,

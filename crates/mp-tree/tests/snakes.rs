@@ -2,6 +2,7 @@
 
 mod common;
 use common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_snake::*;
 use mp_tree::*;

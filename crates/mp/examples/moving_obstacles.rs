@@ -3,7 +3,10 @@
 //! `cargo run --release -p mp --example moving_obstacles [SEED]`
 #![allow(clippy::print_stdout)] // an example talks
 
-use mp::cspace::{Certified, Forward, Iterations, Outcome, Planner, Rng, Se2, Se2State, SpaceTime, Straight};
+use mp::cspace::{
+    Certified, Iterations, Outcome, Planner, Rng, Se2, Se2State, Straight,
+    space_time::{Forward, SpaceTime},
+};
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};
 use mp::tree::{Goals, Problem, Rrt, Step, Tuning};

@@ -5,6 +5,7 @@
 //! | [`geom`] | triangle meshes, primitives, poses, boxes and spheres around things |
 //! | [`collide`] | exact collision and distance between meshes |
 //! | [`cspace`] | spaces, metrics, samplers, motion checks, neighbours, paths: the traits |
+//! | [`control`] | systems that move by inputs: flows, input sets, the local planner that chooses among inputs |
 //! | [`robot`] | what a configuration places where, and when it is free |
 //! | [`snake`] | active contours that bend motions around obstacles |
 //! | [`tree`] | the RRT family |
@@ -58,6 +59,7 @@
 //! included; the program `mp` is made of it.
 
 pub use mp_collide as collide;
+pub use mp_control as control;
 pub use mp_cspace as cspace;
 pub use mp_geom as geom;
 pub use mp_io as io;
@@ -71,8 +73,8 @@ pub use mp_tree as tree;
 /// What most programs need.
 pub mod prelude {
     pub use mp_cspace::{
-        Certified, Discrete, Goal, Iterations, LocalPlanner, Metric, MotionCheck, MotionValidity, Outcome,
-        Path, Planner, Resolution, Rn, Rng, Sampler, Se2, Se3, Space, Stop, Straight, Validity,
+        Certified, Discrete, Goal, Iterations, LocalPlanner, MotionCheck, MotionValidity, Outcome, Path,
+        Planner, Resolution, Rn, Rng, Sampler, Se2, Se3, Space, Stop, Straight, Validity,
     };
     pub use mp_robot::{Arm, ArmModel, ArmVerifier, FreeFlyer, PlanarFlyer, PointRobot, Verifier};
     pub use mp_tree::{Goals, Problem, Rrt, RrtConnect, Tuning};

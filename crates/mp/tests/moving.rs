@@ -1,8 +1,8 @@
 //! Planning in space and time: a gate is passed only while it is open.
 
 use mp::cspace::{
-    Certified, Forward, Iterations, KdTree, Outcome, Path, Planner, Rng, Se2, Se2State, SpaceTime, Straight,
-    Uniform,
+    Certified, Iterations, KdTree, Outcome, Path, Planner, Rng, Se2, Se2State, Straight, Uniform,
+    space_time::{Forward, SpaceTime},
 };
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};

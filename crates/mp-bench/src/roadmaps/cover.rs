@@ -6,8 +6,7 @@ use crate::error::{IntoError, Result};
 use crate::experiment::{Group, Lab, Median, Table, short};
 use crate::scenes::{Rigid, either};
 use mp_cspace::{
-    DefaultNn, Direction, Extension, Iterations, LocalPlanner, Metric, NodeId, Nodes, Reach, Rng, Space,
-    Validity,
+    DefaultNn, Direction, Extension, Iterations, LocalPlanner, NodeId, Nodes, Reach, Rng, Space, Validity,
 };
 use mp_plan::{RigidScene, RigidSpace, RobotKind};
 use mp_roadmap::algo::{prm, visibility_prm};

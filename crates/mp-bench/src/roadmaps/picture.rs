@@ -8,7 +8,7 @@ use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
 use crate::output::note;
 use crate::scenes::{Rigid, bare, either};
-use mp_cspace::{DefaultNn, Iterations, Nodes, ObstacleGeometry, Outcome, Rng, Stop};
+use mp_cspace::{DefaultNn, Iterations, Nodes, Outcome, Rng, Stop, obstacles::ObstacleGeometry};
 use mp_geom::Aabb;
 use mp_geom::primitives::cuboid;
 use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};

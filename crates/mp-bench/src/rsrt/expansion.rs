@@ -8,7 +8,7 @@
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, mean};
 use crate::plot::{Axis, Curve, Labels, chart};
-use mp_cspace::inputs::{Between, InputPlanner, InputSet, Kinematic};
+use mp_control::{Between, InputPlanner, InputSet, Kinematic};
 use mp_cspace::{KnownFree, MotionCheck, MotionValidity, Planner, Rn, Rng, Straight};
 use mp_tree::{Goals, Problem, Rrt, RrtInputs, Step, Tuning};
 use nalgebra::Vector2;

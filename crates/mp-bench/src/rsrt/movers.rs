@@ -2,7 +2,7 @@
 
 use super::clutter::{Obstacle, Region, boxes};
 use crate::error::{IntoError, Result};
-use mp_cspace::{Clearance, EmbedFactors, Metric, MotionValidity, Rn, Se3, Space, Validity};
+use mp_cspace::{Clearance, Factored, MotionValidity, Rn, Se3, Space, Validity};
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmModel, ArmVerifier, FreeFlyer, Joint, JointKind, Link, Spatial, Verifier};
 use nalgebra::{Isometry3, SVector, UnitQuaternion, Vector3};
@@ -13,7 +13,7 @@ pub(super) type Six = SVector<f64, 6>;
 /// A mover with a world of its own for each problem, and how it is told to move.
 pub(super) trait Mover: Sync {
     /// Its configurations.
-    type Space: EmbedFactors + Clone + Sync;
+    type Space: Factored + Clone + Sync;
     /// Among obstacles.
     type Robot: Validity<<Self::Space as Space>::State> + Clone + Send;
 

@@ -3,11 +3,11 @@
 use super::movers::{Mover, Six};
 use crate::clock::{Processor, nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
-use mp_cspace::inputs::{
+use mp_control::{
     Between, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, OnPosition, ReplayFinely,
 };
 use mp_cspace::{
-    Cancel, Discrete, Exactly, MotionValidity, NnOn, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
+    Cancel, Discrete, Exactly, Metric, MotionValidity, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
     Stop, StopReason, Straight, Validity, WithMetric,
 };
 use mp_tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Step, Tuning};
@@ -103,7 +103,7 @@ fn run<S, E: Clone>(
 pub(super) fn positions<M, D>(mover: &M, robot: M::Robot, metric: D, how: &How) -> Result<Option<Run>>
 where
     M: Mover,
-    D: NnOn<M::Space>,
+    D: Metric<M::Space>,
 {
     let space = WithMetric::new(mover.space().clone(), metric);
     let verifier = mover.verifier(&robot)?;
@@ -142,7 +142,7 @@ fn tuning() -> Tuning {
 pub(super) fn velocities<M, D>(mover: &M, robot: M::Robot, metric: D, how: &How) -> Result<Option<Run>>
 where
     M: Mover,
-    D: NnOn<Product<M::Space, Rn<6>>>,
+    D: Metric<Product<M::Space, Rn<6>>>,
 {
     let (most, accelerations) = mover.limits();
     let moving = Product::with_velocity(mover.space().clone(), most).into_error()?;

@@ -1,6 +1,9 @@
 //! The geometry of obstacles behind a pointer.
 
-use crate::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf, Rng};
+use crate::{
+    Rng,
+    obstacles::{BodyFeatures, ObstacleGeometry, ObstacleHints, PointOf},
+};
 use nalgebra::Vector3;
 use std::fmt;
 
@@ -43,9 +46,6 @@ impl<S> ObstacleHints<S> for AnyGeometry<'_, S> {
     }
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
         self.0.along(from, toward, hit, rng)
-    }
-    fn turned(&self, position: &S, rotation: &S) -> S {
-        self.0.turned(position, rotation)
     }
     fn carried(&self, q: &S, from: &S, to: &S) -> S {
         self.0.carried(q, from, to)

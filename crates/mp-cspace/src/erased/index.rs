@@ -2,8 +2,9 @@
 
 use super::AnySpace;
 use crate::{
-    DefaultNn, Embed, Hit, Joints, KdTree, Layout, Metric, MetricTree, NearestNeighbors, NodeId, Rn, Rng,
-    Se2, Se2State, Se3, Space, TrueMetric,
+    DefaultNn, Hit, Joints, KdTree, MetricTree, NearestNeighbors, NodeId, Rn, Rng, Se2, Se2State, Se3, Space,
+    TrueMetric,
+    nn::{Embed, Layout},
 };
 use nalgebra::{DVector, Isometry3};
 use std::fmt::{self, Debug};
@@ -81,7 +82,7 @@ impl<S: CoordinateState> AnyIndex<S> {
 impl<S: CoordinateState> AnyIndex<S> {
     /// A [`MetricTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: for
     /// metrics whose distances take longer than a pointer.
-    pub fn by_metric<C: Space<State = S> + TrueMetric<S> + Clone + Send + 'static>(space: &C) -> Self {
+    pub fn by_metric<C: Space<State = S> + TrueMetric + Clone + Send + 'static>(space: &C) -> Self {
         S::metric_index(AnySpace::new(space))
     }
 }
@@ -136,16 +137,13 @@ struct Embedded<S> {
     layout: AnyEmbed<S>,
 }
 
-impl<S> Metric<S> for Embedded<S> {
+/// Of the space an index asks distances and coordinates only; the rest is there because a space has it.
+impl<S: Clone + Debug + PartialEq + Send + Sync> Space for Embedded<S> {
+    type State = S;
     #[inline]
     fn distance(&self, from: &S, to: &S) -> f64 {
         self.space.distance(from, to)
     }
-}
-
-/// Of the space an index asks distances and coordinates only; the rest is there because a space has it.
-impl<S: Clone + Debug + PartialEq + Send + Sync> Space for Embedded<S> {
-    type State = S;
     fn dim(&self) -> usize {
         self.space.dim()
     }

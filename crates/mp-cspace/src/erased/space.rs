@@ -1,6 +1,6 @@
 //! A space behind a pointer.
 
-use crate::{Metric, Rng, Space, TrueMetric};
+use crate::{Rng, Space, TrueMetric};
 use std::fmt::{self, Debug};
 use std::sync::Arc;
 
@@ -16,6 +16,7 @@ trait Erased<S>: Send + Sync {
     fn contains(&self, q: &S) -> bool;
     fn moved(&self, from: &S, velocity: &[f64], time: f64) -> Option<S>;
     fn velocity_into(&self, from: &S, to: &S, out: &mut [f64]) -> bool;
+    fn with_rotation_of(&self, position: &S, rotation: &S) -> S;
 }
 
 impl<S, C: Space<State = S> + Send> Erased<S> for C {
@@ -23,7 +24,7 @@ impl<S, C: Space<State = S> + Send> Erased<S> for C {
         Space::dim(self)
     }
     fn distance(&self, from: &S, to: &S) -> f64 {
-        Metric::distance(self, from, to)
+        Space::distance(self, from, to)
     }
     fn interpolate_into(&self, from: &S, to: &S, t: f64, out: &mut S) {
         Space::interpolate_into(self, from, to, t, out);
@@ -49,12 +50,15 @@ impl<S, C: Space<State = S> + Send> Erased<S> for C {
     fn velocity_into(&self, from: &S, to: &S, out: &mut [f64]) -> bool {
         Space::velocity_into(self, from, to, out)
     }
+    fn with_rotation_of(&self, position: &S, rotation: &S) -> S {
+        Space::with_rotation_of(self, position, rotation)
+    }
 }
 
 /// Any space whose states are `S`, behind a pointer: the same distances, samples and interpolations, to the bit.
 ///
 /// ```
-/// use mp_cspace::{Manhattan, Metric, Rn, Space, WithMetric, erased::AnySpace};
+/// use mp_cspace::{Manhattan, Rn, Space, WithMetric, erased::AnySpace};
 /// use nalgebra::Vector2;
 /// let (own, manhattan) = (Rn::<2>::new([0.0; 2], [3.0, 4.0])?, Manhattan);
 /// let other = WithMetric::new(own.clone(), manhattan);
@@ -90,15 +94,12 @@ impl<S> Debug for AnySpace<'_, S> {
     }
 }
 
-impl<S> Metric<S> for AnySpace<'_, S> {
+impl<S: Clone + Debug + PartialEq + Send + Sync> Space for AnySpace<'_, S> {
+    type State = S;
     #[inline]
     fn distance(&self, from: &S, to: &S) -> f64 {
         self.space.distance(from, to)
     }
-}
-
-impl<S: Clone + Debug + PartialEq + Send + Sync> Space for AnySpace<'_, S> {
-    type State = S;
 
     fn dim(&self) -> usize {
         self.space.dim()
@@ -134,8 +135,11 @@ impl<S: Clone + Debug + PartialEq + Send + Sync> Space for AnySpace<'_, S> {
     fn velocity_into(&self, from: &S, to: &S, out: &mut [f64]) -> bool {
         self.space.velocity_into(from, to, out)
     }
+    fn with_rotation_of(&self, position: &S, rotation: &S) -> S {
+        self.space.with_rotation_of(position, rotation)
+    }
 }
 
 /// Erases [`TrueMetric`] with the rest: what relies on it is the [index](crate::erased::AnyIndex), and that knows the
 /// space it was made for.
-impl<S> TrueMetric<S> for AnySpace<'_, S> {}
+impl<S> TrueMetric for AnySpace<'_, S> {}

@@ -1,42 +1,12 @@
 //! Rotate-at-s: translation, rotation in place, translation.
 
 use super::{Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach};
-use crate::{
-    KnownFree, MotionValidity, ParameterError, Se2, Se2State, Se3, Space, WithMetric, metric::MetricOn,
-};
-use nalgebra::Isometry3;
-
-/// A space whose states are a position and a rotation.
-pub trait PoseSpace: Space {
-    /// The position of the one state with the rotation of the other.
-    ///
-    /// Contract: interpolation between states of the same rotation does not turn, and between states of the same
-    /// position does not move.
-    fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State;
-}
-
-impl PoseSpace for Se3 {
-    fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State {
-        Isometry3::from_parts(position.translation, rotation.rotation)
-    }
-}
-
-impl PoseSpace for Se2 {
-    fn posed(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
-        Se2State { translation: position.translation, angle: rotation.angle }
-    }
-}
-
-impl<C: PoseSpace, M: MetricOn<C>> PoseSpace for WithMetric<C, M> {
-    fn posed(&self, position: &Self::State, rotation: &Self::State) -> Self::State {
-        self.space().posed(position, rotation)
-    }
-}
+use crate::{KnownFree, MotionValidity, ParameterError, Space};
 
 /// The states where rotate-at-s turns on its way from `from` to `to`: before and after the turn. `at` in \[0, 1\].
-pub fn turn_at<C: PoseSpace>(space: &C, from: &C::State, to: &C::State, at: f64) -> [C::State; 2] {
+pub fn turn_at<C: Space>(space: &C, from: &C::State, to: &C::State, at: f64) -> [C::State; 2] {
     let middle = space.interpolate(from, to, at);
-    [space.posed(&middle, from), space.posed(&middle, to)]
+    [space.with_rotation_of(&middle, from), space.with_rotation_of(&middle, to)]
 }
 
 /// The rotate-at-s local planner (Amato, Bayazit, Dale, Jones and Vallejo 1998, *Choosing good distance metrics
@@ -69,7 +39,7 @@ pub struct RotateAtS<'c, C, M> {
     at: f64,
 }
 
-impl<'c, C: PoseSpace, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
+impl<'c, C: Space, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
     /// Motions in `space` that turn at fraction `at` of the way, checked by `check`.
     ///
     /// # Errors
@@ -111,7 +81,7 @@ impl<'c, C: PoseSpace, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
     }
 }
 
-impl<C: PoseSpace, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS<'_, C, M> {
+impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS<'_, C, M> {
     type Edge = PolylineEdge<C::State>;
     fn extend(
         &mut self,
@@ -154,9 +124,10 @@ mod tests {
     use super::*;
     use crate::testkit::check_local_planner;
     use crate::{
-        Discrete, FineDiscrete, Path, Resolution, Reversible, Rng, Straight, Verify, rotation_angle,
+        Discrete, FineDiscrete, Path, Resolution, Reversible, Rng, Straight, Verify, angle::rotation_angle,
     };
-    use nalgebra::{Point2, Point3, Vector3};
+    use crate::{Se2, Se2State, Se3};
+    use nalgebra::{Isometry3, Point2, Point3, Vector3};
 
     /// A rod of length 1.6 in a box with a wall across that leaves a gap of 0.5.
     fn rod_is_free(q: &Se2State) -> bool {

@@ -1,7 +1,7 @@
 //! An approximate swept volume.
 
-use super::MetricOn;
-use crate::{Metric, Se2, Se2State, Se3, Space, SpaceError};
+use super::Metric;
+use crate::{Linear, Se2, Se2State, Se3, Space, SpaceError};
 use nalgebra::{Isometry3, Point3, Vector3};
 
 /// About how much volume (m³) a rigid body sweeps on the straight way from one pose to another, beyond its own:
@@ -52,8 +52,8 @@ impl SweptVolume {
     }
 }
 
-impl Metric<Isometry3<f64>> for SweptVolume {
-    fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+impl SweptVolume {
+    fn swept(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let [ra, rb] = [from, to].map(|q| *q.rotation.to_rotation_matrix().matrix());
         let shift = to.translation.vector - from.translation.vector;
         let swept = self.panels.iter().map(|(center, normal)| {
@@ -64,26 +64,24 @@ impl Metric<Isometry3<f64>> for SweptVolume {
     }
 }
 
-impl Metric<Se2State> for SweptVolume {
-    fn distance(&self, from: &Se2State, to: &Se2State) -> f64 {
-        self.distance(&from.to_isometry3(0.0), &to.to_isometry3(0.0))
-    }
-}
+impl Metric<Se3> for SweptVolume {
+    type Nn = Linear;
 
-impl MetricOn<Se3> for SweptVolume {
-    fn distance_on(&self, _: &Se3, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
-        self.distance(from, to)
+    fn distance(&self, _: &Se3, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        self.swept(from, to)
     }
-    fn extent_on(&self, space: &Se3) -> f64 {
+    fn extent(&self, space: &Se3) -> f64 {
         self.most(space.translations().extent())
     }
 }
 
-impl MetricOn<Se2> for SweptVolume {
-    fn distance_on(&self, _: &Se2, from: &Se2State, to: &Se2State) -> f64 {
-        self.distance(from, to)
+impl Metric<Se2> for SweptVolume {
+    type Nn = Linear;
+
+    fn distance(&self, _: &Se2, from: &Se2State, to: &Se2State) -> f64 {
+        self.swept(&from.to_isometry3(0.0), &to.to_isometry3(0.0))
     }
-    fn extent_on(&self, space: &Se2) -> f64 {
+    fn extent(&self, space: &Se2) -> f64 {
         self.most(space.translations().extent())
     }
 }
@@ -124,8 +122,8 @@ mod tests {
             [([2.0, 0.0, 0.0], 12.0), ([0.0, -1.0, 0.0], 3.0), ([1.0, 1.0, 1.0], 6.0 + 3.0 + 2.0)]
         {
             let to = Isometry3::translation(way[0], way[1], way[2]);
-            assert!((swept.distance(&from, &to) - volume).abs() < 1e-12);
-            assert!((swept.distance(&to, &from) - volume).abs() < 1e-12);
+            assert!((swept.swept(&from, &to) - volume).abs() < 1e-12);
+            assert!((swept.swept(&to, &from) - volume).abs() < 1e-12);
         }
     }
 
@@ -135,13 +133,13 @@ mod tests {
         let swept = SweptVolume::new(sides(Vector3::new(2.0, 1e-3, 0.5), 40)).unwrap();
         let (a, b) = (Se2State::new(3.0, 1.0, 0.4), Se2State::new(3.0, 1.0, 0.4 + 0.2));
         let sectors = 0.5 * 0.2 * 1.0_f64.powi(2) * 2.0 * 0.5;
-        let found = swept.distance(&a, &b);
+        let found = swept.swept(&a.to_isometry3(0.0), &b.to_isometry3(0.0));
         assert!((found / sectors - 1.0).abs() < 0.02, "{found} {sectors}");
         // About its own axis next to nothing.
         let roll = Isometry3::rotation(Vector3::x() * FRAC_PI_2);
-        assert!(swept.distance(&Isometry3::identity(), &roll) < 0.5);
+        assert!(swept.swept(&Isometry3::identity(), &roll) < 0.5);
         let yaw = Isometry3::rotation(Vector3::z() * FRAC_PI_2);
-        assert!(swept.distance(&Isometry3::identity(), &yaw) > 0.3);
+        assert!(swept.swept(&Isometry3::identity(), &yaw) > 0.3);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::discrete::bit_reversed;
 use crate::{
-    Clearance, IntervalClearance, KnownFree, MotionBound, MotionCheck, MotionInterval, MotionValidity,
+    IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
     ParameterError, Space,
 };
 use std::collections::VecDeque;
@@ -18,13 +18,13 @@ use std::collections::VecDeque;
 /// With `margin = tolerance / 2`:
 /// - a motion found free has clearance at least `margin` **all along it**, so an independent
 ///   verifier that asks for less always agrees;
-/// - a motion whose clearance (as [`Clearance`] bounds it) is at least `tolerance` all along is
+/// - a motion whose clearance (as [`Clearance`](crate::Clearance) bounds it) is at least `tolerance` all along is
 ///   found free;
 /// - what is between may be [`Undecided`](MotionCheck::Unproven), which planners treat as a
 ///   collision.
 ///
 /// Contact is looked for first, at the end, and at some places between where [that is
-/// cheap](Clearance::contact_first). At most `4·L / tolerance + 2` intervals are asked about. As distances cost the more the farther
+/// cheap](MotionClearance::contact_first). At most `4·L / tolerance + 2` intervals are asked about. As distances cost the more the farther
 /// they reach, no interval is longer than twice the [stride](Certified::with_stride).
 ///
 /// The idea is conservative advancement (Mirtich 1996), bisected as in Schwarzer, Saha and
@@ -49,7 +49,7 @@ const ROUNDING: f64 = 1e-15;
 impl<'c, C, V> Certified<'c, C, V>
 where
     C: Space,
-    V: Clearance<C::State> + MotionBound<C::State>,
+    V: MotionClearance<C::State>,
 {
     /// Certifies motions in `space` to `tolerance` metres, by strides of 2% of its extent.
     ///
@@ -159,7 +159,7 @@ where
 impl<C, V> MotionValidity<C::State> for Certified<'_, C, V>
 where
     C: Space,
-    V: Clearance<C::State> + MotionBound<C::State>,
+    V: MotionClearance<C::State>,
 {
     fn check_motion(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
         self.check_extension(from, to, KnownFree::Neither)
@@ -191,6 +191,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Clearance;
     use crate::{Rn, Rng};
     use nalgebra::Vector2;
     use rand::RngExt;
@@ -228,7 +229,7 @@ mod tests {
             self.exact(q) <= 0.0
         }
     }
-    impl MotionBound<Vector2<f64>> for Discs {
+    impl MotionClearance<Vector2<f64>> for Discs {
         fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
             (to - from).norm()
         }
@@ -239,6 +240,11 @@ mod tests {
     impl Clearance<Vector2<f64>> for Swept {
         fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
             self.0.clearance(q, enough)
+        }
+    }
+    impl MotionClearance<Vector2<f64>> for Swept {
+        fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+            self.0.motion_bound(from, to)
         }
         fn interval_clearance(&mut self, interval: &MotionInterval<'_, Vector2<f64>>) -> IntervalClearance {
             self.0.asked.set(self.0.asked.get() + 1);
@@ -257,11 +263,6 @@ mod tests {
         }
         fn contact_first(&self) -> bool {
             self.0.discs.len() == 2
-        }
-    }
-    impl MotionBound<Vector2<f64>> for Swept {
-        fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
-            self.0.motion_bound(from, to)
         }
     }
 
@@ -336,7 +337,7 @@ mod tests {
                 self.0.exact(q).max(0.0)
             }
         }
-        impl MotionBound<Vector2<f64>> for Generous {
+        impl MotionClearance<Vector2<f64>> for Generous {
             fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
                 self.0.motion_bound(from, to)
             }
@@ -365,6 +366,11 @@ mod tests {
             fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
                 self.0.clearance(q, enough)
             }
+        }
+        impl MotionClearance<Vector2<f64>> for Parts {
+            fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+                self.0.motion_bound(from, to)
+            }
             fn interval_clearance(
                 &mut self,
                 interval: &MotionInterval<'_, Vector2<f64>>,
@@ -378,11 +384,6 @@ mod tests {
                     }
                     other => other,
                 }
-            }
-        }
-        impl MotionBound<Vector2<f64>> for Parts {
-            fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
-                self.0.motion_bound(from, to)
             }
         }
         let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0]).unwrap();
@@ -414,7 +415,7 @@ mod tests {
                 ((q.x - 0.3).abs() - self.0 / 2.0).max(0.0)
             }
         }
-        impl MotionBound<Vector2<f64>> for Wall {
+        impl MotionClearance<Vector2<f64>> for Wall {
             fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
                 (to - from).norm()
             }

@@ -15,16 +15,15 @@ mod kd;
 mod leaf;
 mod linear;
 mod metric_tree;
-mod metrics;
 mod node;
 mod spaces;
 
-pub use embed::{Embed, EmbedFactors, Layout};
+pub use crate::layout::Layout;
+pub use embed::Embed;
 pub use growth::grow;
 pub use kd::KdTree;
 pub use linear::Linear;
 pub use metric_tree::MetricTree;
-pub use metrics::NnOn;
 
 use crate::Space;
 

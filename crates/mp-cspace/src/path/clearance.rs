@@ -1,7 +1,7 @@
 //! The least clearance along a path, to a given accuracy.
 
 use super::Path;
-use crate::{Clearance, MotionBound, Space};
+use crate::{MotionClearance, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -72,7 +72,7 @@ pub fn least_clearance<C, V>(
 ) -> Option<Tightest>
 where
     C: Space,
-    V: Clearance<C::State> + MotionBound<C::State>,
+    V: MotionClearance<C::State>,
 {
     let edges = path.states.len().checked_sub(1)?;
     // Of the states exactly; first of all, as the search starts from the tightest of them.
@@ -116,6 +116,7 @@ where
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Clearance;
     use crate::Rn;
     use nalgebra::Vector2;
 
@@ -127,7 +128,7 @@ mod tests {
             (q.norm() - 1.0).min(enough)
         }
     }
-    impl MotionBound<Vector2<f64>> for Disc {
+    impl MotionClearance<Vector2<f64>> for Disc {
         fn motion_bound(&self, a: &Vector2<f64>, b: &Vector2<f64>) -> f64 {
             (b - a).norm()
         }

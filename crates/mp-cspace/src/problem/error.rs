@@ -1,6 +1,5 @@
 //! Bad input, refused before planning begins.
 
-use crate::inputs::InputError;
 use crate::{MotionCheck, ParameterError};
 use std::fmt;
 
@@ -103,8 +102,11 @@ pub enum BuildError {
         range: String,
     },
     /// The planner moves by a set of inputs, and there is something wrong with them.
-    #[error(transparent)]
-    Inputs(#[from] InputError),
+    #[error("{reason}")]
+    Inputs {
+        /// What is wrong.
+        reason: String,
+    },
     /// A parameter of a motion check or verifier is out of its range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),

@@ -2,20 +2,18 @@
 
 mod error;
 mod goals;
-mod settings;
 mod step;
 mod verify;
 mod workers;
 
 pub use error::{BuildError, Endpoint};
 pub use goals::Goals;
-pub use settings::{Demand, Parameter, PlannerInfo, Settings, closest};
 pub use step::Step;
 pub use verify::Verify;
 pub use workers::Workers;
 
 use crate::erased::{AnyGeometry, AnyGradient, AnySpace, AnyStraight};
-use crate::{LocalPlanner, ObstacleHints, Space};
+use crate::{LocalPlanner, Space, obstacles::ObstacleHints};
 use std::fmt;
 
 /// A space, the local planner that moves in it, the verifier of finished paths, a start and

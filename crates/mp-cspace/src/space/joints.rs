@@ -1,8 +1,8 @@
 //! Joints: intervals and circles side by side.
 
-use super::so2::{angle_at, angle_lerp, arc};
-use super::{Factored, Metric, Space, TrueMetric, lerp, scale};
-use crate::{Rng, SpaceError};
+use super::{Factored, Space, TrueMetric, lerp, scale};
+use crate::angle::{angle_at, angle_difference, angle_lerp, wrap_angle};
+use crate::{Rng, SpaceError, nn::Layout};
 use nalgebra::{DVector, SVector};
 use rand::RngExt;
 use std::f64::consts::PI;
@@ -74,6 +74,13 @@ impl JointRange {
         }
     }
 
+    fn layout(self) -> Layout {
+        match self {
+            Self::Interval { .. } => Layout::euclidean(1),
+            Self::Circle => Layout::angles(1),
+        }
+    }
+
     fn extent(self) -> f64 {
         match self {
             Self::Interval { low, high } => high - low,
@@ -86,10 +93,11 @@ impl JointRange {
 /// circles that of the shorter arc. Radians and metres count alike; a
 /// [`ScaledEuclidean`](crate::ScaledEuclidean) weighs them.
 ///
-/// Where all joints are intervals this is [`Rn`](crate::Rn), where all are circles [`Torus`](crate::Torus).
+/// With `DVector<f64>` as states the number of joints is known at run time. Where all joints are intervals and their
+/// number is known when compiling, [`Rn`](crate::Rn) is the same space, and faster.
 ///
 /// ```
-/// use mp_cspace::{JointRange, Joints, Metric, Space};
+/// use mp_cspace::{JointRange, Joints, Space};
 /// use nalgebra::Vector2;
 /// let lift = JointRange::Interval { low: 0.0, high: 0.5 };
 /// let space = Joints::<Vector2<f64>>::new([lift, JointRange::Circle])?;
@@ -129,6 +137,34 @@ impl<Q: Coordinates> Joints<Q> {
         Ok(Self { ranges, straight, extent })
     }
 
+    /// A box of R^n: every joint an interval.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and when the bounds differ in number.
+    ///
+    /// ```
+    /// use mp_cspace::{Joints, Space};
+    /// use nalgebra::DVector;
+    /// let space = Joints::<DVector<f64>>::intervals(&[0.0; 7], &[1.0; 7])?;
+    /// assert_eq!(space.dim(), 7);
+    /// # Ok::<(), mp_cspace::SpaceError>(())
+    /// ```
+    pub fn intervals(low: &[f64], high: &[f64]) -> Result<Self, SpaceError> {
+        if low.len() != high.len() {
+            return Err(SpaceError::Count { what: "upper bounds", expected: low.len(), found: high.len() });
+        }
+        let range = |(&low, &high)| JointRange::Interval { low, high };
+        Self::new(low.iter().zip(high).map(range).collect::<Vec<_>>())
+    }
+
+    /// The torus of `count` angles: the space of an arm of unlimited revolute joints. One angle is SO(2).
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn circles(count: usize) -> Result<Self, SpaceError> {
+        Self::new(vec![JointRange::Circle; count])
+    }
+
     /// What each joint can do.
     #[must_use]
     pub fn ranges(&self) -> &[JointRange] {
@@ -140,7 +176,7 @@ impl<Q: Coordinates> Joints<Q> {
     pub fn wrapped(&self, q: &Q) -> Q {
         let q = q.as_slice();
         Q::from_fn(q.len(), |i| match self.ranges.get(i) {
-            Some(JointRange::Circle) => super::wrap_angle(q[i]),
+            Some(JointRange::Circle) => wrap_angle(q[i]),
             _ => q[i],
         })
     }
@@ -149,7 +185,7 @@ impl<Q: Coordinates> Joints<Q> {
     #[inline]
     fn way(&self, i: usize, from: f64, to: f64) -> f64 {
         let d = to - from;
-        if d.abs() <= self.straight.as_slice()[i] { d } else { arc(from, to) }
+        if d.abs() <= self.straight.as_slice()[i] { d } else { angle_difference(from, to) }
     }
 
     fn state(&self, mut u: impl FnMut(usize) -> f64) -> Q {
@@ -157,6 +193,15 @@ impl<Q: Coordinates> Joints<Q> {
             JointRange::Interval { low, high } => scale(low, high, u(i)),
             JointRange::Circle => angle_at(u(i)),
         })
+    }
+
+    /// The coordinate of joint `i` that an index searches by.
+    #[inline]
+    pub(crate) fn coordinate(&self, i: usize, x: f64) -> f64 {
+        match self.ranges[i] {
+            JointRange::Interval { .. } => x,
+            JointRange::Circle => wrap_angle(x),
+        }
     }
 
     #[inline]
@@ -168,18 +213,16 @@ impl<Q: Coordinates> Joints<Q> {
     }
 }
 
-impl<Q: Coordinates> Metric<Q> for Joints<Q> {
+impl<Q: Coordinates> TrueMetric for Joints<Q> {}
+
+impl<Q: Coordinates> Space for Joints<Q> {
+    type State = Q;
     #[inline]
     fn distance(&self, from: &Q, to: &Q) -> f64 {
         let (from, to) = (from.as_slice(), to.as_slice());
         let count = self.ranges.len().min(from.len()).min(to.len());
         (0..count).map(|i| self.way(i, from[i], to[i])).map(|d| d * d).sum::<f64>().sqrt()
     }
-}
-impl<Q: Coordinates> TrueMetric<Q> for Joints<Q> {}
-
-impl<Q: Coordinates> Space for Joints<Q> {
-    type State = Q;
 
     #[inline]
     fn dim(&self) -> usize {
@@ -252,5 +295,13 @@ impl<Q: Coordinates> Factored for Joints<Q> {
         {
             *o = self.joint_between(factor, *a, *b, t);
         }
+    }
+    fn factor_layouts(&self) -> Vec<Layout> {
+        self.ranges.iter().map(|range| range.layout()).collect()
+    }
+    #[inline]
+    fn embed_factors(&self, state: &Q, put: &mut impl FnMut(usize, f64)) {
+        let n = self.ranges.len();
+        state.as_slice().iter().take(n).enumerate().for_each(|(i, x)| put(i, self.coordinate(i, *x)));
     }
 }

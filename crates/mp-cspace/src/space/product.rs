@@ -1,7 +1,7 @@
 //! Products of two spaces; nest them for more.
 
-use super::{Factored, Metric, Rn, RnDyn, Space, TrueMetric};
-use crate::{Rng, SpaceError, error::weight};
+use super::{Factored, Joints, Rn, Space, TrueMetric};
+use crate::{Rng, SpaceError, error::weight, nn::Layout};
 use nalgebra::{DVector, SVector};
 
 /// The product of two spaces, states being pairs.
@@ -9,11 +9,13 @@ use nalgebra::{DVector, SVector};
 /// Distance: `√((wa·da)² + (wb·db)²)`.
 ///
 /// ```
-/// use mp_cspace::{Metric, Product, Rn, So2, Space};
+/// use mp_cspace::{Joints, Product, Rn, Space};
+/// use nalgebra::Vector1;
 /// // A planar body on a rail: metres and radians, a radian counting as 0.3 m.
-/// let space = Product::new(Rn::<1>::new([0.0], [2.0])?, 1.0, So2, 0.3)?;
+/// let rail = Rn::<1>::new([0.0], [2.0])?;
+/// let space = Product::new(rail, 1.0, Joints::<Vector1<f64>>::circles(1)?, 0.3)?;
 /// assert_eq!(space.dim(), 2);
-/// assert_eq!(space.distance(&([0.0].into(), 0.0), &([0.4].into(), 1.0)), 0.5);
+/// assert_eq!(space.distance(&([0.0].into(), [0.0].into()), &([0.4].into(), [1.0].into())), 0.5);
 /// # Ok::<(), mp_cspace::SpaceError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +62,7 @@ impl<A: Space, const N: usize> Product<A, Rn<N>> {
     /// counts as much as that between two positions; [`new`](Self::new) takes weights of your own.
     ///
     /// ```
-    /// use mp_cspace::{Metric, Product, Se2, Space};
+    /// use mp_cspace::{Product, Se2, Space};
     /// let space = Product::with_velocity(Se2::new([0.0; 2], [4.0, 3.0])?, [1.0, 1.0, 2.0])?;
     /// assert_eq!(space.dim(), 6);
     /// assert!(Product::with_velocity(Se2::new([0.0; 2], [4.0, 3.0])?, [1.0, 1.0]).is_err());
@@ -78,15 +80,15 @@ impl<A: Space, const N: usize> Product<A, Rn<N>> {
     }
 }
 
-impl<A: Space> Product<A, RnDyn> {
+impl<A: Space> Product<A, Joints<DVector<f64>>> {
     /// As [`with_velocity`](Product::with_velocity), the number of degrees of freedom known at run time.
     ///
     /// # Errors
     /// As there.
     pub fn with_velocity_dyn(positions: A, limits: &[f64]) -> Result<Self, SpaceError> {
         check_limits(&positions, limits)?;
-        let limits = DVector::from_column_slice(limits);
-        let velocities = RnDyn::new(-&limits, limits)?;
+        let low: Vec<f64> = limits.iter().map(|limit| -limit).collect();
+        let velocities = Joints::intervals(&low, limits)?;
         let weight = positions.extent() / velocities.extent();
         Self::new(positions, 1.0, velocities, weight)
     }
@@ -100,21 +102,19 @@ fn check_limits<A: Space>(positions: &A, limits: &[f64]) -> Result<(), SpaceErro
     limits.iter().try_for_each(|&limit| weight("the limit of a velocity", limit).map(drop))
 }
 
-impl<A: Space, B: Space> Metric<(A::State, B::State)> for Product<A, B> {
-    #[inline]
-    fn distance(&self, from: &(A::State, B::State), to: &(A::State, B::State)) -> f64 {
-        self.norm(self.a.distance(&from.0, &to.0), self.b.distance(&from.1, &to.1))
-    }
-}
-impl<A, B> TrueMetric<(A::State, B::State)> for Product<A, B>
+impl<A, B> TrueMetric for Product<A, B>
 where
-    A: Space + TrueMetric<A::State>,
-    B: Space + TrueMetric<B::State>,
+    A: TrueMetric,
+    B: TrueMetric,
 {
 }
 
 impl<A: Space, B: Space> Space for Product<A, B> {
     type State = (A::State, B::State);
+    #[inline]
+    fn distance(&self, from: &(A::State, B::State), to: &(A::State, B::State)) -> f64 {
+        self.norm(self.a.distance(&from.0, &to.0), self.b.distance(&from.1, &to.1))
+    }
 
     #[inline]
     fn dim(&self) -> usize {
@@ -188,5 +188,18 @@ impl<A: Factored, B: Factored> Factored for Product<A, B> {
             None => self.a.interpolate_factor(factor, &from.0, &to.0, t, &mut out.0),
             Some(rest) => self.b.interpolate_factor(rest, &from.1, &to.1, t, &mut out.1),
         }
+    }
+    fn factor_layouts(&self) -> Vec<Layout> {
+        let (a, b) = self.spaces();
+        [a.factor_layouts(), b.factor_layouts()].concat()
+    }
+    #[inline]
+    fn embed_factors(&self, state: &(A::State, B::State), put: &mut impl FnMut(usize, f64)) {
+        let (a, b) = self.spaces();
+        let first = a.factors();
+        a.embed_factors(&state.0, put);
+        // A plain reference to `put` would make the type grow with every nesting.
+        let put: &mut dyn FnMut(usize, f64) = put;
+        b.embed_factors(&state.1, &mut |i, x| put(first + i, x));
     }
 }

@@ -1,14 +1,14 @@
 //! R^n, the dimension known at compile time.
 
-use super::{Factored, Metric, Space, TrueMetric, ellipsoid, lerp, scale};
-use crate::{Rng, SpaceError, error::diagonal};
+use super::{Factored, Space, TrueMetric, ellipsoid, lerp, scale};
+use crate::{Rng, SpaceError, error::diagonal, nn::Layout};
 use nalgebra::SVector;
 use rand::RngExt;
 
 /// A box of R^N with the Euclidean metric.
 ///
 /// ```
-/// use mp_cspace::{Metric, Rn, Space};
+/// use mp_cspace::{Rn, Space};
 /// let square = Rn::<2>::new([0.0, 0.0], [3.0, 4.0])?;
 /// assert_eq!(square.extent(), 5.0);
 /// let (a, b) = ([0.0, 0.0].into(), [3.0, 0.0].into());
@@ -50,7 +50,10 @@ impl<const N: usize> Rn<N> {
     }
 }
 
-impl<const N: usize> Metric<SVector<f64, N>> for Rn<N> {
+impl<const N: usize> TrueMetric for Rn<N> {}
+
+impl<const N: usize> Space for Rn<N> {
+    type State = SVector<f64, N>;
     #[inline]
     fn distance(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> f64 {
         let mut sum = 0.0;
@@ -60,11 +63,6 @@ impl<const N: usize> Metric<SVector<f64, N>> for Rn<N> {
         }
         sum.sqrt()
     }
-}
-impl<const N: usize> TrueMetric<SVector<f64, N>> for Rn<N> {}
-
-impl<const N: usize> Space for Rn<N> {
-    type State = SVector<f64, N>;
 
     #[inline]
     fn dim(&self) -> usize {
@@ -143,5 +141,12 @@ impl<const N: usize> Factored for Rn<N> {
         if factor < N {
             out[factor] = lerp(from[factor], to[factor], t);
         }
+    }
+    fn factor_layouts(&self) -> Vec<Layout> {
+        vec![Layout::euclidean(1); N]
+    }
+    #[inline]
+    fn embed_factors(&self, state: &SVector<f64, N>, put: &mut impl FnMut(usize, f64)) {
+        (0..).zip(state.iter()).for_each(|(i, &x)| put(i, x));
     }
 }

@@ -1,8 +1,8 @@
 //! SE(2): poses in the plane.
 
-use super::so2::{So2, angle_at, angle_lerp, arc};
-use super::{Factored, Metric, Rn, Space, TrueMetric};
-use crate::{Rng, SpaceError, error::weight};
+use super::{Factored, Rn, Space, TrueMetric};
+use crate::angle::{angle_at, angle_difference, angle_lerp, wrap_angle};
+use crate::{Rng, SpaceError, error::weight, nn::Layout};
 use nalgebra::{Isometry2, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 use rand::RngExt;
 use std::f64::consts::PI;
@@ -21,7 +21,7 @@ impl Se2State {
     /// The pose at (`x`, `y`) metres turned by `angle` radians, wrapped to (-π, π].
     #[must_use]
     pub fn new(x: f64, y: f64, angle: f64) -> Self {
-        Self { translation: Vector2::new(x, y), angle: super::wrap_angle(angle) }
+        Self { translation: Vector2::new(x, y), angle: wrap_angle(angle) }
     }
 
     /// Where the pose puts a point of the body.
@@ -92,17 +92,15 @@ impl Se2 {
     }
 }
 
-impl Metric<Se2State> for Se2 {
-    #[inline]
-    fn distance(&self, from: &Se2State, to: &Se2State) -> f64 {
-        self.translations.distance(&from.translation, &to.translation)
-            + self.rotation_weight * arc(from.angle, to.angle).abs()
-    }
-}
-impl TrueMetric<Se2State> for Se2 {}
+impl TrueMetric for Se2 {}
 
 impl Space for Se2 {
     type State = Se2State;
+    #[inline]
+    fn distance(&self, from: &Se2State, to: &Se2State) -> f64 {
+        self.translations.distance(&from.translation, &to.translation)
+            + self.rotation_weight * angle_difference(from.angle, to.angle).abs()
+    }
 
     #[inline]
     fn dim(&self) -> usize {
@@ -130,6 +128,10 @@ impl Space for Se2 {
         self.translations.contains(&q.translation) && -PI < q.angle && q.angle <= PI
     }
     #[inline]
+    fn with_rotation_of(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
+        Se2State { translation: position.translation, angle: rotation.angle }
+    }
+    #[inline]
     fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
         let &[x, y, turn] = velocity else { return None };
         let to = from.translation + Vector2::new(x, y) * time;
@@ -139,7 +141,8 @@ impl Space for Se2 {
     fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
         let [x, y, turn] = out else { return false };
         (*x, *y) = (to.translation.x - from.translation.x, to.translation.y - from.translation.y);
-        So2.velocity_into(&from.angle, &to.angle, std::slice::from_mut(turn))
+        *turn = angle_difference(from.angle, to.angle);
+        true
     }
 }
 
@@ -151,7 +154,7 @@ impl Factored for Se2 {
     #[inline]
     fn each_factor(&self, from: &Se2State, to: &Se2State, f: &mut impl FnMut(usize, f64)) {
         self.translations.each_factor(&from.translation, &to.translation, f);
-        f(2, arc(from.angle, to.angle).abs());
+        f(2, angle_difference(from.angle, to.angle).abs());
     }
     fn factor_extent(&self, factor: usize) -> f64 {
         if factor == 2 { PI } else { self.translations.factor_extent(factor) }
@@ -163,6 +166,15 @@ impl Factored for Se2 {
             let (a, b) = (&from.translation, &to.translation);
             self.translations.interpolate_factor(factor, a, b, t, &mut out.translation);
         }
+    }
+    fn factor_layouts(&self) -> Vec<Layout> {
+        vec![Layout::euclidean(1), Layout::euclidean(1), Layout::angles(1)]
+    }
+    #[inline]
+    fn embed_factors(&self, state: &Se2State, put: &mut impl FnMut(usize, f64)) {
+        put(0, state.translation.x);
+        put(1, state.translation.y);
+        put(2, wrap_angle(state.angle));
     }
 }
 

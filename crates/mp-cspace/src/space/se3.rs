@@ -1,8 +1,9 @@
 //! SE(3): poses in space.
 
-use super::so3::{is_unit, rotation_angle, rotation_at, slerp, turn, turned};
-use super::{Factored, Metric, Rn, Space, TrueMetric};
-use crate::{Rng, SpaceError, error::weight};
+use super::so3::{is_unit, rotation_at, turn, turned, twice};
+use super::{Factored, Rn, Space, TrueMetric};
+use crate::angle::{rotation_angle, slerp};
+use crate::{Rng, SpaceError, error::weight, nn::Layout};
 use nalgebra::{Isometry3, Vector3};
 use rand::RngExt;
 use std::f64::consts::PI;
@@ -14,7 +15,7 @@ use std::f64::consts::PI;
 /// turns the body about a fixed axis, both at constant speed.
 ///
 /// ```
-/// use mp_cspace::{Metric, Se3, Space};
+/// use mp_cspace::{Se3, Space};
 /// use nalgebra::{Isometry3, Vector3};
 /// let space = Se3::new([-1.0; 3], [1.0; 3])?;
 /// let a = Isometry3::identity();
@@ -60,17 +61,15 @@ impl Se3 {
     }
 }
 
-impl Metric<Isometry3<f64>> for Se3 {
+impl TrueMetric for Se3 {}
+
+impl Space for Se3 {
+    type State = Isometry3<f64>;
     #[inline]
     fn distance(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         self.translations.distance(&from.translation.vector, &to.translation.vector)
             + self.rotation_weight * rotation_angle(&from.rotation, &to.rotation)
     }
-}
-impl TrueMetric<Isometry3<f64>> for Se3 {}
-
-impl Space for Se3 {
-    type State = Isometry3<f64>;
 
     #[inline]
     fn dim(&self) -> usize {
@@ -100,6 +99,10 @@ impl Space for Se3 {
     #[inline]
     fn contains(&self, q: &Self::State) -> bool {
         self.translations.contains(&q.translation.vector) && is_unit(&q.rotation)
+    }
+    #[inline]
+    fn with_rotation_of(&self, position: &Isometry3<f64>, rotation: &Isometry3<f64>) -> Isometry3<f64> {
+        Isometry3::from_parts(position.translation, rotation.rotation)
     }
     #[inline]
     fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
@@ -146,5 +149,13 @@ impl Factored for Se3 {
             let (a, b) = (&from.translation.vector, &to.translation.vector);
             self.translations.interpolate_factor(factor, a, b, t, &mut out.translation.vector);
         }
+    }
+    fn factor_layouts(&self) -> Vec<Layout> {
+        vec![Layout::euclidean(1), Layout::euclidean(1), Layout::euclidean(1), Layout::antipodal(4)]
+    }
+    #[inline]
+    fn embed_factors(&self, state: &Isometry3<f64>, put: &mut impl FnMut(usize, f64)) {
+        (0..).zip(state.translation.vector.iter()).for_each(|(i, &x)| put(i, x));
+        twice(&state.rotation).into_iter().for_each(|x| put(3, x));
     }
 }

@@ -1,8 +1,9 @@
 //! SO(3): spatial rotations as unit quaternions.
 
-use super::{Factored, Metric, Space, TrueMetric};
-use crate::Rng;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
+use super::{Factored, Space, TrueMetric};
+use crate::angle::{rotation_angle, slerp};
+use crate::{Rng, nn::Layout};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::RngExt;
 use std::f64::consts::{PI, TAU};
 
@@ -11,57 +12,6 @@ use std::f64::consts::{PI, TAU};
 /// fixed axis by the shorter way (Shoemake 1985, *Animating rotation with quaternion curves*).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct So3;
-
-/// `b` or `-b`, whichever is nearer to `a`.
-#[inline]
-fn nearer(a: &Vector4<f64>, b: &Vector4<f64>) -> Vector4<f64> {
-    if a.dot(b) < 0.0 { -b } else { *b }
-}
-
-/// Half the chord between two unit vectors at most a right angle apart: the sine of half their
-/// angle.
-#[inline]
-fn half_chord(a: &Vector4<f64>, b: &Vector4<f64>) -> f64 {
-    ((a - b).norm() * 0.5).min(std::f64::consts::FRAC_1_SQRT_2)
-}
-
-/// The angle (rad, in \[0, π\]) of the rotation from `a` to `b`.
-///
-/// Computed from the chord between the quaternions, `4·asin(|a ∓ b| / 2)`, whose argument stays
-/// below √½: accurate to a few units in the last place at every angle, where the arc cosine of
-/// the dot product loses half the digits near zero.
-#[inline]
-#[must_use]
-pub fn rotation_angle(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
-    let (a, b) = (&a.as_ref().coords, &b.as_ref().coords);
-    (4.0 * half_chord(a, &nearer(a, b)).asin()).min(PI)
-}
-
-/// The rotation at fraction `t` along the shorter turn from `a` to `b`; exact at both ends, and
-/// the same rotation seen from either end.
-#[inline]
-#[must_use]
-pub fn slerp(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>, t: f64) -> UnitQuaternion<f64> {
-    if t <= 0.0 {
-        return *a;
-    }
-    if t >= 1.0 {
-        return *b;
-    }
-    let (va, vb) = (&a.as_ref().coords, &b.as_ref().coords);
-    let vb = nearer(va, vb);
-    // The angle between the quaternions, half that of the rotation: at most a right angle, so
-    // its sine is well away from zero unless the angle itself is.
-    let angle = 2.0 * half_chord(va, &vb).asin();
-    let sine = angle.sin();
-    if sine < 1e-150 {
-        return *a;
-    }
-    let q = (va * (angle * (1.0 - t)).sin() + vb * (angle * t).sin()) / sine;
-    // One Newton step toward unit length, so that errors do not add up along a path.
-    let q = q * (1.5 - 0.5 * q.norm_squared());
-    UnitQuaternion::new_unchecked(Quaternion::from(q))
-}
 
 /// `q` turned by the rotation vector `turn` (rad, in the world).
 #[inline]
@@ -98,16 +48,22 @@ pub(crate) fn is_unit(q: &UnitQuaternion<f64>) -> bool {
     (q.as_ref().coords.norm_squared() - 1.0).abs() < 1e-9
 }
 
-impl Metric<UnitQuaternion<f64>> for So3 {
+/// Twice the quaternion, its scalar part not negative: twice the chord is at most the angle.
+#[inline]
+pub(crate) fn twice(rotation: &UnitQuaternion<f64>) -> [f64; 4] {
+    let q = &rotation.as_ref().coords;
+    let factor = 2.0_f64.copysign(q.w);
+    [q.x * factor, q.y * factor, q.z * factor, q.w * factor]
+}
+
+impl TrueMetric for So3 {}
+
+impl Space for So3 {
+    type State = UnitQuaternion<f64>;
     #[inline]
     fn distance(&self, from: &UnitQuaternion<f64>, to: &UnitQuaternion<f64>) -> f64 {
         rotation_angle(from, to)
     }
-}
-impl TrueMetric<UnitQuaternion<f64>> for So3 {}
-
-impl Space for So3 {
-    type State = UnitQuaternion<f64>;
 
     #[inline]
     fn dim(&self) -> usize {
@@ -170,6 +126,13 @@ impl Factored for So3 {
         if factor == 0 {
             *out = slerp(from, to, t);
         }
+    }
+    fn factor_layouts(&self) -> Vec<Layout> {
+        vec![Layout::antipodal(4)]
+    }
+    #[inline]
+    fn embed_factors(&self, state: &UnitQuaternion<f64>, put: &mut impl FnMut(usize, f64)) {
+        twice(state).into_iter().for_each(|x| put(0, x));
     }
 }
 

@@ -1,6 +1,6 @@
 //! Axioms of clearance gradients.
 
-use crate::{ClearanceGradient, Rng, Space};
+use crate::{Rng, Space, obstacles::ClearanceGradient};
 use rand::RngExt;
 
 /// Checks a [`ClearanceGradient`] on `samples` random free states, `reach` (m) being what is asked: answers are

@@ -1,19 +1,18 @@
 //! Axioms of metrics.
 
-use crate::{Metric, TrueMetric};
-use std::fmt::Debug;
+use crate::{Space, TrueMetric};
 
-/// Checks a [`Metric`] on every pair of `states`: distances are finite and not negative, and zero
+/// Checks the distance of a space on every pair of `states`: distances are finite and not negative, and zero
 /// from a state to itself.
 ///
 /// # Panics
 /// When an axiom is violated, naming it.
-pub fn check_metric<S: Debug>(metric: &impl Metric<S>, states: &[S]) {
+pub fn check_metric<C: Space>(space: &C, states: &[C::State]) {
     for a in states {
-        let own = metric.distance(a, a);
+        let own = space.distance(a, a);
         assert!(own == 0.0, "metric: distance(a, a) = 0 violated: {own} for a = {a:?}");
         for b in states {
-            let d = metric.distance(a, b);
+            let d = space.distance(a, b);
             assert!(
                 d.is_finite() && d >= 0.0,
                 "metric: distances are finite and not negative, violated: {d}\n  from {a:?}\n  to   {b:?}"
@@ -22,15 +21,15 @@ pub fn check_metric<S: Debug>(metric: &impl Metric<S>, states: &[S]) {
     }
 }
 
-/// Checks a [`TrueMetric`] on every triple of `states`: symmetry and the triangle inequality, to
+/// Checks that of a [`TrueMetric`] on every triple of `states`: symmetry and the triangle inequality, to
 /// `tolerance` relative to the greatest distance.
 ///
 /// # Panics
 /// When an axiom is violated, naming it.
-pub fn check_true_metric<S: Debug>(metric: &impl TrueMetric<S>, states: &[S], tolerance: f64) {
-    check_metric(metric, states);
+pub fn check_true_metric<C: Space + TrueMetric>(space: &C, states: &[C::State], tolerance: f64) {
+    check_metric(space, states);
     let n = states.len();
-    let d: Vec<f64> = states.iter().flat_map(|a| states.iter().map(|b| metric.distance(a, b))).collect();
+    let d: Vec<f64> = states.iter().flat_map(|a| states.iter().map(|b| space.distance(a, b))).collect();
     let slack = tolerance * d.iter().copied().fold(0.0, f64::max);
     for i in 0..n {
         for j in 0..n {

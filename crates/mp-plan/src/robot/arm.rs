@@ -2,7 +2,7 @@
 
 use super::{Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, no_metric};
 use crate::{Error, Metric, brief};
-use mp_cspace::{ClearanceGradient, JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
+use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric, obstacles::ClearanceGradient};
 use mp_geom::TriMesh;
 use mp_io::{PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};

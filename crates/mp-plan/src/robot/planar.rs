@@ -5,8 +5,8 @@ use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::CompiledIndex;
 use mp_cspace::{
-    ClearanceGradient, Factored, MotionValidity, ObstacleHints, ObstacleKnowledge, Rn, Se2, Se2State, Space,
-    StateVector,
+    Factored, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
+    obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::Aabb;
 use mp_geom::planar::PlanarWorld;

@@ -9,9 +9,9 @@ use crate::{Error, Metric};
 use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    ClearanceGradient, DefaultNn, EmbedFactors, Euclidean, Linear, Manhattan, MaxDisplacement, MetricOn,
-    NnOn, ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetricOn,
-    WithMetric,
+    DefaultNn, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric as SpaceMetric,
+    ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric,
+    WithMetric, obstacles::ClearanceGradient,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{RigidProblem, SpaceKind};
@@ -31,11 +31,15 @@ const PICTURE_SPACING: f64 = 0.55;
 /// How a rigid body moves: [`Spatial`], in SE(3), or [`Planar`], in SE(2).
 pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateState + StateVector> {
     /// The space of its configurations.
-    type Space: EmbedFactors + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
+    type Space: Factored + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
     /// The metric of the farthest moving point.
-    type Displacement: TrueMetricOn<Self::Space> + NnOn<Self::Space> + Clone + Send + 'static;
+    type Displacement: SpaceMetric<Self::Space, Nn: 'static>
+        + TrueMetric<Self::Space>
+        + Clone
+        + Send
+        + 'static;
     /// The metric of the swept volume.
-    type Swept: MetricOn<Self::Space> + Clone + Send + 'static;
+    type Swept: SpaceMetric<Self::Space> + Clone + Send + 'static;
 
     /// The space of configurations with the origin within `bounds`.
     ///

@@ -51,7 +51,7 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::mixed::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
 use crate::{AStar, Mixing, NearestConnector, PairRule, Pairs, RoadmapPlanner};
-use mp_cspace::{Gaussian, PlannerInfo, Rng, Space, Step};
+use mp_cspace::{Gaussian, Rng, Space, Step, registry::PlannerInfo};
 
 /// The defaults.
 pub const MIXING: Mixing = Mixing { sigma: Step::Fraction(0.05), uniform: 0.1 };

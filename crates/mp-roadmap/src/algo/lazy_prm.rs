@@ -54,8 +54,8 @@ use crate::{
     Recipe, Roadmap, RoadmapPlanner,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, PlannerInfo, Problem, Reversible, Rng,
-    Settings, Space,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space,
+    registry::{Parameter, PlannerInfo, Settings},
 };
 use rand::RngExt;
 

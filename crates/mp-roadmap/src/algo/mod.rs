@@ -21,7 +21,7 @@ pub mod prm_star;
 pub mod visibility_prm;
 
 use crate::by_name::{Maker, Types};
-use mp_cspace::PlannerInfo;
+use mp_cspace::registry::PlannerInfo;
 
 /// Lists the planners made by name, each with the types of its file that stand at the root of the crate. Each file has an
 /// `INFO` and a `make`.

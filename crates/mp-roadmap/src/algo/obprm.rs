@@ -80,8 +80,9 @@ use crate::{
     RoadmapPlanner, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter, PlannerInfo, PointOf,
-    Problem, Reversible, Rng, Settings, Space, Step,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space, Step,
+    obstacles::{ObstacleGeometry, PointOf},
+    registry::{Parameter, PlannerInfo, Settings},
 };
 use rand::RngExt;
 
@@ -383,7 +384,7 @@ where
 }
 
 /// OBPRM: see the [module](self).
-pub type Obprm<'c, C, L, N, H> = RoadmapPlanner<'c, C, L, OnObstacles<H>, StagedConnector<H>, AStar, N>;
+pub type Obprm<'c, C, L, N, H> = RoadmapPlanner<'c, C, L, OnObstacles<H>, StagedConnector, AStar, N>;
 
 impl<'c, C, L, N, H> Obprm<'c, C, L, N, H>
 where
@@ -415,27 +416,27 @@ where
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<C: Space, H: Clone>(
+pub fn recipe<C: Space, H>(
     space: &C,
     hints: H,
     reach: Reachable,
     with: OnSurfaces,
-) -> Result<Recipe<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+) -> Result<Recipe<OnObstacles<H>, StagedConnector, AStar>, BuildError> {
     BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
     let turns = Turns::At(AT[..with.turns].to_vec());
     Ok(Recipe {
-        generate: OnObstacles::new(space, hints.clone(), with)?,
-        connect: StagedConnector::new(hints, reach, with.among, turns)?,
+        generate: OnObstacles::new(space, hints, with)?,
+        connect: StagedConnector::new(reach, with.among, turns)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
     })
 }
 
-fn read<C: Space, H: Clone>(
+fn read<C: Space, H>(
     space: &C,
     hints: H,
     settings: &Settings,
-) -> Result<Recipe<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+) -> Result<Recipe<OnObstacles<H>, StagedConnector, AStar>, BuildError> {
     recipe(space, hints, reachable(space, settings)?, OnSurfaces::read(settings)?)
 }

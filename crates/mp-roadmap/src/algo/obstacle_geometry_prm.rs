@@ -72,8 +72,9 @@ use crate::{
     RoadmapPlanner, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BodyFeatures, BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter,
-    PlannerInfo, Problem, Reversible, Rng, Settings, Space,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space,
+    obstacles::{BodyFeatures, ObstacleGeometry},
+    registry::{Parameter, PlannerInfo, Settings},
 };
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -233,7 +234,7 @@ where
 
 /// Obstacle-geometry PRM: see the [module](self).
 pub type ObstacleGeometryPrm<'c, C, L, N, H> =
-    RoadmapPlanner<'c, C, L, AroundObstacles<H>, StagedConnector<H>, AStar, N>;
+    RoadmapPlanner<'c, C, L, AroundObstacles<H>, StagedConnector, AStar, N>;
 
 impl<'c, C, L, N, H> ObstacleGeometryPrm<'c, C, L, N, H>
 where
@@ -265,25 +266,25 @@ where
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<H: Clone>(
+pub fn recipe<H>(
     hints: H,
     reach: Reachable,
     with: ByGeometry,
-) -> Result<Recipe<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+) -> Result<Recipe<AroundObstacles<H>, StagedConnector, AStar>, BuildError> {
     Ok(Recipe {
-        generate: AroundObstacles::new(hints.clone(), with)?,
-        connect: StagedConnector::new(hints, reach, NeighborSet::NearestConnector, Turns::WhereFar)?,
+        generate: AroundObstacles::new(hints, with)?,
+        connect: StagedConnector::new(reach, NeighborSet::NearestConnector, Turns::WhereFar)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
     })
 }
 
-fn read<C: Space, H: Clone>(
+fn read<C: Space, H>(
     space: &C,
     hints: H,
     settings: &Settings,
-) -> Result<Recipe<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+) -> Result<Recipe<AroundObstacles<H>, StagedConnector, AStar>, BuildError> {
     let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
     recipe(hints, reachable(space, settings)?, with)
 }

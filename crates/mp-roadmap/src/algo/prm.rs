@@ -68,8 +68,9 @@ use crate::{
     Reachable, Recipe, Roadmap, RoadmapPlanner,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo,
-    Problem, Reach, Reversible, Rng, Settings, Space, Step, Uniform,
+    BuildError, DefaultNn, Extension, LocalPlanner, NearestNeighbors, NodeId, Problem, Reach, Reversible,
+    Rng, Space, Step, Uniform,
+    registry::{Parameter, PlannerInfo, Settings},
 };
 use rand::RngExt;
 

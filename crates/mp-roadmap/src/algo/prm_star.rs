@@ -50,8 +50,8 @@ use crate::{
     RoadmapPlanner,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
-    Reversible, Settings, Space, Uniform,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Problem, Reversible, Space, Uniform,
+    registry::{Parameter, PlannerInfo, Settings},
 };
 
 const FACTOR: Parameter = Parameter {

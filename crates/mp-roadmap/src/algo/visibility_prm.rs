@@ -53,8 +53,9 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::UNDIRECTED;
 use crate::{AStar, Candidate, Connector, Free, Growing, Kind, Pace, Recipe, Roadmap, RoadmapPlanner};
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, Motion, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
-    Reversible, Settings, Space, Uniform,
+    BuildError, DefaultNn, LocalPlanner, Motion, NearestNeighbors, NodeId, Problem, Reversible, Space,
+    Uniform,
+    registry::{Parameter, PlannerInfo, Settings},
 };
 
 const FAILURES: Parameter = Parameter {

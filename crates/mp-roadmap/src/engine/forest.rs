@@ -77,7 +77,7 @@ impl Forest {
 mod tests {
     use super::*;
     use crate::engine::{AStar, Tag};
-    use mp_cspace::{Metric, Rn, Rng, Space};
+    use mp_cspace::{Rn, Rng, Space};
     use rand::RngExt;
 
     /// The same ways as A* finds, before and after an edge is blocked; none where there are cycles.

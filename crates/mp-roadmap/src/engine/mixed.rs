@@ -6,8 +6,8 @@ use super::{
     RoadmapPlanner,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, Problem, Reversible, Rng, Settings,
-    Space, Step,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space, Step,
+    registry::{Parameter, Settings},
 };
 use rand::RngExt;
 use std::fmt::Debug;

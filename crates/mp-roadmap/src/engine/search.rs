@@ -1,7 +1,7 @@
 //! Shortest ways through a roadmap.
 
 use super::{EdgeChecker, EdgeId, GraphPath, LinkState, Roadmap};
-use mp_cspace::{LocalPlanner, Metric, NodeId, Reversible, Space};
+use mp_cspace::{LocalPlanner, NodeId, Reversible, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -80,10 +80,10 @@ impl AStar {
 
     /// A shortest way from one of `from` to one of `to`, each with the length that is added there;
     /// `None` when there is none. Ties by node.
-    pub fn shortest<S, E>(
+    pub fn shortest<C: Space, E>(
         &mut self,
-        map: &Roadmap<S, E>,
-        metric: &impl Metric<S>,
+        map: &Roadmap<C::State, E>,
+        space: &C,
         from: &[Entry],
         to: &[Entry],
     ) -> Option<GraphPath> {
@@ -98,7 +98,7 @@ impl AStar {
             if to.len() > FEW {
                 return 0.0;
             }
-            let over = |&(end, more): &Entry| metric.distance(map.state(node), map.state(end)) + more;
+            let over = |&(end, more): &Entry| space.distance(map.state(node), map.state(end)) + more;
             to.iter().map(over).fold(f64::INFINITY, f64::min)
         };
         for &(node, length) in from {

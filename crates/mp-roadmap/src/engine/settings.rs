@@ -1,9 +1,12 @@
 //! Parameters that several planners have.
 
 use super::Reachable;
-use mp_cspace::{BuildError, Demand, Parameter, Settings, Space, Step};
+use mp_cspace::{
+    BuildError, Space, Step,
+    registry::{Demand, Parameter, Settings},
+};
 
-/// [`PlannerInfo::cannot`](mp_cspace::PlannerInfo::cannot) of roadmaps.
+/// [`PlannerInfo::cannot`](mp_cspace::registry::PlannerInfo::cannot) of roadmaps.
 pub const UNDIRECTED: &[(Demand, &str)] =
     &[(Demand::OneWay, "its edges are used both ways, so motions must run backward too")];
 

@@ -1,7 +1,7 @@
 //! Connecting in stages: cheap motions first, then some that turn in place.
 
 use super::{Candidate, Connector, Growing, Kind, Reachable};
-use mp_cspace::{BuildError, Hit, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Reversible, Space};
+use mp_cspace::{BuildError, Hit, LocalPlanner, NearestNeighbors, NodeId, Reversible, Space};
 use std::collections::BTreeMap;
 
 /// To which nodes a candidate is connected.
@@ -30,8 +30,7 @@ pub enum Turns {
 ///
 /// Each node goes through the stages as it comes, rather than all through one after the other.
 #[derive(Clone, Debug)]
-pub struct StagedConnector<H> {
-    hints: H,
+pub struct StagedConnector {
     within: Reachable,
     among: NeighborSet,
     turns: Turns,
@@ -42,10 +41,10 @@ pub struct StagedConnector<H> {
     grouped: NodeId,
 }
 
-impl<H> StagedConnector<H> {
+impl StagedConnector {
     /// # Errors
     /// When there are no neighbours, the radius is not positive, or a fraction is not in \[0, 1\].
-    pub fn new(hints: H, within: Reachable, among: NeighborSet, turns: Turns) -> Result<Self, BuildError> {
+    pub fn new(within: Reachable, among: NeighborSet, turns: Turns) -> Result<Self, BuildError> {
         if let NeighborSet::EachObstacle(most) = among {
             BuildError::count_within("per-obstacle", most as u64, 1, 1_000_000)?;
         }
@@ -55,7 +54,7 @@ impl<H> StagedConnector<H> {
             }
         }
         let (near, scratch, groups) = (Vec::new(), Vec::new(), BTreeMap::new());
-        Ok(Self { hints, within: within.check()?, among, turns, near, scratch, groups, grouped: 0 })
+        Ok(Self { within: within.check()?, among, turns, near, scratch, groups, grouped: 0 })
     }
 
     /// What there is to try from `q`, in order of distance, ties by node, into `self.near`.
@@ -96,17 +95,16 @@ impl<H> StagedConnector<H> {
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
         N: NearestNeighbors<C>,
-        H: ObstacleHints<C::State>,
     {
         let space = growing.space();
         let [start, end] = [from, to].map(|id| growing.map().state(id).clone());
         let middle = space.interpolate(&start, &end, at);
         let mut corners = Vec::with_capacity(2);
         if at > 0.0 {
-            corners.push(self.hints.turned(&middle, &start));
+            corners.push(space.with_rotation_of(&middle, &start));
         }
         if at < 1.0 {
-            corners.push(self.hints.turned(&middle, &end));
+            corners.push(space.with_rotation_of(&middle, &end));
         }
         if !corners.iter().all(|q| growing.steer().admits(q)) {
             return;
@@ -130,11 +128,10 @@ impl<H> StagedConnector<H> {
     }
 }
 
-impl<C, L, H> Connector<C, L> for StagedConnector<H>
+impl<C, L> Connector<C, L> for StagedConnector
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
-    H: ObstacleHints<C::State>,
 {
     fn connect<N: NearestNeighbors<C>>(
         &mut self,

@@ -7,8 +7,8 @@ pub use state::{AnyRoadmap, RoadmapState};
 use crate::algo;
 use crate::by_name::{AnyPlanner, Given, ParallelProblem};
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, PlannerInfo, Problem, Reversible, Settings, Space,
-    closest,
+    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Space,
+    registry::{PlannerInfo, Settings, closest},
 };
 
 /// All planners of the crate.

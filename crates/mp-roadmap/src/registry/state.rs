@@ -15,7 +15,7 @@ pub type AnyRoadmap<S> = IndexedRoadmap<S, (), AnyIndex<S>>;
 ///
 /// ```
 /// use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
-/// use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Settings, Straight};
+/// use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Straight, registry::Settings};
 /// use mp_roadmap::{AnyParallelProblem, RoadmapState};
 /// use nalgebra::Vector2;
 ///

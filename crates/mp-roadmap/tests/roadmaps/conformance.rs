@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use mp_cspace::erased::{AnyIndex, AnySpace};
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_roadmap::{AnyParallelProblem, AnyPlanner, RoadmapState};
 use std::f64::consts::FRAC_PI_2;
@@ -35,7 +36,7 @@ fn settings(name: &str) -> Settings {
 impl<'c, C, V> World<'c, C, V>
 where
     C: DefaultNn<State: RoadmapState, Nn: Send + Sync + 'static> + Clone + Send + 'static,
-    V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + Clone + Send + 'c,
+    V: Validity<C::State> + MotionClearance<C::State> + Clone + Send + 'c,
 {
     fn new(space: &'c C, robot: V, ends: [C::State; 2]) -> Self {
         Self { space, erased: AnySpace::new(space), robot, ends }

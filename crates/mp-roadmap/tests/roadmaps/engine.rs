@@ -1,6 +1,7 @@
 //! What the engine promises.
 
 use crate::common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_roadmap::*;
 use nalgebra::Vector2;

@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use crate::engine::{ENDS, prm};
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_roadmap::*;
 use nalgebra::Vector2;

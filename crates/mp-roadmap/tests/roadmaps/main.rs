@@ -7,7 +7,7 @@ mod conformance;
 mod engine;
 mod keep;
 
-use mp_cspace::PlannerInfo;
+use mp_cspace::registry::PlannerInfo;
 
 /// The planners that need not know what obstacles look like; [`around`] tests the others.
 fn blind() -> impl Iterator<Item = &'static PlannerInfo> {

@@ -3,7 +3,8 @@
 use super::Arm;
 use super::travel::axes_into;
 use mp_cspace::{
-    Clearance, Coordinates, IntervalClearance, MotionBound, MotionInterval, ObstacleHints, Rng, Validity,
+    Clearance, Coordinates, IntervalClearance, MotionClearance, MotionInterval, Rng, Validity,
+    obstacles::ObstacleHints,
 };
 
 impl Arm {
@@ -76,7 +77,70 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     fn in_contact(&mut self, q: &Q) -> bool {
         self.collides(q.as_slice())
     }
+}
 
+/// How much of a motion is shown to be clear.
+struct Cover {
+    margin: f64,
+    half: f64,
+    /// To either side of the middle, as a fraction of the motion.
+    part: f64,
+}
+
+impl Cover {
+    /// Takes into account a distance that changes by at most `near` over half the interval and at most `far`
+    /// over the whole motion; over a smaller part of the interval by a smaller part of `near`. It is at least
+    /// `known`, and otherwise to be asked for. An answer when the rest need not be looked at.
+    fn add(
+        &mut self,
+        near: f64,
+        far: f64,
+        known: f64,
+        clearance: impl FnOnce(f64) -> f64,
+    ) -> Option<IntervalClearance> {
+        let margin = self.margin;
+        // Others may have shown already that less will do.
+        let wanted = self.half.min(self.part);
+        let near = near * (wanted / self.half);
+        let enough = near.max(margin) + margin;
+        let clearance = if known >= enough { known } else { clearance(enough) };
+        let part = if clearance <= 0.0 {
+            return Some(IntervalClearance::Collision { at: 0.0 });
+        } else if clearance >= near + margin {
+            wanted.max((clearance - margin) / far)
+        } else if clearance >= 2.0 * margin {
+            wanted * (clearance - margin) / near
+        } else {
+            return Some(IntervalClearance::TooClose { at: 0.0 });
+        };
+        // 0/0 where nothing moves: clear all along.
+        self.part = self.part.min(if far > 0.0 { part } else { f64::INFINITY });
+        None
+    }
+}
+
+impl<Q: Coordinates> MotionClearance<Q> for Arm {
+    /// The most that any link moves, or two links relative to each other, along the interpolation of the
+    /// [space](Arm::space) of the arm: the sum over the joints above it of how far the joint goes times the
+    /// largest distance of a point of the link from the joint's axis. Of configurations within the limits.
+    fn motion_bound(&self, from: &Q, to: &Q) -> f64 {
+        let (robot, from, to) = (&*self.robot, from.as_slice(), to.as_slice());
+        let kinematics = &robot.kinematics;
+        if from.len() != kinematics.dof() || to.len() != kinematics.dof() {
+            return f64::INFINITY;
+        }
+        let ways = |i: usize| kinematics.way(i, from, to);
+        // `max` would lose NaN.
+        if !(0..kinematics.dof()).all(|i| ways(i).is_finite()) {
+            return f64::INFINITY;
+        }
+        let links = robot.bodies.iter().map(|body| body.chain.whole(ways)).fold(0.0, f64::max);
+        let pairs = robot.pairs.iter().filter(|pair| pair.steps.iter().all(|steps| *steps > 0)).map(|pair| {
+            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].chain);
+            a.part(pair.steps[0], ways) + b.part(pair.steps[1], ways)
+        });
+        pairs.fold(links, f64::max)
+    }
     /// Link by link and pair by pair, each by how far it moves itself: a link near the base may be near an
     /// obstacle without holding up the rest. Pairs move relative to each other by the joints between them only.
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Q>) -> IntervalClearance {
@@ -124,70 +188,6 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     }
 }
 
-/// How much of a motion is shown to be clear.
-struct Cover {
-    margin: f64,
-    half: f64,
-    /// To either side of the middle, as a fraction of the motion.
-    part: f64,
-}
-
-impl Cover {
-    /// Takes into account a distance that changes by at most `near` over half the interval and at most `far`
-    /// over the whole motion; over a smaller part of the interval by a smaller part of `near`. It is at least
-    /// `known`, and otherwise to be asked for. An answer when the rest need not be looked at.
-    fn add(
-        &mut self,
-        near: f64,
-        far: f64,
-        known: f64,
-        clearance: impl FnOnce(f64) -> f64,
-    ) -> Option<IntervalClearance> {
-        let margin = self.margin;
-        // Others may have shown already that less will do.
-        let wanted = self.half.min(self.part);
-        let near = near * (wanted / self.half);
-        let enough = near.max(margin) + margin;
-        let clearance = if known >= enough { known } else { clearance(enough) };
-        let part = if clearance <= 0.0 {
-            return Some(IntervalClearance::Collision { at: 0.0 });
-        } else if clearance >= near + margin {
-            wanted.max((clearance - margin) / far)
-        } else if clearance >= 2.0 * margin {
-            wanted * (clearance - margin) / near
-        } else {
-            return Some(IntervalClearance::TooClose { at: 0.0 });
-        };
-        // 0/0 where nothing moves: clear all along.
-        self.part = self.part.min(if far > 0.0 { part } else { f64::INFINITY });
-        None
-    }
-}
-
-impl<Q: Coordinates> MotionBound<Q> for Arm {
-    /// The most that any link moves, or two links relative to each other, along the interpolation of the
-    /// [space](Arm::space) of the arm: the sum over the joints above it of how far the joint goes times the
-    /// largest distance of a point of the link from the joint's axis. Of configurations within the limits.
-    fn motion_bound(&self, from: &Q, to: &Q) -> f64 {
-        let (robot, from, to) = (&*self.robot, from.as_slice(), to.as_slice());
-        let kinematics = &robot.kinematics;
-        if from.len() != kinematics.dof() || to.len() != kinematics.dof() {
-            return f64::INFINITY;
-        }
-        let ways = |i: usize| kinematics.way(i, from, to);
-        // `max` would lose NaN.
-        if !(0..kinematics.dof()).all(|i| ways(i).is_finite()) {
-            return f64::INFINITY;
-        }
-        let links = robot.bodies.iter().map(|body| body.chain.whole(ways)).fold(0.0, f64::max);
-        let pairs = robot.pairs.iter().filter(|pair| pair.steps.iter().all(|steps| *steps > 0)).map(|pair| {
-            let [a, b] = pair.bodies.map(|i| &robot.bodies[i].chain);
-            a.part(pair.steps[0], ways) + b.part(pair.steps[1], ways)
-        });
-        pairs.fold(links, f64::max)
-    }
-}
-
 /// An arm has no position that stays while it turns, so it follows no obstacle; its hints carry configurations
 /// only, along what is hit in the space of joints.
 impl<Q: Coordinates> ObstacleHints<Q> for Arm {
@@ -198,11 +198,6 @@ impl<Q: Coordinates> ObstacleHints<Q> for Arm {
     /// None.
     fn along(&mut self, _: &Q, _: &Q, _: Option<&Q>, _: &mut Rng) -> Option<Q> {
         None
-    }
-
-    /// The configuration itself.
-    fn turned(&self, position: &Q, _: &Q) -> Q {
-        position.clone()
     }
 
     /// Each joint moved by as much as from `from` to `to`, the shorter way where it turns without end.

@@ -2,7 +2,7 @@
 
 use super::{ArmError, ArmModel, JointKind};
 use crate::arm::compile;
-use mp_cspace::{Coordinates, JointRange, Joints, wrap_angle};
+use mp_cspace::{Coordinates, JointRange, Joints, angle::wrap_angle};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// A joint that moves, and the frame behind it.

@@ -9,7 +9,7 @@ pub use verify::MovingVerifier;
 use crate::{CheckCounters, Placement, RigidBody, RobotError};
 use mp_collide::reference::RefMesh;
 use mp_collide::{CollisionMesh, Query, Scene};
-use mp_cspace::{Clearance, MotionBound, Validity};
+use mp_cspace::{Clearance, MotionClearance, Validity};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::sync::Arc;
@@ -27,11 +27,11 @@ pub(crate) struct Mover {
 
 /// A [`RigidBody`] and the bodies that move around it, each on its [`Trajectory`] whatever the robot does.
 ///
-/// States are pairs, a configuration and a time (s), as in [`SpaceTime`](mp_cspace::SpaceTime). One is free
+/// States are pairs, a configuration and a time (s), as in [`SpaceTime`](mp_cspace::space_time::SpaceTime). One is free
 /// where the robot touches neither what stands still nor the surface of what moves; a robot that is inside a
 /// moving body to begin with, even a point, is not in contact with it. Motion bounds hold for the robot and
 /// the fastest of the obstacles together, so [`Certified`](mp_cspace::Certified) misses neither, however
-/// thin; [`Forward`](mp_cspace::Forward) around it keeps time running forward.
+/// thin; [`Forward`](mp_cspace::space_time::Forward) around it keeps time running forward.
 #[derive(Clone, Debug)]
 pub struct AmongMoving<P: Placement> {
     body: RigidBody<P>,
@@ -120,7 +120,7 @@ impl<P: Placement> Clearance<(P::State, f64)> for AmongMoving<P> {
     }
 }
 
-impl<P: Placement> MotionBound<(P::State, f64)> for AmongMoving<P> {
+impl<P: Placement> MotionClearance<(P::State, f64)> for AmongMoving<P> {
     /// How far the robot and the fastest of the moving obstacles travel together.
     fn motion_bound(&self, from: &(P::State, f64), to: &(P::State, f64)) -> f64 {
         let speed = |mover: &Mover| mover.trajectory.speed(mover.radius, from.1, to.1);

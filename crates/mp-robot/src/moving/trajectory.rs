@@ -1,6 +1,6 @@
 //! Where a body is when.
 
-use mp_cspace::{rotation_angle, slerp};
+use mp_cspace::angle::{rotation_angle, slerp};
 use nalgebra::Isometry3;
 use thiserror::Error;
 

@@ -3,7 +3,7 @@
 use super::{AmongMoving, Mover};
 use crate::{Placement, Verifier};
 use mp_collide::reference::RefMesh;
-use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space, SpaceTime};
+use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space, space_time::SpaceTime};
 use nalgebra::Isometry3;
 use std::sync::Arc;
 

@@ -2,8 +2,8 @@
 
 use crate::CheckCounters;
 use mp_cspace::{
-    Clearance, ClearanceGradient, IntervalClearance, KnownFree, MotionBound, MotionCheck, MotionInterval,
-    MotionValidity, ParameterError, Validity,
+    Clearance, IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
+    ParameterError, Validity, obstacles::ClearanceGradient,
 };
 use mp_geom::planar::PlanarWorld;
 use nalgebra::{Point2, Vector2};
@@ -130,7 +130,21 @@ impl Clearance<Vector2<f64>> for DiscRobot {
         self.counters.clearance_checks += 1;
         if finite(q) { self.signed_clearance(q).max(0.0) } else { 0.0 }
     }
+}
 
+impl ClearanceGradient<Vector2<f64>> for DiscRobot {
+    fn clearance_gradient(&mut self, q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]) -> f64 {
+        self.counters.clearance_checks += 1;
+        let (clearance, away) = if finite(q) { self.clearance_and_gradient(q) } else { Default::default() };
+        gradient.copy_from_slice(away.as_slice());
+        clearance
+    }
+}
+
+impl MotionClearance<Vector2<f64>> for DiscRobot {
+    fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
+        (to - from).norm()
+    }
     /// By the whole interval at once.
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Vector2<f64>>) -> IntervalClearance {
         let half = (interval.to - interval.from) * interval.half;
@@ -143,21 +157,6 @@ impl Clearance<Vector2<f64>> for DiscRobot {
             return IntervalClearance::FreeOver { part: interval.half.max((clearance - margin) / travel) };
         }
         IntervalClearance::of(clearance, margin)
-    }
-}
-
-impl ClearanceGradient<Vector2<f64>> for DiscRobot {
-    fn clearance_gradient(&mut self, q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]) -> f64 {
-        self.counters.clearance_checks += 1;
-        let (clearance, away) = if finite(q) { self.clearance_and_gradient(q) } else { Default::default() };
-        gradient.copy_from_slice(away.as_slice());
-        clearance
-    }
-}
-
-impl MotionBound<Vector2<f64>> for DiscRobot {
-    fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
-        (to - from).norm()
     }
 }
 

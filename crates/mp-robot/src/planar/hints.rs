@@ -1,7 +1,7 @@
 //! Along which way an obstacle runs, by its boundary.
 
 use super::{DiscRobot, PolygonRobot};
-use mp_cspace::{ObstacleHints, Rng, Se2State, Validity};
+use mp_cspace::{Rng, Se2State, Validity, obstacles::ObstacleHints};
 use mp_geom::planar::PlanarWorld;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
@@ -39,9 +39,6 @@ impl ObstacleHints<Vector2<f64>> for DiscRobot {
     ) -> Option<Vector2<f64>> {
         Some(from + along(self.world(), hit.copied(), rng)? * (toward - from).norm())
     }
-    fn turned(&self, position: &Vector2<f64>, _: &Vector2<f64>) -> Vector2<f64> {
-        *position
-    }
     fn carried(&self, q: &Vector2<f64>, from: &Vector2<f64>, to: &Vector2<f64>) -> Vector2<f64> {
         q + (to - from)
     }
@@ -62,9 +59,6 @@ impl ObstacleHints<Se2State> for PolygonRobot {
         let far = (toward.translation - from.translation).norm();
         let step = along(self.world(), hit.map(|q| q.translation), rng)? * far;
         Some(Se2State { translation: from.translation + step, ..*from })
-    }
-    fn turned(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
-        Se2State { angle: rotation.angle, ..*position }
     }
     fn carried(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
         let at = q.translation + (to.translation - from.translation);

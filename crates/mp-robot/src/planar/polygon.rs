@@ -1,7 +1,9 @@
 //! A polygon among polygons.
 
 use crate::CheckCounters;
-use mp_cspace::{Clearance, ClearanceGradient, Metric, MotionBound, Se2State, So2, Validity};
+use mp_cspace::{
+    Clearance, MotionClearance, Se2State, Validity, angle::angle_difference, obstacles::ClearanceGradient,
+};
 use mp_geom::planar::{PlanarWorld, Polygon};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
@@ -209,9 +211,9 @@ impl ClearanceGradient<Se2State> for PolygonRobot {
     }
 }
 
-impl MotionBound<Se2State> for PolygonRobot {
+impl MotionClearance<Se2State> for PolygonRobot {
     fn motion_bound(&self, from: &Se2State, to: &Se2State) -> f64 {
-        let turn = So2.distance(&from.angle, &to.angle);
+        let turn = angle_difference(from.angle, to.angle).abs();
         ((to.translation - from.translation).norm() + self.radius * turn) * (1.0 + 1e-12)
     }
 }

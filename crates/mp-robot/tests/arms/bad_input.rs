@@ -1,7 +1,7 @@
 //! What is refused, and how it is said.
 
 use crate::common::six;
-use mp_cspace::{Certified, Clearance, MotionBound, MotionValidity, Validity};
+use mp_cspace::{Certified, Clearance, MotionClearance, MotionValidity, Validity};
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmError, ArmModel, Joint, JointKind, Link};
 use nalgebra::{DVector, Isometry3, SVector, Vector3};

@@ -127,7 +127,7 @@ fn continuous_joints_go_the_short_way() {
         assert!((next - last).norm() < 0.012);
         last = next;
     }
-    let bound = mp_cspace::MotionBound::motion_bound(&arm, &a, &b);
+    let bound = mp_cspace::MotionClearance::motion_bound(&arm, &a, &b);
     assert!(bound > 0.28 && bound < (2.0 * PI - 6.0) * (2.2 + 2.0 * 1.2), "{bound}");
 }
 

@@ -3,7 +3,7 @@
 use crate::common::{clutter, obstacle, random_tree, six};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{
-    Certified, Clearance, Joints, MotionBound, MotionCheck, MotionValidity, Rng, Space, Validity,
+    Certified, Clearance, Joints, MotionCheck, MotionClearance, MotionValidity, Rng, Space, Validity,
 };
 use mp_geom::{TriMesh, primitives::cuboid};
 use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};

@@ -2,7 +2,7 @@
 
 use crate::common::{clutter, obstacle, random_tree, six};
 use mp_cspace::{
-    Certified, Clearance, Joints, Metric, MotionCheck, MotionValidity, Rng, Space, TrueMetric, Validity,
+    Certified, Clearance, Joints, MotionCheck, MotionValidity, Rng, Space, TrueMetric, Validity,
 };
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmVerifier};
@@ -11,11 +11,7 @@ use nalgebra::{DVector, SVector};
 type Six = SVector<f64, 6>;
 
 /// The verifier proves what is certified, finds what sampling finds, and claims no more clearance than there is.
-fn agree<C: Space<State = DVector<f64>> + TrueMetric<DVector<f64>>>(
-    arm: &Arm,
-    space: &C,
-    motions: usize,
-) -> [usize; 2] {
+fn agree<C: Space<State = DVector<f64>> + TrueMetric>(arm: &Arm, space: &C, motions: usize) -> [usize; 2] {
     let tolerance = arm.tolerance();
     let mut certified = Certified::new(space, arm.clone(), tolerance).unwrap();
     let mut verifier = ArmVerifier::new(space, arm).unwrap();

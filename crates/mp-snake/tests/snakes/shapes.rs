@@ -1,7 +1,7 @@
 //! What shapes snakes take.
 
 use crate::worlds::{Point, World, square};
-use mp_cspace::{Metric, Product, Rn, Rng, Se2, Se3, So3, Space, Torus};
+use mp_cspace::{Joints, Product, Rn, Rng, Se2, Se3, So3, Space};
 use mp_snake::{Energy, Field, Nothing, Params, Repulsion, Rest, Snake, SnakeError, With};
 use nalgebra::{DMatrix, DVector, Vector2};
 use rand::RngExt;
@@ -40,7 +40,7 @@ fn with_no_field_snakes_are_straight_in_any_space() {
     straightens(&square(), 1);
     straightens(&Se2::new([-1.0; 2], [1.0; 2]).unwrap(), 2);
     straightens(&Se3::new([-1.0; 3], [1.0; 3]).unwrap(), 3);
-    straightens(&Product::new(So3, 1.0, Torus::<2>, 0.5).unwrap(), 4);
+    straightens(&Product::new(So3, 1.0, Joints::<Vector2<f64>>::circles(2).unwrap(), 0.5).unwrap(), 4);
 }
 
 fn never_rises(trace: &[Energy]) {
@@ -179,13 +179,11 @@ fn a_bulge_finds_a_side() {
 fn bad_input_is_refused() {
     #[derive(Debug)]
     struct Mute(Rn<2>);
-    impl Metric<Vector2<f64>> for Mute {
+    impl Space for Mute {
+        type State = Point;
         fn distance(&self, a: &Point, b: &Point) -> f64 {
             self.0.distance(a, b)
         }
-    }
-    impl Space for Mute {
-        type State = Point;
         fn dim(&self) -> usize {
             2
         }

@@ -1,6 +1,6 @@
 //! Worlds of discs and slabs, with two implementations: one to plan by, one to judge by.
 
-use mp_cspace::{Certified, Clearance, MotionBound, MotionCheck, MotionValidity, Rn, Rng};
+use mp_cspace::{Certified, Clearance, MotionCheck, MotionClearance, MotionValidity, Rn, Rng};
 use nalgebra::Vector2;
 use rand::RngExt;
 
@@ -69,7 +69,7 @@ impl Clearance<Point> for World {
         self.distance(q).0
     }
 }
-impl MotionBound<Point> for World {
+impl MotionClearance<Point> for World {
     fn motion_bound(&self, from: &Point, to: &Point) -> f64 {
         (to - from).norm()
     }

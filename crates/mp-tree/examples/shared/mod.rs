@@ -1,7 +1,7 @@
 //! A bug trap in the plane, and how to tell what a planner made of it.
 #![allow(clippy::print_stdout, dead_code, unreachable_pub)] // examples talk, and use their part
 
-use mp_cspace::inputs::{
+use mp_control::{
     ControlSegment, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely,
 };
 use mp_cspace::{

@@ -20,13 +20,13 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
+//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_control::InputPlanner) | |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
 //! A car leaves a dead end that opens behind it:
 //! ```
-//! use mp_cspace::inputs::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
+//! use mp_control::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
 //! use mp_tree::{CvpRrt, Goals, Problem, Tuning};
 //!
@@ -55,7 +55,7 @@ use crate::{
     AppendApart, NearestSelector, PlannerInfo, Purpose, Recipe, Samples, Selector, SingleTree, Tuning,
     Untried,
 };
-use mp_cspace::inputs::EachOnce;
+use mp_control::InputChoice;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
 use rand::RngExt;
 
@@ -80,7 +80,7 @@ pub type CvpRrt<'c, C, L, N> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, LeastViolated<NearestSelector<N>>, Untried, AppendApart>;
 
 constructors! {
-    "CVP-RRT" CvpRrt<C, L, N> where [L: EachOnce],
+    "CVP-RRT" CvpRrt<C, L, N> where [L: InputChoice],
     |problem, index, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let select = LeastViolated::new(NearestSelector(index), problem.local().count());

@@ -50,7 +50,7 @@ pub mod t_rrt;
 pub mod utility_rrt;
 
 use crate::by_name::{Maker, Types};
-use mp_cspace::PlannerInfo;
+use mp_cspace::registry::PlannerInfo;
 
 /// Lists the planners made by name, each with the types of its file that stand at the root of the crate. Each file has an
 /// `INFO` and a `make`.

@@ -49,9 +49,7 @@
 //!
 //! A point goes around discs in the unit square, along their tangents:
 //! ```
-//! use mp_cspace::{
-//!     Discrete, FineDiscrete, Iterations, ObstacleHints, Outcome, Planner, Resolution, Rn, Rng, Straight,
-//! };
+//! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight, obstacles::ObstacleHints};
 //! use mp_tree::{GrowthWeights, Obrrt, Problem, Tuning};
 //! use nalgebra::Vector2;
 //! use rand::RngExt;
@@ -74,9 +72,6 @@
 //!         Some(if rng.random_bool(0.5) { from + tangent } else { from - tangent })
 //!     }
 //!     // A point has no rotation.
-//!     fn turned(&self, position: &Point, _: &Point) -> Point {
-//!         *position
-//!     }
 //!     fn carried(&self, q: &Point, from: &Point, to: &Point) -> Point {
 //!         q + (to - from)
 //!     }
@@ -103,7 +98,7 @@ use crate::{
     AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo, Recipe,
     Samples, Selector, SingleTree, Tuning,
 };
-use mp_cspace::{LocalPlanner, NodeId, ObstacleHints, Rng, Space, Uniform};
+use mp_cspace::{LocalPlanner, NodeId, Rng, Space, Uniform, obstacles::ObstacleHints};
 use rand::RngExt;
 
 /// For people.
@@ -259,13 +254,13 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C
         let (state, sample) = (growing.tree().state(from).clone(), growing.target().clone());
         let method = self.weights.draw(growing.rng());
         let grown = match method {
-            1 => follow(from, &self.hints.turned(&sample, &state), growing),
+            1 => follow(from, &space.with_rotation_of(&sample, &state), growing),
             2 | 3 => match self.hints.along(&state, &sample, None, growing.rng()) {
-                Some(along) if method == 2 => follow(from, &self.hints.turned(&along, &sample), growing),
+                Some(along) if method == 2 => follow(from, &space.with_rotation_of(&along, &sample), growing),
                 Some(along) => follow(from, &along, growing),
                 None => growing.step(from),
             },
-            4 => match follow(from, &self.hints.turned(&state, &sample), growing) {
+            4 => match follow(from, &space.with_rotation_of(&state, &sample), growing) {
                 Grown::Advanced(turned) | Grown::Reached(turned) => match growing.step(turned) {
                     Grown::Trapped => Grown::Advanced(turned),
                     grown => grown,
@@ -279,7 +274,7 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C
                     let rng = growing.rng();
                     match hit.and_then(|hit| self.hints.along(&state, &sample, Some(&hit), rng)) {
                         Some(along) if method == 5 => {
-                            follow(from, &self.hints.turned(&along, &sample), growing)
+                            follow(from, &space.with_rotation_of(&along, &sample), growing)
                         }
                         Some(along) => follow(from, &along, growing),
                         None => Grown::Trapped,

@@ -21,14 +21,14 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
+//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_control::InputPlanner) | |
 //! | `apart`: states no farther apart count as one, in the metric of the space | 0 or more | |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
 //! A point finds out that it cannot leave a closed ring:
 //! ```
-//! use mp_cspace::inputs::{DiscreteFlowCheck, InputPlanner, InputSet, Kinematic, ReplayFinely};
+//! use mp_control::{DiscreteFlowCheck, InputPlanner, InputSet, Kinematic, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rn, Rng, StopReason};
 //! use mp_tree::{Goals, Problem, RcRrt, Tuning};
 //! use nalgebra::Vector2;
@@ -55,7 +55,7 @@ use crate::{
     AppendApart, BuildError, NearestSelector, Parameter, PlannerInfo, Purpose, Recipe, Samples, Selector,
     Settings, SingleTree, Tuning, Untried,
 };
-use mp_cspace::inputs::EachOnce;
+use mp_control::InputChoice;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
 
 /// How far apart states are that count as one.
@@ -93,7 +93,7 @@ pub type RcRrt<'c, C, L, N> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Unexhausted<NearestSelector<N>>, Untried, AppendApart>;
 
 constructors! {
-    "RC-RRT, where states within `apart` count as one," RcRrt<C, L, N> where [L: EachOnce],
+    "RC-RRT, where states within `apart` count as one," RcRrt<C, L, N> where [L: InputChoice],
     |problem, index, apart: f64, tuning: Tuning| {
         let propose = Samples(Uniform(problem.space()));
         let (select, attach) = (Unexhausted::new(NearestSelector(index)), AppendApart::within(apart)?);

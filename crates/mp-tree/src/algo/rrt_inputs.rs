@@ -21,7 +21,7 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
+//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_control::InputPlanner) | |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 5% of the extent |
@@ -33,7 +33,7 @@
 //!
 //! A point with velocities goes around a disc, by accelerations:
 //! ```
-//! use mp_cspace::inputs::{DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely};
+//! use mp_control::{DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Product, Resolution, Rn, Rng};
 //! use mp_tree::{Goals, Problem, RrtInputs, Tuning};
 //! use nalgebra::Vector2;
@@ -61,8 +61,8 @@ use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{AppendDistinct, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use mp_control::{InputChoice, Order};
 use mp_cspace::Uniform;
-use mp_cspace::inputs::{Order, TestOrder};
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -85,7 +85,7 @@ pub type RrtInputs<'c, C, L, N> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Extend, AppendDistinct>;
 
 constructors! {
-    "RRT by inputs" RrtInputs<C, L, N> where [L: TestOrder],
+    "RRT by inputs" RrtInputs<C, L, N> where [L: InputChoice],
     |problem, index, tuning: Tuning| {
         let mut problem = problem;
         problem.local_mut().set_order(Order::TestAll);

@@ -14,8 +14,8 @@
 //! 6. where that is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
 //! As in the paper's sequence the child need not be nearer to the sample than `q_prox` is: a node near
-//! obstacles grows as often as another. [`InputPlanner::accepting`](mp_cspace::inputs::InputPlanner::accepting) asks for
-//! [`Nearer`](mp_cspace::inputs::Accept::Nearer) ones, as ALG. 4 does.
+//! obstacles grows as often as another. [`InputPlanner::accepting`](mp_control::InputPlanner::accepting) asks for
+//! [`Nearer`](mp_control::Accept::Nearer) ones, as ALG. 4 does.
 //!
 //! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. It
 //! takes the same successors as ALG. 4 under the same condition, for fewer collision tests. Bodies that
@@ -23,7 +23,7 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_cspace::inputs::InputPlanner) | |
+//! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_control::InputPlanner) | |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 5% of the extent |
@@ -35,7 +35,7 @@
 //!
 //! A car turns round in a lane too narrow to do so in one go:
 //! ```
-//! use mp_cspace::inputs::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
+//! use mp_control::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
 //! use mp_tree::{Goals, Problem, Rsrt, Tuning};
 //!
@@ -61,8 +61,8 @@ use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{AppendApart, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use mp_control::{InputChoice, Order};
 use mp_cspace::Uniform;
-use mp_cspace::inputs::{Order, TestOrder};
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
@@ -85,7 +85,7 @@ pub type Rsrt<'c, C, L, N> =
     SingleTree<'c, C, L, Samples<Uniform<'c, C>>, NearestSelector<N>, Extend, AppendApart>;
 
 constructors! {
-    "RSRT" Rsrt<C, L, N> where [L: TestOrder],
+    "RSRT" Rsrt<C, L, N> where [L: InputChoice],
     |problem, index, tuning: Tuning| {
         let mut problem = problem;
         problem.local_mut().set_order(Order::SortFirst);

@@ -70,7 +70,9 @@ use crate::{
     Append, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo, Purpose,
     Recipe, Samples, Selector, SingleTree, Tuning,
 };
-use mp_cspace::{ClearanceGradient, Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform};
+use mp_cspace::{
+    Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform, obstacles::ClearanceGradient,
+};
 use rand::RngExt;
 
 /// [`Temperature::initial`].

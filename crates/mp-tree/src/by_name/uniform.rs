@@ -1,7 +1,7 @@
 //! Problems moved by a uniform set of inputs, for planners by name.
 
 use crate::{BuildError, Parameter, Problem, Settings, Tuning};
-use mp_cspace::inputs::{Between, InputPlanner, InputSet, Kinematic};
+use mp_control::{Between, InputPlanner, InputSet, Kinematic};
 use mp_cspace::{LocalPlanner, Space};
 
 /// Of planners that move by a set of inputs: how many directions.

@@ -1,7 +1,10 @@
 //! What makes one variant of the family differ from another.
 
 use super::settings::{GOAL_BIAS, PATIENCE, STEP};
-use mp_cspace::{BuildError, PlannerInfo, Settings, Step};
+use mp_cspace::{
+    BuildError, Step,
+    registry::{PlannerInfo, Settings},
+};
 
 /// The parameters every planner of the family has.
 #[derive(Clone, Copy, Debug, PartialEq)]

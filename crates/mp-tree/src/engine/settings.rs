@@ -1,6 +1,6 @@
 //! Parameters that several planners have.
 
-use mp_cspace::{Demand, Parameter};
+use mp_cspace::registry::{Demand, Parameter};
 
 /// [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that grow a tree from the goal.
 pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[

@@ -1,7 +1,7 @@
 //! Slot: growth by inputs none of which is tried twice at the same node.
 
 use super::{Extender, Growing, Grown, Inserter, Selector};
-use mp_cspace::inputs::EachOnce;
+use mp_control::InputChoice;
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
 /// Grows by the inputs that have not been tried at a node, the most promising first: one at a time, or
@@ -26,7 +26,7 @@ impl Untried {
     }
 }
 
-impl<C: Space, L: LocalPlanner<C::State> + EachOnce> Extender<C, L> for Untried {
+impl<C: Space, L: LocalPlanner<C::State> + InputChoice> Extender<C, L> for Untried {
     fn grow<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,

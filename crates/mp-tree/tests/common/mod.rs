@@ -1,6 +1,8 @@
 //! Worlds of boxes with exact answers, for the tests of this crate.
 #![allow(dead_code, reason = "crates whose tests share this use their part of it")]
 
+use mp_cspace::angle::wrap_angle;
+use mp_cspace::obstacles::ObstacleHints;
 use mp_cspace::*;
 use nalgebra::{DVector, SVector, Vector2};
 use rand::RngExt;
@@ -49,7 +51,7 @@ impl<const N: usize> Clearance<SVector<f64, N>> for Boxes<N> {
         self.distance(q)
     }
 }
-impl<const N: usize> MotionBound<SVector<f64, N>> for Boxes<N> {
+impl<const N: usize> MotionClearance<SVector<f64, N>> for Boxes<N> {
     fn motion_bound(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> f64 {
         (to - from).norm()
     }
@@ -157,7 +159,7 @@ impl Clearance<Se2State> for Rod {
         least - self.radius
     }
 }
-impl MotionBound<Se2State> for Rod {
+impl MotionClearance<Se2State> for Rod {
     fn motion_bound(&self, from: &Se2State, to: &Se2State) -> f64 {
         let turn = wrap_angle(to.angle - from.angle).abs();
         (to.translation - from.translation).norm() + turn * self.half_length
@@ -205,7 +207,7 @@ impl<const N: usize> Clearance<SVector<f64, N>> for Arm<N> {
         distances.fold(f64::INFINITY, f64::min)
     }
 }
-impl<const N: usize> MotionBound<SVector<f64, N>> for Arm<N> {
+impl<const N: usize> MotionClearance<SVector<f64, N>> for Arm<N> {
     /// A joint swings no point of an axis faster than by what hangs on it.
     fn motion_bound(&self, from: &SVector<f64, N>, to: &SVector<f64, N>) -> f64 {
         let turns = (to - from).abs();
@@ -233,9 +235,6 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Boxes<N> {
         to[rng.random_range(0..N)] += far;
         Some(to)
     }
-    fn turned(&self, position: &SVector<f64, N>, _: &SVector<f64, N>) -> SVector<f64, N> {
-        *position
-    }
     fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
         q + (to - from)
     }
@@ -259,9 +258,6 @@ impl ObstacleHints<Se2State> for Rod {
         let to = self.boxes.along(&from.translation, &toward.translation, None, rng)?;
         Some(Se2State::new(to.x, to.y, from.angle))
     }
-    fn turned(&self, position: &Se2State, rotation: &Se2State) -> Se2State {
-        Se2State::new(position.translation.x, position.translation.y, rotation.angle)
-    }
     fn carried(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
         let at = q.translation + (to.translation - from.translation);
         Se2State::new(at.x, at.y, q.angle + wrap_angle(to.angle - from.angle))
@@ -281,9 +277,6 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Arm<N> {
         _: &mut Rng,
     ) -> Option<SVector<f64, N>> {
         None
-    }
-    fn turned(&self, position: &SVector<f64, N>, _: &SVector<f64, N>) -> SVector<f64, N> {
-        *position
     }
     fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
         q + (to - from)
@@ -312,7 +305,7 @@ impl<V: Clearance<SVector<f64, N>>, const N: usize> Clearance<DVector<f64>> for 
         self.0.clearance(&fixed(q), enough)
     }
 }
-impl<V: MotionBound<SVector<f64, N>>, const N: usize> MotionBound<DVector<f64>> for Sizeless<V, N> {
+impl<V: MotionClearance<SVector<f64, N>>, const N: usize> MotionClearance<DVector<f64>> for Sizeless<V, N> {
     fn motion_bound(&self, from: &DVector<f64>, to: &DVector<f64>) -> f64 {
         self.0.motion_bound(&fixed(from), &fixed(to))
     }
@@ -329,9 +322,6 @@ impl<V: ObstacleHints<SVector<f64, N>>, const N: usize> ObstacleHints<DVector<f6
         rng: &mut Rng,
     ) -> Option<DVector<f64>> {
         self.0.along(&fixed(from), &fixed(toward), hit.map(fixed).as_ref(), rng).map(sizeless)
-    }
-    fn turned(&self, position: &DVector<f64>, rotation: &DVector<f64>) -> DVector<f64> {
-        sizeless(self.0.turned(&fixed(position), &fixed(rotation)))
     }
     fn carried(&self, q: &DVector<f64>, from: &DVector<f64>, to: &DVector<f64>) -> DVector<f64> {
         sizeless(self.0.carried(&fixed(q), &fixed(from), &fixed(to)))

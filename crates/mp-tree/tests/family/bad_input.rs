@@ -1,6 +1,7 @@
 //! Bad input is a typed error before planning begins.
 
 use crate::common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;
@@ -54,14 +55,12 @@ fn ends_must_be_in_the_space_free_and_admitted() {
 #[test]
 fn distances_must_be_finite() {
     #[derive(Clone, Debug)]
-    struct Lost;
-    impl Metric<Point> for Lost {
+    struct Unmeasured;
+    impl Space for Unmeasured {
+        type State = Point;
         fn distance(&self, _: &Point, _: &Point) -> f64 {
             f64::NAN
         }
-    }
-    impl Space for Lost {
-        type State = Point;
         fn dim(&self) -> usize {
             2
         }
@@ -81,9 +80,9 @@ fn distances_must_be_finite() {
             true
         }
     }
-    let local = Straight::new(&Lost, Exact(Boxes::default()));
+    let local = Straight::new(&Unmeasured, Exact(Boxes::default()));
     let ends = [point(0.1, 0.1), point(0.9, 0.9)];
-    let error = Problem::new(&Lost, local, Exact(Boxes::default()), ends[0], ends[1]).unwrap_err();
+    let error = Problem::new(&Unmeasured, local, Exact(Boxes::default()), ends[0], ends[1]).unwrap_err();
     assert!(matches!(error, BuildError::Distance { distance } if distance.is_nan()));
 }
 

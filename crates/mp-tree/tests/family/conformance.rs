@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use mp_cspace::erased::{AnyIndex, AnySpace};
+use mp_cspace::obstacles::ObstacleHints;
 use mp_cspace::*;
 use mp_tree::{AnyPlanner, Problem, Settings, Step, TreeState, Tuning, Workers, build, planners};
 use nalgebra::{DVector, SVector, Vector2};
@@ -62,7 +63,7 @@ struct World<'c, C: Space, V> {
 impl<'c, C, V> World<'c, C, V>
 where
     C: DefaultNn<State: TreeState, Nn: Send + Sync + 'static> + Clone + Send + 'static,
-    V: Validity<C::State> + Clearance<C::State> + MotionBound<C::State> + ObstacleHints<C::State>,
+    V: Validity<C::State> + MotionClearance<C::State> + ObstacleHints<C::State>,
     V: Clone + Send + Sync + 'c,
 {
     fn new(space: &'c C, robot: V, ends: [C::State; 2], step: f64) -> Self {
@@ -141,8 +142,8 @@ fn point_of_space(boxes: Boxes<3>, ends: [[f64; 3]; 2], step: f64) {
 }
 
 /// The unit cube, of states without a size at compile time.
-fn any_cube() -> RnDyn {
-    RnDyn::new(vec![0.0; 3], vec![1.0; 3]).unwrap()
+fn any_cube() -> Joints<DVector<f64>> {
+    Joints::<DVector<f64>>::intervals(&[0.0; 3], &[1.0; 3]).unwrap()
 }
 
 fn any<const N: usize>(q: [f64; N]) -> DVector<f64> {
@@ -230,7 +231,7 @@ fn an_arm_of_two_joints_folds() {
 fn an_arm_of_six_joints_finds_its_way() {
     let places = [(1.06, 0.51), (-0.2, 0.9), (0.0, -0.9)];
     let discs = places.map(|(x, y)| (Vector2::new(x, y), 0.1)).to_vec();
-    let space = RnDyn::new(vec![-1.5; 6], vec![1.5; 6]).unwrap();
+    let space = Joints::<DVector<f64>>::intervals(&[-1.5; 6], &[1.5; 6]).unwrap();
     let robot = Sizeless::<_, 6>(Arm { link: 0.2, radius: 0.02, discs });
     let ends = [any([0.0; 6]), any([0.9, 0.1, 0.0, 0.0, 0.0, 0.0])];
     World::new(&space, robot, ends, 1.0).is_solved(200_000, 0, |_, _| true);
@@ -243,7 +244,7 @@ fn an_arm_never_passes_what_it_cannot() {
     let two = Arm { link: 0.5, radius: 0.02, discs: discs.clone() };
     let ends = [[0.0, 0.0].into(), [3.0, 0.0].into()];
     World::new(&joints::<2>(), two, ends, 0.5).is_never_solved();
-    let space = RnDyn::new(vec![-PI; 6], vec![PI; 6]).unwrap();
+    let space = Joints::<DVector<f64>>::intervals(&[-PI; 6], &[PI; 6]).unwrap();
     let six = Sizeless::<_, 6>(Arm { link: 0.5, radius: 0.02, discs });
     World::new(&space, six, [any([0.0; 6]), any([3.0, 0.0, 0.0, 0.0, 0.0, 0.0])], 2.0).is_never_solved();
 }

@@ -1,6 +1,7 @@
 //! What the engine promises: stops, resumption, reproduction, events, goals, no duplicates.
 
 use crate::common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

@@ -2,6 +2,8 @@
 
 use crate::common::*;
 use mp_cspace::erased::AnySpace;
+use mp_cspace::obstacles::ObstacleHints;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::{DVector, SVector};
@@ -9,11 +11,8 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// A robot as planners by name may want one.
-trait Robot<S>: Clearance<S> + MotionBound<S> + Validity<S> + ObstacleHints<S> + Clone + Send + Sync {}
-impl<S, V: Clearance<S> + MotionBound<S> + Validity<S> + ObstacleHints<S> + Clone + Send + Sync> Robot<S>
-    for V
-{
-}
+trait Robot<S>: MotionClearance<S> + Validity<S> + ObstacleHints<S> + Clone + Send + Sync {}
+impl<S, V: MotionClearance<S> + Validity<S> + ObstacleHints<S> + Clone + Send + Sync> Robot<S> for V {}
 
 type Made<'c, P, S> = Problem<'c, P, Straight<'c, P, erased::AnyCheck<'c, S>>>;
 
@@ -86,7 +85,7 @@ fn a_rod_is_planned_the_same() {
 /// States without a size at compile time: by the types of three planners, as compiling all of them takes its time.
 #[test]
 fn joints_are_planned_the_same() {
-    let space = RnDyn::new(vec![0.0; 2], vec![1.0; 2]).unwrap();
+    let space = Joints::<DVector<f64>>::intervals(&[0.0; 2], &[1.0; 2]).unwrap();
     let (erased, robot) = (AnySpace::new(&space), Sizeless::<_, 2>(slit(0.1, 0.8, 0.1)));
     let ends = [DVector::from_vec(vec![0.1, 0.2]), DVector::from_vec(vec![0.9, 0.2])];
     let (settings, tuning) = (Settings::parse(["step=10%"]).unwrap(), Tuning::default());

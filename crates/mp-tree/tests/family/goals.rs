@@ -1,6 +1,7 @@
 //! Goals that are sets: some components fixed and others free, and regions alone.
 
 use crate::common::*;
+use mp_cspace::registry::{Demand, Settings};
 use mp_cspace::*;
 use mp_tree::*;
 

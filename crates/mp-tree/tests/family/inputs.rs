@@ -1,7 +1,8 @@
 //! Planners that move by a set of inputs.
 
 use crate::common::*;
-use mp_cspace::inputs::*;
+use mp_control::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::{SVector, Vector2};

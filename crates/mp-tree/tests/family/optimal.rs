@@ -1,6 +1,7 @@
 //! Planners that improve: paths get ever cheaper, trees stay what their events say.
 
 use crate::common::*;
+use mp_cspace::registry::{Demand, PlannerInfo, Settings};
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

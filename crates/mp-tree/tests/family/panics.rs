@@ -1,6 +1,7 @@
 //! A panic in the user's code does not lose the tree: planning goes on with it.
 
 use crate::common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

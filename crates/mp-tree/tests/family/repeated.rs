@@ -1,6 +1,7 @@
 //! Planners that run planners: several at once, and one after the other.
 
 use crate::common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

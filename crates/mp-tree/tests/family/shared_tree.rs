@@ -1,6 +1,7 @@
 //! One tree grown by several threads.
 
 use crate::common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

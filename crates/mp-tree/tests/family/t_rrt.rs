@@ -1,6 +1,7 @@
 //! Transition-based RRT: its paths cost less than those of RRT.
 
 use crate::common::*;
+use mp_cspace::registry::Settings;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;

@@ -3,7 +3,7 @@
 use super::super::NodeId;
 use super::super::leaf::{CAP, Extra, FILL};
 use super::{Inner, KdTree, Ref, Weight};
-use crate::Embed;
+use crate::nn::Embed;
 
 /// The states to build a subtree from.
 #[derive(Debug)]

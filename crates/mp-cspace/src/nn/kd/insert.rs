@@ -5,7 +5,7 @@ use super::super::leaf::CAP;
 use super::build::Items;
 use super::shape::Shape;
 use super::{Inner, KdTree, Ref, Weight};
-use crate::Embed;
+use crate::nn::Embed;
 
 impl<const K: usize> KdTree<K> {
     pub(super) fn insert<C: Embed>(&mut self, space: &C, points: &[C::State], id: NodeId) {

@@ -5,7 +5,7 @@ use super::super::collect::Collector;
 use super::super::leaf::{CAP, Extra, WIDE};
 use super::super::{Hit, NodeId};
 use super::search::Search;
-use crate::Embed;
+use crate::nn::Embed;
 
 impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     /// Offers the states of a leaf that pass the filter.

@@ -2,7 +2,7 @@
 
 use super::super::collect::Collector;
 use super::{Inner, KdTree, Ref};
-use crate::Embed;
+use crate::nn::Embed;
 
 /// One search under way. Distances to cells and lanes are squared.
 pub(super) struct Search<'a, C: Embed, L, const K: usize> {

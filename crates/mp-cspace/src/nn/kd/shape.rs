@@ -1,8 +1,8 @@
 //! The part of a layout that a tree looks at.
 
-use super::super::embed::{Layout, Symmetry};
 use super::ANY;
-use crate::Embed;
+use crate::layout::{Layout, Symmetry};
+use crate::nn::Embed;
 
 /// What a tree knows of its space, fixed by the first state.
 #[derive(Clone, Debug)]

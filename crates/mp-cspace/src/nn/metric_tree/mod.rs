@@ -167,7 +167,7 @@ impl MetricTree {
 
 impl<C> NearestNeighbors<C> for MetricTree
 where
-    C: Space + TrueMetric<C::State>,
+    C: Space + TrueMetric,
 {
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId) {
         self.insert(space, points, id);

@@ -1,7 +1,7 @@
 //! Systems on wheels: motions along arcs of circles, in closed form.
 
-use super::{Flow, InputError, InputSet};
-use crate::{ParameterError, Se2State};
+use crate::{Flow, InputError, InputSet};
+use mp_cspace::{ParameterError, Se2State};
 
 /// The pose after driving at `speed` (m/s) and turning at `rate` (rad/s) for `time`.
 #[inline]

@@ -1,14 +1,14 @@
 //! Systems given by a differential equation.
 
-use super::Flow;
-use crate::ParameterError;
+use crate::Flow;
+use mp_cspace::ParameterError;
 use nalgebra::SVector;
 
 /// A vector moved by a differential equation `dq/dt = f(q, u)`, integrated by the classical method of
 /// Runge and Kutta of fourth order.
 ///
 /// ```
-/// use mp_cspace::inputs::{Flow, Rk4};
+/// use mp_control::{Flow, Rk4};
 /// use nalgebra::Vector2;
 /// // A pendulum with a torque.
 /// let pendulum = Rk4::new(|q: &Vector2<f64>, u: &f64| Vector2::new(q.y, u - q.x.sin()), 0.01)?;

@@ -16,9 +16,6 @@ pub trait ObstacleHints<S> {
     /// or there is nothing along which to move.
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S>;
 
-    /// The position of `position` with the rotation of `rotation`.
-    fn turned(&self, position: &S, rotation: &S) -> S;
-
     /// `q` moved and turned by what leads from `from` to `to`.
     fn carried(&self, q: &S, from: &S, to: &S) -> S;
 }
@@ -29,9 +26,6 @@ impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for &mut H {
     }
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
         (**self).along(from, toward, hit, rng)
-    }
-    fn turned(&self, position: &S, rotation: &S) -> S {
-        (**self).turned(position, rotation)
     }
     fn carried(&self, q: &S, from: &S, to: &S) -> S {
         (**self).carried(q, from, to)
@@ -141,9 +135,6 @@ impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for Box<H> {
     }
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
         (**self).along(from, toward, hit, rng)
-    }
-    fn turned(&self, position: &S, rotation: &S) -> S {
-        (**self).turned(position, rotation)
     }
     fn carried(&self, q: &S, from: &S, to: &S) -> S {
         (**self).carried(q, from, to)

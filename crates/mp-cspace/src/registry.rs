@@ -1,7 +1,6 @@
-//! Parameters by name: what a planner is told at run time.
+//! Planners by name: what people are told of them, and the settings they are given as text.
 
-use super::{BuildError, Step};
-use crate::Space;
+use crate::{BuildError, Space, Step};
 
 /// A parameter of a planner, for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +59,7 @@ pub enum Demand {
 /// Values of parameters by name.
 ///
 /// ```
-/// use mp_cspace::Settings;
+/// use mp_cspace::registry::Settings;
 /// let settings = Settings::parse(["step=15%", "goal-bias=0.1"])?;
 /// assert_eq!(settings.number("goal-bias")?, Some(0.1));
 /// assert!(Settings::parse(["step"]).is_err());
@@ -231,8 +230,8 @@ fn malformed(setting: String, expected: &'static str) -> BuildError {
 /// The name that `name` was probably meant to be: the one fewest edits away, if not too many.
 ///
 /// ```
-/// assert_eq!(mp_cspace::closest("rrt-conect", ["rrt", "rrt-connect"]), Some("rrt-connect"));
-/// assert_eq!(mp_cspace::closest("dijkstra", ["rrt", "rrt-connect"]), None);
+/// assert_eq!(mp_cspace::registry::closest("rrt-conect", ["rrt", "rrt-connect"]), Some("rrt-connect"));
+/// assert_eq!(mp_cspace::registry::closest("dijkstra", ["rrt", "rrt-connect"]), None);
 /// ```
 pub fn closest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let fold = |text: &str| -> Vec<char> { text.to_lowercase().replace('_', "-").chars().take(64).collect() };

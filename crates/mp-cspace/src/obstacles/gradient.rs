@@ -6,7 +6,7 @@
 /// that a user wrote down), and closures are fields too.
 ///
 /// ```
-/// use mp_cspace::ClearanceGradient;
+/// use mp_cspace::obstacles::ClearanceGradient;
 /// use nalgebra::Vector2;
 /// // A point, one metre or more from the origin.
 /// let mut field = |q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]| {

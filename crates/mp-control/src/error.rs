@@ -1,6 +1,6 @@
 //! What can be wrong with inputs and flows.
 
-use crate::{ParameterError, SpaceError};
+use mp_cspace::{ParameterError, SpaceError};
 use thiserror::Error;
 
 /// Why an input set, a system or an input planner could not be made.
@@ -27,7 +27,7 @@ pub enum InputError {
     /// Limits do not fit the space, such as their number.
     #[error(transparent)]
     Space(#[from] SpaceError),
-    /// The space knows no [velocities](crate::Space::moved), or inputs have not one entry for each of
+    /// The space knows no [velocities](mp_cspace::Space::moved), or inputs have not one entry for each of
     /// its degrees of freedom.
     #[error("an input of {entries} entries moves no state of the space, which has {dim} degrees of freedom")]
     NoMotion {
@@ -53,4 +53,10 @@ pub enum InputError {
         /// How many states were tried.
         states: usize,
     },
+}
+
+impl From<InputError> for mp_cspace::BuildError {
+    fn from(error: InputError) -> Self {
+        Self::Inputs { reason: error.to_string() }
+    }
 }

@@ -1,21 +1,20 @@
 //! The inputs a system may be given.
 
-use super::{Input, InputError};
-use crate::sampler::{primes, radical_inverse};
-use crate::{ParameterError, Space, SpaceError};
+use crate::{Input, InputError};
+use mp_cspace::{Halton, Joints, ParameterError, Rng, Sampler, Space, SpaceError};
 use nalgebra::{DVector, SVector};
 use std::f64::consts::TAU;
 
 /// A list of inputs, not empty and finite. Ties between successors go to the input listed first.
 ///
 /// ```
-/// use mp_cspace::inputs::InputSet;
+/// use mp_control::InputSet;
 /// // A disc that moves at 1 m/s along x or y: four inputs.
 /// assert_eq!(InputSet::axes([1.0, 1.0])?.len(), 4);
 /// // All combinations of three values per axis, but for standing still: eight.
 /// assert_eq!(InputSet::grid([1.0, 1.0], 3)?.len(), 8);
 /// assert!(InputSet::<f64>::new([]).is_err());
-/// # Ok::<(), mp_cspace::inputs::InputError>(())
+/// # Ok::<(), mp_control::InputError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputSet<U> {
@@ -238,17 +237,26 @@ fn spread(limits: &[f64], count: usize) -> Result<Vec<Vec<f64>>, InputError> {
         return Err(InputError::Empty { what: "the list of directions" });
     }
     let n = limits.len();
-    let bases = primes(2 * n.div_ceil(2));
-    let direction = |i: usize| -> Vec<f64> {
-        let u = |d: usize| radical_inverse(i as u64 / 2 + 1, bases[d]);
+    let even = 2 * n.div_ceil(2);
+    let cube = Joints::<DVector<f64>>::intervals(&vec![0.0; even], &vec![1.0; even])?;
+    // The sequence draws nothing from the generator.
+    let (mut halton, mut rng) = (Halton::new(&cube), Rng::seed(0));
+    let mut direction = || -> Vec<f64> {
+        let u = halton.sample(&mut rng);
         let normal = |d: usize| {
-            let (radius, angle) = ((-2.0 * (1.0 - u(d & !1)).ln()).sqrt(), TAU * u(d | 1));
+            let (radius, angle) = ((-2.0 * (1.0 - u[d & !1]).ln()).sqrt(), TAU * u[d | 1]);
             radius * if d.is_multiple_of(2) { angle.cos() } else { angle.sin() }
         };
         let v: Vec<f64> = (0..n).map(normal).collect();
         let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let sign = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
-        v.iter().zip(limits).map(|(x, limit)| sign * limit * x / length).collect()
+        v.iter().zip(limits).map(|(x, limit)| limit * x / length).collect()
     };
-    Ok((0..count).map(direction).collect())
+    let mut directions = Vec::with_capacity(count + 1);
+    while directions.len() < count {
+        let one = direction();
+        let opposite = one.iter().map(|x| -x).collect();
+        directions.extend([one, opposite]);
+    }
+    directions.truncate(count);
+    Ok(directions)
 }

@@ -1,7 +1,9 @@
 //! Testing the motion to a successor, and what its edge remembers.
 
-use super::{Flow, Input};
-use crate::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Resolution, Space, Validity};
+use crate::{Flow, Input};
+use mp_cspace::{
+    Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Resolution, Space, Validity,
+};
 use std::fmt::Debug;
 
 /// An edge that remembers how it was made: run from the state before it, the input leads in `duration`
@@ -40,7 +42,7 @@ impl<'a, S, U> Drive<'a, S, U> {
     }
 }
 
-/// The collision test of successors in an [`InputPlanner`](super::InputPlanner).
+/// The collision test of successors in an [`InputPlanner`](crate::InputPlanner).
 pub trait FlowCheck<S, U, F> {
     /// What an edge remembers.
     type Edge: Clone + Debug + Send + Sync;
@@ -62,7 +64,7 @@ pub trait FlowCheck<S, U, F> {
 }
 
 /// Motions to successors are what another local planner does between the two states, and so are the
-/// edges: for [`Kinematic`](super::Kinematic) motions and [`Straight`](crate::Straight), whose edges are
+/// edges: for [`Kinematic`](crate::Kinematic) motions and [`Straight`](mp_cspace::Straight), whose edges are
 /// the space's interpolation.
 #[derive(Clone, Debug)]
 pub struct Between<L>(pub L);
@@ -97,21 +99,21 @@ impl<S, U: Input, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Recorded<L> {
     #[inline]
     fn test(&mut self, _: &F, drive: &Drive<'_, S, U>) -> Option<(ControlSegment<U>, f64)> {
         let free = self.0.extend(drive.node, drive.successor, drive.direction, Reach::Full);
-        matches!(free, Extension::Reached(_)).then(|| leg(drive))
+        matches!(free, Extension::Reached(_)).then(|| segment(drive))
     }
     fn admits(&mut self, q: &S) -> bool {
         self.0.admits(q)
     }
 }
 
-fn leg<S, U: Input>(drive: &Drive<'_, S, U>) -> (ControlSegment<U>, f64) {
+fn segment<S, U: Input>(drive: &Drive<'_, S, U>) -> (ControlSegment<U>, f64) {
     (ControlSegment { input: drive.input.clone(), duration: drive.duration }, drive.duration)
 }
 
 /// Motions are sampled along the flow, whatever it is: the successor first, then states on the way no
 /// farther apart than a resolution. Edges remember the input; their cost is time.
 ///
-/// **What it does not promise:** as with [`Discrete`](crate::Discrete), between tested states anything
+/// **What it does not promise:** as with [`Discrete`](mp_cspace::Discrete), between tested states anything
 /// may be hit.
 #[derive(Clone, Debug)]
 pub struct DiscreteFlowCheck<'c, C: Space, V> {
@@ -197,7 +199,7 @@ where
         }
         let inner = 1..self.way.len() - 1;
         let inside = self.way[inner.clone()].iter().all(|q| self.space.contains(q));
-        (inside && self.valid.first_invalid(&self.way[inner]).is_none()).then(|| leg(drive))
+        (inside && self.valid.first_invalid(&self.way[inner]).is_none()).then(|| segment(drive))
     }
     fn admits(&mut self, q: &C::State) -> bool {
         self.valid.is_valid(q)

@@ -1,7 +1,7 @@
 //! The local planner that chooses among inputs.
 
-use super::{Drive, Flow, FlowCheck, Input, InputError, InputSet};
-use crate::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Rng, Space};
+use crate::{Drive, Flow, FlowCheck, Input, InputError, InputSet};
+use mp_cspace::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Rng, Space};
 
 /// In which order successors are tested for collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -43,34 +43,27 @@ pub struct InputCounters {
     pub irreversible: u64,
 }
 
-/// Something that tests successors in an order: an [`InputPlanner`], or one that is lent.
-pub trait TestOrder {
-    /// Sets the order.
+/// A local planner that chooses among inputs, as its caller says: an [`InputPlanner`], or a reference to one.
+pub trait InputChoice {
+    /// Sets the order in which successors are tested.
     fn set_order(&mut self, order: Order);
-}
 
-impl<L: TestOrder + ?Sized> TestOrder for &mut L {
-    fn set_order(&mut self, order: Order) {
-        (**self).set_order(order);
-    }
-}
-
-/// Something that can try each input at most once per node, told by its caller which were tried: an
-/// [`InputPlanner`], or one that is lent.
-pub trait EachOnce {
     /// How many inputs there are.
     fn count(&self) -> usize;
 
-    /// From now on extends by inputs not marked in `tried`, one per input (all unmarked when it has
-    /// another length), and marks those it tries. At most `most` are tested for collision at a time.
-    /// Any successor is accepted, in the order of [`SortFirst`](Order::SortFirst).
+    /// From now on tries each input at most once per node: extends only by inputs not marked in `tried`, one entry per input
+    /// (all unmarked when it has another length), and marks those it tries. At most `most` are tested for collision at a
+    /// time. Any successor is accepted, in the order of [`SortFirst`](Order::SortFirst).
     fn lend_tried(&mut self, tried: Vec<bool>, most: usize);
 
-    /// The marks, now extending by all inputs again.
+    /// Ends [`lend_tried`](Self::lend_tried) and returns the marks.
     fn take_tried(&mut self) -> Vec<bool>;
 }
 
-impl<L: EachOnce + ?Sized> EachOnce for &mut L {
+impl<L: InputChoice + ?Sized> InputChoice for &mut L {
+    fn set_order(&mut self, order: Order) {
+        (**self).set_order(order);
+    }
     fn count(&self) -> usize {
         (**self).count()
     }
@@ -93,7 +86,7 @@ impl<L: EachOnce + ?Sized> EachOnce for &mut L {
 /// In backward trees successors are states that lead to the node: the flow is
 /// [turned back](Flow::reversed), and where edges are replayed only successors from which it runs
 /// forward to the very same node are used. Rounding makes them rare, so backward trees are of use with
-/// [`Between`](super::Between) only.
+/// [`Between`](crate::Between) only.
 ///
 /// Time per extension: one integration and distance per input, a sort in
 /// [`SortFirst`](Order::SortFirst), and the tests.
@@ -362,13 +355,10 @@ fn probe<C: Space, U: Input, F: Flow<C::State, U>>(
     if moves { Ok(()) } else { Err(InputError::LeavesSpace { states: PROBES }) }
 }
 
-impl<C: Space, F, U, K> TestOrder for InputPlanner<'_, C, F, U, K> {
+impl<C: Space, F, U: Input, K> InputChoice for InputPlanner<'_, C, F, U, K> {
     fn set_order(&mut self, order: Order) {
         self.order = order;
     }
-}
-
-impl<C: Space, F, U: Input, K> EachOnce for InputPlanner<'_, C, F, U, K> {
     fn count(&self) -> usize {
         self.inputs.len()
     }

@@ -1,6 +1,6 @@
 //! Input sets, flows, the planner that chooses among inputs, and the verifiers that run its edges again.
 
-use mp_cspace::inputs::*;
+use mp_control::*;
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_nearest_neighbors, check_true_metric};
 use mp_cspace::{Rng, *};
 use nalgebra::{DVector, SVector, Vector2};
@@ -65,8 +65,8 @@ where
                     let again = flow.integrate(&from, &m.edge.input, m.edge.duration);
                     assert_eq!(again, m.end);
                     let longer = ControlSegment { duration: m.edge.duration * 1.5, ..m.edge.clone() };
-                    assert!(!verifier.check_leg(&from, &longer, &m.end).is_free());
-                    assert!(!verifier.check_leg(&from, &m.edge, &from).is_free());
+                    assert!(!verifier.check_segment(&from, &longer, &m.end).is_free());
+                    assert!(!verifier.check_segment(&from, &m.edge, &from).is_free());
                 }
             }
         }
@@ -116,7 +116,7 @@ fn verifiers_agree_with_checks_up_to_resolution() {
         }
         let extension = planner.extend(&from, &toward, Direction::Forward, Reach::Step(1.0));
         let Extension::Advanced(m) = extension else { continue };
-        match verifier.check_leg(&from, &m.edge, &m.end).is_free() {
+        match verifier.check_segment(&from, &m.edge, &m.end).is_free() {
             true => passed += 1,
             false => refused += 1,
         }
@@ -139,7 +139,7 @@ fn motions_that_come_round_are_tested_on_the_way() {
     let leg = ControlSegment { input: [TAU, TAU], duration: 0.999 };
     let end = Unicycle.integrate(&from, &leg.input, leg.duration);
     assert!(space.distance(&from, &end) < 0.02);
-    assert!(!verifier.check_leg(&from, &leg, &end).is_free());
+    assert!(!verifier.check_segment(&from, &leg, &end).is_free());
 }
 
 #[test]
@@ -222,7 +222,7 @@ fn backward_edges_run_forward_to_the_bit_or_are_refused() {
         if let Extension::Advanced(m) | Extension::Reached(m) = extension {
             assert_eq!(flow.integrate(&m.end, &m.edge.input, m.edge.duration), node);
             let clear = free(&node) && free(&m.end) && free(&((node + m.end) / 2.0));
-            assert!(clear || !verifier.check_leg(&m.end, &m.edge, &node).is_free());
+            assert!(clear || !verifier.check_segment(&m.end, &m.edge, &node).is_free());
         }
     }
     let counters = planner.counters();
@@ -330,13 +330,11 @@ fn bad_input_is_a_typed_error() {
     /// A space that knows no velocities.
     #[derive(Clone, Debug)]
     struct Bare;
-    impl Metric<f64> for Bare {
+    impl Space for Bare {
+        type State = f64;
         fn distance(&self, from: &f64, to: &f64) -> f64 {
             (to - from).abs()
         }
-    }
-    impl Space for Bare {
-        type State = f64;
         fn dim(&self) -> usize {
             1
         }
@@ -379,7 +377,7 @@ fn states_that_are_not_finite_are_dropped_and_counted() {
 }
 
 /// The kit on states with velocities, under every metric.
-fn kit<C: Space + TrueMetric<C::State> + DefaultNn>(space: &C) {
+fn kit<C: Space + TrueMetric + DefaultNn>(space: &C) {
     SpaceKit::new().run(space);
     let mut rng = Rng::seed(2);
     let states: Vec<_> = (0..30).map(|_| space.sample_uniform(&mut rng)).collect();
@@ -397,7 +395,11 @@ fn spaces_with_velocities_conform() {
     let weights = [1.0, 1.0, 1.0, 0.5, 0.1, 0.1, 0.1, 0.2, 0.2, 0.2];
     kit(&WithMetric::new(space.clone(), ScaledEuclidean::new(&space, weights).unwrap()));
     kit(&Product::with_velocity(Se2::new([0.0; 2], [2.0; 2]).unwrap(), [1.0; 3]).unwrap());
-    kit(&Product::with_velocity_dyn(RnDyn::new(vec![0.0; 6], vec![3.0; 6]).unwrap(), &[1.0; 6]).unwrap());
+    kit(&Product::with_velocity_dyn(
+        Joints::<DVector<f64>>::intervals(&[0.0; 6], &[3.0; 6]).unwrap(),
+        &[1.0; 6],
+    )
+    .unwrap());
 }
 
 /// Uniform inputs are one reach long in the metric, each level a quarter of the one before.

@@ -1,15 +1,15 @@
-//! Motions made by inputs: flows, input sets, and the local planner that chooses among them.
+//! Systems that move by inputs: flows, input sets, and the local planner that chooses among inputs.
 //!
 //! A [`Flow`] says how an input, applied for a while, moves a state. An [`InputSet`] lists the inputs
-//! there are. [`InputPlanner`] is the [`LocalPlanner`](crate::LocalPlanner) of both, in either
+//! there are. [`InputPlanner`] is the [`LocalPlanner`](mp_cspace::LocalPlanner) of both, in either
 //! [`Order`] of testing; a [`FlowCheck`] tests a successor's motion and says what its edge remembers;
 //! [`ReplayMotions`] and [`ReplayFinely`] verify edges by running them again.
 //!
 //! | system | states | inputs |
 //! |---|---|---|
-//! | [`Kinematic`] | of any space that knows [velocities](crate::Space::moved) | velocities |
-//! | [`DoubleIntegrator`] | positions and velocities, as in [`Product::with_velocity`](crate::Product::with_velocity) | accelerations |
-//! | [`Unicycle`], [`Car`] | [`Se2State`](crate::Se2State) | speed and turning or steering |
+//! | [`Kinematic`] | of any space that knows [velocities](mp_cspace::Space::moved) | velocities |
+//! | [`DoubleIntegrator`] | positions and velocities, as in [`Product::with_velocity`](mp_cspace::Product::with_velocity) | accelerations |
+//! | [`Unicycle`], [`Car`] | [`Se2State`](mp_cspace::Se2State) | speed and turning or steering |
 //! | [`Rk4`] | vectors | any: a differential equation, integrated |
 //! | a closure | any | any |
 
@@ -27,9 +27,9 @@ mod wheels;
 pub use check::{Between, ControlSegment, DiscreteFlowCheck, Drive, FlowCheck, OnPosition, Recorded};
 pub use double_integrator::DoubleIntegrator;
 pub use error::InputError;
-pub use flow::{Flow, Input, InputMut};
+pub use flow::{Flow, Input};
 pub use kinematic::Kinematic;
-pub use local::{Accept, EachOnce, InputCounters, InputPlanner, Order, TestOrder};
+pub use local::{Accept, InputChoice, InputCounters, InputPlanner, Order};
 pub use replay::{ReplayFinely, ReplayMotions};
 pub use rk4::Rk4;
 pub use set::InputSet;

@@ -5,15 +5,12 @@ use std::fmt::Debug;
 
 /// What a system can be told to do: a list of numbers.
 ///
-/// Numbers, arrays and vectors are inputs.
+/// Numbers, arrays and vectors are inputs. So are velocities, where a system is told accelerations.
 pub trait Input: Clone + Debug + PartialEq + Send + Sync {
     /// Its numbers.
     fn entries(&self) -> &[f64];
-}
 
-/// An input whose numbers can be changed, such as a velocity.
-pub trait InputMut: Input {
-    /// Its numbers.
+    /// Its numbers, to be changed.
     fn entries_mut(&mut self) -> &mut [f64];
 
     /// `self + factor · other`, number by number.
@@ -33,8 +30,6 @@ impl Input for f64 {
     fn entries(&self) -> &[f64] {
         std::slice::from_ref(self)
     }
-}
-impl InputMut for f64 {
     #[inline]
     fn entries_mut(&mut self) -> &mut [f64] {
         std::slice::from_mut(self)
@@ -45,8 +40,6 @@ impl<const N: usize> Input for [f64; N] {
     fn entries(&self) -> &[f64] {
         self
     }
-}
-impl<const N: usize> InputMut for [f64; N] {
     #[inline]
     fn entries_mut(&mut self) -> &mut [f64] {
         self
@@ -57,8 +50,6 @@ impl<const N: usize> Input for SVector<f64, N> {
     fn entries(&self) -> &[f64] {
         self.as_slice()
     }
-}
-impl<const N: usize> InputMut for SVector<f64, N> {
     #[inline]
     fn entries_mut(&mut self) -> &mut [f64] {
         self.as_mut_slice()
@@ -69,8 +60,6 @@ impl Input for DVector<f64> {
     fn entries(&self) -> &[f64] {
         self.as_slice()
     }
-}
-impl InputMut for DVector<f64> {
     #[inline]
     fn entries_mut(&mut self) -> &mut [f64] {
         self.as_mut_slice()
@@ -81,8 +70,6 @@ impl Input for Vec<f64> {
     fn entries(&self) -> &[f64] {
         self
     }
-}
-impl InputMut for Vec<f64> {
     #[inline]
     fn entries_mut(&mut self) -> &mut [f64] {
         self

@@ -1,18 +1,18 @@
 //! Verifying edges by running them again.
 
-use super::{ControlSegment, Flow};
-use crate::{MotionCheck, MotionValidity, ParameterError, Resolution, Space, Validity};
+use crate::{ControlSegment, Flow};
+use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Resolution, Space, Validity, Verify};
 
 /// Not the motion it is said to be: refused at its end.
 const FALSE: MotionCheck = MotionCheck::Unproven { at: 1.0 };
 
 /// Whether running the edge leads from `from` to `to`, bit for bit.
-fn replays<S: PartialEq, U, F: Flow<S, U>>(flow: &F, from: &S, leg: &ControlSegment<U>, to: &S) -> bool {
-    let runs = leg.duration > 0.0 && leg.duration.is_finite();
-    runs && flow.integrate(from, &leg.input, leg.duration) == *to
+fn replays<S: PartialEq, U, F: Flow<S, U>>(flow: &F, from: &S, segment: &ControlSegment<U>, to: &S) -> bool {
+    let runs = segment.duration > 0.0 && segment.duration.is_finite();
+    runs && flow.integrate(from, &segment.input, segment.duration) == *to
 }
 
-/// Verifies the edges of [`Recorded`](super::Recorded): runs each again, which must end in the very state
+/// Verifies the edges of [`Recorded`](crate::Recorded): runs each again, which must end in the very state
 /// after it, and verifies the straight motion between.
 #[derive(Clone, Debug)]
 pub struct ReplayMotions<F, V> {
@@ -29,12 +29,17 @@ impl<F, V> ReplayMotions<F, V> {
     }
 
     /// Verifies one edge, in forward time.
-    pub fn check_leg<S: PartialEq, U>(&mut self, from: &S, leg: &ControlSegment<U>, to: &S) -> MotionCheck
+    pub fn check_segment<S: PartialEq, U>(
+        &mut self,
+        from: &S,
+        segment: &ControlSegment<U>,
+        to: &S,
+    ) -> MotionCheck
     where
         F: Flow<S, U>,
         V: MotionValidity<S>,
     {
-        if replays(&self.flow, from, leg, to) { self.check.check_motion(from, to) } else { FALSE }
+        if replays(&self.flow, from, segment, to) { self.check.check_motion(from, to) } else { FALSE }
     }
 
     /// Verifies one state.
@@ -48,7 +53,7 @@ impl<F, V> ReplayMotions<F, V> {
 
 /// Verifies any edge that remembers its input: runs it again, which must end in the very state after it,
 /// and walks along it in steps of a resolution, some twenty times finer than that of the local planner. Shares only the
-/// flow with [`DiscreteFlowCheck`](super::DiscreteFlowCheck): the flow is what a motion *is*.
+/// flow with [`DiscreteFlowCheck`](crate::DiscreteFlowCheck): the flow is what a motion *is*.
 #[derive(Clone, Debug)]
 pub struct ReplayFinely<'c, C, F, V> {
     space: &'c C,
@@ -74,11 +79,16 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
     }
 
     /// Verifies one edge, in forward time.
-    pub fn check_leg<U>(&mut self, from: &C::State, leg: &ControlSegment<U>, to: &C::State) -> MotionCheck
+    pub fn check_segment<U>(
+        &mut self,
+        from: &C::State,
+        segment: &ControlSegment<U>,
+        to: &C::State,
+    ) -> MotionCheck
     where
         F: Flow<C::State, U>,
     {
-        if !replays(&self.flow, from, leg, to) {
+        if !replays(&self.flow, from, segment, to) {
             return FALSE;
         }
         let (mut at, mut pace, mut q) = (0.0_f64, 0.01_f64, from.clone());
@@ -93,7 +103,7 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
             let next = loop {
                 let ahead = (at + pace).min(1.0);
                 let state = match ahead < 1.0 {
-                    true => self.flow.integrate(from, &leg.input, leg.duration * ahead),
+                    true => self.flow.integrate(from, &segment.input, segment.duration * ahead),
                     false => to.clone(),
                 };
                 if self.space.distance(&q, &state) <= self.step {
@@ -120,5 +130,30 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
 
     fn is_free(&mut self, q: &C::State) -> bool {
         self.space.contains(q) && self.valid.is_valid(q)
+    }
+}
+
+impl<S: PartialEq, U, F: Flow<S, U>, V: MotionValidity<S>> Verify<S, ControlSegment<U>>
+    for ReplayMotions<F, V>
+{
+    fn verify_state(&mut self, q: &S) -> MotionCheck {
+        self.check_state(q)
+    }
+    fn verify_edge(&mut self, from: &S, edge: &ControlSegment<U>, to: &S) -> MotionCheck {
+        self.check_segment(from, edge, to)
+    }
+}
+
+impl<C, U, F, V> Verify<C::State, ControlSegment<U>> for ReplayFinely<'_, C, F, V>
+where
+    C: Space,
+    F: Flow<C::State, U>,
+    V: Validity<C::State>,
+{
+    fn verify_state(&mut self, q: &C::State) -> MotionCheck {
+        self.check_state(q)
+    }
+    fn verify_edge(&mut self, from: &C::State, edge: &ControlSegment<U>, to: &C::State) -> MotionCheck {
+        self.check_segment(from, edge, to)
     }
 }

@@ -1,7 +1,7 @@
 //! Systems whose inputs are velocities.
 
-use super::{Flow, Input, InputError};
-use crate::Space;
+use crate::{Flow, Input, InputError};
+use mp_cspace::Space;
 
 /// Any configuration moved at constant velocity: the trajectory as a list of positions. Inputs are
 /// velocities, one number per degree of freedom, as [`Space::moved`] takes them: a free-flyer is

@@ -1,7 +1,7 @@
 //! Systems whose inputs are accelerations.
 
-use super::{Flow, Input, InputError, InputMut};
-use crate::Space;
+use crate::{Flow, Input, InputError};
+use mp_cspace::Space;
 
 /// Positions with a velocity per degree of freedom, moved at constant acceleration.
 ///
@@ -28,24 +28,24 @@ impl<P> Clone for DoubleIntegrator<'_, P> {
 impl<P> Copy for DoubleIntegrator<'_, P> {}
 
 impl<'c, P: Space> DoubleIntegrator<'c, P> {
-    /// The states over `positions`, the first of the [spaces](crate::Product::spaces) of their product
+    /// The states over `positions`, the first of the [spaces](mp_cspace::Product::spaces) of their product
     /// with velocities.
     ///
     /// # Errors
     /// When the space of positions knows no velocities.
     pub fn new(positions: &'c P) -> Result<Self, InputError> {
-        super::Kinematic::new(positions).map(|_| Self { positions })
+        crate::Kinematic::new(positions).map(|_| Self { positions })
     }
 
     #[inline]
-    fn run<V: InputMut, U: Input>(&self, (q, v): &(P::State, V), input: &U, time: f64) -> (P::State, V) {
+    fn run<V: Input, U: Input>(&self, (q, v): &(P::State, V), input: &U, time: f64) -> (P::State, V) {
         let mean = v.plus(input, 0.5 * time);
         let q = self.positions.moved(q, mean.entries(), time).unwrap_or_else(|| q.clone());
         (q, v.plus(input, time))
     }
 }
 
-impl<P: Space, V: InputMut, U: Input> Flow<(P::State, V), U> for DoubleIntegrator<'_, P> {
+impl<P: Space, V: Input, U: Input> Flow<(P::State, V), U> for DoubleIntegrator<'_, P> {
     #[inline]
     fn integrate(&self, from: &(P::State, V), input: &U, time: f64) -> (P::State, V) {
         self.run(from, input, time)

@@ -1,0 +1,123 @@
+//! How coordinates bound a metric from below.
+
+use std::f64::consts::TAU;
+
+/// How the coordinates of a state ([`Embed`](crate::Embed)) bound the metric.
+///
+/// The coordinates fall into consecutive *groups*. For the difference Δ of the coordinates of two
+/// states, minimised over the symmetries below,
+///
+/// > Σ over groups of ‖Δ in the group‖₂ ≤ distance.
+///
+/// Built from [`euclidean`](Self::euclidean), [`periodic`](Self::periodic) and
+/// [`antipodal`](Self::antipodal), scaled, and joined by [`plus`](Self::plus) where distances add
+/// or [`beside`](Self::beside) where their squares do.
+///
+/// ```
+/// use mp_cspace::nn::Layout;
+/// // ‖Δp‖ + |Δθ|/2 in the plane: positions as they are, angles halved.
+/// let se2 = Layout::euclidean(2).plus(Layout::angles(1).scaled(0.5));
+/// assert_eq!(se2.dim(), 3);
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Layout {
+    /// Past-the-end coordinate of each group.
+    pub(crate) groups: Vec<usize>,
+    pub(crate) symmetries: Vec<Symmetry>,
+    pub(crate) slack: f64,
+}
+
+/// A map of the coordinates that leaves the state what it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Symmetry {
+    /// Adding ±`period` to one coordinate.
+    Period { coordinate: usize, period: f64 },
+    /// Negating the coordinates `start..end`.
+    Antipode { start: usize, end: usize },
+}
+
+impl Layout {
+    /// `n` plain coordinates: ‖Δ‖₂.
+    #[must_use]
+    pub fn euclidean(n: usize) -> Self {
+        Self { groups: vec![n], symmetries: Vec::new(), slack: 0.0 }
+    }
+
+    /// `n` coordinates of the given period, embedded in \[−period/2, period/2\]: the Euclidean norm
+    /// of the differences, each the short way round.
+    #[must_use]
+    pub fn periodic(n: usize, period: f64) -> Self {
+        let symmetries = (0..n).map(|coordinate| Symmetry::Period { coordinate, period }).collect();
+        Self { symmetries, ..Self::euclidean(n) }
+    }
+
+    /// `n` angles in radians, embedded in \[−π, π\].
+    #[must_use]
+    pub fn angles(n: usize) -> Self {
+        Self::periodic(n, TAU)
+    }
+
+    /// `n` coordinates that mean the same when all are negated: min ‖a ± b‖₂.
+    ///
+    /// Unit quaternions are such: at rotation angle θ this is 2 sin(θ/4), so twice it bounds θ.
+    /// Embed the one of both signs whose scalar part is not negative; the index is right anyway,
+    /// but faster.
+    #[must_use]
+    pub fn antipodal(n: usize) -> Self {
+        Self { symmetries: vec![Symmetry::Antipode { start: 0, end: n }], ..Self::euclidean(n) }
+    }
+
+    /// All coordinates multiplied by `factor` ≥ 0, periods with them; the embedding multiplies too.
+    #[must_use]
+    pub fn scaled(mut self, factor: f64) -> Self {
+        for s in &mut self.symmetries {
+            if let Symmetry::Period { period, .. } = s {
+                *period *= factor;
+            }
+        }
+        self.slack *= factor;
+        self
+    }
+
+    /// The coordinates of `self`, then those of `other`; the bounds add.
+    #[must_use]
+    pub fn plus(mut self, other: Self) -> Self {
+        let shift = self.dim();
+        self.groups.extend(other.groups.iter().map(|end| end + shift));
+        self.symmetries.extend(other.symmetries.iter().map(|s| s.shifted(shift)));
+        self.slack += other.slack;
+        self
+    }
+
+    /// The coordinates of `self`, then those of `other`, in one group: the squares of the bounds
+    /// add. Where either side has several groups this is only a bound of
+    /// √(bound² + bound²), not equal to it.
+    #[must_use]
+    pub fn beside(self, other: Self) -> Self {
+        let n = self.dim() + other.dim();
+        Self { groups: vec![n], ..self.plus(other) }
+    }
+
+    /// Admits that the computed distance may fall short of the bound by `slack`, an absolute
+    /// error; a relative error of 1e-7 is admitted anyway.
+    #[must_use]
+    pub fn with_slack(mut self, slack: f64) -> Self {
+        self.slack = slack;
+        self
+    }
+
+    /// The number of coordinates.
+    #[must_use]
+    pub fn dim(&self) -> usize {
+        self.groups.last().copied().unwrap_or(0)
+    }
+}
+
+impl Symmetry {
+    fn shifted(self, by: usize) -> Self {
+        match self {
+            Self::Period { coordinate, period } => Self::Period { coordinate: coordinate + by, period },
+            Self::Antipode { start, end } => Self::Antipode { start: start + by, end: end + by },
+        }
+    }
+}

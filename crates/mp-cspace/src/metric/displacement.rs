@@ -1,0 +1,87 @@
+//! Maximum displacement.
+
+use super::Metric;
+use crate::{MetricTree, Se2, Se2State, Se3, Space, SpaceError, TrueMetric};
+use nalgebra::{Isometry3, Point2, Point3};
+
+/// The maximum displacement of any point of a rigid robot, `max ‖x(q) - x(q')‖` over its points
+/// `x` (Benitez et al. 2010, *Key Elements for Motion Planning Algorithms*, eq. 6), in metres.
+///
+/// The displacement is a convex function of the point, so the maximum over a body is attained at
+/// a vertex of its convex hull: give these (or all vertices of its mesh) and the value is exact.
+/// Cost grows with the number of points. A true metric; it measures chords, so moving at constant
+/// speed does not change it at a constant rate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaxDisplacement<P> {
+    points: Vec<P>,
+    radius: f64,
+}
+
+impl MaxDisplacement<Point3<f64>> {
+    /// Of a body in space, `points` in the frame of the body.
+    ///
+    /// # Errors
+    /// When there is no point, or one is not finite.
+    pub fn new(points: impl Into<Vec<Point3<f64>>>) -> Result<Self, SpaceError> {
+        let points = points.into();
+        let radius = max_radius(points.iter().map(|p| p.coords.norm()))?;
+        Ok(Self { points, radius })
+    }
+}
+
+impl MaxDisplacement<Point2<f64>> {
+    /// Of a body in the plane, `points` in the frame of the body.
+    ///
+    /// # Errors
+    /// When there is no point, or one is not finite.
+    pub fn planar(points: impl Into<Vec<Point2<f64>>>) -> Result<Self, SpaceError> {
+        let points = points.into();
+        let radius = max_radius(points.iter().map(|p| p.coords.norm()))?;
+        Ok(Self { points, radius })
+    }
+}
+
+fn max_radius(norms: impl Iterator<Item = f64>) -> Result<f64, SpaceError> {
+    let mut max = None;
+    for norm in norms {
+        if !norm.is_finite() {
+            return Err(SpaceError::Weight { name: "the distance of a point from the origin", value: norm });
+        }
+        max = Some(norm.max(max.unwrap_or(0.0)));
+    }
+    max.ok_or(SpaceError::Empty { what: "the set of points" })
+}
+
+impl Metric<Se3> for MaxDisplacement<Point3<f64>> {
+    type Nn = MetricTree;
+
+    fn distance(&self, _: &Se3, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+        let (ra, rb) = (from.rotation.to_rotation_matrix(), to.rotation.to_rotation_matrix());
+        let turn = rb.matrix() - ra.matrix();
+        let shift = to.translation.vector - from.translation.vector;
+        self.points.iter().map(|p| (turn * p.coords + shift).norm_squared()).fold(0.0, f64::max).sqrt()
+    }
+    /// Across the box, and each point to the other side of the body's origin.
+    fn extent(&self, space: &Se3) -> f64 {
+        space.translations().extent() + 2.0 * self.radius
+    }
+}
+impl TrueMetric<Se3> for MaxDisplacement<Point3<f64>> {}
+
+impl Metric<Se2> for MaxDisplacement<Point2<f64>> {
+    type Nn = MetricTree;
+
+    fn distance(&self, _: &Se2, from: &Se2State, to: &Se2State) -> f64 {
+        let ((sa, ca), (sb, cb)) = (from.angle.sin_cos(), to.angle.sin_cos());
+        let (c, s) = (cb - ca, sb - sa);
+        let shift = to.translation - from.translation;
+        let squared =
+            |p: &Point2<f64>| (c * p.x - s * p.y + shift.x).powi(2) + (s * p.x + c * p.y + shift.y).powi(2);
+        self.points.iter().map(squared).fold(0.0, f64::max).sqrt()
+    }
+    /// Across the box, and each point to the other side of the body's origin.
+    fn extent(&self, space: &Se2) -> f64 {
+        space.translations().extent() + 2.0 * self.radius
+    }
+}
+impl TrueMetric<Se2> for MaxDisplacement<Point2<f64>> {}
