@@ -1,4 +1,4 @@
-//! Two meshes, a scene of many, groups, and trees in files.
+//! Two meshes, a scene of many, and groups.
 //!
 //! `cargo run --release -p mp-collide --example bodies`
 
@@ -13,8 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut out = std::io::stdout().lock();
 
     // Build a tree for each mesh, once. They are immutable, and cheap to clone.
-    let ring_mesh = primitives::torus(1.0, 0.3, 64, 32)?;
-    let ring = CollisionMesh::new(&ring_mesh);
+    let ring = CollisionMesh::new(&primitives::torus(1.0, 0.3, 64, 32)?);
     let ball = CollisionMesh::new(&primitives::sphere(0.5, 3)?);
 
     // Scratch: one for each thread.
@@ -62,18 +61,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "contact with {:?}, about {:.3} m deep", contact.name, contact.depth)?;
     }
 
-    // Keep the tree in a file; build anew when the mesh has changed, or the file is of another version.
-    let path =
-        std::env::temp_dir().join(format!("ring-{:016x}.tree", CollisionMesh::fingerprint_of(&ring_mesh)));
-    let ring = match CollisionMesh::load_for(&path, &ring_mesh) {
-        Ok(ring) => ring,
-        Err(why) => {
-            writeln!(out, "building the tree: {why}")?;
-            ring.save(&path)?;
-            CollisionMesh::load_for(&path, &ring_mesh)?
-        }
-    };
     writeln!(out, "{} triangles, {} bytes in memory", ring.triangle_count(), ring.memory())?;
-    std::fs::remove_file(&path)?;
     Ok(())
 }

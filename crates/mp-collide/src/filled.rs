@@ -49,8 +49,7 @@ pub enum FillError {
 impl CollisionMesh {
     /// The same mesh as a solid: the surface and everything inside, where it winds around a point outward. In a
     /// [`Scene`](crate::Scene), and for [`Query::depth`] and [`Query::escape`], it then collides too with what is
-    /// wholly inside of it; all other queries compare surfaces. A saved tree does not say that its mesh was filled.
-    /// O(n log n) for n triangles.
+    /// wholly inside of it; all other queries compare surfaces. O(n log n) for n triangles.
     ///
     /// ```
     /// use mp_collide::{CollisionMesh, Query, Scene};

@@ -1,6 +1,6 @@
 //! Exact collision detection between meshes, and with primitives, with trees of oriented bounding boxes.
 //!
-//! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads, saved and loaded.
+//! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
 //!   intervals of motions.
 //! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
@@ -85,13 +85,11 @@ mod mesh;
 mod mesh_obb;
 mod pose;
 mod query;
-mod save;
 mod scene;
 mod separation;
 mod simd;
 mod solid;
 
-pub mod fuzz;
 #[cfg(feature = "parry")]
 pub mod parry;
 pub mod reference;
@@ -102,7 +100,6 @@ pub use filled::FillError;
 pub use mesh::CollisionMesh;
 pub use query::Query;
 pub use query::interval::{IntervalCheck, RigidMotion};
-pub use save::{TreeError, TreeFileError};
 pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};
 pub use separation::Separation;
 pub use simd::Isa;

@@ -29,11 +29,7 @@ impl CollisionMesh {
     /// `triangles`: at least one, at most `u32::MAX`, finite.
     pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
         let _span = tracing::debug_span!("build", triangles = triangles.len()).entered();
-        Self::from_tree(Tree::build(&triangles))
-    }
-
-    pub(crate) fn from_tree(tree: Tree) -> Self {
-        Self { tree: Arc::new(tree), filled: false, parts: Arc::default() }
+        Self { tree: Arc::new(Tree::build(&triangles)), filled: false, parts: Arc::default() }
     }
 
     /// How many triangles there are.

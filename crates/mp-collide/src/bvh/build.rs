@@ -10,34 +10,21 @@ use crate::bvh::split::{Binary, Item, split_all};
 use crate::bvh::{LEAF, Leaf, Node, NodeBox, Tree, WIDTH};
 use crate::triangle::Triangle;
 
-/// What a tree knows of all its corners.
-pub(crate) struct Size {
-    pub(crate) center: Point3<f64>,
-    pub(crate) radius_center: f64,
-    pub(crate) radius: f64,
-}
-
-impl Size {
-    pub(crate) fn of<'a>(corners: impl Iterator<Item = &'a Point3<f64>> + Clone) -> Self {
+impl Tree {
+    /// The tree of `triangles`, which are at least one and at most `u32::MAX`, as [`mp_geom::TriMesh`] ensures.
+    pub(crate) fn build(triangles: &[Triangle]) -> Self {
+        let corners = || triangles.iter().flatten();
         let (mut lo, mut hi) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-        for p in corners.clone() {
+        for p in corners() {
             lo = lo.inf(&p.coords);
             hi = hi.sup(&p.coords);
         }
         let center = Point3::from(lo * 0.5 + hi * 0.5);
         let up = 1.0 + 1e-15;
-        // A mesh moved by a pose that is not finite has corners that are none: infinitely far away.
+        // A mesh moved by a pose that is not finite has NaN coordinates: they count as infinitely far away.
         let farthest = |far: f64, r: f64| if r.is_nan() { f64::INFINITY } else { far.max(r) };
-        let radius = corners.clone().map(|p| p.coords.norm()).fold(0.0, farthest) * up;
-        let radius_center = corners.map(|p| (p - center).norm()).fold(0.0, farthest) * up;
-        Self { center, radius_center, radius }
-    }
-}
-
-impl Tree {
-    /// `triangles` is neither empty nor longer than `u32` can count: `TriMesh` has seen to it.
-    pub(crate) fn build(triangles: &[Triangle]) -> Self {
-        let Size { center, radius_center, radius } = Size::of(triangles.iter().flatten());
+        let radius = corners().map(|p| p.coords.norm()).fold(0.0, farthest) * up;
+        let radius_center = corners().map(|p| (p - center).norm()).fold(0.0, farthest) * up;
         // Meshes so small that this overflows are not decided by boxes (`Frames::fits_f32`).
         let scale = Some(radius_center.recip()).filter(|s| s.is_finite()).unwrap_or(1.0);
         let in_unit = |p: &Point3<f64>| {

@@ -84,7 +84,6 @@ fn meshes_moved_by_bad_poses_collide_with_everything() {
                 assert_eq!(query.distance(&tree, &here, &good, &far).distance, 0.0);
                 assert_eq!(query.clearance(&tree, &here, &good, &far, 1.0), 0.0);
                 assert!(matches!(scene.insert("bad", tree.clone(), here), Err(SceneError::TooLarge { .. })));
-                assert!(CollisionMesh::from_bytes(&tree.to_bytes()).is_err());
             }
         }
     }
