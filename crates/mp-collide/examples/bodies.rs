@@ -1,11 +1,11 @@
-//! Two meshes, a scene of many, and groups.
+//! Two meshes, and a scene of many.
 //!
 //! `cargo run --release -p mp-collide --example bodies`
 
 use std::error::Error;
 use std::io::Write;
 
-use mp_collide::{CollisionMesh, Groups, Query, Scene};
+use mp_collide::{CollisionMesh, Query, Scene};
 use mp_geom::primitives;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -29,20 +29,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "ball at x = {x} m: hit {hit}, distance {:.4} m, within 5 cm {near}", apart.distance)?;
     }
 
-    // A scene: static bodies, bodies that move, and who is compared with whom.
-    let (fixed, carried) = (Groups::new(0b01, 0b10), Groups::new(0b10, 0b01));
-    let mut scene = Scene::new();
+    // A scene: static bodies, and bodies that move.
+    let (mut scene, mut rings) = (Scene::new(), Vec::new());
     for i in 0..10 {
         let turn = UnitQuaternion::from_scaled_axis(Vector3::x() * 0.3 * f64::from(i));
         let pose_wb = Isometry3::from_parts(Vector3::new(1.5 * f64::from(i), 0.0, 0.0).into(), turn);
-        let id = scene.insert(format!("ring {i}"), ring.clone(), pose_wb)?;
-        scene.set_groups(id, fixed)?;
+        rings.push(scene.insert(format!("ring {i}"), ring.clone(), pose_wb)?);
     }
     let cart = scene.insert_movable("cart", ball.clone(), Isometry3::translation(0.0, 0.0, 5.0))?;
-    scene.set_groups(cart, carried)?;
+    // Neighbouring rings may touch.
+    for pair in rings.windows(2) {
+        scene.allow_pair(pair[0], pair[1], true);
+    }
     scene.merge_static(); // One tree of all rings.
 
-    // A body of the scene, moved about; the rings touch each other, but are not compared.
+    // A body of the scene, moved about.
     for x in [0.0, 0.75, 1.5, 15.0] {
         scene.move_body(cart, Isometry3::translation(x, 0.0, 0.0))?;
         let hit = scene.body_collides(&mut query, cart).and_then(|id| scene.body(id));
@@ -50,9 +51,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "cart at x = {x} m: hits {:?}, {pairs} pairs in all", hit.map(|body| body.name()))?;
     }
 
-    // A mesh that is no body of the scene: how far from the rings, and which is the nearest?
+    // A mesh that is no body of the scene: how far from the bodies, and which is the nearest?
     let pose_wm = Isometry3::translation(4.0, 2.0, 0.5);
-    let (clearance, nearest) = scene.view(carried).clearance(&mut query, &ball, &pose_wm, f64::INFINITY);
+    let (clearance, nearest) = scene.clearance(&mut query, &ball, &pose_wm, f64::INFINITY);
     let nearest = nearest.and_then(|id| scene.body(id)).map(|body| body.name());
     writeln!(out, "ball beside the rings: {clearance:.4} m from {nearest:?}")?;
 

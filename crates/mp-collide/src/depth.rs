@@ -43,8 +43,8 @@ impl Query {
         b: &CollisionMesh,
         pose_wb: &Isometry3<f64>,
     ) -> Option<Vector3<f64>> {
-        let relative = Relative::between(pose_wa, a.radius(), pose_wb, b.radius())?;
-        if !self.meets(a, pose_wa, b, pose_wb) {
+        let relative = Relative::of((a, pose_wa), (b, pose_wb))?;
+        if !self.meets((a, pose_wa), (b, pose_wb)) {
             return Some(Vector3::zeros());
         }
         let moved = |way: Vector3<f64>| {
@@ -63,7 +63,7 @@ impl Query {
                 if step >= limit {
                     break None;
                 }
-                if !self.meets(a, &moved(direction * step), b, pose_wb) {
+                if !self.meets((a, &moved(direction * step)), (b, pose_wb)) {
                     break Some(step);
                 }
                 blocked = step;
@@ -72,12 +72,14 @@ impl Query {
             // At the limit itself another direction is as good, or it is the sure way out.
             let mut free = match free {
                 Some(free) => free,
-                None if shortest.is_none() && !self.meets(a, &moved(direction * sure), b, pose_wb) => sure,
+                None if shortest.is_none() && !self.meets((a, &moved(direction * sure)), (b, pose_wb)) => {
+                    sure
+                }
                 None => continue,
             };
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (blocked + free);
-                if self.meets(a, &moved(direction * middle), b, pose_wb) {
+                if self.meets((a, &moved(direction * middle)), (b, pose_wb)) {
                     blocked = middle;
                 } else {
                     free = middle;

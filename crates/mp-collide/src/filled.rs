@@ -1,11 +1,11 @@
 //! Meshes as solids: closed surfaces with what is inside, and which meshes are inside of which.
 
-use nalgebra::{Isometry3, Point3};
+use nalgebra::Point3;
 use thiserror::Error;
 
 use mp_geom::{NO_COMPONENT, TriMesh};
 
-use crate::mesh::CollisionMesh;
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::Relative;
 use crate::query::Query;
 
@@ -107,44 +107,26 @@ impl CollisionMesh {
 
 impl Query {
     /// Whether two meshes have a point in common, filled ones with their inside.
-    pub(crate) fn meets(
-        &mut self,
-        a: &CollisionMesh,
-        pose_wa: &Isometry3<f64>,
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
-    ) -> bool {
-        self.intersects(a, pose_wa, b, pose_wb) || self.nested(a, pose_wa, b, pose_wb)
+    pub(crate) fn meets(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
+        self.intersects(a.0, a.1, b.0, b.1) || self.nested(a, b)
     }
 
     /// Whether part of one of two meshes, whose surfaces are apart, is inside the other, which is filled.
-    pub(crate) fn nested(
-        &mut self,
-        a: &CollisionMesh,
-        pose_wa: &Isometry3<f64>,
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
-    ) -> bool {
-        self.holds(a, pose_wa, b, pose_wb) || self.holds(b, pose_wb, a, pose_wa)
+    pub(crate) fn nested(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
+        self.holds(a, b) || self.holds(b, a)
     }
 
     /// Whether `a` is filled and has a part of `b` inside. Where the surfaces are apart, all of a part is where its
     /// first corner is.
-    fn holds(
-        &mut self,
-        a: &CollisionMesh,
-        pose_wa: &Isometry3<f64>,
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
-    ) -> bool {
-        if !a.filled {
+    fn holds(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
+        if !a.0.filled {
             return false;
         }
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else { return true };
+        let Some(relative) = Relative::of(a, b) else { return true };
         let (stack, counters) = (&mut self.stack, &mut self.counters);
         // On the surface counts as inside: touching is collision.
-        b.parts().iter().any(|p| {
-            let winding = a.tree().winding(&relative.point(p), stack, counters);
+        b.0.parts().iter().any(|p| {
+            let winding = a.0.tree().winding(&relative.point(p), stack, counters);
             winding.is_none_or(|turns| turns > 0)
         })
     }

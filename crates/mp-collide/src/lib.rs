@@ -4,7 +4,7 @@
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
 //!   intervals of motions.
 //! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
-//! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs; [filled](CollisionMesh::filled) ones
+//! * [`Scene`]: many named bodies with a broad phase and allowed pairs; [filled](CollisionMesh::filled) ones
 //!   collide with what is inside of them.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
@@ -100,7 +100,7 @@ pub use filled::FillError;
 pub use mesh::CollisionMesh;
 pub use query::Query;
 pub use query::interval::{IntervalCheck, RigidMotion};
-pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};
+pub use scene::{Body, BodyId, Contact, Scene, SceneError};
 pub use separation::Separation;
 pub use simd::Isa;
 pub use solid::Solid;

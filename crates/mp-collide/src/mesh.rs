@@ -3,10 +3,13 @@
 use std::sync::{Arc, OnceLock};
 
 use mp_geom::TriMesh;
-use nalgebra::Point3;
+use nalgebra::{Isometry3, Point3};
 
 use crate::bvh::Tree;
 use crate::triangle::Triangle;
+
+/// A mesh and its pose in the world.
+pub(crate) type PosedMesh<'m> = (&'m CollisionMesh, &'m Isometry3<f64>);
 
 /// A mesh with its tree of oriented boxes: built once, immutable, cheap to clone, shared between threads.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Vector3};
 
+use crate::mesh::PosedMesh;
 use crate::mesh_obb::MeshObb;
 use crate::triangle::Triangle;
 
@@ -25,6 +26,12 @@ pub(crate) struct Relative {
 }
 
 impl Relative {
+    /// Of two meshes: see [`Relative::between`].
+    #[inline(always)]
+    pub(crate) fn of((a, pose_wa): PosedMesh<'_>, (b, pose_wb): PosedMesh<'_>) -> Option<Self> {
+        Self::between(pose_wa, a.radius(), pose_wb, b.radius())
+    }
+
     /// `None` when a pose or a mesh (by `radius`, its largest coordinate) is not within the limits.
     #[inline(always)]
     pub(crate) fn between(

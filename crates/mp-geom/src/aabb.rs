@@ -64,12 +64,14 @@ impl Aabb {
 
     /// The smallest box holding both.
     #[must_use]
+    #[inline]
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
     /// The box grown by `margin` on every side (shrunk when negative).
     #[must_use]
+    #[inline]
     pub fn enlarged(&self, margin: f64) -> Self {
         Self { min: self.min.map(|v| v - margin), max: self.max.map(|v| v + margin) }
     }
@@ -82,6 +84,7 @@ impl Aabb {
 
     /// Whether the boxes share a point, boundaries included.
     #[must_use]
+    #[inline]
     pub fn intersects(&self, other: &Self) -> bool {
         (0..3).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
     }

@@ -1,7 +1,7 @@
 //! Queries are total: bad input counts as in collision with everything.
 
 use mp_collide::reference::RefMesh;
-use mp_collide::{CollisionMesh, Query, Scene, SceneError, View};
+use mp_collide::{CollisionMesh, Query, Scene, SceneError};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 
@@ -176,7 +176,6 @@ fn everything_can_be_shared_between_threads() {
     fn shared<T: Send + Sync + Clone>() {}
     shared::<CollisionMesh>();
     shared::<Scene>();
-    shared::<View<'_>>();
     shared::<RefMesh>();
     shared::<Query>();
 }
