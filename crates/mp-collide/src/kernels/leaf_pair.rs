@@ -32,7 +32,7 @@ pub(crate) const U: f32 = 6e-8;
 /// of its centre, which is at `t`, are wrong by u·√3·n each for the rounding of the corner, of the rotation and of
 /// three products, by u·(√3·n + t) for each of three sums and by u·t for that of the shift, and by what `f64`
 /// loses in the triangles that the contract speaks of. All in each coordinate.
-pub(crate) struct Near {
+pub(crate) struct LeafFrame {
     /// Centre of the second leaf.
     pub(crate) shift: [f32; 3],
     /// The largest coordinate of that.
@@ -41,7 +41,7 @@ pub(crate) struct Near {
     pub(crate) wrong: f32,
 }
 
-impl Near {
+impl LeafFrame {
     #[inline(always)]
     pub(crate) fn new(a: &Leaf, b: &Leaf, frames: &Frames) -> Self {
         let center = frames.exact.point(&b.center.into());
@@ -65,7 +65,13 @@ impl Near {
 /// The triangles (with edges up to `edge` long) that may come within `margin` of box `q`, all in the frame of
 /// `near`: axes of the box, then the normals of the triangles.
 #[inline(always)]
-pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed<'_>, near: &Near, margin: f32) -> u32 {
+pub(crate) fn near_box<L: Lanes>(
+    v: &Corners<L>,
+    edge: f32,
+    q: &Placed<'_>,
+    near: &LeafFrame,
+    margin: f32,
+) -> u32 {
     let c = q.center::<L>();
     let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
     let margin = margin + 2.0 * near.wrong;
@@ -102,7 +108,7 @@ pub(crate) fn near_each_other<L: Lanes>(
     into_a: &FrameTransform<L>,
     margin: f32,
 ) -> (u32, u32) {
-    let near = Near::new(a, b, frames);
+    let near = LeafFrame::new(a, b, frames);
     let box_b = into_a.place(box_b).centred_at(near.shift);
     let mask_a = near_box(&corners::<L>(a), a.edge, &box_b, &near, margin) & a.all();
     if mask_a == 0 {

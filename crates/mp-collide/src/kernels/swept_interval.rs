@@ -1,5 +1,4 @@
-//! Parts of a motion: how two trees lie in the middle of one, and how far the points of the first get from
-//! where they are there.
+//! An interval of a motion: how two trees lie in its middle, and how far the points of the first move from there.
 
 use nalgebra::Vector3;
 
@@ -80,8 +79,8 @@ pub(crate) struct SweptInterval {
     pub(crate) margin: f32,
 }
 
-/// For what is rounded to `f32`.
-const UP: f64 = 1.0 + 1e-6;
+/// A factor that outweighs rounding to `f32`.
+pub(crate) const UP: f64 = 1.0 + 1e-6;
 
 impl SweptInterval {
     /// `None` when `a` stays farther than `clearance` from `b` by the balls around them.
@@ -117,77 +116,5 @@ impl SweptInterval {
     #[inline(always)]
     pub(crate) fn slop(&self, obb: &NodeBox) -> f32 {
         self.rate * (obb.size.sqrt() * 1.000_001) + self.rest
-    }
-}
-
-/// A part of a motion.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
-    /// What it covers, in whatever counts it: from the first to before the last.
-    pub(crate) range: [u32; 2],
-    /// How far any point moves at most (m) from the middle to either end; 0 for a single pose.
-    pub(crate) most: f32,
-    /// The first of its two halves, once made.
-    halves: u32,
-    /// Its span, once made.
-    span: u32,
-}
-
-impl Part {
-    /// Not made yet.
-    const NONE: u32 = u32::MAX;
-    /// Made, and found to be nowhere near.
-    const FAR: u32 = u32::MAX - 1;
-}
-
-/// The parts of a motion that were looked at, and their spans.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Parts {
-    parts: Vec<Part>,
-    spans: Vec<SweptInterval>,
-}
-
-impl Parts {
-    pub(crate) fn clear(&mut self) {
-        self.parts.clear();
-        self.spans.clear();
-    }
-
-    #[inline]
-    pub(crate) fn part(&self, index: u32) -> &Part {
-        &self.parts[index as usize]
-    }
-
-    /// Adds a part over `range` in which points move by `most` (m) at most.
-    pub(crate) fn add(&mut self, range: [u32; 2], most: f64) {
-        let most = (most * UP) as f32;
-        self.parts.push(Part { range, most, halves: Part::NONE, span: Part::NONE });
-    }
-
-    /// What [`Parts::set_span`] was given for a part; `None` when it was not yet called.
-    #[inline]
-    pub(crate) fn span(&self, index: u32) -> Option<Option<&SweptInterval>> {
-        let span = self.part(index).span;
-        (span != Part::NONE).then(|| self.spans.get(span as usize))
-    }
-
-    /// Says where things are in a part; `None` when the bodies are nowhere near each other.
-    pub(crate) fn set_span(&mut self, index: u32, span: Option<SweptInterval>) {
-        self.parts[index as usize].span = if span.is_some() { self.spans.len() as u32 } else { Part::FAR };
-        self.spans.extend(span);
-    }
-
-    /// The first half of a part; `None` when it was not halved yet.
-    #[inline]
-    pub(crate) fn half(&self, index: u32) -> Option<u32> {
-        let half = self.part(index).halves;
-        (half != Part::NONE).then_some(half)
-    }
-
-    /// Says that the next two parts to be added are the halves of this one; returns the first.
-    pub(crate) fn set_half(&mut self, index: u32) -> u32 {
-        let half = self.parts.len() as u32;
-        self.parts[index as usize].halves = half;
-        half
     }
 }

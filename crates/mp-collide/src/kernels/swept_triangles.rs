@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 use crate::bvh::{LEAF, NodeBox, Tree};
 use crate::counters::Counters;
 use crate::kernels::swept_interval::{Drift, SweptInterval};
-use crate::kernels::triangle_distance::{Bounds, DistanceKernel, SeparatingDirection};
+use crate::kernels::triangle_distance::{DistanceBounds, DistanceKernel, SeparatingDirection};
 use crate::simd::Lanes;
 use crate::triangle::{Triangle, closest_within, intersect};
 
@@ -29,21 +29,21 @@ pub(crate) enum LeafCheck {
 #[inline(always)]
 pub(crate) fn triangles<L: Lanes>(
     ((a, x, mask_a), (b, y, mask_b)): ((&Tree, u32, u32), (&Tree, u32, u32)),
-    span: &SweptInterval,
+    interval: &SweptInterval,
     (most, keep): (f32, f64),
     counters: &mut Counters,
 ) -> LeafCheck {
     let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
-    let (leaf_a, leaf_b, frames) = (&a.leaves[i], &b.leaves[j], &span.frames);
-    let swept = SweepCheck::new(a, &a.leaf_boxes[i], span, most, keep);
-    let gaps = DistanceKernel::<L>::new(leaf_a, &SeparatingDirection::default());
+    let (leaf_a, leaf_b, frames) = (&a.leaves[i], &b.leaves[j], &interval.frames);
+    let swept = LeafMotion::new(a, &a.leaf_boxes[i], interval, most, keep);
+    let kernel = DistanceKernel::<L>::new(leaf_a, &SeparatingDirection::default());
     let mut singles = mask_b;
     while singles != 0 {
         let l = leaf_b.first as usize + singles.trailing_zeros() as usize;
         singles &= singles - 1;
         let single = frames.exact.triangle(&b.triangles[l]);
         counters.triangle_tests += 1;
-        let close = gaps.between(&single, mask_a, swept.maybe, &mut Bounds::default());
+        let close = kernel.between(&single, mask_a, swept.maybe, &mut DistanceBounds::default());
         let mut lanes = close.near | close.crossing;
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
@@ -64,7 +64,7 @@ pub(crate) fn triangles<L: Lanes>(
 }
 
 /// How the triangles of a leaf of `a` move over a part.
-struct SweepCheck<'s> {
+struct LeafMotion<'s> {
     drift: &'s Drift,
     /// The origin of the drift, in the frame of `a`.
     origin: &'s Point3<f64>,
@@ -78,17 +78,17 @@ struct SweepCheck<'s> {
     maybe: f32,
 }
 
-impl<'s> SweepCheck<'s> {
+impl<'s> LeafMotion<'s> {
     #[inline(always)]
-    fn new(a: &'s Tree, own: &NodeBox, span: &'s SweptInterval, most: f32, keep: f64) -> Self {
+    fn new(a: &'s Tree, own: &NodeBox, interval: &'s SweptInterval, most: f32, keep: f64) -> Self {
         let center = three!(d => f64::from(own.frame[d][0]));
-        let far = span.in_a.at_point(&center.into()).norm() + f64::from(span.slop(own));
+        let far = interval.in_a.at_point(&center.into()).norm() + f64::from(interval.slop(own));
         // Rounding of the transform is on top of what is to be kept.
-        let rounded = keep + f64::from(span.frames.slack);
+        let rounded = keep + f64::from(interval.frames.slack);
         let squared = (far.min(f64::from(most)) + rounded).powi(2);
         let maybe = ((squared * (1.0 + 1e-6)) as f32).next_up();
-        let beside = f64::from(span.rest) + rounded;
-        Self { drift: &span.in_a, origin: &a.center, keep, beside, squared, maybe }
+        let beside = f64::from(interval.rest) + rounded;
+        Self { drift: &interval.in_a, origin: &a.center, keep, beside, squared, maybe }
     }
 
     /// How two triangles that do not intersect in the middle keep away: along the join of their nearest points, or
@@ -156,7 +156,7 @@ mod tests {
             let drifts = a.map(|corner| drift.at_point(&(corner - origin)));
             let far = drifts.iter().map(|d| d.norm()).fold(0.0, f64::max);
             let squared = (far + keep).powi(2);
-            let swept = SweepCheck {
+            let swept = LeafMotion {
                 drift: &drift,
                 origin: &origin,
                 keep,

@@ -32,7 +32,7 @@ const TINY_HEIGHT: f32 = 1e-34;
 
 /// Squared distances: `near` ≤ distance² ≤ `far` where the triangles do not intersect.
 #[derive(Default)]
-pub(crate) struct Bounds {
+pub(crate) struct DistanceBounds {
     pub(crate) near: Lane,
     pub(crate) far: Lane,
 }
@@ -56,7 +56,7 @@ impl SeparatingDirection {
 /// Which triangles are close.
 #[derive(Default)]
 pub(crate) struct Close {
-    /// Those for which `Bounds::near` is at most what was asked for; the bounds hold for these.
+    /// Those for which `DistanceBounds::near` is at most what was asked for; the bounds hold for these.
     pub(crate) near: u32,
     /// Those that may intersect.
     pub(crate) crossing: u32,
@@ -125,7 +125,13 @@ impl<L: Lanes> DistanceKernel<L> {
     /// The lanes, of those in `mask`, whose squared distance from `triangle` (in the frame of the mesh) may be
     /// at most `best`.
     #[inline(always)]
-    pub(crate) fn between(&self, triangle: &Triangle, mask: u32, best: f32, bounds: &mut Bounds) -> Close {
+    pub(crate) fn between(
+        &self,
+        triangle: &Triangle,
+        mask: u32,
+        best: f32,
+        bounds: &mut DistanceBounds,
+    ) -> Close {
         let c = &self.center;
         let p: [[f32; 3]; 3] = three!(k => {
             [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
@@ -282,10 +288,10 @@ mod tests {
     struct Between<'t>(&'t Leaf, &'t Triangle);
 
     impl Kernel for Between<'_> {
-        type Output = (Bounds, Close);
+        type Output = (DistanceBounds, Close);
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Output {
-            let mut bounds = Bounds::default();
+            let mut bounds = DistanceBounds::default();
             let gaps = DistanceKernel::<L>::new(self.0, &SeparatingDirection::default());
             let close = gaps.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
             (bounds, close)

@@ -1,30 +1,30 @@
-//! Eight triangles against eight others: a filter that never loses a pair that meets, and never finds one that
+//! EightTriangles triangles against eight others: a filter that never loses a pair that meets, and never finds one that
 //! does not.
 
 use crate::bvh::frames::Frames;
 use crate::bvh::{Lane, Leaf, WIDTH};
-use crate::kernels::leaf_pair::{Corners, Near, TINY, U};
+use crate::kernels::leaf_pair::{Corners, LeafFrame, TINY, U};
 use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 
 /// How wrong heights over the planes of the first leaf, over those of the second, and volumes may be.
-struct Bounds {
+struct ErrorBounds {
     height_a: f32,
     height_b: f32,
     volume: f32,
 }
 
-impl Bounds {
+impl ErrorBounds {
     /// With corners up to `far` apart and coordinates up to `g`, the height of a corner over a plane of the other leaf
     /// is wrong by the error of the normal over that distance, by the errors of two corners, and by 20u·g·e² for
     /// sums; a volume (p − v)·(e × f) by the errors of corners and edges, and by 40u·g·e·f for sums.
     #[inline(always)]
-    fn new(leaf_a: &Leaf, leaf_b: &Leaf, near: &Near) -> Self {
+    fn new(leaf_a: &Leaf, leaf_b: &Leaf, near: &LeafFrame) -> Self {
         let (m, reach) = (leaf_a.magnitude, near.t + 1.74 * leaf_b.magnitude);
         let (far, corner) = (1.74 * (m + reach), 1.75 * near.wrong);
         let g = m.max(reach);
-        let (a, b) = (Size::of(leaf_a), Size::of(leaf_b));
-        let height = |s: &Size| s.wrong_normal * far + s.edge * s.edge * (corner + 20.0 * U * g) + TINY;
+        let (a, b) = (EdgeErrors::of(leaf_a), EdgeErrors::of(leaf_b));
+        let height = |s: &EdgeErrors| s.wrong_normal * far + s.edge * s.edge * (corner + 20.0 * U * g) + TINY;
         let edges = a.wrong_edge * b.edge + b.wrong_edge * a.edge;
         Self {
             height_a: height(&a),
@@ -35,13 +35,13 @@ impl Bounds {
 }
 
 /// The longest edge of a leaf; how wrong edges (in length) and normals, products of two, may be.
-struct Size {
+struct EdgeErrors {
     edge: f32,
     wrong_edge: f32,
     wrong_normal: f32,
 }
 
-impl Size {
+impl EdgeErrors {
     /// An edge as the difference of two corners is wrong by 2√3·u·m and √3·u·e; turned, by 7u·e more. A product of
     /// two is wrong by 2e times that and by 3√3·u·e² for its sums.
     #[inline(always)]
@@ -68,10 +68,10 @@ fn turn<L: Lanes>(e: &Corners<L>, frames: &Frames) -> Corners<L> {
     }))
 }
 
-/// Eight triangles in memory, to be taken all at once or one by one, with what sides and volumes are computed from.
+/// EightTriangles triangles in memory, to be taken all at once or one by one, with what sides and volumes are computed from.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-struct Eight {
+struct EightTriangles {
     corner: [[Lane; 3]; 3],
     edge: [[Lane; 3]; 3],
     /// Corner × edge: with the edge, Plücker's coordinates of the line.
@@ -81,7 +81,7 @@ struct Eight {
     height: Lane,
 }
 
-impl Eight {
+impl EightTriangles {
     const NONE: Self = Self {
         corner: [[[0.0; WIDTH]; 3]; 3],
         edge: [[[0.0; WIDTH]; 3]; 3],
@@ -108,11 +108,11 @@ impl Eight {
     }
 }
 
-/// Eight triangles against others one by one.
+/// EightTriangles triangles against others one by one.
 #[derive(Clone, Debug)]
 pub(crate) struct TriangleFilter {
-    block: Eight,
-    singles: Eight,
+    block: EightTriangles,
+    singles: EightTriangles,
     /// How wrong heights over the planes of the eight, over that of the one, and volumes may be.
     wrong_block: f32,
     wrong_single: f32,
@@ -134,8 +134,8 @@ impl Verdict {
 impl TriangleFilter {
     /// Of no triangles.
     pub(crate) const NONE: Self = Self {
-        block: Eight::NONE,
-        singles: Eight::NONE,
+        block: EightTriangles::NONE,
+        singles: EightTriangles::NONE,
         wrong_block: 0.0,
         wrong_single: 0.0,
         wrong_volume: 0.0,
@@ -149,9 +149,9 @@ impl TriangleFilter {
         &mut self,
         (leaf_a, corners_a): (&Leaf, &Corners<L>),
         (leaf_b, corners_b, own_b): (&Leaf, &Corners<L>, &Corners<L>),
-        (near, frames): (&Near, &Frames),
+        (near, frames): (&LeafFrame, &Frames),
     ) {
-        let Bounds { height_a, height_b, volume } = Bounds::new(leaf_a, leaf_b, near);
+        let ErrorBounds { height_a, height_b, volume } = ErrorBounds::new(leaf_a, leaf_b, near);
         (self.wrong_block, self.wrong_single, self.wrong_volume) = (height_a, height_b, volume);
         self.singles.set(corners_b, &turn(&edges(own_b), frames));
         self.block.set(corners_a, &edges(corners_a));

@@ -4,11 +4,11 @@ use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::bvh::Tree;
 use crate::bvh::frames::Frames;
-use crate::kernels::swept_interval::{Parts, SweptInterval, Travel};
-use crate::mesh::CollisionMesh;
+use crate::kernels::swept_interval::{SweptInterval, Travel};
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{Relative, is_rigid};
 use crate::query::Query;
-use crate::query::sweep::Schedule;
+use crate::query::schedule::Schedule;
 
 /// Poses are taken so many at a time.
 const CHUNK: usize = 64;
@@ -28,7 +28,7 @@ impl Query {
     ) -> Option<usize> {
         let mut done = 0;
         for poses in poses_wa.chunks(CHUNK) {
-            if let Some(i) = self.first_in_chunk(a, poses, b, pose_wb) {
+            if let Some(i) = self.first_in_chunk(a, poses, (b, pose_wb)) {
                 return Some(done + i);
             }
             done += poses.len();
@@ -40,13 +40,13 @@ impl Query {
         &mut self,
         a: &CollisionMesh,
         poses: &[Isometry3<f64>],
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
+        (b, pose_wb): PosedMesh<'_>,
     ) -> Option<usize> {
         let pace = Pace::of(poses);
         let step = pace.step + 2.0 * pace.turn * a.radius();
-        let near =
-            pace.rigid && step <= NEAR * a.tree().radius_center && in_lanes(a, &poses[0], b, pose_wb, step);
+        let near = pace.rigid
+            && step <= NEAR * a.tree().radius_center
+            && in_lanes((a, &poses[0]), (b, pose_wb), step);
         let first = if near { 1 } else { poses.len() };
         if let Some(i) = poses[..first].iter().position(|p| self.intersects(a, p, b, pose_wb)) {
             return Some(i);
@@ -55,27 +55,20 @@ impl Query {
             return None;
         }
         let (a, b) = (a.tree(), b.tree());
-        let (back, parts) = (pose_wb.rotation.inverse(), std::mem::take(&mut self.parts));
-        let mut course = Poses { a, b, poses, pose_wb, back, pace, parts };
-        let found = self.sweep(a, b, &mut course, [first as u32, poses.len() as u32]);
-        self.parts = course.parts;
-        let found = found.map(|met| met.range[0] as usize);
+        let schedule = PoseSchedule { a, b, poses, pose_wb, back: pose_wb.rotation.inverse(), pace };
+        let found = self.sweep(a, b, &schedule, [first as u32, poses.len() as u32]);
+        let found = found.map(|end| end.range[0] as usize);
         self.counters.queries += found.unwrap_or(poses.len() - 1) as u64;
         found
     }
 }
 
-/// Whether sizes are such that lanes may be used on poses from `first` on, each within `step` of the one before.
-fn in_lanes(
-    a: &CollisionMesh,
-    first: &Isometry3<f64>,
-    b: &CollisionMesh,
-    pose_wb: &Isometry3<f64>,
-    step: f64,
-) -> bool {
-    let Some(relative) = Relative::between(first, a.radius(), pose_wb, b.radius()) else { return false };
-    let frames = Frames::new(a.tree(), b.tree(), &relative);
-    frames.fits_f32(a.tree(), b.tree()) && frames.apart + step * CHUNK as f64 <= 1e8
+/// Whether sizes allow lanes on the poses that begin with `a`'s, each within `step` of the one before.
+fn in_lanes(a: PosedMesh<'_>, b: PosedMesh<'_>, step: f64) -> bool {
+    let Some(relative) = Relative::of(a, b) else { return false };
+    let (a, b) = (a.0.tree(), b.0.tree());
+    let frames = Frames::new(a, b, &relative);
+    frames.fits_f32(a, b) && frames.apart + step * CHUNK as f64 <= 1e8
 }
 
 /// Only a single pose stands still (metres).
@@ -145,8 +138,8 @@ fn raise(greatest: &mut f64, x: f64) {
     }
 }
 
-/// Poses in a row; parts are ranges of them.
-struct Poses<'q> {
+/// A sequence of poses; parts are ranges of them.
+struct PoseSchedule<'q> {
     a: &'q Tree,
     b: &'q Tree,
     poses: &'q [Isometry3<f64>],
@@ -154,10 +147,9 @@ struct Poses<'q> {
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
     pace: Pace,
-    parts: Parts,
 }
 
-impl Poses<'_> {
+impl PoseSchedule<'_> {
     /// How far a point gets at most in `n` steps.
     fn farthest(&self, n: usize) -> f64 {
         n as f64 * (self.pace.step + 2.0 * self.pace.turn * self.a.radius)
@@ -196,18 +188,8 @@ impl Poses<'_> {
     }
 }
 
-impl Schedule for Poses<'_> {
+impl Schedule for PoseSchedule<'_> {
     const ORDERED: bool = true;
-
-    #[inline]
-    fn parts(&self) -> &Parts {
-        &self.parts
-    }
-
-    #[inline]
-    fn parts_mut(&mut self) -> &mut Parts {
-        &mut self.parts
-    }
 
     fn most(&self, [lo, hi]: [u32; 2]) -> f64 {
         let steps = hi - 1 - u32::midpoint(lo, hi - 1);

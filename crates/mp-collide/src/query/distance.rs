@@ -7,7 +7,8 @@ use crate::bvh::frames::Frames;
 use crate::mesh::CollisionMesh;
 use crate::pose::{Relative, to_world};
 use crate::query::Query;
-use crate::query::nearest::Nearest;
+use crate::query::branch_and_bound::BranchAndBound;
+use crate::query::descend::Descend;
 use crate::query::within::Within;
 use crate::separation::Separation;
 use crate::simd::run;
@@ -91,8 +92,9 @@ impl Query {
             return self.colliding_pair(a, b, &relative).is_some()
                 || self.nearest(a, b, &relative, tolerance.next_up()).is_some();
         }
-        let (stack, counters) = (&mut self.stack, &mut self.counters);
-        run(self.isa, Within { a, b, frames: &frames, tolerance, stack, counters })
+        let leaves = Within::new(tolerance, &frames, &mut self.counters);
+        let (margin, stack) = (leaves.margin, &mut self.stack);
+        run(self.isa, Descend { a, b, frames: &frames, margin, stack, leaves }).is_some()
     }
 
     /// [`Query::clearance`], and the triangle of `b` (its position in the tree) that is nearest, if looked
@@ -140,7 +142,7 @@ impl Query {
             return nearest_of_all(a, b, &frames, enough);
         }
         let (scratch, counters) = (&mut self.scratch, &mut self.counters);
-        run(self.isa, Nearest { a, b, frames: &frames, enough, scratch, counters })
+        run(self.isa, BranchAndBound { a, b, frames: &frames, enough, scratch, counters })
     }
 }
 

@@ -4,12 +4,13 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use crate::bvh::Tree;
 use crate::bvh::frames::Frames;
-use crate::kernels::swept_interval::{Parts, SweptInterval, Travel};
+use crate::kernels::swept_interval::{SweptInterval, Travel};
 use crate::kernels::swept_triangles::LeafCheck;
 use crate::mesh::CollisionMesh;
 use crate::pose::{LIMIT, Relative};
 use crate::query::Query;
-use crate::query::sweep::{Met, Schedule};
+use crate::query::schedule::Schedule;
+use crate::query::sweep::SweepEnd;
 
 /// How a rigid body moves over an interval of a motion, seen from the pose in its middle: from there it moves at constant
 /// speed to one end of the interval, and likewise back to the other.
@@ -115,11 +116,10 @@ impl Query {
             let clear = self.clearance_with(a, b, &relative, enough).0 >= enough;
             return if clear { IntervalCheck::Free } else { IntervalCheck::Unproven };
         }
-        let (back, parts) = (pose_wb.rotation.inverse(), std::mem::take(&mut self.parts));
-        let mut course = Smooth { a, b, middle_wa, motion, pose_wb, back, margin, parts };
-        let met = self.sweep(a, b, &mut course, [0, PIECES]);
-        self.parts = course.parts;
-        met.map_or(IntervalCheck::Free, |Met { range, gap }| match gap {
+        let back = pose_wb.rotation.inverse();
+        let schedule = IntervalSchedule { a, b, middle_wa, motion, pose_wb, back, margin };
+        let end = self.sweep(a, b, &schedule, [0, PIECES]);
+        end.map_or(IntervalCheck::Free, |SweepEnd { range, check }| match check {
             LeafCheck::Collision => IntervalCheck::Collision { at: middle(range) },
             LeafCheck::TooClose => IntervalCheck::TooClose { at: middle(range) },
             LeafCheck::Free | LeafCheck::Unproven => IntervalCheck::Unproven,
@@ -134,7 +134,7 @@ const PIECES: u32 = 32;
 const FINE: u32 = 4;
 
 /// An interval of a motion; parts are ranges of its pieces.
-struct Smooth<'q> {
+struct IntervalSchedule<'q> {
     a: &'q Tree,
     b: &'q Tree,
     middle_wa: &'q Isometry3<f64>,
@@ -143,7 +143,6 @@ struct Smooth<'q> {
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
     margin: f64,
-    parts: Parts,
 }
 
 /// Half of a part, as a share of half the interval.
@@ -156,18 +155,8 @@ fn middle([lo, hi]: [u32; 2]) -> f64 {
     f64::from(lo + hi) / f64::from(PIECES) - 1.0
 }
 
-impl Schedule for Smooth<'_> {
+impl Schedule for IntervalSchedule<'_> {
     const ORDERED: bool = false;
-
-    #[inline]
-    fn parts(&self) -> &Parts {
-        &self.parts
-    }
-
-    #[inline]
-    fn parts_mut(&mut self) -> &mut Parts {
-        &mut self.parts
-    }
 
     fn most(&self, range: [u32; 2]) -> f64 {
         (self.motion.most * share(range)).max(1e-30)

@@ -3,12 +3,14 @@
 #![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.
 
 mod batch;
+mod branch_and_bound;
+pub(crate) mod descend;
 mod distance;
 pub(crate) mod inside;
 mod intersect;
 pub(crate) mod interval;
-mod nearest;
 pub(crate) mod revolved;
+pub(crate) mod schedule;
 mod sweep;
 mod within;
 
@@ -17,13 +19,14 @@ use nalgebra::Isometry3;
 use crate::bvh::Tree;
 use crate::bvh::frames::Frames;
 use crate::counters::Counters;
-use crate::kernels::swept_interval::Parts;
 use crate::kernels::triangle_pair::TriangleFilter;
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
+use crate::query::branch_and_bound::Scratch;
+use crate::query::descend::Descend;
 use crate::query::intersect::Intersect;
-use crate::query::nearest::Scratch;
-use crate::query::sweep::Item;
+use crate::query::schedule::Parts;
+use crate::query::sweep::SweptPair;
 use crate::simd::{Isa, run};
 use crate::triangle::intersect;
 
@@ -37,9 +40,9 @@ pub struct Query {
     /// What was done so far; set to `Counters::default()` to start over.
     pub counters: Counters,
     pub(crate) stack: Vec<(u32, u32)>,
-    pub(crate) meeting: TriangleFilter,
+    pub(crate) filter: TriangleFilter,
     pub(crate) scratch: Scratch,
-    pub(crate) items: Vec<Item>,
+    pub(crate) swept_pairs: Vec<SweptPair>,
     pub(crate) parts: Parts,
     pub(crate) isa: Isa,
 }
@@ -58,9 +61,9 @@ impl Query {
         Self {
             counters: Counters::default(),
             stack: Vec::new(),
-            meeting: TriangleFilter::NONE,
+            filter: TriangleFilter::NONE,
             scratch: Scratch::default(),
-            items: Vec::new(),
+            swept_pairs: Vec::new(),
             parts: Parts::default(),
             isa,
         }
@@ -119,9 +122,9 @@ impl Query {
         if !frames.fits_f32(a, b) {
             return any_of_all(a, b, &frames);
         }
-        let (frames, stack) = (&frames, &mut self.stack);
-        let (meeting, counters) = (&mut self.meeting, &mut self.counters);
-        run(self.isa, Intersect { a, b, frames, any, stack, meeting, counters })
+        let leaves = Intersect { any, filter: &mut self.filter, counters: &mut self.counters };
+        let (margin, stack) = (frames.pad, &mut self.stack);
+        run(self.isa, Descend { a, b, frames: &frames, margin, stack, leaves })
     }
 }
 
