@@ -82,7 +82,6 @@ mod depth;
 mod filled;
 mod kernels;
 mod mesh;
-mod mesh_obb;
 mod pose;
 mod query;
 mod scene;

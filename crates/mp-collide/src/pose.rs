@@ -2,8 +2,8 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Vector3};
 
+use crate::bvh::root_box::RootBox;
 use crate::mesh::PosedMesh;
-use crate::mesh_obb::MeshObb;
 use crate::triangle::Triangle;
 
 /// Coordinates beyond this could overflow in the exact predicates; see the contract in the crate docs.
@@ -84,9 +84,9 @@ impl Relative {
     }
 
     /// A box of `b` in the frame of `a`.
-    pub(crate) fn obb(&self, obb: &MeshObb) -> MeshObb {
+    pub(crate) fn obb(&self, obb: &RootBox) -> RootBox {
         let r = &self.rotation;
-        MeshObb {
+        RootBox {
             center: self.point(&obb.center),
             axes: [r * obb.axes[0], r * obb.axes[1], r * obb.axes[2]],
             half: obb.half,

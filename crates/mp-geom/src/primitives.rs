@@ -70,7 +70,11 @@ pub enum PrimitiveError {
 
 type Made = Result<TriMesh, PrimitiveError>;
 
-fn positive(what: &'static str, value: f64) -> Result<f64, PrimitiveError> {
+/// `value`, if it is positive and finite.
+///
+/// # Errors
+/// [`PrimitiveError::NotPositive`], which names it `what`.
+pub fn positive(what: &'static str, value: f64) -> Result<f64, PrimitiveError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {

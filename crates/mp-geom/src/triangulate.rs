@@ -32,8 +32,8 @@ pub(crate) fn triangulate(corners: &[Point3<f64>]) -> Vec<[usize; 3]> {
     if normal[drop] < 0.0 {
         (u, v) = (v, u);
     }
-    let flat: Vec<_> = corners.iter().map(|p| Point2::new(p[u], p[v])).collect();
-    triangulate_ccw(&flat)
+    let projected: Vec<_> = corners.iter().map(|p| Point2::new(p[u], p[v])).collect();
+    triangulate_ccw(&projected)
 }
 
 /// As [`triangulate`], for a counter-clockwise polygon of the plane. O(n log n) on ordinary polygons, O(n²)

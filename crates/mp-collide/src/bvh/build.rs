@@ -6,7 +6,8 @@ use std::ops::Range;
 use nalgebra::{Point3, Vector3};
 
 use crate::bvh::collapse::{Choice, children, choose};
-use crate::bvh::split::{Binary, Item, split_all};
+use crate::bvh::root_box::RootBox;
+use crate::bvh::split::{BinaryNode, BuildTriangle, split_all};
 use crate::bvh::{LEAF, Leaf, Node, NodeBox, Tree, WIDTH};
 use crate::triangle::Triangle;
 
@@ -31,10 +32,13 @@ impl Tree {
             let p = (p - center) * scale;
             [p.x as f32, p.y as f32, p.z as f32, 0.0]
         };
-        let mut items: Vec<Item> = triangles
+        let mut items: Vec<BuildTriangle> = triangles
             .iter()
             .enumerate()
-            .map(|(i, t)| Item { corners: [in_unit(&t[0]), in_unit(&t[1]), in_unit(&t[2])], id: i as u32 })
+            .map(|(i, t)| BuildTriangle {
+                corners: [in_unit(&t[0]), in_unit(&t[1]), in_unit(&t[2])],
+                id: i as u32,
+            })
             .collect();
         let binary = split_all(&mut items);
         let choices = choose(&binary);
@@ -45,7 +49,7 @@ impl Tree {
             node_boxes: Vec::new(),
             leaf_boxes: Vec::with_capacity(leaves),
             root: 0,
-            bounding: crate::mesh_obb::MeshObb::fit(triangles.iter()),
+            bounding: RootBox::fit(triangles.iter()),
             triangles: items.iter().map(|i| triangles[i.id as usize]).collect(),
             ids: items.iter().map(|i| i.id).collect(),
             center,
@@ -60,7 +64,14 @@ impl Tree {
     }
 
     /// Adds binary node `n`, whose box is `obb`, and all below; returns the reference to it.
-    fn emit(&mut self, items: &[Item], binary: &[Binary], choices: &[Choice], n: usize, obb: NodeBox) -> u32 {
+    fn emit(
+        &mut self,
+        items: &[BuildTriangle],
+        binary: &[BinaryNode],
+        choices: &[Choice],
+        n: usize,
+        obb: NodeBox,
+    ) -> u32 {
         let b = &binary[n];
         if b.children == 0 {
             self.leaves.push(leaf(&self.triangles, &self.center, &b.range, &obb));

@@ -2,13 +2,13 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::bvh::split::{Item, Vec4, along, max, min, surface};
+use crate::bvh::split::{BuildTriangle, Vec4, along, max, min, surface};
 
 /// Three orthonormal axes.
-pub(crate) type Frame = [[f32; 3]; 3];
+pub(crate) type Axes = [[f32; 3]; 3];
 
 /// The axes of the mesh.
-pub(crate) const MESH: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const MESH: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// At most so many triangles are looked at.
 const SAMPLE: usize = 48;
@@ -18,16 +18,16 @@ const TURNS: [f64; 3] = [0.05, 0.025, 0.0125];
 
 /// The axes of a small box around `items`: the axes of the mesh; principal axes of surface, corners and
 /// normals; or the largest triangle's normal and shortest edge.
-pub(crate) fn frame(items: &[Item]) -> Frame {
+pub(crate) fn frame(items: &[BuildTriangle]) -> Axes {
     let (sample, count) = sample(items);
-    let mut best = Best { corners: sample[..count].as_flattened(), surface: f32::INFINITY, frame: MESH };
+    let mut best = BestAxes { corners: sample[..count].as_flattened(), surface: f32::INFINITY, frame: MESH };
     best.offer(&MESH);
     principal(&sample[..count], &mut best);
     best.frame
 }
 
 /// At most [`SAMPLE`] triangles, evenly spread, and how many.
-fn sample(items: &[Item]) -> ([[Vec4; 3]; SAMPLE], usize) {
+fn sample(items: &[BuildTriangle]) -> ([[Vec4; 3]; SAMPLE], usize) {
     let mut sample = [[[0.0; 4]; 3]; SAMPLE];
     let step = items.len().div_ceil(SAMPLE);
     let mut count = 0;
@@ -40,7 +40,7 @@ fn sample(items: &[Item]) -> ([[Vec4; 3]; SAMPLE], usize) {
 
 /// Turns `frame` a little about one axis after the other as long as the box around `items` shrinks. `None`
 /// where it does not.
-pub(crate) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
+pub(crate) fn refine(items: &[BuildTriangle], frame: &Axes) -> Option<Axes> {
     let (sample, count) = sample(items);
     let corners = sample[..count].as_flattened();
     let mut axes = frame.map(|u| Vector3::from(u.map(f64::from)));
@@ -71,9 +71,18 @@ pub(crate) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
     if best >= start {
         return None;
     }
-    let x = axes[0].normalize();
-    let y = (axes[1] - x * x.dot(&axes[1])).normalize();
-    Some([x, y, x.cross(&y)].map(|u| [u.x as f32, u.y as f32, u.z as f32]))
+    Some(rounded(&orthonormal(&axes[0], &axes[1])))
+}
+
+/// Right-handed unit axes: along `x`, and by Gram and Schmidt along `y`.
+pub(crate) fn orthonormal(x: &Vector3<f64>, y: &Vector3<f64>) -> [Vector3<f64>; 3] {
+    let x = x.normalize();
+    let y = (y - x * x.dot(y)).normalize();
+    [x, y, x.cross(&y)]
+}
+
+fn rounded(axes: &[Vector3<f64>; 3]) -> Axes {
+    axes.map(|u| [u.x as f32, u.y as f32, u.z as f32])
 }
 
 /// The least and the greatest coordinate along each axis.
@@ -89,19 +98,19 @@ pub(crate) fn extent<'a>(corners: impl IntoIterator<Item = &'a Vec4>, columns: &
 
 /// The columns of a frame, to multiply four at a time.
 #[inline(always)]
-pub(crate) fn columns(frame: &Frame) -> [Vec4; 3] {
+pub(crate) fn columns(frame: &Axes) -> [Vec4; 3] {
     std::array::from_fn(|d| [frame[0][d], frame[1][d], frame[2][d], 0.0])
 }
 
 /// The best frame so far.
-struct Best<'a> {
+struct BestAxes<'a> {
     corners: &'a [Vec4],
     surface: f32,
-    frame: Frame,
+    frame: Axes,
 }
 
-impl Best<'_> {
-    fn offer(&mut self, frame: &Frame) {
+impl BestAxes<'_> {
+    fn offer(&mut self, frame: &Axes) {
         let (lo, hi) = extent(self.corners, &columns(frame));
         let surface = surface(&lo, &hi);
         if surface < self.surface * 0.999 && frame.as_flattened().iter().all(|x| x.is_finite()) {
@@ -110,12 +119,12 @@ impl Best<'_> {
     }
 
     fn offer_axes(&mut self, axes: &[Vector3<f64>; 3]) {
-        self.offer(&axes.map(|u| [u.x as f32, u.y as f32, u.z as f32]));
+        self.offer(&rounded(axes));
     }
 }
 
 /// Offers the frames that depend on the triangles.
-fn principal(triangles: &[[Vec4; 3]], best: &mut Best<'_>) {
+fn principal(triangles: &[[Vec4; 3]], best: &mut BestAxes<'_>) {
     let at = |p: &Vec4| Vector3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
     let (mut area, mut mean) = (0.0, Vector3::zeros());
     let (mut largest, mut largest_area) = (0, -1.0);
@@ -213,9 +222,6 @@ impl Moment {
                 break;
             }
         }
-        let x: Vector3<f64> = v.column(0).normalize();
-        let y: Vector3<f64> = v.column(1).into();
-        let y = (y - x * x.dot(&y)).normalize();
-        [x, y, x.cross(&y)]
+        orthonormal(&v.column(0).into(), &v.column(1).into())
     }
 }

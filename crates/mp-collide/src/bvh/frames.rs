@@ -8,12 +8,12 @@ use crate::simd::Lanes;
 
 /// A rigid motion in `f32`, between centred frames.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
+pub(crate) struct RigidTransform {
     pub(crate) r: [[f32; 3]; 3],
     t: [f32; 3],
 }
 
-impl Frame {
+impl RigidTransform {
     #[inline(always)]
     fn new(r: &Matrix3<f64>, t: &Vector3<f64>) -> Self {
         Self {
@@ -27,7 +27,7 @@ impl Frame {
     }
 }
 
-/// A [`Frame`] that carries boxes: rows 0 and 1 side by side, then row 2.
+/// A [`RigidTransform`] that carries boxes: rows 0 and 1 side by side, then row 2.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameTransform<L> {
     r: [[L; 3]; 2],
@@ -37,7 +37,7 @@ pub(crate) struct FrameTransform<L> {
 
 impl<L: Lanes> FrameTransform<L> {
     #[inline(always)]
-    pub(crate) fn new(frame: &Frame) -> Self {
+    pub(crate) fn new(frame: &RigidTransform) -> Self {
         let (r, t) = (&frame.r, &frame.t);
         Self {
             r: [three!(k => L::halves(r[0][k], r[1][k])), three!(k => L::splat(r[2][k]))],
@@ -116,8 +116,8 @@ pub(crate) struct Frames {
     /// From the frame of `b` into that of `a`: the motion the contract speaks of.
     pub(crate) exact: Relative,
     /// From centred `b` to centred `a`, and back.
-    pub(crate) into_a: Frame,
-    pub(crate) into_b: Frame,
+    pub(crate) into_a: RigidTransform,
+    pub(crate) into_b: RigidTransform,
     /// Boxes are apart only when the gap exceeds this (metres): [`PAD`], and the rounding of the triangles
     /// themselves in `f64`, which outweighs it far from the origin of a mesh.
     pub(crate) pad: f32,
@@ -145,8 +145,8 @@ impl Frames {
         let pad = PAD * (a.radius_center + b.radius_center + apart) + exact.slack;
         Self {
             exact: *exact,
-            into_a: Frame::new(&r, &shift),
-            into_b: Frame::new(&r.transpose(), &shift_back),
+            into_a: RigidTransform::new(&r, &shift),
+            into_b: RigidTransform::new(&r.transpose(), &shift_back),
             pad: (pad * (1.0 + 1e-6)) as f32,
             slack: (exact.slack * (1.0 + 1e-6)) as f32,
             apart,

@@ -6,10 +6,12 @@ pub(crate) mod build;
 mod collapse;
 mod fit;
 pub(crate) mod frames;
+pub(crate) mod root_box;
 mod split;
 
 use crate::triangle::Triangle;
 use nalgebra::Point3;
+use root_box::RootBox;
 
 /// Boxes and triangles per node, and lanes per vector.
 pub(crate) const WIDTH: usize = 8;
@@ -113,7 +115,7 @@ pub(crate) struct Tree {
     pub(crate) leaf_boxes: Vec<NodeBox>,
     pub(crate) root: u32,
     /// The box around everything, in `f64`, in the frame of the mesh.
-    pub(crate) bounding: crate::mesh_obb::MeshObb,
+    pub(crate) bounding: RootBox,
     /// In the order of the leaves.
     pub(crate) triangles: Vec<Triangle>,
     /// The index of each triangle in the mesh it came from.

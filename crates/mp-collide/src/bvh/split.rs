@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use crate::bvh::fit::{self, Frame};
+use crate::bvh::fit::{self, Axes};
 use crate::bvh::{NodeBox, WIDTH};
 
 /// Bins along an axis: a power of two.
@@ -25,29 +25,29 @@ pub(crate) type Vec4 = [f32; 4];
 
 /// A triangle on its way through the build.
 #[derive(Clone, Copy)]
-pub(crate) struct Item {
+pub(crate) struct BuildTriangle {
     pub(crate) corners: [Vec4; 3],
     pub(crate) id: u32,
 }
 
-pub(crate) struct Binary {
+pub(crate) struct BinaryNode {
     /// Children, which are neighbours; 0 in a leaf.
     pub(crate) children: usize,
     pub(crate) range: Range<usize>,
     pub(crate) surface: f32,
-    frame: Frame,
+    frame: Axes,
     lo: Vec4,
     hi: Vec4,
 }
 
-impl Binary {
+impl BinaryNode {
     fn new(range: Range<usize>) -> Self {
         Self { children: 0, range, surface: 0.0, frame: fit::MESH, lo: [0.0; 4], hi: [0.0; 4] }
     }
 
     /// The box around these of `items`, whatever was rounded: of a mesh whose radius is `unit` metres, relative
     /// to the centre of the mesh.
-    pub(crate) fn obb(&self, items: &[Item], unit: f64) -> NodeBox {
+    pub(crate) fn obb(&self, items: &[BuildTriangle], unit: f64) -> NodeBox {
         let items = &items[self.range.clone()];
         let (f, lo, hi) = match fit::refine(items, &self.frame) {
             Some(frame) => {
@@ -77,11 +77,11 @@ impl Binary {
 }
 
 /// The binary tree, parents before children, its leaves of at most [`WIDTH`] items.
-pub(crate) fn split_all(items: &mut [Item]) -> Vec<Binary> {
+pub(crate) fn split_all(items: &mut [BuildTriangle]) -> Vec<BinaryNode> {
     let mut own = Vec::with_capacity(items.len());
     let mut aside = items.to_vec();
     let mut binary = Vec::with_capacity(items.len() / 2 + 1);
-    binary.push(Binary::new(0..items.len()));
+    binary.push(BinaryNode::new(0..items.len()));
     let mut todo = vec![0];
     while let Some(n) = todo.pop() {
         let range = binary[n].range.clone();
@@ -96,8 +96,8 @@ pub(crate) fn split_all(items: &mut [Item]) -> Vec<Binary> {
         if let Some(first) = split(items, &own, frames, b.surface, &mut aside) {
             let children = binary.len();
             binary[n].children = children;
-            binary.push(Binary::new(range.start..range.start + first));
-            binary.push(Binary::new(range.start + first..range.end));
+            binary.push(BinaryNode::new(range.start..range.start + first));
+            binary.push(BinaryNode::new(range.start + first..range.end));
             todo.extend([children, children + 1]);
         }
     }
@@ -106,12 +106,12 @@ pub(crate) fn split_all(items: &mut [Item]) -> Vec<Binary> {
 
 /// Extent along the axes of the mesh, then along those of a box.
 #[derive(Clone, Copy)]
-struct Bounds {
+struct Extents {
     lo: [Vec4; 2],
     hi: [Vec4; 2],
 }
 
-impl Bounds {
+impl Extents {
     const EMPTY: Self = Self { lo: [[f32::INFINITY; 4]; 2], hi: [[f32::NEG_INFINITY; 4]; 2] };
 
     #[inline(always)]
@@ -159,14 +159,14 @@ pub(crate) fn along(columns: &[Vec4; 3], p: &Vec4) -> Vec4 {
 }
 
 /// The bounds of each item, in `own`, and of all.
-fn bounds(items: &[Item], frame: &Frame, own: &mut Vec<Bounds>) -> Bounds {
+fn bounds(items: &[BuildTriangle], frame: &Axes, own: &mut Vec<Extents>) -> Extents {
     let columns = fit::columns(frame);
-    let mut all = Bounds::EMPTY;
+    let mut all = Extents::EMPTY;
     own.clear();
     for item in items {
         let [a, b, c] = &item.corners;
         let [x, y, z] = [along(&columns, a), along(&columns, b), along(&columns, c)];
-        let one = Bounds {
+        let one = Extents {
             lo: [min(&min(a, b), c), min(&min(&x, &y), &z)],
             hi: [max(&max(a, b), c), max(&max(&x, &y), &z)],
         };
@@ -178,7 +178,13 @@ fn bounds(items: &[Item], frame: &Frame, own: &mut Vec<Bounds>) -> Bounds {
 
 /// Reorders `items` in two parts, neither empty; returns the length of the first. `None` where they had
 /// better stay together, in a leaf.
-fn split(items: &mut [Item], own: &[Bounds], frames: usize, whole: f32, aside: &mut [Item]) -> Option<usize> {
+fn split(
+    items: &mut [BuildTriangle],
+    own: &[Extents],
+    frames: usize,
+    whole: f32,
+    aside: &mut [BuildTriangle],
+) -> Option<usize> {
     let n = items.len();
     if n > SWEEP {
         return Some(bin(items, own, frames, aside));
@@ -197,11 +203,11 @@ fn split(items: &mut [Item], own: &[Bounds], frames: usize, whole: f32, aside: &
 /// The best of all divisions in the order of the middles along each axis, and what it costs.
 #[inline(always)]
 fn sweep(
-    items: &mut [Item],
-    own: &[Bounds],
+    items: &mut [BuildTriangle],
+    own: &[Extents],
     frames: usize,
-    aside: &mut [Item],
-    cost: impl Fn(&Bounds, usize) -> f32,
+    aside: &mut [BuildTriangle],
+    cost: impl Fn(&Extents, usize) -> f32,
 ) -> (usize, f32) {
     let n = items.len();
     let mut best = (n / 2, f32::INFINITY);
@@ -215,12 +221,12 @@ fn sweep(
         order.sort_unstable();
         let at = |i: usize| &own[order[i] as u32 as usize];
         let mut above = [0.0; SWEEP];
-        let mut right = Bounds::EMPTY;
+        let mut right = Extents::EMPTY;
         for i in (1..n).rev() {
             right.join(at(i));
             above[i] = cost(&right, n - i);
         }
-        let mut left = Bounds::EMPTY;
+        let mut left = Extents::EMPTY;
         let before = best.1;
         for i in 1..n {
             left.join(at(i - 1));
@@ -248,7 +254,7 @@ fn ordered(x: f32) -> u32 {
 }
 
 /// The best division between bins along each axis.
-fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) -> usize {
+fn bin(items: &mut [BuildTriangle], own: &[Extents], frames: usize, aside: &mut [BuildTriangle]) -> usize {
     let n = items.len();
     let mut best: Option<(f32, usize, usize, usize)> = None;
     let (mut start, mut scale) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
@@ -259,7 +265,7 @@ fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) ->
             (lo, hi) = (min(&middle, &lo), max(&middle, &hi));
         }
         (start[f], scale[f]) = (lo, std::array::from_fn(|k| (BINS - 1) as f32 / (hi[k] - lo[k])));
-        let mut bins = [[(Bounds::EMPTY, 0u32); BINS]; 3];
+        let mut bins = [[(Extents::EMPTY, 0u32); BINS]; 3];
         for o in own {
             let at = place(o, f, &start[f], &scale[f]);
             for k in 0..3 {
@@ -270,13 +276,13 @@ fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) ->
         }
         for k in (0..3).filter(|&k| scale[f][k].is_finite()) {
             let mut above = [0.0; BINS];
-            let (mut right, mut count) = (Bounds::EMPTY, 0);
+            let (mut right, mut count) = (Extents::EMPTY, 0);
             for i in (1..BINS).rev() {
                 right.join(&bins[k][i].0);
                 count += bins[k][i].1;
                 above[i] = right.surface() * count as f32;
             }
-            let (mut left, mut count) = (Bounds::EMPTY, 0);
+            let (mut left, mut count) = (Extents::EMPTY, 0);
             for i in 1..BINS {
                 left.join(&bins[k][i - 1].0);
                 count += bins[k][i - 1].1;
@@ -307,7 +313,7 @@ fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) ->
 
 /// The bins of an item along three axes.
 #[inline(always)]
-fn place(o: &Bounds, frame: usize, start: &Vec4, scale: &Vec4) -> [usize; 3] {
+fn place(o: &Extents, frame: usize, start: &Vec4, scale: &Vec4) -> [usize; 3] {
     let middle = o.middle(frame);
     std::array::from_fn(|k| {
         // Rounded to the nearest by the addition, and never out of range.

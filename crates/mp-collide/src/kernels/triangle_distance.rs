@@ -72,7 +72,7 @@ pub(crate) struct DistanceKernel<L> {
     n: [L; 3],
     nn: L,
     /// Infinite for triangles whose normal is lost in rounding, 0 for the others.
-    flat: L,
+    unsound: L,
     /// How wrong a height may be for the normal's error in direction.
     tilt: L,
     /// In the plane, across each edge, inward.
@@ -81,7 +81,7 @@ pub(crate) struct DistanceKernel<L> {
     hi: [L; 3],
     /// How far they reach along a direction.
     top: L,
-    slab: [f32; 3],
+    direction: [f32; 3],
     center: [f64; 3],
     magnitude: f32,
     edge: f32,
@@ -89,7 +89,7 @@ pub(crate) struct DistanceKernel<L> {
 
 impl<L: Lanes> DistanceKernel<L> {
     #[inline(always)]
-    pub(crate) fn new(leaf: &Leaf, slab: &SeparatingDirection) -> Self {
+    pub(crate) fn new(leaf: &Leaf, direction: &SeparatingDirection) -> Self {
         let v = corners::<L>(leaf);
         let f = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
         let n = cross(&f[0], &f[1]);
@@ -101,9 +101,9 @@ impl<L: Lanes> DistanceKernel<L> {
         let square = L::splat(leaf.magnitude * leaf.magnitude).add(longest);
         let least = L::splat(SOUND).mul(longest).mul_add(square, L::splat(SOUND_AT_LEAST));
         let huge = L::splat(1e38);
-        let along = slab.0.map(L::splat);
+        let along = direction.0.map(L::splat);
         Self {
-            flat: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
+            unsound: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
             tilt: L::splat(TILT).mul(longest).mul(least.div(nn.max(L::splat(SOUND_AT_LEAST)))).sqrt(),
             ff,
             inverse: [one.div(ff[0].max(tiny)), one.div(ff[1].max(tiny)), one.div(ff[2].max(tiny))],
@@ -112,7 +112,7 @@ impl<L: Lanes> DistanceKernel<L> {
             lo: three!(d => v[0][d].min(v[1][d]).min(v[2][d])),
             hi: three!(d => v[0][d].max(v[1][d]).max(v[2][d])),
             top: dot(&along, &v[0]).max(dot(&along, &v[1])).max(dot(&along, &v[2])),
-            slab: slab.0,
+            direction: direction.0,
             center: leaf.center,
             magnitude: leaf.magnitude,
             edge: leaf.edge,
@@ -150,8 +150,8 @@ impl<L: Lanes> DistanceKernel<L> {
             let apart = self.lo[d].sub(L::splat(hi)).max(L::splat(lo).sub(self.hi[d])).max(zero);
             gap = apart.mul_add(apart, gap);
         }
-        // The same along the slab: each of its two sides is wrong by up to 7u·g.
-        let along = three!(k => self.slab[0] * p[k][0] + self.slab[1] * p[k][1] + self.slab[2] * p[k][2]);
+        // The same along the direction: each of its two sides is wrong by up to 7u·g.
+        let along = three!(k => self.direction[0] * p[k][0] + self.direction[1] * p[k][1] + self.direction[2] * p[k][2]);
         let bottom = along[0].min(along[1]).min(along[2]) - 4.0 * wrong;
         let apart = L::splat(bottom).sub(self.top).max(zero);
         let gap = apart.square().max(gap);
@@ -185,7 +185,7 @@ impl<L: Lanes> DistanceKernel<L> {
         let mm = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
         let longest = own * own;
         let sound = mm >= SOUND * longest * longest + SOUND_AT_LEAST && own.max(edge) >= SMALL;
-        let flat = L::splat(if sound { 0.0 } else { f32::INFINITY });
+        let unsound = L::splat(if sound { 0.0 } else { f32::INFINITY });
         let n = [L::splat(m[0]), L::splat(m[1]), L::splat(m[2])];
         let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
         let w: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
@@ -212,7 +212,7 @@ impl<L: Lanes> DistanceKernel<L> {
         for k in 0..3 {
             let inside = three!(j => dot(&self.inward[j], &sub(&s[k], &self.v[j])));
             let outside = inside[0].min(inside[1]).min(inside[2]).min(zero).mul(penalty);
-            faces = h[k].mul(inverse).mul_add(h[k], outside.add(self.flat)).min(faces);
+            faces = h[k].mul(inverse).mul_add(h[k], outside.add(self.unsound)).min(faces);
         }
         let inverse = L::splat(1.0 / mm.max(TINY));
         let across = three!(k => { let u = cross_scalar(&m, &e[k]); [L::splat(u[0]), L::splat(u[1]), L::splat(u[2])] });
@@ -220,7 +220,7 @@ impl<L: Lanes> DistanceKernel<L> {
         for k in 0..3 {
             let inside = three!(j => dot(&across[j], &sub(&self.v[k], &s[j])));
             let outside = inside[0].min(inside[1]).min(inside[2]).min(zero).mul(penalty);
-            face = w[k].mul(inverse).mul_add(w[k], outside.add(flat)).min(face);
+            face = w[k].mul(inverse).mul_add(w[k], outside.add(unsound)).min(face);
         }
         // Points of edges are points of the triangles, so only their rounding, 16u·g, can make the result too small.
         // Too large it is also where edges are not met at the best place: an edge e is met elsewhere by at most
@@ -235,7 +235,7 @@ impl<L: Lanes> DistanceKernel<L> {
         let error = self.tilt.max(L::splat(tilt)).add(L::splat(2e-6 * g));
         let parallel = L::splat(size * (4e-6 * g + 1e-5 * size));
         let below = squared.sub(parallel).max(zero).sqrt().sub(error).max(zero).square();
-        let below = below.mul(L::splat(1.0 - 2e-6)).sub(self.flat.add(flat));
+        let below = below.mul(L::splat(1.0 - 2e-6)).sub(self.unsound.add(unsound));
         let low = below.max(gap.mul(L::splat(1.0 - 1e-5)));
         low.store(&mut bounds.near);
         squared.sqrt().add(error).square().mul(L::splat(1.0 + 2e-6)).store(&mut bounds.far);
@@ -292,8 +292,8 @@ mod tests {
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Output {
             let mut bounds = DistanceBounds::default();
-            let gaps = DistanceKernel::<L>::new(self.0, &SeparatingDirection::default());
-            let close = gaps.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
+            let kernel = DistanceKernel::<L>::new(self.0, &SeparatingDirection::default());
+            let close = kernel.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
             (bounds, close)
         }
     }

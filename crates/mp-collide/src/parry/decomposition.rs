@@ -70,9 +70,9 @@ pub fn convex_decomposition(mesh: &TriMesh, params: &Decomposition) -> Result<Ve
         return Err(ParryError::Flat);
     }
     let scaled = resized(&mesh, 1.0 / scale)?;
-    let mut pieces = Pieces::new(&scaled);
+    let mut part_points = PartPoints::new(&scaled);
     // Voxels would make steps of what is convex but slanted.
-    if pieces.solid
+    if part_points.solid
         && let Ok(hull) = convex_hull(&scaled)
         && hull.signed_volume() - scaled.signed_volume() <= params.concavity * hull.signed_volume()
     {
@@ -84,7 +84,7 @@ pub fn convex_decomposition(mesh: &TriMesh, params: &Decomposition) -> Result<Ve
 
     let mut parts = Vec::new();
     for voxels in cuts.voxel_parts() {
-        let points = pieces.points(voxels);
+        let points = part_points.points(voxels);
         if points.is_empty() {
             continue;
         }
@@ -120,8 +120,8 @@ fn checked(params: &Decomposition) -> Result<VHACDParameters, ParryError> {
     Ok(VHACDParameters { resolution, concavity, max_convex_hulls, convex_hull_downsampling, ..others })
 }
 
-/// What is to be taken to pieces.
-struct Pieces<'a> {
+/// What is to be taken to part_points.
+struct PartPoints<'a> {
     mesh: &'a TriMesh,
     tree: CollisionMesh,
     query: Query,
@@ -129,7 +129,7 @@ struct Pieces<'a> {
     solid: bool,
 }
 
-impl<'a> Pieces<'a> {
+impl<'a> PartPoints<'a> {
     fn new(mesh: &'a TriMesh) -> Self {
         let solid = mesh.topology().is_solid() && mesh.signed_volume() > 0.0;
         Self { mesh, tree: CollisionMesh::new(mesh), query: Query::default(), solid }

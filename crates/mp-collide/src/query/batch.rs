@@ -42,9 +42,9 @@ impl Query {
         poses: &[Isometry3<f64>],
         (b, pose_wb): PosedMesh<'_>,
     ) -> Option<usize> {
-        let pace = Pace::of(poses);
-        let step = pace.step + 2.0 * pace.turn * a.radius();
-        let near = pace.rigid
+        let steps = StepBounds::of(poses);
+        let step = steps.step + 2.0 * steps.turn * a.radius();
+        let near = steps.rigid
             && step <= NEAR * a.tree().radius_center
             && in_lanes((a, &poses[0]), (b, pose_wb), step);
         let first = if near { 1 } else { poses.len() };
@@ -55,7 +55,7 @@ impl Query {
             return None;
         }
         let (a, b) = (a.tree(), b.tree());
-        let schedule = PoseSchedule { a, b, poses, pose_wb, back: pose_wb.rotation.inverse(), pace };
+        let schedule = PoseSchedule { a, b, poses, pose_wb, back: pose_wb.rotation.inverse(), steps };
         let found = self.sweep(a, b, &schedule, [first as u32, poses.len() as u32]);
         let found = found.map(|end| end.range[0] as usize);
         self.counters.queries += found.unwrap_or(poses.len() - 1) as u64;
@@ -79,7 +79,7 @@ const NEAR: f64 = 0.25;
 
 /// How a sequence of poses advances: the most of all steps.
 #[derive(Clone, Copy, Debug)]
-struct Pace {
+struct StepBounds {
     /// Whether all poses are within the limits of the crate docs; if not, the rest means nothing.
     rigid: bool,
     /// Of the origin, metres.
@@ -91,7 +91,7 @@ struct Pace {
     twist: f64,
 }
 
-impl Pace {
+impl StepBounds {
     fn of(poses: &[Isometry3<f64>]) -> Self {
         let (mut step, mut turn, mut bend, mut twist) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         let mut before: Option<(Vector3<f64>, Quaternion<f64>)> = None;
@@ -146,13 +146,13 @@ struct PoseSchedule<'q> {
     pose_wb: &'q Isometry3<f64>,
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
-    pace: Pace,
+    steps: StepBounds,
 }
 
 impl PoseSchedule<'_> {
     /// How far a point gets at most in `n` steps.
     fn farthest(&self, n: usize) -> f64 {
-        n as f64 * (self.pace.step + 2.0 * self.pace.turn * self.a.radius)
+        n as f64 * (self.steps.step + 2.0 * self.steps.turn * self.a.radius)
     }
 
     /// How far points get in `n` steps from pose `middle`, where they are at `q`, turned from the frame of `a`.
@@ -175,7 +175,7 @@ impl PoseSchedule<'_> {
         };
         let by = (near(to) - near(from)) * here.conjugate() * (2.0 * scale);
         let shift = (to.translation.vector - from.translation.vector) * scale;
-        let Pace { turn, bend, twist, .. } = self.pace;
+        let StepBounds { turn, bend, twist, .. } = self.steps;
         let radius = self.a.radius;
         let curve = n * (n + 1.0) * (0.5 * bend + twist * radius) + (n * turn).powi(2) * radius;
         let rest = curve + by.w.abs() * radius + n * relative.slack;

@@ -27,7 +27,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> Separation {
         self.counters.queries += 1;
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else {
+        let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else {
             return Separation { distance: 0.0, point_a: Point3::origin(), point_b: Point3::origin() };
         };
         if let Some((i, j)) = self.colliding_pair(a.tree(), b.tree(), &relative) {
@@ -58,7 +58,7 @@ impl Query {
         enough: f64,
     ) -> f64 {
         self.counters.queries += 1;
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else { return 0.0 };
+        let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else { return 0.0 };
         self.clearance_with(a.tree(), b.tree(), &relative, enough).0
     }
 
@@ -75,7 +75,7 @@ impl Query {
         tolerance: f64,
     ) -> bool {
         self.counters.queries += 1;
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else { return true };
+        let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else { return true };
         let tolerance = if tolerance.is_nan() { f64::INFINITY } else { tolerance.max(0.0) };
         if tolerance == f64::INFINITY {
             return true;

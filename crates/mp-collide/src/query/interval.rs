@@ -104,7 +104,7 @@ impl Query {
         margin: f64,
     ) -> IntervalCheck {
         self.counters.queries += 1;
-        let relative = Relative::between(middle_wa, a.radius(), pose_wb, b.radius());
+        let relative = Relative::of((a, middle_wa), (b, pose_wb));
         let Some(relative) = relative.filter(|_| motion.is_usable() && margin.abs() <= LIMIT) else {
             return IntervalCheck::Unproven;
         };
@@ -118,7 +118,7 @@ impl Query {
         }
         let back = pose_wb.rotation.inverse();
         let schedule = IntervalSchedule { a, b, middle_wa, motion, pose_wb, back, margin };
-        let end = self.sweep(a, b, &schedule, [0, PIECES]);
+        let end = self.sweep(a, b, &schedule, [0, SUBINTERVALS]);
         end.map_or(IntervalCheck::Free, |SweepEnd { range, check }| match check {
             LeafCheck::Collision => IntervalCheck::Collision { at: middle(range) },
             LeafCheck::TooClose => IntervalCheck::TooClose { at: middle(range) },
@@ -128,7 +128,7 @@ impl Query {
 }
 
 /// An interval is divided into no more pieces than this.
-const PIECES: u32 = 32;
+const SUBINTERVALS: u32 = 32;
 
 /// Triangles are compared over parts of no more pieces than this. Measured: half as many or twice as many are slower.
 const FINE: u32 = 4;
@@ -147,12 +147,12 @@ struct IntervalSchedule<'q> {
 
 /// Half of a part, as a share of half the interval.
 fn share([lo, hi]: [u32; 2]) -> f64 {
-    f64::from(hi - lo) / f64::from(PIECES)
+    f64::from(hi - lo) / f64::from(SUBINTERVALS)
 }
 
 /// The middle of a part, as a share of half the interval.
 fn middle([lo, hi]: [u32; 2]) -> f64 {
-    f64::from(lo + hi) / f64::from(PIECES) - 1.0
+    f64::from(lo + hi) / f64::from(SUBINTERVALS) - 1.0
 }
 
 impl Schedule for IntervalSchedule<'_> {

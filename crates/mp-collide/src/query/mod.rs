@@ -78,7 +78,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> bool {
         self.counters.queries += 1;
-        match Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) {
+        match Relative::of((a, pose_wa), (b, pose_wb)) {
             Some(relative) => self.collide(a.tree(), b.tree(), relative, true).is_some(),
             None => true,
         }
@@ -94,7 +94,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> Option<(usize, usize)> {
         self.counters.queries += 1;
-        match Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) {
+        match Relative::of((a, pose_wa), (b, pose_wb)) {
             Some(relative) => self
                 .colliding_pair(a.tree(), b.tree(), &relative)
                 .map(|(i, j)| (a.tree().ids[i] as usize, b.tree().ids[j] as usize)),

@@ -20,7 +20,7 @@ pub(crate) struct Frustum {
 
 /// A point of something and the nearest of a solid.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Apart {
+pub(crate) struct NearestPoints {
     /// Metres; 0 when they meet.
     pub(crate) distance: f64,
     pub(crate) other: Point3<f64>,
@@ -67,15 +67,15 @@ impl Frustum {
         if level > 0.0 { Point3::new(r * n.x / level, r * n.y / level, z) } else { Point3::new(0.0, 0.0, z) }
     }
 
-    fn near_point(&self, p: &Point3<f64>) -> Apart {
+    fn near_point(&self, p: &Point3<f64>) -> NearestPoints {
         let solid = self.nearest(p);
         let distance = (p - solid).norm();
         // What cannot be decided is collision.
-        Apart { distance: if distance.is_nan() { 0.0 } else { distance }, other: *p, solid }
+        NearestPoints { distance: if distance.is_nan() { 0.0 } else { distance }, other: *p, solid }
     }
 
     /// The distance grows along a line on both sides of where it is least, as the solid is convex.
-    fn near_segment(&self, p: &Point3<f64>, q: &Point3<f64>) -> Apart {
+    fn near_segment(&self, p: &Point3<f64>, q: &Point3<f64>) -> NearestPoints {
         let along = q - p;
         let at = |t: f64| p + along * t;
         let slope = |x: &Point3<f64>| (x - self.nearest(x)).dot(&along);
@@ -103,7 +103,7 @@ impl Frustum {
 
     /// The nearest points of a triangle and the solid: on an edge, or within the face below the point of the solid
     /// that is farthest toward its plane.
-    pub(crate) fn near_triangle(&self, t: &Triangle) -> Apart {
+    pub(crate) fn near_triangle(&self, t: &Triangle) -> NearestPoints {
         let mut best = self.near_segment(&t[0], &t[1]);
         for k in 1..3 {
             let other = self.near_segment(&t[k], &t[(k + 1) % 3]);
@@ -119,14 +119,14 @@ impl Frustum {
         let ends = [self.farthest(&-n), self.farthest(&n)];
         let heights = ends.map(|end| (end - t[0]).dot(&n));
         let foot = if heights[0] > 0.0 {
-            Apart { distance: heights[0], other: ends[0] - n * heights[0], solid: ends[0] }
+            NearestPoints { distance: heights[0], other: ends[0] - n * heights[0], solid: ends[0] }
         } else if heights[1] < 0.0 {
-            Apart { distance: -heights[1], other: ends[1] - n * heights[1], solid: ends[1] }
+            NearestPoints { distance: -heights[1], other: ends[1] - n * heights[1], solid: ends[1] }
         } else {
             // The plane cuts the solid, and no edge meets it: all of the cut is within the triangle or none.
             let share = -heights[0] / (heights[1] - heights[0]);
             let cut = ends[0] + (ends[1] - ends[0]) * if share.is_finite() { share } else { 0.5 };
-            Apart { distance: 0.0, other: cut, solid: cut }
+            NearestPoints { distance: 0.0, other: cut, solid: cut }
         };
         let within = (0..3).all(|k| {
             let (p, q) = (t[k], t[(k + 1) % 3]);
@@ -136,11 +136,11 @@ impl Frustum {
     }
 
     /// The same for a triangle of `a`, in the frame of `a`.
-    pub(crate) fn near_triangle_of_a(&self, t: &Triangle, pose_ab: &Relative) -> Apart {
+    pub(crate) fn near_triangle_of_a(&self, t: &Triangle, pose_ab: &Relative) -> NearestPoints {
         let Relative { rotation, translation, .. } = pose_ab;
         let local = t.map(|p| Point3::from(rotation.tr_mul(&(p.coords - translation))));
         let apart = self.near_triangle(&local);
-        Apart { other: pose_ab.point(&apart.other), solid: pose_ab.point(&apart.solid), ..apart }
+        NearestPoints { other: pose_ab.point(&apart.other), solid: pose_ab.point(&apart.solid), ..apart }
     }
 }
 
@@ -161,13 +161,13 @@ pub(crate) struct Revolved<'q> {
 
 impl Kernel for Revolved<'_> {
     /// In the frame of `a`.
-    type Output = Option<Apart>;
+    type Output = Option<NearestPoints>;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, solid, frames, enough, any, stack, counters } = self;
         let place = FrameTransform::<L>::new(&frames.into_a).place(b.own(b.root));
-        let mut best: Option<Apart> = None;
+        let mut best: Option<NearestPoints> = None;
         // Squared, rounded up.
         let up = |x: f64| ((x * x * (1.0 + 1e-6)) as f32).next_up();
         let mut limit = up(enough);

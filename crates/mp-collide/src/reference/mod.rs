@@ -5,9 +5,9 @@
 //! It is not exact at contact: whatever is nearer than about 1e-13 of the coordinates counts as touching.
 
 pub mod exact;
-mod hull;
 mod pairs;
 mod sweep;
+mod swept_triangle;
 mod triangle;
 
 use mp_geom::TriMesh;

@@ -1,6 +1,6 @@
 //! Whole motions of a mesh past another, proved free.
 
-use super::hull::Hull;
+use super::swept_triangle::SweptTriangle;
 use super::triangle::{Triangle, triangle_gap};
 use super::{Ball, Content, RefMesh, TOUCHING, is_usable};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
@@ -35,7 +35,7 @@ pub enum SweepCheck {
 ///
 /// - what a ball holds, and the box around it, is swept within the box around both ends, so much wider, which
 ///   is kept apart from the boxes of what stands;
-/// - a triangle is swept within the hull of its corners at both ends, so much wider, which is kept apart from
+/// - a triangle is swept within the swept of its corners at both ends, so much wider, which is kept apart from
 ///   a triangle by a direction.
 ///
 /// Of what is not shown to be apart the larger is split: balls that stand, those that move or, when it is longer than those,
@@ -261,13 +261,13 @@ impl Sweep {
     ) {
         let ends = self.parts[open.part].ends.map(|end| &self.moments[end]);
         let [from, to] = ends.map(|moment| triangle.map(|p| moment.place(&p)));
-        let hull = Hull::new(from, to);
+        let swept = SweptTriangle::new(from, to);
         let enough = task.margin + task.touching;
         let first = open.near[1];
         let mut kept = first;
         for i in first..self.near.len() {
             let near = self.near[i];
-            let ahead = |stands| hull.ahead_of(stands, near.way, enough + swath.bend).0 - swath.bend;
+            let ahead = |stands| swept.gap_from(stands, near.way, enough + swath.bend).0 - swath.bend;
             let ahead = task.stands(&near).map_or(f64::NEG_INFINITY, ahead);
             if ahead >= enough {
                 *least = least.min(ahead - task.touching);
@@ -353,7 +353,7 @@ impl Task<'_> {
     fn way(&self, moved: &Triangle, near: &Near) -> Result<Vector3<f64>, f64> {
         let Some(stands) = self.stands(near) else { return Err(0.0) };
         let enough = 2.0 * self.margin + self.touching;
-        let (ahead, way) = Hull::new(*moved, *moved).ahead_of(stands, near.way, enough);
+        let (ahead, way) = SweptTriangle::new(*moved, *moved).gap_from(stands, near.way, enough);
         if ahead >= enough {
             return Ok(way);
         }

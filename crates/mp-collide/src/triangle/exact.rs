@@ -196,14 +196,14 @@ fn exact_volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f6
 }
 
 /// The point without coordinate `drop`.
-fn flat(p: &Point3<f64>, drop: usize) -> Coord<f64> {
+fn projected(p: &Point3<f64>, drop: usize) -> Coord<f64> {
     let (x, y) = [(1, 2), (0, 2), (0, 1)][drop];
     Coord { x: p[x], y: p[y] }
 }
 
 /// The sign of the area of a triangle seen along axis `drop`, exactly.
 fn area(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, drop: usize) -> i8 {
-    sign(orient2d(flat(a, drop), flat(b, drop), flat(c, drop)))
+    sign(orient2d(projected(a, drop), projected(b, drop), projected(c, drop)))
 }
 
 /// An axis along which the triangle is seen to have an area; `None` when its corners lie on a line.
@@ -224,7 +224,7 @@ fn segment_meets(p: &Point3<f64>, q: &Point3<f64>, t: &Triangle) -> bool {
         // All in one plane, which is seen undistorted (up to an affine map) along `drop`.
         Some(drop) => {
             agree(edges(t).map(|(u, v)| area(u, v, p, drop)))
-                || edges(t).any(|(u, v)| segments_meet_flat(p, q, u, v, drop))
+                || edges(t).any(|(u, v)| segments_meet_in_plane(p, q, u, v, drop))
         }
         None => edges(t).any(|(u, v)| segments_meet(p, q, u, v)),
     }
@@ -241,13 +241,13 @@ fn segments_meet(p: &Point3<f64>, q: &Point3<f64>, u: &Point3<f64>, v: &Point3<f
         .or_else(|| visible_along(u, v, p))
         .or_else(|| visible_along(u, v, q));
     match drop {
-        Some(drop) => segments_meet_flat(p, q, u, v, drop),
+        Some(drop) => segments_meet_in_plane(p, q, u, v, drop),
         None => on_line_overlap(p, q, u, v),
     }
 }
 
 /// Whether two closed segments of one plane meet, seen along axis `drop`, which must not be in the plane.
-fn segments_meet_flat(
+fn segments_meet_in_plane(
     p: &Point3<f64>,
     q: &Point3<f64>,
     u: &Point3<f64>,

@@ -12,7 +12,7 @@ const MOST: f64 = 100_000.0;
 
 /// What is in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum CellKind {
     /// No obstacle.
     Open,
     /// Nothing but an obstacle.
@@ -23,7 +23,7 @@ pub(super) enum Kind {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
-    pub(super) kind: Kind,
+    pub(super) kind: CellKind,
     /// Where its candidates begin; they end where those of the next begin.
     first: u32,
     /// The distance of its centre from the nearest edge.
@@ -82,7 +82,7 @@ impl Cells {
             }
         }
         let first = cells.candidates.len() as u32;
-        cells.cells.push(Cell { kind: Kind::Open, first, from_center: 0.0 });
+        cells.cells.push(Cell { kind: CellKind::Open, first, from_center: 0.0 });
         cells
     }
 
@@ -112,9 +112,9 @@ impl Cells {
         });
         let from_center = nearest.sqrt();
         let kind = match from_center > reach {
-            false => Kind::Mixed,
-            true if self.row_contains(&center, edges) => Kind::Solid,
-            true => Kind::Open,
+            false => CellKind::Mixed,
+            true if self.row_contains(&center, edges) => CellKind::Solid,
+            true => CellKind::Open,
         };
         let first = self.candidates.len();
         self.cells.push(Cell { kind, first: first as u32, from_center });

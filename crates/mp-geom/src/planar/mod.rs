@@ -26,4 +26,4 @@ mod world;
 
 pub use outline::outline;
 pub use polygon::{Polygon, PolygonError};
-pub use world::{Nearest, NearestToSegment, PlanarWorld, PlanarWorldError};
+pub use world::{NearestToPoint, NearestToSegment, PlanarWorld, PlanarWorldError};

@@ -1,6 +1,6 @@
 //! Obstacles in the plane.
 
-use super::cells::{Cells, Kind};
+use super::cells::{CellKind, Cells};
 use super::edge::Edge;
 use super::tree::EdgeTree;
 use super::{Polygon, PolygonError};
@@ -43,7 +43,7 @@ const WALLS: u32 = u32::MAX - 1;
 
 /// The point of an obstacle's boundary that is nearest to something.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
+pub struct NearestToPoint {
     /// Where it is.
     pub point: Point2<f64>,
     /// How far, metres.
@@ -108,8 +108,8 @@ impl PlanarWorld {
             (low, high) = (low.inf(&l), high.sup(&h));
         }
         let tree = EdgeTree::new(&edges);
-        let flat = |v: f64| v > 0.0 && v.is_finite();
-        let has_area = flat(high.x - low.x) && flat(high.y - low.y);
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        let has_area = positive(high.x - low.x) && positive(high.y - low.y);
         let cells = has_area.then(|| Cells::new([low, high], &edges, solid, &tree));
         let mut corners: Vec<Point2<f64>> = polygons.iter().flat_map(Polygon::rings).map(|r| r[0]).collect();
         corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
@@ -150,15 +150,15 @@ impl PlanarWorld {
         }
         let Some(cells) = &self.cells else { return self.polygons.iter().any(|polygon| polygon.contains(p)) };
         match cells.locate(p).map(|at| cells.cell(at).0.kind) {
-            None | Some(Kind::Open) => false,
-            Some(Kind::Solid) => true,
-            Some(Kind::Mixed) => cells.row_contains(p, &self.edges),
+            None | Some(CellKind::Open) => false,
+            Some(CellKind::Solid) => true,
+            Some(CellKind::Mixed) => cells.row_contains(p, &self.edges),
         }
     }
 
     /// The point of the boundary of an obstacle that is nearest to `p`; `None` where there is nothing.
     #[must_use]
-    pub fn nearest(&self, p: &Point2<f64>) -> Option<Nearest> {
+    pub fn nearest(&self, p: &Point2<f64>) -> Option<NearestToPoint> {
         let mut best = (f64::INFINITY, u32::MAX);
         match self.cells.as_ref().and_then(|cells| Some(cells.cell(cells.locate(p)?).1)) {
             Some(candidates) => {
@@ -178,7 +178,11 @@ impl PlanarWorld {
             }),
         }
         let edge = self.edges.get(best.1 as usize)?;
-        Some(Nearest { point: edge.nearest(p), distance: best.0.sqrt(), obstacle: self.obstacle(edge) })
+        Some(NearestToPoint {
+            point: edge.nearest(p),
+            distance: best.0.sqrt(),
+            obstacle: self.obstacle(edge),
+        })
     }
 
     /// The distance from `p` to the nearest obstacle; in an obstacle, minus that to the nearest boundary, which where
@@ -198,7 +202,7 @@ impl PlanarWorld {
         };
         let (cell, candidates) = cells.cell(at);
         let off = (p - cells.center(at.0, at.1)).norm() + cells.slack;
-        if cell.kind == Kind::Solid || cell.from_center + off < distance {
+        if cell.kind == CellKind::Solid || cell.from_center + off < distance {
             return false;
         }
         let near = |i: &u32| self.edges[*i as usize].squared(p).sqrt() <= distance;

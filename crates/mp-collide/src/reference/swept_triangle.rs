@@ -4,41 +4,43 @@ use super::triangle::Triangle;
 use nalgebra::{Point3, Vector3};
 
 /// The corners of a triangle where it begins and where it ends.
-pub(super) struct Hull([Point3<f64>; 6]);
+pub(super) struct SweptTriangle([Point3<f64>; 6]);
 
-impl Hull {
+impl SweptTriangle {
     pub(super) fn new([a, b, c]: Triangle, [d, e, f]: Triangle) -> Self {
         Self([a, b, c, d, e, f])
     }
 
-    /// How far the hull is ahead of a triangle in some direction, if possible by `enough`, and that direction. Tries
-    /// `first`, or the normal of the triangle when that is zero; then turns away from the points that are in the way
+    /// How far the hull is gap of a triangle in some direction, if possible by `enough`, and that direction. Tries
+    /// `first`, or the normal of the triangle when that is zero; then turns away from the points that are in the direction
     /// (Chung and Wang, *Quick collision detection of polytopes in virtual environments*, VRST 1996).
-    pub(super) fn ahead_of(
+    pub(super) fn gap_from(
         &self,
         triangle: &Triangle,
         first: Vector3<f64>,
         enough: f64,
     ) -> (f64, Vector3<f64>) {
-        let mut way = first;
-        if way == Vector3::zeros() {
+        let mut direction = first;
+        if direction == Vector3::zeros() {
             let normal = (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0]));
             let side = normal.dot(&(self.0[0] - triangle[0]));
-            way = (normal * side.signum()).try_normalize(0.0).unwrap_or(Vector3::x());
+            direction = (normal * side.signum()).try_normalize(0.0).unwrap_or(Vector3::x());
         }
-        let mut most = (f64::NEG_INFINITY, way);
+        let mut most = (f64::NEG_INFINITY, direction);
         for _ in 0..TRIES {
-            let between = first_along(&self.0, &way) - first_along(triangle, &-way);
-            let ahead = between.dot(&way);
-            if ahead > most.0 {
-                most = (ahead, way);
+            let between = first_along(&self.0, &direction) - first_along(triangle, &-direction);
+            let gap = between.dot(&direction);
+            if gap > most.0 {
+                most = (gap, direction);
             }
-            if ahead >= enough {
+            if gap >= enough {
                 break;
             }
             let Some(across) = between.try_normalize(0.0) else { break };
-            let Some(next) = (way - across * (2.0 * across.dot(&way))).try_normalize(0.0) else { break };
-            way = next;
+            let Some(next) = (direction - across * (2.0 * across.dot(&direction))).try_normalize(0.0) else {
+                break;
+            };
+            direction = next;
         }
         most
     }
@@ -48,10 +50,10 @@ impl Hull {
 const TRIES: usize = 5;
 
 /// The first of the points in a direction.
-fn first_along(points: &[Point3<f64>], way: &Vector3<f64>) -> Point3<f64> {
+fn first_along(points: &[Point3<f64>], direction: &Vector3<f64>) -> Point3<f64> {
     let mut first = (f64::INFINITY, Point3::origin());
     for p in points {
-        let along = p.coords.dot(way);
+        let along = p.coords.dot(direction);
         if along < first.0 {
             first = (along, *p);
         }

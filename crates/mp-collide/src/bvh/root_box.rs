@@ -5,17 +5,18 @@
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
+use crate::bvh::fit::orthonormal;
 use crate::triangle::Triangle;
 
 /// A box: centre, three orthonormal axes, half its extent along each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MeshObb {
+pub(crate) struct RootBox {
     pub(crate) center: Point3<f64>,
     pub(crate) axes: [Vector3<f64>; 3],
     pub(crate) half: Vector3<f64>,
 }
 
-impl MeshObb {
+impl RootBox {
     /// A small box around `triangles`: the one of least surface among several frames (the axes of the
     /// mesh, the principal axes of the surface, the largest triangle's).
     pub(crate) fn fit<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> Self {
@@ -150,8 +151,5 @@ fn eigenvectors(mut m: Matrix3<f64>) -> [Vector3<f64>; 3] {
         }
     }
     // Rounding adds up over the rotations; boxes want axes orthonormal to the last place.
-    let x: Vector3<f64> = v.column(0).normalize();
-    let y: Vector3<f64> = v.column(1).into();
-    let y = (y - x * x.dot(&y)).normalize();
-    [x, y, x.cross(&y)]
+    orthonormal(&v.column(0).into(), &v.column(1).into())
 }
