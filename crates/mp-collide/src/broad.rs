@@ -36,7 +36,7 @@ enum Content {
     Free,
 }
 
-/// A set of boxes, each with a number, that tells which may overlap a given box.
+/// A set of numbered boxes that finds those which overlap a box, or are near it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     nodes: Vec<Node>,
@@ -72,7 +72,7 @@ impl BroadPhase {
         leaf
     }
 
-    /// Removes what [`BroadPhase::insert`] returned `leaf` for.
+    /// Removes the box for which [`BroadPhase::insert`] returned `leaf`.
     pub(crate) fn remove(&mut self, leaf: usize) {
         let parent = self.nodes[leaf].parent;
         self.release(leaf);
@@ -127,7 +127,7 @@ impl BroadPhase {
     }
 
     /// Calls `visit` with the numbers of boxes nearer to `own` than `limit`, the nearer ones first as a rule;
-    /// it returns the new limit. Returns a lower bound on the distance of all boxes passed over.
+    /// it returns the new limit. Returns a lower bound on the distance of all boxes not visited.
     pub(crate) fn nearest(&self, own: &Aabb, mut limit: f64, mut visit: impl FnMut(u32) -> f64) -> f64 {
         let mut passed_over = f64::INFINITY;
         let mut stack = [(0.0, 0); STACK];
@@ -190,7 +190,7 @@ impl BroadPhase {
         }
     }
 
-    /// Where a new box costs the least surface.
+    /// The node beside which a new box costs the least surface.
     fn best_sibling(&self, root: usize, bounds: &Aabb) -> usize {
         let mut at = root;
         while let Content::Inner(children) = self.nodes[at].content {
@@ -211,7 +211,7 @@ impl BroadPhase {
         at
     }
 
-    /// Sets box and height of `start` and all above it right, rotating where the heights differ by two.
+    /// Updates box and height of `start` and its ancestors, rotating where the heights of children differ by two.
     fn refit_from(&mut self, start: Option<usize>) {
         let mut at = start;
         while let Some(node) = at {
@@ -228,7 +228,7 @@ impl BroadPhase {
         }
     }
 
-    /// Lifts the higher child of `node` when it is higher by two or more; returns who is on top now.
+    /// Lifts the higher child of `node` when it is higher by two or more; returns the node now on top.
     fn rotate(&mut self, node: usize) -> usize {
         let Content::Inner([x, y]) = self.nodes[node].content else { return node };
         let (high, low) = if self.nodes[x].height >= self.nodes[y].height { (x, y) } else { (y, x) };

@@ -1,4 +1,4 @@
-//! The mesh as queries see it.
+//! The mesh with its tree, which queries compare.
 
 use std::sync::{Arc, OnceLock};
 
@@ -15,9 +15,9 @@ pub(crate) type PosedMesh<'m> = (&'m CollisionMesh, &'m Isometry3<f64>);
 #[derive(Clone, Debug)]
 pub struct CollisionMesh {
     pub(crate) tree: Arc<Tree>,
-    /// Whether it is a solid.
+    /// Whether the mesh counts as a solid.
     pub(crate) filled: bool,
-    /// A corner of each part that hangs together.
+    /// A corner of each connected component.
     pub(crate) parts: Arc<OnceLock<Vec<Point3<f64>>>>,
 }
 
@@ -29,7 +29,7 @@ impl CollisionMesh {
         Self::from_triangles(triangles)
     }
 
-    /// `triangles`: at least one, at most `u32::MAX`, finite.
+    /// The mesh of `triangles`: at least one, at most `u32::MAX`.
     pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
         let _span = tracing::debug_span!("build", triangles = triangles.len()).entered();
         Self { tree: Arc::new(Tree::build(&triangles)), filled: false, parts: Arc::default() }

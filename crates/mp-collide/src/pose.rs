@@ -21,7 +21,7 @@ const SLACK: f64 = 1e-13;
 pub(crate) struct Relative {
     pub(crate) rotation: Matrix3<f64>,
     pub(crate) translation: Vector3<f64>,
-    /// What to add to boxes (metres) so that rounding never makes them miss.
+    /// How much boxes are enlarged (metres), so that rounding never makes a query miss a contact.
     pub(crate) slack: f64,
 }
 
@@ -46,7 +46,7 @@ impl Relative {
         let (q_wa, q_wb) = (pose_wa.rotation.quaternion(), pose_wb.rotation.quaternion());
         let (t_wa, t_wb) = (&pose_wa.translation.vector, &pose_wb.translation.vector);
         let apart = t_wb - t_wa;
-        // What stands still mostly has not been turned, and then the product below does nothing.
+        // Static bodies are mostly not rotated; then the product below is not needed.
         let (rotation, translation) = if is_identity(q_wa) {
             (rotation_matrix(q_wb), apart)
         } else {
@@ -137,7 +137,7 @@ mod tests {
     use super::*;
     use nalgebra::UnitQuaternion;
 
-    /// The short cuts for poses that are not turned are the formulas of the contract, bit for bit.
+    /// The short cuts for poses without rotation give the formulas of the contract, bit for bit.
     #[test]
     fn short_cuts_change_nothing() {
         let here = Isometry3::translation(0.3, -1.7, 0.9);

@@ -1,9 +1,9 @@
 //! Meshes and solid primitives: balls, capsules, boxes, cylinders, cones, half-spaces.
 //!
-//! A ball is all that is near a point and a capsule all that is near a segment, so queries about them are
-//! distance queries against a mesh of one degenerate triangle. A box is a mesh of twelve and what is inside;
-//! cylinders and cones are compared with triangles as the convex solids of revolution they are; a half-space asks
-//! for the lowest point of the mesh.
+//! A ball is all points near a point and a capsule all points near a segment, so queries about them are
+//! distance queries against a mesh of one degenerate triangle. A box is a mesh of twelve triangles and its inside;
+//! cylinders and cones are compared with triangles as convex solids of revolution; for a half-space the lowest point of
+//! the mesh decides.
 
 use mp_geom::primitives::{PrimitiveError, cuboid, positive};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -17,7 +17,7 @@ use crate::query::revolved::{Frustum, NearestPoints, Revolved};
 use crate::separation::Separation;
 use crate::simd::run;
 
-/// A primitive in a frame of its own: a closed *solid*, unlike a mesh, which is a surface.
+/// A geometric primitive in its own frame: a closed *solid*, unlike a mesh, which is a surface.
 ///
 /// ```
 /// use mp_collide::{CollisionMesh, Query, Solid};
@@ -48,7 +48,7 @@ enum Primitive {
         half: Vector3<f64>,
     },
     Revolved {
-        /// The box around it.
+        /// A mesh of the box around it.
         around: CollisionMesh,
         frustum: Frustum,
     },
@@ -112,13 +112,13 @@ impl Solid {
         Ok(Self { primitive: Primitive::Revolved { around, frustum } })
     }
 
-    /// All points with z ≤ 0: its pose says where the plane goes.
+    /// All points with z ≤ 0; its pose places the plane.
     #[must_use]
     pub fn half_space() -> Self {
         Self { primitive: Primitive::HalfSpace }
     }
 
-    /// What it was made of.
+    /// The kind of solid and its lengths.
     #[cfg(feature = "parry")]
     pub(crate) fn dimensions(&self) -> Dimensions {
         match &self.primitive {
@@ -157,8 +157,8 @@ pub(crate) enum Dimensions {
 ///
 /// The mesh is a surface and the solid is filled: a mesh wholly inside a solid collides with it, a solid
 /// wholly inside a closed mesh does not. **Touching counts**, to rounding: balls, capsules and half-spaces
-/// collide when the distance, computed as accurately as the crate docs say, is not above zero, and so do cylinders
-/// and cones, where about a microsecond goes into each triangle that may be the nearest; the surface
+/// collide when the distance, computed as accurately as the crate docs say, is not above zero. The same holds for cylinders
+/// and cones, which take about a microsecond for each triangle that may be the nearest. The surface
 /// of a box is compared exactly, as meshes are. Bad input counts as in collision with everything.
 impl Query {
     /// Whether mesh and solid have a point in common.
@@ -245,14 +245,14 @@ impl Query {
     ) -> f64 {
         match &solid.primitive {
             Primitive::Swept { core, radius } => {
-                // Touching first: then only a rounding error is left between the two.
+                // Contact is decided first, by the same test as in `solid_intersects`.
                 if self.within(mesh, pose_wm, core, pose_ws, *radius) {
                     return 0.0;
                 }
                 let enough = enough.max(0.0);
                 let to_core = self.clearance(mesh, pose_wm, core, pose_ws, enough + radius);
                 let clearance = to_core - radius;
-                // What is far enough from the core is far enough from the solid.
+                // A mesh far enough from the core is far enough from the solid.
                 let far = to_core >= enough + radius;
                 if far { clearance.max(enough) } else { clearance }.max(f64::MIN_POSITIVE)
             }
@@ -303,8 +303,8 @@ impl Query {
         }
     }
 
-    /// The first corner (in the world) of some triangle that is inside a box whose surface the mesh does not
-    /// meet: then all of that triangle is. For bad input the origin.
+    /// The first corner (in the world) of some triangle inside a box; as the mesh does not meet the surface of the box,
+    /// all of that triangle is inside. For bad input the origin.
     fn corner_inside(
         &mut self,
         mesh: PosedMesh<'_>,
@@ -327,8 +327,8 @@ impl Query {
         corner.map(|corner| to_world(mesh.1, &corner))
     }
 
-    /// Nearest points of mesh and solid in the frame of the mesh, if no farther apart than `enough` (metres), or any
-    /// that are not. For bad input the origin.
+    /// Nearest points of mesh and solid in the frame of the mesh, if no farther apart than `enough` (metres); if `any`,
+    /// some points no farther apart than that. For bad input the origin.
     fn frustum(
         &mut self,
         mesh: PosedMesh<'_>,

@@ -1,6 +1,6 @@
-//! What obstacle-geometry planners know of a body: where it is, how large, how full, and which way it runs.
+//! Features of a body for obstacle-geometry planners: its place, size, volume and direction.
 //!
-//! A. Benitez and D. Vallejo, "New technique to improve probabilistic roadmap methods", IBERAMIA 2004, as told
+//! A. Benitez and D. Vallejo, "New technique to improve probabilistic roadmap methods", IBERAMIA 2004, as described
 //! in A. Benitez et al., "Key Elements for Motion Planning Algorithms", 2010, section 3.5:
 //!
 //! - *straightness* is "the direction of an object with respect its longest side": here the longest side of
@@ -8,7 +8,7 @@
 //! - *volume* is "the size of an object respect to the volume of its surrounding sphere": here the solid's
 //!   volume over that of the sphere;
 //! - the surrounding sphere is about the centre of gravity;
-//! - where an obstacle "is built by smaller ones" each part has its own: here parts are what hangs together.
+//! - where an obstacle "is built by smaller ones" each part has its own features: here parts are connected components.
 
 use crate::{MassError, NO_COMPONENT, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
@@ -19,10 +19,10 @@ use std::f64::consts::PI;
 pub struct Features {
     /// Centre of gravity of the solid; of the surface, where the mesh bounds no solid.
     pub center: Point3<f64>,
-    /// The largest distance of a point of the body from there: radius of the surrounding sphere.
+    /// The largest distance of a point of the body from `center`: the radius of the surrounding sphere.
     pub radius: f64,
-    /// Straightness: along the longest side of its tight box, the largest coordinate positive. Of sides
-    /// of equal length, any.
+    /// Straightness: the direction of the longest side of its tight box, with its largest coordinate positive. Any of
+    /// several sides of equal length.
     pub axis: Unit<Vector3<f64>>,
     /// Volume of the solid (m³); of the tight box, where the mesh bounds no solid.
     pub volume: f64,
@@ -35,7 +35,7 @@ impl Features {
         Sphere { center: self.center, radius: self.radius }
     }
 
-    /// The volume as a part of that of the surrounding sphere, in \[0, 1\]; 1 for a single point. A ball has
+    /// The volume as a fraction of that of the surrounding sphere, in \[0, 1\]; 1 for a single point. A ball has
     /// 1, a cube 0.37, a rod or a plate nearly 0.
     #[must_use]
     pub fn volume_ratio(&self) -> f64 {
@@ -43,14 +43,14 @@ impl Features {
         if sphere > 0.0 { (self.volume / sphere).min(1.0) } else { 1.0 }
     }
 
-    /// Those of the body moved by `pose`.
+    /// The features of the body moved by `pose`.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
         Self { center: pose * self.center, axis: upward(pose.rotation * self.axis.into_inner()), ..*self }
     }
 }
 
-/// The unit vector either way along `v`, its largest coordinate positive.
+/// The unit vector along `v` or against it, with its largest coordinate positive.
 fn upward(v: Vector3<f64>) -> Unit<Vector3<f64>> {
     let unit = Unit::try_new(v, 0.0).unwrap_or_else(Vector3::x_axis);
     if unit[unit.iamax()] < 0.0 { -unit } else { unit }
@@ -74,8 +74,8 @@ impl TriMesh {
         }
     }
 
-    /// The parts that hang together through edges, each with only its own vertices, in the order of their first
-    /// triangles. Triangles with two corners in one place belong to none; a mesh of nothing else is one part.
+    /// The components connected through edges, each with only its own vertices, in the order of their first
+    /// triangles. Triangles with two corners in one place belong to none; a mesh of only such triangles is one part.
     #[must_use]
     pub fn parts(&self) -> Vec<TriMesh> {
         let topology = self.topology();

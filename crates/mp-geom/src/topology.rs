@@ -1,4 +1,4 @@
-//! Which triangles meet where, and what is wrong with a mesh.
+//! Adjacency of triangles, and the defects of a mesh.
 
 use crate::{TriMesh, build::Welder};
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// Adjacency of a mesh and a report on its defects.
 ///
 /// Vertices at identical coordinates count as one, named by the first of them, so a mesh whose file
-/// repeats points is judged by its shape. Triangles with two corners in one place have no part in edges.
+/// repeats points is judged by its shape. Triangles with two corners in one place are not counted at edges.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Topology {
@@ -21,7 +21,7 @@ pub struct Topology {
     pub boundary_edges: Vec<[u32; 2]>,
     /// Edges of more than two triangles.
     pub crowded_edges: Vec<[u32; 2]>,
-    /// Edges along which neighbours are turned against each other.
+    /// Edges along which neighbours have opposite orientations.
     pub misoriented_edges: Vec<[u32; 2]>,
     /// Vertices whose triangles do not form one fan (surfaces touching in a point).
     pub pinched_vertices: Vec<u32>,
@@ -37,7 +37,7 @@ pub struct Topology {
     pub closed: bool,
     /// No crowded edge and no pinched vertex: the surface is locally a disc or half disc.
     pub manifold: bool,
-    /// Every edge shared by triangles is passed as often one way as the other.
+    /// Every edge shared by triangles is used as often in one direction as in the other.
     pub oriented: bool,
 }
 
@@ -56,10 +56,10 @@ impl Topology {
     }
 }
 
-/// In [`Topology::component`]: a triangle with two corners in one place.
+/// The value in [`Topology::component`] of a triangle with two corners in one place.
 pub const NO_COMPONENT: u32 = u32::MAX;
 
-/// A corner of a triangle with this height or less, relative to the longest edge, has no area.
+/// A triangle of at most this height, relative to its longest edge, has no area.
 const FLAT: f64 = 1e-14;
 
 /// One use of an edge: the triangle, which of its edges, and whether from the lower to the higher vertex.
@@ -160,7 +160,7 @@ impl TriMesh {
         out
     }
 
-    /// The triangles with every vertex named by the first one at its position.
+    /// The triangles, with every vertex replaced by the first one at its position.
     fn by_position(&self) -> Vec<[u32; 3]> {
         let mut welder = Welder::default();
         let mut first = Vec::new();

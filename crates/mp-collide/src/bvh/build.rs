@@ -90,7 +90,7 @@ impl Tree {
     }
 }
 
-/// The leaf of `triangles[range]`, neither none nor more than eight, with the box around them.
+/// The leaf of `triangles[range]`, one to eight, with the box around them.
 pub(crate) fn leaf(
     triangles: &[Triangle],
     center: &Point3<f64>,

@@ -12,7 +12,7 @@ pub(crate) struct Choice {
     node_left: u8,
 }
 
-/// From the leaves up: where to make nodes of eight so that the boxes a query is likely to test are fewest
+/// From the leaves up: where to make nodes of eight so that queries are expected to test the fewest boxes
 /// (the chance that a box is reached is proportional to its surface).
 pub(crate) fn choose(binary: &[BinaryNode]) -> Vec<Choice> {
     let mut choices: Vec<Choice> = Vec::with_capacity(binary.len());
@@ -24,8 +24,8 @@ pub(crate) fn choose(binary: &[BinaryNode]) -> Vec<Choice> {
             continue;
         }
         let (l, r) = (b.children, b.children + 1);
-        // Cheapest division of k + 1 roots, k ≥ 1, between the children: some division too where all costs
-        // have overflowed.
+        // The cheapest division of k + 1 roots, k ≥ 1, between the children; where all costs have overflowed,
+        // some division.
         let mut divided = [(f32::INFINITY, 1u8); WIDTH + 1];
         for (k, best) in divided.iter_mut().enumerate().skip(1).take(WIDTH - 1) {
             for left in 0..k {

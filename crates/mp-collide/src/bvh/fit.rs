@@ -1,4 +1,7 @@
-//! Choosing the axes of a box: those of least surface among several frames.
+//! The axes of the boxes of nodes: those of least surface among several frames, in `f32` from a sample of triangles.
+//!
+//! A build fits one box for each node, so this is a rough and fast fit. The box at the root is fitted once more, in `f64`
+//! from all triangles (`root_box`); the box of least volume, which takes far longer, is [`mp_geom::TriMesh::obb`].
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,14 +13,14 @@ pub(crate) type Axes = [[f32; 3]; 3];
 /// The axes of the mesh.
 pub(crate) const MESH: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// At most so many triangles are looked at.
+/// The most triangles of a sample.
 const SAMPLE: usize = 48;
 
-/// By how much boxes are turned to make them smaller: tangents of half the angle.
+/// The turns by which boxes are made smaller: tangents of half the angle.
 const TURNS: [f64; 3] = [0.05, 0.025, 0.0125];
 
-/// The axes of a small box around `items`: the axes of the mesh; principal axes of surface, corners and
-/// normals; or the largest triangle's normal and shortest edge.
+/// The axes of a small box around `items`, the best of: the axes of the mesh; the principal axes of surface, corners and
+/// normals; the largest triangle's normal and shortest edge.
 pub(crate) fn frame(items: &[BuildTriangle]) -> Axes {
     let (sample, count) = sample(items);
     let mut best = BestAxes { corners: sample[..count].as_flattened(), surface: f32::INFINITY, frame: MESH };
@@ -26,7 +29,7 @@ pub(crate) fn frame(items: &[BuildTriangle]) -> Axes {
     best.frame
 }
 
-/// At most [`SAMPLE`] triangles, evenly spread, and how many.
+/// At most [`SAMPLE`] triangles, evenly spread over the list, and their number.
 fn sample(items: &[BuildTriangle]) -> ([[Vec4; 3]; SAMPLE], usize) {
     let mut sample = [[[0.0; 4]; 3]; SAMPLE];
     let step = items.len().div_ceil(SAMPLE);
@@ -38,8 +41,8 @@ fn sample(items: &[BuildTriangle]) -> ([[Vec4; 3]; SAMPLE], usize) {
     (sample, count)
 }
 
-/// Turns `frame` a little about one axis after the other as long as the box around `items` shrinks. `None`
-/// where it does not.
+/// Turns `frame` by small angles about one axis after the other where the box around `items` shrinks. `None`
+/// where it never does.
 pub(crate) fn refine(items: &[BuildTriangle], frame: &Axes) -> Option<Axes> {
     let (sample, count) = sample(items);
     let corners = sample[..count].as_flattened();
@@ -53,7 +56,7 @@ pub(crate) fn refine(items: &[BuildTriangle], frame: &Axes) -> Option<Axes> {
         let (sine, cosine) = (2.0 * half_tangent / (1.0 + square), (1.0 - square) / (1.0 + square));
         for (k, i, j) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let [ci, cj, si, sj] = [axes[i] * cosine, axes[j] * cosine, axes[i] * sine, axes[j] * sine];
-            // Both ways at once.
+            // Both senses of rotation at once.
             let turned = [ci + sj, cj - si, ci - sj, cj + si];
             let columns = std::array::from_fn(|d| turned.map(|u| u[d] as f32));
             let (lo, hi) = extent(corners, &columns);
@@ -155,7 +158,7 @@ fn principal(triangles: &[[Vec4; 3]], best: &mut BestAxes<'_>) {
     for moment in [surface, corners, normals] {
         best.offer_axes(&moment.principal_axes());
     }
-    // Of a triangle with a right angle, as boxes are made of, the shortest edge lies along an axis.
+    // In a mesh of a box all triangles have a right angle, and the shortest edge lies along an axis of the box.
     let [a, b, c] = [at(&triangles[largest][0]), at(&triangles[largest][1]), at(&triangles[largest][2])];
     let mut edge = b - a;
     for other in [c - b, a - c] {
@@ -164,7 +167,7 @@ fn principal(triangles: &[[Vec4; 3]], best: &mut BestAxes<'_>) {
         }
     }
     let normal = (b - a).cross(&(c - a)).try_normalize(f64::MIN_POSITIVE);
-    // Orthogonal to the normal of a sliver only after taking the normal's part away.
+    // The edge of a sliver is orthogonal to the normal only after its component along the normal is removed.
     let along = normal.and_then(|n| (edge - n * n.dot(&edge)).try_normalize(f64::MIN_POSITIVE));
     if let (Some(n), Some(e)) = (normal, along) {
         best.offer_axes(&[e, n.cross(&e), n]);

@@ -1,4 +1,4 @@
-//! How two trees lie to each other: exactly in `f64` for triangles, in `f32` with a margin for boxes.
+//! The relative pose of two trees: in `f64` for triangles, in `f32` with a margin for boxes.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -27,7 +27,7 @@ impl RigidTransform {
     }
 }
 
-/// A [`RigidTransform`] that carries boxes: rows 0 and 1 side by side, then row 2.
+/// A [`RigidTransform`] of boxes, in lanes: rows 0 and 1 side by side, then row 2.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameTransform<L> {
     r: [[L; 3]; 2],
@@ -61,7 +61,7 @@ impl<L: Lanes> FrameTransform<L> {
     }
 }
 
-/// A box carried into the frame of another tree.
+/// A box moved into the frame of another tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'b> {
     /// As [`NodeBox::frame`], the first two rows side by side.
@@ -70,7 +70,7 @@ pub(crate) struct Placed<'b> {
 }
 
 impl<'b> Placed<'b> {
-    /// A box in the frame of its own tree, moved there so that its centre is the origin.
+    /// A box in the frame of its own tree, moved so that its centre is the origin.
     #[inline(always)]
     pub(crate) fn at_origin(b: &'b NodeBox) -> Self {
         let [x, y, z] = &b.frame;
@@ -110,10 +110,10 @@ impl<'b> Placed<'b> {
     }
 }
 
-/// Everything about the relative pose of tree `a` and tree `b`.
+/// The relative pose of tree `a` and tree `b`, in all the forms that queries use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frames {
-    /// From the frame of `b` into that of `a`: the motion the contract speaks of.
+    /// From the frame of `b` into that of `a`: the transform of the contract in the crate docs.
     pub(crate) exact: Relative,
     /// From centred `b` to centred `a`, and back.
     pub(crate) into_a: RigidTransform,
@@ -127,7 +127,7 @@ pub(crate) struct Frames {
     pub(crate) apart: f64,
 }
 
-/// Rounding in `f32` of carrying a box into the other frame and testing it, in parts of the size of the
+/// Rounding in `f32` of moving a box into the other frame and testing it, relative to the size of the
 /// problem `s = radius a + radius b + distance of the centres`.
 ///
 /// A coordinate of a placed centre is a sum of four products, wrong by at most 6u·s (u = 2⁻²⁴); its
@@ -153,7 +153,7 @@ impl Frames {
         }
     }
 
-    /// Whether lanes may be used: products of four lengths must neither overflow nor vanish in `f32`.
+    /// Whether lanes may be used: products of four lengths must neither overflow nor underflow in `f32`.
     pub(crate) fn fits_f32(&self, a: &Tree, b: &Tree) -> bool {
         fits(a.radius_center) && fits(b.radius_center) && self.apart <= 1e9
     }

@@ -1,6 +1,6 @@
 //! A binary tree by the surface-area heuristic, along the axes of the mesh and those of each box.
 //!
-//! Everything here is in the unit of the mesh: relative to its centre, in parts of its radius, in `f32`.
+//! All coordinates here are relative to the centre of the mesh, in units of its radius, in `f32`.
 
 use std::ops::Range;
 
@@ -9,21 +9,21 @@ use crate::bvh::{NodeBox, WIDTH};
 
 /// Bins along an axis: a power of two.
 const BINS: usize = 32;
-/// Between this and its double the numbers of `f32` are whole, and their last bits count from 0.
+/// From this number to its double the numbers of `f32` are whole, and their last bits count from 0.
 const UNITS: f32 = (1 << 23) as f32;
-/// Up to so many triangles every division is tried, not only those between bins.
+/// Up to this many triangles every division is tried, not only those between bins.
 const SWEEP: usize = 16;
-/// What fits a leaf is divided all the same where its box has so many times the surface of the two parts:
-/// opposite walls of a room are better kept apart.
+/// Triangles that fit a leaf are divided nevertheless where their box has this many times the surface of the boxes of two
+/// parts: opposite walls of a room are better in two leaves.
 const WORTH: f32 = 1.1;
-/// A coordinate along an axis of a box is wrong by no more: u = 2⁻²⁴ from rounding the corner, 3u from the
+/// A bound on the error of a coordinate along an axis of a box: u = 2⁻²⁴ from rounding the corner, 3u from the
 /// sum of three products, all of vectors no longer than 1.
 const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 
 /// Three coordinates in a register of four.
 pub(crate) type Vec4 = [f32; 4];
 
-/// A triangle on its way through the build.
+/// A triangle during the build.
 #[derive(Clone, Copy)]
 pub(crate) struct BuildTriangle {
     pub(crate) corners: [Vec4; 3],
@@ -31,7 +31,7 @@ pub(crate) struct BuildTriangle {
 }
 
 pub(crate) struct BinaryNode {
-    /// Children, which are neighbours; 0 in a leaf.
+    /// The index of the first child, which the second follows; 0 in a leaf.
     pub(crate) children: usize,
     pub(crate) range: Range<usize>,
     pub(crate) surface: f32,
@@ -45,7 +45,7 @@ impl BinaryNode {
         Self { children: 0, range, surface: 0.0, frame: fit::MESH, lo: [0.0; 4], hi: [0.0; 4] }
     }
 
-    /// The box around these of `items`, whatever was rounded: of a mesh whose radius is `unit` metres, relative
+    /// The box around the node's part of `items`, rounding included, in metres: `unit` is the radius of the mesh. Relative
     /// to the centre of the mesh.
     pub(crate) fn obb(&self, items: &[BuildTriangle], unit: f64) -> NodeBox {
         let items = &items[self.range.clone()];
@@ -60,14 +60,14 @@ impl BinaryNode {
         let wide = f.map(|u| u.map(f64::from));
         let lo: [f64; 3] = std::array::from_fn(|k| (f64::from(lo[k]) - ROUNDING) * unit);
         let hi: [f64; 3] = std::array::from_fn(|k| (f64::from(hi[k]) + ROUNDING) * unit);
-        // Infinities would make numbers that are none, and those no box.
+        // Infinities would give NaN in the box.
         let center: [f32; 3] = std::array::from_fn(|d| {
             let x = (0..3).map(|k| wide[k][d] * 0.5 * (lo[k] + hi[k])).sum::<f64>();
             (x as f32).clamp(f32::MIN, f32::MAX)
         });
         let half: [f32; 3] = std::array::from_fn(|k| {
-            // The rounded axes are not quite orthogonal: measure from where the centre really is. A box
-            // test takes them for orthonormal; `Frames::pad` covers that.
+            // The rounded axes are not quite orthogonal: measured from the rounded centre. Box
+            // tests assume orthonormal axes; `Frames::pad` covers the difference.
             let at: f64 = (0..3).map(|d| wide[k][d] * f64::from(center[d])).sum();
             ((hi[k] - at).max(at - lo[k]) * (1.0 + 3e-7)) as f32
         });
@@ -104,7 +104,7 @@ pub(crate) fn split_all(items: &mut [BuildTriangle]) -> Vec<BinaryNode> {
     binary
 }
 
-/// Extent along the axes of the mesh, then along those of a box.
+/// Extents along the axes of the mesh, then along those of a box.
 #[derive(Clone, Copy)]
 struct Extents {
     lo: [Vec4; 2],
@@ -158,7 +158,7 @@ pub(crate) fn along(columns: &[Vec4; 3], p: &Vec4) -> Vec4 {
     std::array::from_fn(|k| columns[0][k] * p[0] + columns[1][k] * p[1] + columns[2][k] * p[2])
 }
 
-/// The bounds of each item, in `own`, and of all.
+/// The extents of each triangle, in `own`, and of all.
 fn bounds(items: &[BuildTriangle], frame: &Axes, own: &mut Vec<Extents>) -> Extents {
     let columns = fit::columns(frame);
     let mut all = Extents::EMPTY;
@@ -176,8 +176,8 @@ fn bounds(items: &[BuildTriangle], frame: &Axes, own: &mut Vec<Extents>) -> Exte
     all
 }
 
-/// Reorders `items` in two parts, neither empty; returns the length of the first. `None` where they had
-/// better stay together, in a leaf.
+/// Reorders `items` into two parts, neither empty, and returns the length of the first. `None` where one leaf is
+/// better.
 fn split(
     items: &mut [BuildTriangle],
     own: &[Extents],
@@ -195,7 +195,7 @@ fn split(
     if n == 1 {
         return None;
     }
-    // A leaf costs the same whatever it holds.
+    // The cost of a leaf does not depend on how many triangles it holds.
     let (first, surface) = sweep(items, own, frames, aside, |bounds, _| bounds.surface());
     (surface * WORTH < whole).then_some(first)
 }
@@ -246,7 +246,7 @@ fn sweep(
     best
 }
 
-/// An integer in the order of `f32::total_cmp`.
+/// An integer with the order of `f32::total_cmp`.
 #[inline(always)]
 fn ordered(x: f32) -> u32 {
     let bits = x.to_bits();

@@ -1,4 +1,4 @@
-//! Leaves: eight triangles, carried into another frame, and against a box. A filter that never loses a triangle
+//! Leaves: eight triangles, moved into another frame, and compared with a box, by a filter that keeps every triangle
 //! that meets the box.
 
 use crate::bvh::frames::{FrameTransform, Frames, Placed};
@@ -6,7 +6,7 @@ use crate::bvh::{Leaf, NodeBox};
 use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 
-/// Added to every margin: products of lengths so small that they underflow decide nothing.
+/// Added to every margin, so that products that underflow decide nothing.
 pub(crate) const TINY: f32 = 1e-34;
 
 /// Corners of eight triangles: `[k][d]` is coordinate `d` of corner `k`.
@@ -25,8 +25,8 @@ pub(crate) fn corners<L: Lanes>(leaf: &Leaf) -> Corners<L> {
 /// u: the relative rounding of `f32`.
 pub(crate) const U: f32 = 6e-8;
 
-/// Two leaves in the frame of the first, its origin moved to that leaf's centre, and how wrong `f32` makes
-/// what is computed there.
+/// The frame in which two leaves are compared, that of the first with its origin moved to the leaf's centre, and the
+/// rounding error of `f32` there.
 ///
 /// Corners of the first, within `m` of its centre, are rounded once: u·m. Those of the second, within `n`
 /// of its centre, which is at `t`, are wrong by u·√3·n each for the rounding of the corner, of the rotation and of
@@ -35,9 +35,9 @@ pub(crate) const U: f32 = 6e-8;
 pub(crate) struct LeafFrame {
     /// Centre of the second leaf.
     pub(crate) shift: [f32; 3],
-    /// The largest coordinate of that.
+    /// Its largest coordinate in magnitude.
     pub(crate) t: f32,
-    /// How wrong a coordinate of the first may be together with one of the second.
+    /// A bound on the error of a coordinate of the first leaf plus that of one of the second.
     pub(crate) wrong: f32,
 }
 
@@ -51,7 +51,7 @@ impl LeafFrame {
         Self { shift, t, wrong }
     }
 
-    /// The triangles of the second leaf.
+    /// Moves the triangles of the second leaf into this frame.
     #[inline(always)]
     pub(crate) fn carry<L: Lanes>(&self, v: &Corners<L>, frames: &Frames) -> Corners<L> {
         let r = &frames.into_a.r;

@@ -86,11 +86,12 @@ fn touching_on<L: Lanes>(node: &Node, q: &Placed<'_>, pad: L, drift: Option<&[L;
 
 /// Squared lower bounds on the distances of `q` from the children of `node`, `pad` (metres) taken off each
 /// gap: the largest of the distance to the box around `q` that is aligned with the child, of the gaps along the nine
-/// products of edges (which matter near contact; a product is no longer than 1), and of the gap along the join of two
-/// points: that of the child nearest to the centre of `q`, and that of `q` nearest to it. Infinite in lanes not used.
+/// products of edges (which matter near contact; a product is no longer than 1), and of the gap along the line through two
+/// points: the point of the child nearest to the centre of `q`, and the point of `q` nearest to that. Infinite in lanes not
+/// used.
 ///
-/// The last is seldom less than the distance by much: with distances instead, a search opens 3% fewer pairs of boxes that
-/// are well apart. Its direction is the sum of three axes, so rounding can make it wrong by √3 times as much as along one,
+/// The last is seldom much less than the distance: with exact distances instead, a search opens only 3% fewer pairs of
+/// boxes that are well apart. Its direction is the sum of three axes, so rounding can make it wrong by √3 times as much as along one,
 /// and a little more for sums: by no more than 2·`pad`.
 #[inline(always)]
 pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {

@@ -7,9 +7,8 @@ use crate::bvh::{NodeBox, Tree};
 use crate::pose::Relative;
 use crate::simd::Lanes;
 
-/// How far (m) and which way points of `a` move while a part of a motion goes from its middle to one of its
-/// ends, to first order: `shift + turn × p`, in the centred frame of a tree. Toward the other end it is the
-/// opposite.
+/// The displacement (m) of points of `a` from the middle of an interval to one of its ends, to first order:
+/// `shift + turn × p`, in the centred frame of a tree. To the other end it is the opposite.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drift {
     shift: [f32; 3],
@@ -17,20 +16,20 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
-    /// `shift` is that of the point `origin`.
+    /// The drift that moves the point `origin` by `shift`.
     pub(crate) fn new(turn: &Vector3<f64>, shift: &Vector3<f64>, origin: &Vector3<f64>) -> Self {
         let shift = shift - turn.cross(origin);
         Self { shift: shift.map(|x| x as f32).into(), turn: turn.map(|x| x as f32).into() }
     }
 
-    /// At one point.
+    /// The drift of one point.
     #[inline(always)]
     pub(crate) fn at_point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let wide = |v: [f32; 3]| Vector3::from(v.map(f64::from));
         wide(self.shift) + wide(self.turn).cross(p)
     }
 
-    /// At a point in each lane.
+    /// The drift of a point in each lane.
     #[inline(always)]
     pub(crate) fn at<L: Lanes>(&self, p: &[L; 3]) -> [L; 3] {
         let w = [L::splat(self.turn[0]), L::splat(self.turn[1]), L::splat(self.turn[2])];
@@ -43,8 +42,8 @@ impl Drift {
     }
 }
 
-/// How `a` moves over half a part of a motion, in `f64` and in the frame of `b`: the origin of `a` by
-/// `shift`, a point at `p` from it by `turn × p` beside that, and in any direction by `rest` more; by `most`
+/// A bound on the motion of `a` over half an interval, in `f64` and in the frame of `b`: the origin of `a` moves by
+/// `shift`, a point at `p` from it by `shift + turn × p`, and by up to `rest` more in any direction; by `most`
 /// in all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Travel {
@@ -57,24 +56,24 @@ pub(crate) struct Travel {
 }
 
 impl Travel {
-    /// Standing still.
+    /// No motion.
     pub(crate) fn none() -> Self {
         Self { shift: Vector3::zeros(), turn: Vector3::zeros(), rest: 0.0, most: 0.0 }
     }
 }
 
-/// What lies where in a part of a motion of `a` past `b`, about its middle.
+/// How `a` lies to `b` in the middle of an interval of its motion, and how it moves from there.
 #[derive(Clone, Debug)]
 pub(crate) struct SweptInterval {
     pub(crate) frames: Frames,
-    /// In the frame of `a` as it is in the middle, and in that of `b`.
+    /// The drift in the frame of `a` as it is in the middle, and in the frame of `b`.
     pub(crate) in_a: Drift,
     pub(crate) in_b: Drift,
     /// How much the drift differs between points of `a`, per metre between them.
     pub(crate) rate: f32,
     /// How much farther than its drift a point may move (m), in any direction.
     pub(crate) rest: f32,
-    /// Boxes and triangles are apart when their gap exceeds this (m) and what they move: rounding, and
+    /// Boxes and triangles are apart when their gap exceeds this (m) and their motion: rounding, and
     /// the clearance to keep.
     pub(crate) margin: f32,
 }

@@ -1,7 +1,7 @@
 //! The distance of one triangle from eight, in lanes, with an error margin.
 //!
 //! Nine pairs of edges (Ericson 2005, *Real-Time Collision Detection*, §5.1.9) and six corners against
-//! faces. Triangles that intersect are only told from those that surely do not.
+//! faces. For triangles that may intersect no distance is bounded; they are only reported.
 
 use nalgebra::Vector3;
 
@@ -14,20 +14,20 @@ use crate::triangle::Triangle;
 /// Keeps quotients finite where an edge or a triangle has no extent.
 const TINY: f32 = 1e-37;
 
-/// A normal is used only when no more than 1e-4 wrong in direction. From corners wrong by u·`g` (u = 2⁻²⁴)
+/// A normal is used only when its direction is wrong by at most 1e-4. From corners wrong by u·`g` (u = 2⁻²⁴)
 /// and edges up to `e` it is wrong by 6u·e·(g + e); squared, with what is lost to underflow on top:
 /// |n|² is to be at least `SOUND` · e² (g² + e²) + `SOUND_AT_LEAST`.
 const SOUND: f32 = 2.6e-5;
 const SOUND_AT_LEAST: f32 = 1e-30;
 
-/// A normal wrong by the angle δ makes the height of a point over the triangle wrong by δ·e; δ² is so much of what
-/// `SOUND` asks for over |n|².
+/// A normal wrong by the angle δ makes the height of a point over the triangle wrong by δ·e; δ² is `TILT` times the bound
+/// of `SOUND`, divided by |n|².
 const TILT: f32 = 1e-8;
 
 /// Below this size (metres) products of four lengths are lost to underflow.
 const SMALL: f32 = 1e-7;
 
-/// Added to the margin of a height: products of lengths so small that they underflow decide nothing.
+/// Added to the margin of a height, so that products that underflow decide nothing.
 const TINY_HEIGHT: f32 = 1e-34;
 
 /// Squared distances: `near` ≤ distance² ≤ `far` where the triangles do not intersect.
@@ -37,12 +37,12 @@ pub(crate) struct DistanceBounds {
     pub(crate) far: Lane,
 }
 
-/// A direction, shorter than a unit by a little; or none.
+/// A direction along which triangles may be apart, a little shorter than a unit vector; or zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SeparatingDirection(pub(crate) [f32; 3]);
 
 impl SeparatingDirection {
-    /// Along `join`, if it has a length.
+    /// The direction of `join`, if it has a length.
     pub(crate) fn across(join: &Vector3<f64>) -> Self {
         let scale = (1.0 - 1e-6) / join.norm();
         if scale.is_finite() {
@@ -53,12 +53,12 @@ impl SeparatingDirection {
     }
 }
 
-/// Which triangles are close.
+/// Masks of the triangles that are close.
 #[derive(Default)]
 pub(crate) struct Close {
-    /// Those for which `DistanceBounds::near` is at most what was asked for; the bounds hold for these.
+    /// Those for which `DistanceBounds::near` is at most the limit; the bounds hold for these.
     pub(crate) near: u32,
-    /// Those that may intersect.
+    /// Those that may intersect the single triangle.
     pub(crate) crossing: u32,
 }
 
@@ -71,15 +71,15 @@ pub(crate) struct DistanceKernel<L> {
     inverse: [L; 3],
     n: [L; 3],
     nn: L,
-    /// Infinite for triangles whose normal is lost in rounding, 0 for the others.
+    /// Infinite for triangles whose normal is lost to rounding, 0 for the others.
     unsound: L,
-    /// How wrong a height may be for the normal's error in direction.
+    /// How wrong a height may be through the error of the normal's direction.
     tilt: L,
-    /// In the plane, across each edge, inward.
+    /// Vectors in the plane, at right angles to each edge, inward.
     inward: [[L; 3]; 3],
     lo: [L; 3],
     hi: [L; 3],
-    /// How far they reach along a direction.
+    /// How far the triangles reach along `direction`.
     top: L,
     direction: [f32; 3],
     center: [f64; 3],
@@ -150,7 +150,7 @@ impl<L: Lanes> DistanceKernel<L> {
             let apart = self.lo[d].sub(L::splat(hi)).max(L::splat(lo).sub(self.hi[d])).max(zero);
             gap = apart.mul_add(apart, gap);
         }
-        // The same along the direction: each of its two sides is wrong by up to 7u·g.
+        // The gap along the direction: each of its two sides is wrong by up to 7u·g.
         let along = three!(k => self.direction[0] * p[k][0] + self.direction[1] * p[k][1] + self.direction[2] * p[k][2]);
         let bottom = along[0].min(along[1]).min(along[2]) - 4.0 * wrong;
         let apart = L::splat(bottom).sub(self.top).max(zero);
@@ -162,7 +162,7 @@ impl<L: Lanes> DistanceKernel<L> {
             return Close::default();
         }
         let s: [[L; 3]; 3] = three!(k => [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
-        // All of the one on one side of the planes of the eight: height² / |n|² bounds. Corners are wrong by
+        // Where all of the single triangle is on one side of the plane of a lane, height² / |n|² is a bound. Corners are wrong by
         // u·g and no farther apart than 2√3·g, so a normal is wrong by 7u·g·e + 3u·e² and a height, with the
         // corners' own error and the rounding of the products, by 24u·g²·e + 28u·g·e².
         let edge = self.edge;
@@ -204,8 +204,8 @@ impl<L: Lanes> DistanceKernel<L> {
                 edges = between.min(edges);
             }
         }
-        // A corner whose foot is inside the face: height² / |n|². Outside, a penalty rules it out, and so
-        // where the normal is not sound.
+        // A corner whose foot is inside the face: height² / |n|². A penalty rules out feet outside, and normals that
+        // are not sound.
         let penalty = L::splat(-1e30);
         let mut faces = L::splat(f32::INFINITY);
         let inverse = L::splat(1.0).div(self.nn.max(L::splat(TINY)));
@@ -223,7 +223,7 @@ impl<L: Lanes> DistanceKernel<L> {
             face = w[k].mul(inverse).mul_add(w[k], outside.add(unsound)).min(face);
         }
         // Points of edges are points of the triangles, so only their rounding, 16u·g, can make the result too small.
-        // Too large it is also where edges are not met at the best place: an edge e is met elsewhere by at most
+        // The result is too large where the nearest points of two edges are misplaced: along an edge e by at most
         // δ = (14u·r/e + 8u)/sin², which costs (e·δ·sin)² and never more than (e·sin)²: 4e-6·g·e and 1e-6·e² where the
         // two are the same. A height is wrong by the tilt of the normal either way, and by as much rounding;
         // a foot is on the wrong side of an edge by 1e-4 of the height, which is 1e-8 of its square. Where a face
@@ -263,7 +263,7 @@ fn unit<L: Lanes>(x: L) -> L {
     x.max(L::splat(0.0)).min(L::splat(1.0))
 }
 
-/// How far three heights of one sign are from zero; at most 0 when they are on both sides.
+/// The least distance of three heights from zero when all have one sign; at most 0 otherwise.
 #[inline(always)]
 fn one_sided<L: Lanes>(h: &[L; 3]) -> L {
     let (lo, hi) = (h[0].min(h[1]).min(h[2]), h[0].max(h[1]).max(h[2]));

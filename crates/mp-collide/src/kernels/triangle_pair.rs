@@ -1,5 +1,5 @@
-//! EightTriangles triangles against eight others: a filter that never loses a pair that meets, and never finds one that
-//! does not.
+//! Eight triangles against eight others: a filter that keeps every pair that meets, and calls none sure that does
+//! not.
 
 use crate::bvh::frames::Frames;
 use crate::bvh::{Lane, Leaf, WIDTH};
@@ -7,7 +7,7 @@ use crate::kernels::leaf_pair::{Corners, LeafFrame, TINY, U};
 use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 
-/// How wrong heights over the planes of the first leaf, over those of the second, and volumes may be.
+/// Bounds on the errors of heights over the planes of the first leaf, over those of the second, and of volumes.
 struct ErrorBounds {
     height_a: f32,
     height_b: f32,
@@ -34,7 +34,7 @@ impl ErrorBounds {
     }
 }
 
-/// The longest edge of a leaf; how wrong edges (in length) and normals, products of two, may be.
+/// The longest edge of a leaf, and bounds on the errors of edges (in length) and of normals, products of two edges.
 struct EdgeErrors {
     edge: f32,
     wrong_edge: f32,
@@ -68,7 +68,7 @@ fn turn<L: Lanes>(e: &Corners<L>, frames: &Frames) -> Corners<L> {
     }))
 }
 
-/// EightTriangles triangles in memory, to be taken all at once or one by one, with what sides and volumes are computed from.
+/// Eight triangles in memory, read all at once or one by one, with the products from which sides and volumes are computed.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 struct EightTriangles {
@@ -108,22 +108,22 @@ impl EightTriangles {
     }
 }
 
-/// EightTriangles triangles against others one by one.
+/// Compares eight triangles with others, one by one.
 #[derive(Clone, Debug)]
 pub(crate) struct TriangleFilter {
     block: EightTriangles,
     singles: EightTriangles,
-    /// How wrong heights over the planes of the eight, over that of the one, and volumes may be.
+    /// Bounds on the errors of heights over the planes of the eight, over the plane of the single one, and of volumes.
     wrong_block: f32,
     wrong_single: f32,
     wrong_volume: f32,
 }
 
-/// What lanes say of eight pairs of triangles.
+/// The answer for eight pairs of triangles.
 pub(crate) struct Verdict {
-    /// Those that may meet.
+    /// The pairs that may meet.
     pub(crate) maybe: u32,
-    /// Those among them that surely do.
+    /// The pairs among them that surely meet.
     pub(crate) sure: u32,
 }
 
@@ -132,7 +132,7 @@ impl Verdict {
 }
 
 impl TriangleFilter {
-    /// Of no triangles.
+    /// The filter of no triangles.
     pub(crate) const NONE: Self = Self {
         block: EightTriangles::NONE,
         singles: EightTriangles::NONE,
@@ -141,9 +141,9 @@ impl TriangleFilter {
         wrong_volume: 0.0,
     };
 
-    /// Leaf `a` with its corners, and leaf `b` with its corners here and in its own frame: the latter's triangles one
-    /// by one. Always the latter's: taking those of the leaf with fewer that matter is slower, as the choice is
-    /// hard to predict and what it chooses is copied.
+    /// Takes leaf `a` with its corners, and leaf `b` with its corners in this frame and in its own. The triangles of `b`
+    /// are the single ones, always: taking those of the leaf with fewer triangles left is slower, as the choice is
+    /// hard to predict and its result is copied.
     #[inline(always)]
     pub(crate) fn set<L: Lanes>(
         &mut self,
@@ -158,12 +158,12 @@ impl TriangleFilter {
     }
 
     /// Compares single `l` with the lanes in `mask`: sides of planes first, then the signed volumes of the nine
-    /// pairs of edges. An edge passes through a triangle when it crosses its plane and runs past all three of its
-    /// edges on the same side.
+    /// pairs of edges. An edge passes through a triangle when it crosses the plane and passes all three edges of
+    /// the triangle on the same side.
     #[inline(always)]
     pub(crate) fn of<L: Lanes>(&self, l: usize, mask: u32) -> Verdict {
         let (block, singles, l) = (&self.block, &self.singles, l & (WIDTH - 1));
-        // Corners of the one against the planes of the eight.
+        // Corners of the single triangle against the planes of the eight.
         let corner: Corners<L> = three!(k => splat3(&singles.corner[k], l));
         let (normal, height) = (load3(&block.normal), L::load(&block.height));
         let sides = three!(k => dot(&corner[k], &normal).sub(height));
@@ -172,7 +172,7 @@ impl TriangleFilter {
         if mask == 0 {
             return Verdict::NONE;
         }
-        // Corners of the eight against the plane of the one.
+        // Corners of the eight against the plane of the single triangle.
         let normal: [L; 3] = splat3(&singles.normal, l);
         let height = L::splat(singles.height[l]);
         let others = three!(k => dot(&load3(&block.corner[k]), &normal).sub(height));
@@ -214,14 +214,14 @@ fn splat3<L: Lanes>(v: &[Lane; 3], l: usize) -> [L; 3] {
     [L::splat(v[0][l]), L::splat(v[1][l]), L::splat(v[2][l])]
 }
 
-/// Three numbers, eight times, each wrong by up to `wrong`, and what can be said of their signs.
+/// Three numbers in each lane, with errors up to `wrong`, and what is known of their signs.
 struct Signs<L> {
     x: [L; 3],
     wrong: f32,
 }
 
 impl<L: Lanes> Signs<L> {
-    /// The least and the greatest of some of the numbers: one may be at least zero, one at most.
+    /// Whether, for the least and the greatest of some numbers, the least may be at most zero and the greatest at least.
     #[inline(always)]
     fn either(&self, (low, high): (L, L)) -> L::Mask {
         low.le(L::splat(self.wrong)) & L::splat(-self.wrong).le(high)
@@ -240,33 +240,33 @@ impl<L: Lanes> Signs<L> {
         (x.min(y), x.max(y))
     }
 
-    /// Some of the three may be at least zero, some at most.
+    /// Whether the three may differ in sign.
     #[inline(always)]
     fn differ(&self) -> L::Mask {
         self.either(self.all())
     }
 
-    /// Numbers `i` and its successor may have different signs.
+    /// Whether number `i` and its successor may have different signs.
     #[inline(always)]
     fn crossed(&self, i: usize) -> L::Mask {
         self.either(self.two(i))
     }
 
-    /// They have.
+    /// Whether number `i` and its successor surely have different signs.
     #[inline(always)]
     fn surely_crossed(&self, i: usize) -> L::Mask {
         let (low, high) = self.two(i);
         low.lt(L::splat(-self.wrong)) & L::splat(self.wrong).lt(high)
     }
 
-    /// All three may have the same sign.
+    /// Whether all three may have the same sign.
     #[inline(always)]
     fn agree(&self) -> L::Mask {
         let (low, high) = self.all();
         L::splat(-self.wrong).le(low) | high.le(L::splat(self.wrong))
     }
 
-    /// They have.
+    /// Whether all three surely have the same sign.
     #[inline(always)]
     fn surely_agree(&self) -> L::Mask {
         let (low, high) = self.all();
@@ -296,7 +296,7 @@ mod tests {
             .collect()
     }
 
-    /// Lanes neither lose a pair that meets nor find one that does not, down to the last digit.
+    /// Answers agree with the exact test down to the last digit.
     #[test]
     fn eight_against_eight_near_contact() {
         let mut rng = Pcg64::seed_from_u64(3);

@@ -1,4 +1,4 @@
-//! Why something of parry could not come in, or something of ours could not go out.
+//! Errors of conversions from and to parry.
 
 use mp_geom::{MeshError, PrimitiveError};
 use thiserror::Error;
@@ -45,7 +45,7 @@ pub enum ParryError {
     /// A shape of the user's own.
     #[error("a custom shape of parry says nothing of its geometry; convert a mesh of it instead")]
     Custom,
-    /// Something is wrong with a part of a compound.
+    /// A part of a compound could not be converted.
     #[error("part {part} of a compound: {source}")]
     Part {
         /// Which part, counted from 0.

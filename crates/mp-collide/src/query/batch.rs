@@ -1,4 +1,4 @@
-//! Many poses of one mesh at once.
+//! Collision checks of a sequence of poses of one mesh.
 
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 
@@ -10,15 +10,15 @@ use crate::pose::{Relative, is_rigid};
 use crate::query::Query;
 use crate::query::schedule::Schedule;
 
-/// Poses are taken so many at a time.
+/// How many poses are checked at a time.
 const CHUNK: usize = 64;
 
 impl Query {
     /// The index of the first of `poses_wa` at which `a` collides with `b`; `None` when it never does.
     ///
     /// The answer is that of [`Query::intersects`] pose by pose. When neighbours in `poses_wa` are near each
-    /// other, as along an edge of a planner, it comes much sooner: whole runs of poses are shown to be free
-    /// at once, as far as the bodies are from each other.
+    /// other, as along an edge of a planner, this is much faster: whole runs of poses are shown to be free
+    /// at once where the bodies are far from each other.
     pub fn first_collision(
         &mut self,
         a: &CollisionMesh,
@@ -71,22 +71,22 @@ fn in_lanes(a: PosedMesh<'_>, b: PosedMesh<'_>, step: f64) -> bool {
     frames.fits_f32(a, b) && frames.apart + step * CHUNK as f64 <= 1e8
 }
 
-/// Only a single pose stands still (metres).
+/// The least motion (metres) of more than one pose: only a single pose is still.
 const LEAST: f64 = 1e-30;
 
-/// Poses are taken together that are no farther apart than this many times the body's radius.
+/// Poses are checked together when neighbours are no farther apart than this many times the body's radius.
 const NEAR: f64 = 0.25;
 
-/// How a sequence of poses advances: the most of all steps.
+/// Bounds on the steps between the poses of a sequence: the largest of each kind.
 #[derive(Clone, Copy, Debug)]
 struct StepBounds {
     /// Whether all poses are within the limits of the crate docs; if not, the rest means nothing.
     rigid: bool,
-    /// Of the origin, metres.
+    /// How far the origin moves in a step, metres.
     step: f64,
-    /// Between quaternions of unit length.
+    /// The length of the difference of the unit quaternions of a step.
     turn: f64,
-    /// How much two steps in a row differ.
+    /// How much two steps in a row differ in the origin (metres), and in the quaternion.
     bend: f64,
     twist: f64,
 }
@@ -105,7 +105,7 @@ impl StepBounds {
             rigid &= is_rigid(pose);
             let p = pose.translation.vector;
             let q = *pose.rotation.quaternion();
-            // Of the two quaternions of a rotation the nearer.
+            // A rotation has two quaternions: the nearer one.
             let q = if last.1.dot(&q) < 0.0 { -q } else { q };
             raise(&mut length, (q.norm_squared() - 1.0).abs());
             let by = (p - last.0, q - last.1);
@@ -118,7 +118,7 @@ impl StepBounds {
             before = Some(by);
             last = (p, q);
         }
-        // Quaternions off unit length by `length` differ by up to so much from those that are not.
+        // Quaternions whose squared length is off by `length` differ by up to this much from unit quaternions.
         let off = 2.0 * length + 1e-15;
         Self {
             rigid,
@@ -150,16 +150,16 @@ struct PoseSchedule<'q> {
 }
 
 impl PoseSchedule<'_> {
-    /// How far a point gets at most in `n` steps.
+    /// A bound on how far a point moves in `n` steps.
     fn farthest(&self, n: usize) -> f64 {
         n as f64 * (self.steps.step + 2.0 * self.steps.turn * self.a.radius)
     }
 
-    /// How far points get in `n` steps from pose `middle`, where they are at `q`, turned from the frame of `a`.
+    /// How far points move in `n` steps from pose `middle`; q is a point there, turned from the frame of `a`.
     ///
-    /// With g half the way from the pose before to the pose after (or the whole way from or to one of them),
-    /// and steps in a row that differ by at most c, what is n steps on is at n·g to within c·n·(n + 1)/2: both
-    /// places and quaternions. A quaternion r + d turns p to where r does, and by d·p·r* + r·p·d* + d·p·d*; for
+    /// With g half the difference of the pose after and the pose before (or, at an end, the whole difference to the one
+    /// neighbour), and steps in a row that differ by at most c, the change after n steps is n·g to within c·n·(n + 1)/2,
+    /// for both positions and quaternions. A quaternion r + d turns p to where r does, and by d·p·r* + r·p·d* + d·p·d*; for
     /// d = n·g and g·r* = (s, w) the first two are n·2·(s·q + w × q).
     fn travel(&self, relative: &Relative, middle: usize, n: usize) -> Travel {
         let most = self.farthest(n);
@@ -168,7 +168,7 @@ impl PoseSchedule<'_> {
         let scale = n / (after - before) as f64;
         let (from, to) = (&self.poses[before], &self.poses[after]);
         let here = self.poses[middle].rotation.quaternion();
-        // Of the two quaternions of a rotation the nearer.
+        // A rotation has two quaternions: the nearer one.
         let near = |pose: &Isometry3<f64>| {
             let q = *pose.rotation.quaternion();
             if q.dot(here) < 0.0 { -q } else { q }
@@ -180,7 +180,7 @@ impl PoseSchedule<'_> {
         let curve = n * (n + 1.0) * (0.5 * bend + twist * radius) + (n * turn).powi(2) * radius;
         let rest = curve + by.w.abs() * radius + n * relative.slack;
         if rest > 0.5 * most {
-            // Not smooth: no direction is known.
+            // The poses are not smooth: points may move in any direction.
             return Travel { rest: most, most, ..Travel::none() };
         }
         let back = self.back;

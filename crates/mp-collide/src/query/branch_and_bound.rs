@@ -1,4 +1,4 @@
-//! How far are two trees apart?
+//! The nearest points of two trees, by branch and bound.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -13,7 +13,7 @@ use crate::query::descend::{opens_first, prefetch_node};
 use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{Closest, closest_within, is_farther, is_nearest};
 
-/// Two nodes whose boxes are at least the root of `bound` apart; the greatest of several is the nearest.
+/// Two nodes whose boxes are at least the square root of `bound` apart; ordered so that the nearest is the greatest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodePair {
     bound: f32,
@@ -41,7 +41,7 @@ impl PartialEq for NodePair {
 
 impl Eq for NodePair {}
 
-/// Two triangles (positions in the trees) at least the root of `bound` apart that may be the nearest.
+/// Two triangles (positions in the trees) at least the square root of `bound` apart that may be the nearest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
     bound: f32,
@@ -49,7 +49,7 @@ pub(crate) struct Candidate {
     b: u32,
 }
 
-/// What a search for nearest points needs between queries.
+/// Memory of a search for nearest points, kept between queries.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     pairs: BinaryHeap<NodePair>,
@@ -69,7 +69,7 @@ pub(crate) struct BranchAndBound<'q> {
 }
 
 impl Kernel for BranchAndBound<'_> {
-    /// BranchAndBound points in the frame of `a`, and the triangles they are on, if near enough.
+    /// The nearest points in the frame of `a`, and the triangles they are on, if near enough.
     type Output = Option<(Closest, usize, usize)>;
 
     #[inline(always)]
@@ -113,8 +113,8 @@ impl Kernel for BranchAndBound<'_> {
             let mut bound = [0.0; WIDTH];
             bounds.store(&mut bound);
             let pairs = &mut self.scratch.pairs;
-            // The nearest child goes on, unless another pair waits that is nearer; straight down to the first
-            // leaves.
+            // The nearest child is next, unless a pair in the queue is nearer; before the first leaves, the search goes
+            // straight down.
             while mask != 0 {
                 let lane = mask.trailing_zeros() as usize & 7;
                 mask &= mask - 1;
@@ -138,13 +138,13 @@ impl Kernel for BranchAndBound<'_> {
     }
 }
 
-/// What is known of the nearest points.
+/// The nearest points so far.
 struct Best {
-    /// Not less than their squared distance.
+    /// An upper bound on their squared distance.
     squared: f32,
     /// The nearest found.
     closest: Closest,
-    /// Across the join of the nearest found, in the frame of `a`.
+    /// Along the segment between the nearest found, in the frame of `a`.
     direction: SeparatingDirection,
 }
 
@@ -186,7 +186,7 @@ impl BranchAndBound<'_> {
         if let Some((k, single)) = nearest
             && let Some(closest) = closest_within(&a.triangles[k as usize], &single, f64::INFINITY)
         {
-            // What lanes say is a little too much, and the larger the meshes, the more pairs are so near the least.
+            // The bound of the lanes is a little too large; the larger the meshes, the more pairs lie below such a bound.
             best.squared = best.squared.min(up(closest.squared));
             if closest.squared < best.closest.squared {
                 best.closest = closest;
@@ -218,7 +218,7 @@ fn refine(
     for c in candidates.iter() {
         let (i, j) = (c.a as usize, c.b as usize);
         let single = frames.exact.triangle(&b.triangles[j]);
-        // Mostly neighbours that share the point found.
+        // Most candidates are neighbours that share the points found.
         if let Some((closest, ..)) = &witness
             && is_nearest(&a.triangles[i], &single, closest.on_a, closest.on_b)
         {

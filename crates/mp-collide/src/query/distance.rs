@@ -47,8 +47,8 @@ impl Query {
     /// A lower bound on the distance of the meshes that is exact when below `enough` (metres) and some
     /// value of at least `enough` otherwise; 0 exactly when they intersect.
     ///
-    /// The smaller `enough`, the sooner the search ends. The value returned beyond `enough` is the best
-    /// bound that came for free. NaN counts as infinity.
+    /// The smaller `enough`, the sooner the search ends. A value beyond `enough` is the best
+    /// bound known without further search. NaN counts as infinity.
     pub fn clearance(
         &mut self,
         a: &CollisionMesh,
@@ -97,8 +97,8 @@ impl Query {
         run(self.isa, Descend { a, b, frames: &frames, margin, stack, leaves }).is_some()
     }
 
-    /// [`Query::clearance`], and the triangle of `b` (its position in the tree) that is nearest, if looked
-    /// at.
+    /// [`Query::clearance`], and the position in the tree of the nearest triangle of `b`, if triangles were
+    /// compared.
     pub(crate) fn clearance_with(
         &mut self,
         a: &Tree,
@@ -146,7 +146,7 @@ impl Query {
     }
 }
 
-/// Every pair of triangles, for sizes that do not fit the lanes.
+/// The nearest of all pairs of triangles, for sizes that do not fit the lanes.
 fn nearest_of_all(a: &Tree, b: &Tree, frames: &Frames, enough: f64) -> Option<(Closest, usize, usize)> {
     let mut squared = enough * enough;
     let mut witness = None;

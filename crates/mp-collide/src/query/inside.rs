@@ -1,4 +1,4 @@
-//! Is part of a mesh inside a box? And which point of a mesh is the lowest?
+//! Whether part of a mesh is inside a box, its lowest point, and its winding number around a point.
 
 use nalgebra::{Point3, Vector3};
 
@@ -10,8 +10,7 @@ use crate::pose::Relative;
 use crate::simd::{Kernel, Lanes};
 use crate::triangle::passes;
 
-/// Whether the first corner of some triangle is inside a box: depth-first over the nodes whose boxes touch
-/// it.
+/// Finds a triangle whose first corner is inside a box: depth-first over the nodes whose boxes touch it.
 pub(crate) struct Inside<'q> {
     pub(crate) a: &'q Tree,
     /// The surface of the box, centred on its origin.
@@ -73,7 +72,7 @@ impl Tree {
         counters: &mut Counters,
     ) -> (f64, Point3<f64>) {
         let mut best = (f64::INFINITY, Point3::origin());
-        // Boxes hold what they are for to 1e-6 of their size, in sizes `f32` can count.
+        // Boxes hold their triangles to 1e-6 of the size of the mesh, where that size is in the range of `f32`.
         let filter = (1e-9..=1e9).contains(&self.radius_center);
         let base = (self.center - origin).dot(up);
         let pad = 4e-6 * self.radius_center + 1e-13 * (self.radius_center + base.abs());
@@ -117,8 +116,8 @@ impl Tree {
 }
 
 impl Tree {
-    /// How often the surface winds around `p`: what a ray from there along x passes outward less what it passes inward.
-    /// `None` when `p` is on a triangle. Exact.
+    /// The winding number of the surface around `p`: how many triangles a ray from `p` along x passes outward, less how
+    /// many it passes inward. `None` when `p` is on a triangle. Exact.
     pub(crate) fn winding(
         &self,
         p: &Point3<f64>,
@@ -180,7 +179,7 @@ mod tests {
         angle.sum::<f64>() / (4.0 * std::f64::consts::PI)
     }
 
-    /// Rays through corners, along edges and in faces count as often as others.
+    /// Rays through corners, along edges and in faces give the right number too.
     #[test]
     fn windings_are_those_of_solid_angles() {
         let cube = cuboid(2.0, 2.0, 2.0).unwrap();
@@ -209,7 +208,7 @@ mod tests {
         assert!(seen.iter().all(|n| *n > 10), "{seen:?}");
     }
 
-    /// Boxes of such sizes are no numbers in `f32`: none of them may be passed over.
+    /// Such sizes overflow or vanish in `f32`: no box may be skipped.
     #[test]
     fn the_lowest_point_is_found_at_any_size() {
         let (ground, mut query) = (Solid::half_space(), Query::default());

@@ -1,4 +1,4 @@
-//! Intervals of motions, proved free.
+//! Continuous collision checks: intervals of motions proved free.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
@@ -12,13 +12,13 @@ use crate::query::Query;
 use crate::query::schedule::Schedule;
 use crate::query::sweep::SweepEnd;
 
-/// How a rigid body moves over an interval of a motion, seen from the pose in its middle: from there it moves at constant
-/// speed to one end of the interval, and likewise back to the other.
+/// The motion of a rigid body over an interval, relative to the pose in its middle: from there the body moves at constant
+/// velocity to one end of the interval, and in the same way back to the other end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion {
     /// How far the origin of the body moves from the middle to the end, in the world (metres).
     pub shift: Vector3<f64>,
-    /// The axis through the origin about which the body turns meanwhile, in the world, times the angle
+    /// The axis through the origin about which the body turns from the middle to the end, in the world, times the angle
     /// (radians).
     pub turn: Vector3<f64>,
     /// A bound on how far any point of the body moves from the middle to either end (metres).
@@ -32,9 +32,9 @@ impl RigidMotion {
         Self { shift, turn, most: (shift.norm() + turn.norm() * radius) * (1.0 + 1e-12) }
     }
 
-    /// The part `share` of the motion from `from` to `to` as spaces interpolate it: the origin on a straight
-    /// line, the turn about a fixed axis by the shorter way, both at constant speed; `None` when the turn is
-    /// so near to half a turn that either way may be the shorter.
+    /// The fraction `share` of the motion from `from` to `to` as spaces interpolate it: the origin on a straight
+    /// line, the turn about a fixed axis by the smaller angle, both at constant speed. `None` when the turn is
+    /// so near to half a turn that either direction may be the shorter.
     #[must_use]
     pub fn of_motion(from: &Isometry3<f64>, to: &Isometry3<f64>, share: f64, most: f64) -> Option<Self> {
         let shift = (to.translation.vector - from.translation.vector) * share;
@@ -56,8 +56,8 @@ impl RigidMotion {
     }
 }
 
-/// Whether a body keeps a margin from everything all along an interval of a motion. Where it does not, `at` is the place
-/// as a share of the way from the middle of the interval to its end, from −1 to 1.
+/// Whether a body keeps a margin all along an interval of a motion. In `TooClose` and `Collision`, `at` is the place as a
+/// fraction of the way from the middle of the interval to its end, from −1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalCheck {
     /// Proved to keep the margin.
@@ -88,12 +88,12 @@ impl Query {
     /// Whether `a` stays at least `margin` (metres) from `b` all along an interval about `middle_wa`.
     ///
     /// Whenever the clearance in the middle is at least `motion.most + margin`, up to rounding, the answer is
-    /// [`IntervalCheck::Free`]; but far longer intervals are found clear too, as the bound of each part of `a` is its own,
-    /// and counts toward `b` only. One traversal, in which the interval is divided where the bodies are near each
-    /// other; it ends where they are in contact or too near (in a pose that is rounded as that of a place between).
+    /// [`IntervalCheck::Free`]; but far longer intervals are found free too, as each part of `a` has its own bound on motion,
+    /// and only motion toward `b` counts. One traversal, in which the interval is divided where the bodies are near each
+    /// other; it ends where they are in contact or too close (at an intermediate pose, computed with rounding).
     ///
-    /// What counts as in collision with everything (see the crate docs), a motion or a margin that is not
-    /// finite, and a turn of more than 4 radians are [`IntervalCheck::Unproven`]; a negative margin counts as 0.
+    /// Input that counts as in collision with everything (see the crate docs), a motion or margin that is not
+    /// finite, and a turn of more than 4 radians give [`IntervalCheck::Unproven`]; a negative margin counts as 0.
     pub fn check_interval(
         &mut self,
         a: &CollisionMesh,
@@ -127,13 +127,13 @@ impl Query {
     }
 }
 
-/// An interval is divided into no more pieces than this.
+/// An interval is divided into at most so many subintervals.
 const SUBINTERVALS: u32 = 32;
 
-/// Triangles are compared over parts of no more pieces than this. Measured: half as many or twice as many are slower.
+/// Triangles are compared over parts of at most so many subintervals. Measured: half as many or twice as many are slower.
 const FINE: u32 = 4;
 
-/// An interval of a motion; parts are ranges of its pieces.
+/// An interval of a motion; parts are ranges of its subintervals.
 struct IntervalSchedule<'q> {
     a: &'q Tree,
     b: &'q Tree,
@@ -174,7 +174,7 @@ impl Schedule for IntervalSchedule<'_> {
             Isometry3::from_parts(Translation3::from(place), turned)
         };
         let turn = motion.turn * half;
-        // A point at most `radius` from the axis moves on a circle: this far from its tangent.
+        // A point at most `radius` from the axis moves on a circle, and leaves its tangent by this much.
         let rest = 0.5 * turn.norm_squared() * self.a.radius;
         let travel = Travel {
             shift: self.back * (motion.shift * half),

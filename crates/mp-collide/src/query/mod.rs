@@ -30,14 +30,14 @@ use crate::query::sweep::SweptPair;
 use crate::simd::{Isa, run};
 use crate::triangle::intersect;
 
-/// Scratch and counters of one thread: make one per thread and keep it.
+/// Runs queries: scratch memory and counters of one thread. Make one per thread and keep it.
 ///
 /// All queries are between mesh `a` at `pose_wa` and mesh `b` at `pose_wb` (poses in the world); answers
 /// depend on nothing else, and nothing is allocated once the scratch has grown. The contract, with what
 /// happens to bad input, is in the [crate documentation](crate).
 #[derive(Clone, Debug)]
 pub struct Query {
-    /// What was done so far; set to `Counters::default()` to start over.
+    /// The work done so far; set to `Counters::default()` to start over.
     pub counters: Counters,
     pub(crate) stack: Vec<(u32, u32)>,
     pub(crate) filter: TriangleFilter,
@@ -128,7 +128,7 @@ impl Query {
     }
 }
 
-/// Every pair of triangles, for sizes that do not fit the lanes.
+/// The first two triangles that meet, of all pairs: for sizes that do not fit the lanes.
 fn any_of_all(a: &Tree, b: &Tree, frames: &Frames) -> Option<(usize, usize)> {
     b.triangles.iter().enumerate().find_map(|(l, triangle)| {
         let single = frames.exact.triangle(triangle);

@@ -1,9 +1,9 @@
-//! What a moving triangle passes over.
+//! The convex hull of a moving triangle.
 
 use super::triangle::Triangle;
 use nalgebra::{Point3, Vector3};
 
-/// The corners of a triangle where it begins and where it ends.
+/// The convex hull of a triangle at the start and at the end of a motion, by its corners.
 pub(super) struct SweptTriangle([Point3<f64>; 6]);
 
 impl SweptTriangle {
@@ -11,8 +11,8 @@ impl SweptTriangle {
         Self([a, b, c, d, e, f])
     }
 
-    /// How far the hull is gap of a triangle in some direction, if possible by `enough`, and that direction. Tries
-    /// `first`, or the normal of the triangle when that is zero; then turns away from the points that are in the direction
+    /// The gap between the hull and a triangle along some direction, if possible at least `enough`, and that direction.
+    /// Tries `first`, or the normal of the triangle when that is zero; then turns away from the points nearest along it
     /// (Chung and Wang, *Quick collision detection of polytopes in virtual environments*, VRST 1996).
     pub(super) fn gap_from(
         &self,
@@ -49,7 +49,7 @@ impl SweptTriangle {
 /// How many directions are tried for a pair of triangles.
 const TRIES: usize = 5;
 
-/// The first of the points in a direction.
+/// The point with the least coordinate along a direction.
 fn first_along(points: &[Point3<f64>], direction: &Vector3<f64>) -> Point3<f64> {
     let mut first = (f64::INFINITY, Point3::origin());
     for p in points {
