@@ -10,7 +10,7 @@
 //! - the surrounding sphere is about the centre of gravity;
 //! - where an obstacle "is built by smaller ones" each part has its own features: here parts are connected components.
 
-use crate::{MassError, NO_COMPONENT, Sphere, TriMesh};
+use crate::{MassError, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use std::f64::consts::PI;
 
@@ -72,35 +72,6 @@ impl TriMesh {
             axis: upward(obb.axes()[longest]),
             volume: mass.map_or_else(|_| obb.volume(), |mass| mass.volume),
         }
-    }
-
-    /// The components connected through edges, each with only its own vertices, in the order of their first
-    /// triangles. Triangles with two corners in one place belong to none; a mesh of only such triangles is one part.
-    #[must_use]
-    pub fn parts(&self) -> Vec<TriMesh> {
-        let topology = self.topology();
-        if topology.components < 2 {
-            return vec![self.clone()];
-        }
-        let mut vertices = vec![Vec::new(); topology.components];
-        let mut triangles = vec![Vec::new(); topology.components];
-        // The part a vertex was last given to, and its number there: parts may share vertices.
-        let mut given = vec![(NO_COMPONENT, 0_u32); self.vertices().len()];
-        let mut order: Vec<usize> = (0..self.triangles().len()).collect();
-        order.sort_by_key(|&t| topology.component[t]);
-        for t in order {
-            let component = topology.component[t];
-            let Some(vertices) = vertices.get_mut(component as usize) else { continue };
-            triangles[component as usize].push(self.triangles()[t].map(|v| {
-                let slot = &mut given[v as usize];
-                if slot.0 != component {
-                    *slot = (component, vertices.len() as u32);
-                    vertices.push(self.vertices()[v as usize]);
-                }
-                slot.1
-            }));
-        }
-        vertices.into_iter().zip(triangles).filter_map(|(v, t)| TriMesh::new(v, t).ok()).collect()
     }
 
     /// The centre of gravity of the surface; of the corners, where it has no area.
@@ -175,34 +146,5 @@ mod tests {
             (point.center, point.radius, point.volume_ratio()),
             (Point3::new(1.0, 2.0, 3.0), 0.0, 1.0)
         );
-    }
-
-    #[test]
-    fn parts_are_taken_apart_again() {
-        let whole = [
-            cuboid(1.0, 1.0, 1.0).unwrap(),
-            sphere(0.5, 2).unwrap().transformed(&pose_from_six([4.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
-            // Touches the first in one corner, which they do not share.
-            cuboid(1.0, 1.0, 1.0).unwrap().transformed(&pose_from_six([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])),
-        ];
-        let merged = TriMesh::merged(&whole).unwrap();
-        let soup = |m: &TriMesh| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>();
-        assert!(merged.parts().iter().map(soup).eq(whole.iter().map(soup)));
-        assert_eq!(merged.welded().parts().len(), 3, "a shared corner joins nothing");
-        assert_eq!(whole[0].parts(), [whole[0].clone()]);
-        let volume: f64 = merged.parts().iter().map(|p| p.features().volume).sum();
-        assert!((volume - merged.signed_volume()).abs() < 1e-12);
-        // Triangles in turn from one part and the other.
-        let mut mixed = merged.triangles().to_vec();
-        mixed.sort_by_key(|t| t[0] % 7);
-        let mixed = TriMesh::new(merged.vertices().to_vec(), mixed).unwrap();
-        let areas = |parts: Vec<TriMesh>| {
-            let mut areas: Vec<f64> = parts.iter().map(TriMesh::area).collect();
-            areas.sort_by(f64::total_cmp);
-            areas
-        };
-        for (a, b) in areas(mixed.parts()).into_iter().zip(areas(whole.to_vec())) {
-            assert!((a - b).abs() < 1e-12);
-        }
     }
 }

@@ -160,6 +160,35 @@ impl TriMesh {
         out
     }
 
+    /// The components connected through edges, each with only its own vertices, in the order of their first
+    /// triangles. Triangles with two corners in one place belong to none; a mesh of only such triangles is one part.
+    #[must_use]
+    pub fn parts(&self) -> Vec<TriMesh> {
+        let topology = self.topology();
+        if topology.components < 2 {
+            return vec![self.clone()];
+        }
+        let mut vertices = vec![Vec::new(); topology.components];
+        let mut triangles = vec![Vec::new(); topology.components];
+        // The part a vertex was last given to, and its number there: parts may share vertices.
+        let mut given = vec![(NO_COMPONENT, 0_u32); self.vertices().len()];
+        let mut order: Vec<usize> = (0..self.triangles().len()).collect();
+        order.sort_by_key(|&t| topology.component[t]);
+        for t in order {
+            let component = topology.component[t];
+            let Some(vertices) = vertices.get_mut(component as usize) else { continue };
+            triangles[component as usize].push(self.triangles()[t].map(|v| {
+                let slot = &mut given[v as usize];
+                if slot.0 != component {
+                    *slot = (component, vertices.len() as u32);
+                    vertices.push(self.vertices()[v as usize]);
+                }
+                slot.1
+            }));
+        }
+        vertices.into_iter().zip(triangles).filter_map(|(v, t)| TriMesh::new(v, t).ok()).collect()
+    }
+
     /// The triangles, with every vertex replaced by the first one at its position.
     fn by_position(&self) -> Vec<[u32; 3]> {
         let mut welder = Welder::default();
@@ -214,7 +243,8 @@ impl DisjointSets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::primitives::{cuboid, torus};
+    use crate::pose_from_six;
+    use crate::primitives::{cuboid, sphere, torus};
     use nalgebra::Isometry3;
     use proptest::prelude::*;
 
@@ -283,6 +313,34 @@ mod tests {
         assert_eq!(apart.components, 2);
     }
 
+    #[test]
+    fn parts_are_taken_apart_again() {
+        let whole = [
+            cuboid(1.0, 1.0, 1.0).unwrap(),
+            sphere(0.5, 2).unwrap().transformed(&pose_from_six([4.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
+            // Touches the first in one corner, which they do not share.
+            cuboid(1.0, 1.0, 1.0).unwrap().transformed(&pose_from_six([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])),
+        ];
+        let merged = TriMesh::merged(&whole).unwrap();
+        let soup = |m: &TriMesh| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>();
+        assert!(merged.parts().iter().map(soup).eq(whole.iter().map(soup)));
+        assert_eq!(merged.welded().parts().len(), 3, "a shared corner joins nothing");
+        assert_eq!(whole[0].parts(), [whole[0].clone()]);
+        let volume: f64 = merged.parts().iter().map(|p| p.features().volume).sum();
+        assert!((volume - merged.signed_volume()).abs() < 1e-12);
+        // Triangles in turn from one part and the other.
+        let mut mixed = merged.triangles().to_vec();
+        mixed.sort_by_key(|t| t[0] % 7);
+        let mixed = TriMesh::new(merged.vertices().to_vec(), mixed).unwrap();
+        let areas = |parts: Vec<TriMesh>| {
+            let mut areas: Vec<f64> = parts.iter().map(TriMesh::area).collect();
+            areas.sort_by(f64::total_cmp);
+            areas
+        };
+        for (a, b) in areas(mixed.parts()).into_iter().zip(areas(whole.to_vec())) {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
     proptest! {
         #[test]
         fn a_soup_in_any_order_is_judged_the_same(shuffle in Just((0..96_usize).collect::<Vec<_>>()).prop_shuffle(), gone in 0_usize..4) {

@@ -72,7 +72,7 @@ fn in_lanes(a: PosedMesh<'_>, b: PosedMesh<'_>, step: f64) -> bool {
 }
 
 /// The least motion (metres) of more than one pose: only a single pose is still.
-const LEAST: f64 = 1e-30;
+const LEAST_MOTION: f64 = 1e-30;
 
 /// Poses are checked together when neighbours are no farther apart than this many times the body's radius.
 const NEAR: f64 = 0.25;
@@ -193,7 +193,7 @@ impl Schedule for PoseSchedule<'_> {
 
     fn most(&self, [lo, hi]: [u32; 2]) -> f64 {
         let steps = hi - 1 - u32::midpoint(lo, hi - 1);
-        if hi - lo == 1 { 0.0 } else { self.farthest(steps as usize).max(LEAST) }
+        if hi - lo == 1 { 0.0 } else { self.farthest(steps as usize).max(LEAST_MOTION) }
     }
 
     fn make(&self, range: [u32; 2]) -> Option<SweptInterval> {

@@ -9,9 +9,11 @@ mod distance;
 pub(crate) mod inside;
 mod intersect;
 pub(crate) mod interval;
+mod lowest;
 pub(crate) mod revolved;
 pub(crate) mod schedule;
 mod sweep;
+mod winding;
 mod within;
 
 use nalgebra::Isometry3;
@@ -25,7 +27,7 @@ use crate::pose::Relative;
 use crate::query::branch_and_bound::Scratch;
 use crate::query::descend::Descend;
 use crate::query::intersect::Intersect;
-use crate::query::schedule::Parts;
+use crate::query::schedule::MotionParts;
 use crate::query::sweep::SweptPair;
 use crate::simd::{Isa, run};
 use crate::triangle::intersect;
@@ -43,7 +45,7 @@ pub struct Query {
     pub(crate) filter: TriangleFilter,
     pub(crate) scratch: Scratch,
     pub(crate) swept_pairs: Vec<SweptPair>,
-    pub(crate) parts: Parts,
+    pub(crate) parts: MotionParts,
     pub(crate) isa: Isa,
 }
 
@@ -64,7 +66,7 @@ impl Query {
             filter: TriangleFilter::NONE,
             scratch: Scratch::default(),
             swept_pairs: Vec::new(),
-            parts: Parts::default(),
+            parts: MotionParts::default(),
             isa,
         }
     }

@@ -19,18 +19,18 @@ pub(crate) trait Schedule {
 
 /// A part of a motion.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
+pub(crate) struct MotionPart {
     /// From its first number to before its last.
     pub(crate) range: [u32; 2],
     /// A bound on how far any point moves (m) from the middle to either end; 0 for a single pose.
     pub(crate) most: f32,
-    /// The index of the first of its two halves, or [`Part::NOT_MADE`].
+    /// The index of the first of its two halves, or [`MotionPart::NOT_MADE`].
     halves: u32,
-    /// The index of its interval, or [`Part::NOT_MADE`], or [`Part::FAR`].
+    /// The index of its interval, or [`MotionPart::NOT_MADE`], or [`MotionPart::FAR`].
     interval: u32,
 }
 
-impl Part {
+impl MotionPart {
     const NOT_MADE: u32 = u32::MAX;
     /// In place of an interval: the bodies stay apart.
     const FAR: u32 = u32::MAX - 1;
@@ -38,12 +38,12 @@ impl Part {
 
 /// The parts of a motion made so far, and their intervals.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Parts {
-    parts: Vec<Part>,
+pub(crate) struct MotionParts {
+    parts: Vec<MotionPart>,
     intervals: Vec<SweptInterval>,
 }
 
-impl Parts {
+impl MotionParts {
     /// Starts over with one part, number 0.
     pub(crate) fn start(&mut self, range: [u32; 2], schedule: &impl Schedule) {
         self.parts.clear();
@@ -53,20 +53,25 @@ impl Parts {
 
     fn add(&mut self, range: [u32; 2], schedule: &impl Schedule) {
         let most = (schedule.most(range) * UP) as f32;
-        self.parts.push(Part { range, most, halves: Part::NOT_MADE, interval: Part::NOT_MADE });
+        self.parts.push(MotionPart {
+            range,
+            most,
+            halves: MotionPart::NOT_MADE,
+            interval: MotionPart::NOT_MADE,
+        });
     }
 
     #[inline]
-    pub(crate) fn part(&self, index: u32) -> &Part {
+    pub(crate) fn part(&self, index: u32) -> &MotionPart {
         &self.parts[index as usize]
     }
 
     /// How the trees lie and move in a part, made when first asked for; `None` when the bodies stay apart.
     #[inline]
     pub(crate) fn interval(&mut self, index: u32, schedule: &impl Schedule) -> Option<&SweptInterval> {
-        if self.part(index).interval == Part::NOT_MADE {
+        if self.part(index).interval == MotionPart::NOT_MADE {
             let made = schedule.make(self.part(index).range);
-            let at = if made.is_some() { self.intervals.len() as u32 } else { Part::FAR };
+            let at = if made.is_some() { self.intervals.len() as u32 } else { MotionPart::FAR };
             self.parts[index as usize].interval = at;
             self.intervals.extend(made);
         }
@@ -76,8 +81,8 @@ impl Parts {
     /// The index of the first, earlier half of a part; the other half comes next. `None` for the smallest parts, which
     /// are not divided.
     pub(crate) fn halve(&mut self, index: u32, schedule: &impl Schedule) -> Option<u32> {
-        let Part { range: [lo, hi], halves, .. } = *self.part(index);
-        if halves != Part::NOT_MADE {
+        let MotionPart { range: [lo, hi], halves, .. } = *self.part(index);
+        if halves != MotionPart::NOT_MADE {
             return Some(halves);
         }
         if hi - lo == 1 {

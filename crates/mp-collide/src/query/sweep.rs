@@ -16,7 +16,7 @@ use crate::kernels::triangle_pair::TriangleFilter;
 use crate::query::Query;
 use crate::query::descend::{LeafPair, for_children, opens_first};
 use crate::query::intersect::Intersect;
-use crate::query::schedule::{Parts, Schedule};
+use crate::query::schedule::{MotionParts, Schedule};
 use crate::simd::{Kernel, Lanes, Mask, run};
 
 /// A pair of nodes during a part of the motion.
@@ -64,7 +64,7 @@ struct Sweep<'q, S> {
     a: &'q Tree,
     b: &'q Tree,
     schedule: &'q S,
-    parts: &'q mut Parts,
+    parts: &'q mut MotionParts,
     /// What to compare, the first last.
     stack: &'q mut Vec<SweptPair>,
     filter: &'q mut TriangleFilter,
