@@ -8,8 +8,8 @@
 //!   collide with what is inside of them.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
-//! * `parry`, with the feature of that name, which is off by default: conversions from and to shapes of parry3d (used by Rapier and
-//!   Bevy), convex hulls and decompositions. No other module has types of parry in its public API.
+//! * `parry`, with the feature of that name, which is off by default: conversions from and to shapes of parry3d (used
+//!   by Rapier and Bevy), convex hulls and decompositions. No other module has types of parry in its public API.
 //!
 //! ```
 //! use mp_collide::{CollisionMesh, Query};

@@ -91,8 +91,8 @@ fn touching_on<L: Lanes>(node: &Node, q: &Placed<'_>, pad: L, drift: Option<&[L;
 /// used.
 ///
 /// The last is seldom much less than the distance: with exact distances instead, a search opens only 3% fewer pairs of
-/// boxes that are well apart. Its direction is the sum of three axes, so rounding can make it wrong by √3 times as much as along one,
-/// and a little more for sums: by no more than 2·`pad`.
+/// boxes that are well apart. Its direction is the sum of three axes, so its rounding error is up to √3 times that along one
+/// axis, and a little more for sums: at most 2·`pad`.
 #[inline(always)]
 pub(crate) fn distances<L: Lanes>(node: &Node, q: &Placed<'_>, pad: f32) -> L {
     let center = q.center::<L>();

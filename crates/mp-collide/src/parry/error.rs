@@ -9,10 +9,10 @@ use crate::filled::FillError;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ParryError {
-    /// A mesh that parry allows and we refuse: no triangles, an index out of range, a coordinate that is not finite.
-    #[error("a mesh of parry is none of ours: {0}; repair it first")]
+    /// A mesh that parry allows and [`mp_geom::TriMesh`] refuses: no triangles, an index out of range, a coordinate that is not finite.
+    #[error("a mesh of parry is not valid here: {0}; repair it first")]
     Mesh(#[from] MeshError),
-    /// A length that parry allows and we refuse: zero, negative or not finite.
+    /// A length that parry allows and [`Solid`](crate::Solid) refuses: zero, negative or not finite.
     #[error("a shape of parry has no volume: {0}; leave it out or give it a size")]
     Size(#[from] PrimitiveError),
     /// A solid mesh whose surface encloses nothing.
@@ -33,7 +33,7 @@ pub enum ParryError {
     },
     /// A shape with a round border.
     #[error(
-        "a {what} with a round border of {border} m is none of our shapes; convert its inner shape and ask \
+        "a {what} with a round border of {border} m cannot be converted; convert its inner shape and ask \
          whether anything is within {border} m of that, or put a larger {what} without border in its place"
     )]
     Round {

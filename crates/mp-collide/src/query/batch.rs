@@ -63,7 +63,7 @@ impl Query {
     }
 }
 
-/// Whether sizes allow lanes on the poses that begin with `a`'s, each within `step` of the one before.
+/// Whether sizes allow lanes for a chunk of poses of `a` that starts at its pose here, each within `step` of the one before.
 fn in_lanes(a: PosedMesh<'_>, b: PosedMesh<'_>, step: f64) -> bool {
     let Some(relative) = Relative::of(a, b) else { return false };
     let (a, b) = (a.0.tree(), b.0.tree());

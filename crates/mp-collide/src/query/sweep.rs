@@ -51,7 +51,7 @@ impl Query {
     }
 }
 
-/// Where a sweep ended.
+/// The part of the motion where a sweep ended, and why.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweepEnd {
     pub(crate) range: [u32; 2],
@@ -198,7 +198,7 @@ fn near_leaves<L: Lanes>(a: &Tree, x: u32, b: &Tree, y: u32, interval: &SweptInt
 }
 
 /// The triangles (with edges up to `edge` long) that may come within `margin` of box `q` while one of the two
-/// moves by `drift`. As `leaf_pair::near_box`, which see.
+/// moves by `drift`: see `leaf_pair::near_box`.
 #[inline(always)]
 fn near_box<L: Lanes>(
     v: &Corners<L>,

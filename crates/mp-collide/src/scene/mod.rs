@@ -263,9 +263,9 @@ impl Scene {
 
     /// Makes one tree of all static bodies, which is faster to query; answers still name the body.
     ///
-    /// Adding, moving or removing a static body undoes it; call it again afterwards. The vertices of the merged meshes are rounded to the world frame, so answers may differ by
-    /// that rounding. Does nothing when there are no static bodies, or their coordinates in the world are
-    /// beyond 1e75, or they have more than `u32::MAX` triangles.
+    /// Adding, moving or removing a static body undoes it; call it again afterwards. The vertices of the merged
+    /// mesh are rounded to the world frame, so answers may differ by that rounding. Does nothing when there are no static
+    /// bodies, or their coordinates in the world are beyond 1e75, or they have more than `u32::MAX` triangles.
     pub fn merge_static(&mut self) {
         let fixed: Vec<_> = self.bodies().filter(|(_, body)| !body.movable).collect();
         self.merged = Merged::of(&fixed);
