@@ -1,11 +1,11 @@
-//! Two meshes, a scene of many, groups, and trees in files.
+//! Two meshes, and a scene of many.
 //!
 //! `cargo run --release -p mp-collide --example bodies`
 
 use std::error::Error;
 use std::io::Write;
 
-use mp_collide::{CollisionMesh, Groups, Query, Scene};
+use mp_collide::{CollisionMesh, Query, Scene};
 use mp_geom::primitives;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -13,8 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut out = std::io::stdout().lock();
 
     // Build a tree for each mesh, once. They are immutable, and cheap to clone.
-    let ring_mesh = primitives::torus(1.0, 0.3, 64, 32)?;
-    let ring = CollisionMesh::new(&ring_mesh);
+    let ring = CollisionMesh::new(&primitives::torus(1.0, 0.3, 64, 32)?);
     let ball = CollisionMesh::new(&primitives::sphere(0.5, 3)?);
 
     // Scratch: one for each thread.
@@ -30,20 +29,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "ball at x = {x} m: hit {hit}, distance {:.4} m, within 5 cm {near}", apart.distance)?;
     }
 
-    // A scene: static bodies, bodies that move, and who is compared with whom.
-    let (fixed, carried) = (Groups::new(0b01, 0b10), Groups::new(0b10, 0b01));
-    let mut scene = Scene::new();
+    // A scene: static bodies, and bodies that move.
+    let (mut scene, mut rings) = (Scene::new(), Vec::new());
     for i in 0..10 {
         let turn = UnitQuaternion::from_scaled_axis(Vector3::x() * 0.3 * f64::from(i));
         let pose_wb = Isometry3::from_parts(Vector3::new(1.5 * f64::from(i), 0.0, 0.0).into(), turn);
-        let id = scene.insert(format!("ring {i}"), ring.clone(), pose_wb)?;
-        scene.set_groups(id, fixed)?;
+        rings.push(scene.insert(format!("ring {i}"), ring.clone(), pose_wb)?);
     }
     let cart = scene.insert_movable("cart", ball.clone(), Isometry3::translation(0.0, 0.0, 5.0))?;
-    scene.set_groups(cart, carried)?;
+    // Neighbouring rings may touch.
+    for pair in rings.windows(2) {
+        scene.allow_pair(pair[0], pair[1], true);
+    }
     scene.merge_static(); // One tree of all rings.
 
-    // A body of the scene, moved about; the rings touch each other, but are not compared.
+    // A body of the scene, moved about.
     for x in [0.0, 0.75, 1.5, 15.0] {
         scene.move_body(cart, Isometry3::translation(x, 0.0, 0.0))?;
         let hit = scene.body_collides(&mut query, cart).and_then(|id| scene.body(id));
@@ -51,9 +51,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "cart at x = {x} m: hits {:?}, {pairs} pairs in all", hit.map(|body| body.name()))?;
     }
 
-    // A mesh that is no body of the scene: how far from the rings, and which is the nearest?
+    // A mesh that is no body of the scene: how far from the bodies, and which is the nearest?
     let pose_wm = Isometry3::translation(4.0, 2.0, 0.5);
-    let (clearance, nearest) = scene.view(carried).clearance(&mut query, &ball, &pose_wm, f64::INFINITY);
+    let (clearance, nearest) = scene.clearance(&mut query, &ball, &pose_wm, f64::INFINITY);
     let nearest = nearest.and_then(|id| scene.body(id)).map(|body| body.name());
     writeln!(out, "ball beside the rings: {clearance:.4} m from {nearest:?}")?;
 
@@ -62,18 +62,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         writeln!(out, "contact with {:?}, about {:.3} m deep", contact.name, contact.depth)?;
     }
 
-    // Keep the tree in a file; build anew when the mesh has changed, or the file is of another version.
-    let path =
-        std::env::temp_dir().join(format!("ring-{:016x}.tree", CollisionMesh::fingerprint_of(&ring_mesh)));
-    let ring = match CollisionMesh::load_for(&path, &ring_mesh) {
-        Ok(ring) => ring,
-        Err(why) => {
-            writeln!(out, "building the tree: {why}")?;
-            ring.save(&path)?;
-            CollisionMesh::load_for(&path, &ring_mesh)?
-        }
-    };
     writeln!(out, "{} triangles, {} bytes in memory", ring.triangle_count(), ring.memory())?;
-    std::fs::remove_file(&path)?;
     Ok(())
 }

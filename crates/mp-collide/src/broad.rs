@@ -3,42 +3,26 @@
 //! Insertion descends where the surface grows least and rotates on the way back up, as in E. Catto,
 //! *Dynamic Bounding Volume Hierarchies*, GDC 2019.
 
-use nalgebra::Point3;
+use mp_geom::Aabb;
 
-/// IntervalClearance for a traversal: the tree is balanced, 2³² boxes are less than 50 levels.
+/// Room for a traversal: the tree is balanced, so that 2³² boxes are less than 50 levels.
 const STACK: usize = 96;
 
-/// An axis-aligned box in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bounds {
-    pub(crate) min: Point3<f64>,
-    pub(crate) max: Point3<f64>,
+/// The distance of two boxes, 0 when they overlap.
+fn distance(a: &Aabb, b: &Aabb) -> f64 {
+    let gap = |k: usize| (b.min[k] - a.max[k]).max(a.min[k] - b.max[k]).max(0.0);
+    (0..3).map(|k| gap(k) * gap(k)).sum::<f64>().sqrt()
 }
 
-impl Bounds {
-    pub(crate) fn overlaps(&self, other: &Self) -> bool {
-        (0..3).all(|k| self.min[k] <= other.max[k] && other.min[k] <= self.max[k])
-    }
-
-    /// The distance of two boxes, 0 when they overlap.
-    pub(crate) fn distance(&self, other: &Self) -> f64 {
-        let gap = |k: usize| (other.min[k] - self.max[k]).max(self.min[k] - other.max[k]).max(0.0);
-        (0..3).map(|k| gap(k) * gap(k)).sum::<f64>().sqrt()
-    }
-
-    fn union(&self, other: &Self) -> Self {
-        Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
-    }
-
-    fn surface(&self) -> f64 {
-        let d = self.max - self.min;
-        d.x * d.y + d.y * d.z + d.z * d.x
-    }
+/// Half the surface of a box.
+fn surface(aabb: &Aabb) -> f64 {
+    let d = aabb.max - aabb.min;
+    d.x * d.y + d.y * d.z + d.z * d.x
 }
 
 #[derive(Clone, Debug)]
 struct Node {
-    bounds: Bounds,
+    bounds: Aabb,
     parent: Option<usize>,
     content: Content,
     /// 0 for a leaf.
@@ -52,7 +36,7 @@ enum Content {
     Free,
 }
 
-/// A set of boxes, each with a number, that tells which may overlap a given box.
+/// A set of numbered boxes that finds those which overlap a box, or are near it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct BroadPhase {
     nodes: Vec<Node>,
@@ -67,7 +51,7 @@ impl BroadPhase {
     }
 
     /// Adds a box; returns the handle to remove it by.
-    pub(crate) fn insert(&mut self, item: u32, bounds: Bounds) -> usize {
+    pub(crate) fn insert(&mut self, item: u32, bounds: Aabb) -> usize {
         let leaf = self.allocate(Node { bounds, parent: None, content: Content::Leaf(item), height: 0 });
         let Some(root) = self.root else {
             self.root = Some(leaf);
@@ -88,7 +72,7 @@ impl BroadPhase {
         leaf
     }
 
-    /// Removes what [`BroadPhase::insert`] returned `leaf` for.
+    /// Removes the box for which [`BroadPhase::insert`] returned `leaf`.
     pub(crate) fn remove(&mut self, leaf: usize) {
         let parent = self.nodes[leaf].parent;
         self.release(leaf);
@@ -110,7 +94,7 @@ impl BroadPhase {
     /// accepts, until `visit` returns something.
     pub(crate) fn find<T>(
         &self,
-        mut enter: impl FnMut(&Bounds) -> bool,
+        mut enter: impl FnMut(&Aabb) -> bool,
         mut visit: impl FnMut(u32) -> Option<T>,
     ) -> Option<T> {
         let mut stack = [0; STACK];
@@ -143,27 +127,27 @@ impl BroadPhase {
     }
 
     /// Calls `visit` with the numbers of boxes nearer to `own` than `limit`, the nearer ones first as a rule;
-    /// it returns the new limit. Returns a lower bound on the distance of all boxes passed over.
-    pub(crate) fn nearest(&self, own: &Bounds, mut limit: f64, mut visit: impl FnMut(u32) -> f64) -> f64 {
+    /// it returns the new limit. Returns a lower bound on the distance of all boxes not visited.
+    pub(crate) fn nearest(&self, own: &Aabb, mut limit: f64, mut visit: impl FnMut(u32) -> f64) -> f64 {
         let mut passed_over = f64::INFINITY;
         let mut stack = [(0.0, 0); STACK];
         let mut top = 0;
         if let Some(root) = self.root {
-            stack[0] = (own.distance(&self.nodes[root].bounds), root);
+            stack[0] = (distance(own, &self.nodes[root].bounds), root);
             top = 1;
         }
         while top > 0 {
             top -= 1;
-            let (distance, node) = stack[top];
-            // Boxes that overlap are looked at even at limit 0.
-            if distance > 0.0 && distance >= limit {
-                passed_over = passed_over.min(distance);
+            let (far, node) = stack[top];
+            // Boxes that overlap are visited even at limit 0.
+            if far > 0.0 && far >= limit {
+                passed_over = passed_over.min(far);
                 continue;
             }
             match self.nodes[node].content {
                 Content::Leaf(item) => limit = visit(item),
                 Content::Inner(children) => {
-                    let [x, y] = children.map(|child| (own.distance(&self.nodes[child].bounds), child));
+                    let [x, y] = children.map(|child| (distance(own, &self.nodes[child].bounds), child));
                     (stack[top], stack[top + 1]) = if x.0 <= y.0 { (y, x) } else { (x, y) };
                     top += 2;
                 }
@@ -206,17 +190,17 @@ impl BroadPhase {
         }
     }
 
-    /// Where a new box costs the least surface.
-    fn best_sibling(&self, root: usize, bounds: &Bounds) -> usize {
+    /// The node beside which a new box costs the least surface.
+    fn best_sibling(&self, root: usize, bounds: &Aabb) -> usize {
         let mut at = root;
         while let Content::Inner(children) = self.nodes[at].content {
             let here = self.nodes[at].bounds;
-            let joined = here.union(bounds).surface();
-            let growth = joined - here.surface();
+            let joined = surface(&here.union(bounds));
+            let growth = joined - surface(&here);
             let cost = |child: usize| {
                 let node = &self.nodes[child];
-                let joined = node.bounds.union(bounds).surface();
-                growth + if node.height == 0 { joined } else { joined - node.bounds.surface() }
+                let joined = surface(&node.bounds.union(bounds));
+                growth + if node.height == 0 { joined } else { joined - surface(&node.bounds) }
             };
             let (x, y) = (cost(children[0]), cost(children[1]));
             if joined < x.min(y) {
@@ -227,7 +211,7 @@ impl BroadPhase {
         at
     }
 
-    /// Sets box and height of `start` and all above it right, rotating where the heights differ by two.
+    /// Updates box and height of `start` and its ancestors, rotating where the heights of children differ by two.
     fn refit_from(&mut self, start: Option<usize>) {
         let mut at = start;
         while let Some(node) = at {
@@ -244,7 +228,7 @@ impl BroadPhase {
         }
     }
 
-    /// Lifts the higher child of `node` when it is higher by two or more; returns who is on top now.
+    /// Lifts the higher child of `node` when it is higher by two or more; returns the node now on top.
     fn rotate(&mut self, node: usize) -> usize {
         let Content::Inner([x, y]) = self.nodes[node].content else { return node };
         let (high, low) = if self.nodes[x].height >= self.nodes[y].height { (x, y) } else { (y, x) };
@@ -268,21 +252,22 @@ impl BroadPhase {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point3;
     use rand::{RngExt, SeedableRng};
 
     use super::*;
 
-    fn random_bounds(rng: &mut rand_pcg::Pcg64) -> Bounds {
+    fn random_bounds(rng: &mut rand_pcg::Pcg64) -> Aabb {
         let min = Point3::from([0; 3].map(|_| rng.random_range(-10.0..10.0)));
         let max = min + nalgebra::Vector3::from([0; 3].map(|_| rng.random_range(0.0..3.0)));
-        Bounds { min, max }
+        Aabb { min, max }
     }
 
     #[test]
     fn finds_what_a_scan_finds_through_inserts_and_removals() {
         let mut rng = rand_pcg::Pcg64::seed_from_u64(1);
         let mut broad = BroadPhase::default();
-        let mut all: Vec<(u32, usize, Bounds)> = Vec::new();
+        let mut all: Vec<(u32, usize, Aabb)> = Vec::new();
         for step in 0..3000_u32 {
             if all.len() > 150 || (!all.is_empty() && rng.random_bool(0.4)) {
                 let (_, handle, _) = all.swap_remove(rng.random_range(0..all.len()));
@@ -294,7 +279,7 @@ mod tests {
             let probe = random_bounds(&mut rng);
             let mut found = Vec::new();
             let stopped: Option<()> = broad.find(
-                |b| b.overlaps(&probe),
+                |b| b.intersects(&probe),
                 |item| {
                     found.push(item);
                     None
@@ -303,7 +288,7 @@ mod tests {
             assert_eq!(stopped, None);
             found.sort_unstable();
             let mut expected: Vec<u32> =
-                all.iter().filter(|(_, _, b)| b.overlaps(&probe)).map(|(item, ..)| *item).collect();
+                all.iter().filter(|(_, _, b)| b.intersects(&probe)).map(|(item, ..)| *item).collect();
             expected.sort_unstable();
             assert_eq!(found, expected, "step {step}");
         }
@@ -315,8 +300,7 @@ mod tests {
             let mut broad = BroadPhase::default();
             for i in 0..4096_u32 {
                 let x = f64::from(i) * spacing;
-                broad
-                    .insert(i, Bounds { min: Point3::new(x, 0.0, 0.0), max: Point3::new(x + 1.0, 1.0, 1.0) });
+                broad.insert(i, Aabb { min: Point3::new(x, 0.0, 0.0), max: Point3::new(x + 1.0, 1.0, 1.0) });
             }
             let height = broad.nodes[broad.root.unwrap()].height;
             assert!(height <= 40, "height {height} at spacing {spacing}");

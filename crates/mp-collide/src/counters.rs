@@ -1,6 +1,6 @@
-//! How much work queries have done.
+//! Counters of the work of queries.
 
-/// How much work queries have done: the same for the same queries, on any machine.
+/// How much work queries have done: the same numbers for the same queries, on any machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Queries answered (each pose of a batch counts).

@@ -1,4 +1,4 @@
-//! How deep two meshes are in each other, for messages and for finding a free pose nearby.
+//! The penetration depth of two meshes, for messages and for finding a free pose nearby.
 
 use nalgebra::{Isometry3, Vector3};
 
@@ -31,10 +31,10 @@ impl Query {
     }
 
     /// A short translation of `a` in the world after which the meshes are apart: the shortest found by
-    /// walking along 39 directions (both ways along the axes of both outermost boxes and along the axes and
+    /// walking along 39 directions (both ways along the axes of the boxes at both roots and along the axes and
     /// diagonals of the world, and the join of the centres); zero when they are apart already.
     ///
-    /// `None` when no translation separates them: the input counts as in collision with everything (see
+    /// `None` when no translation separates them, as the input counts as in collision with everything (see
     /// the crate docs).
     pub fn escape(
         &mut self,
@@ -43,8 +43,8 @@ impl Query {
         b: &CollisionMesh,
         pose_wb: &Isometry3<f64>,
     ) -> Option<Vector3<f64>> {
-        let relative = Relative::between(pose_wa, a.radius(), pose_wb, b.radius())?;
-        if !self.meets(a, pose_wa, b, pose_wb) {
+        let relative = Relative::of((a, pose_wa), (b, pose_wb))?;
+        if !self.meets((a, pose_wa), (b, pose_wb)) {
             return Some(Vector3::zeros());
         }
         let moved = |way: Vector3<f64>| {
@@ -54,7 +54,7 @@ impl Query {
         };
         let mut shortest: Option<(f64, Vector3<f64>)> = None;
         for direction in directions(a.tree(), pose_wa, b.tree(), pose_wb) {
-            // After this way along the direction the outermost boxes are apart.
+            // After this step along the direction the boxes at the roots are apart.
             let overlap = reach(b.tree(), pose_wb, direction) + reach(a.tree(), pose_wa, -direction);
             let sure = 1.001 * overlap.max(0.0) + 10.0 * relative.slack + f64::EPSILON;
             let limit = shortest.map_or(sure, |(length, _)| length.min(sure));
@@ -63,21 +63,23 @@ impl Query {
                 if step >= limit {
                     break None;
                 }
-                if !self.meets(a, &moved(direction * step), b, pose_wb) {
+                if !self.meets((a, &moved(direction * step)), (b, pose_wb)) {
                     break Some(step);
                 }
                 blocked = step;
                 step *= GROWTH;
             };
-            // At the limit itself another direction is as good, or it is the sure way out.
+            // No step below the limit is free: the direction is no better than the best, or it is the first to succeed.
             let mut free = match free {
                 Some(free) => free,
-                None if shortest.is_none() && !self.meets(a, &moved(direction * sure), b, pose_wb) => sure,
+                None if shortest.is_none() && !self.meets((a, &moved(direction * sure)), (b, pose_wb)) => {
+                    sure
+                }
                 None => continue,
             };
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (blocked + free);
-                if self.meets(a, &moved(direction * middle), b, pose_wb) {
+                if self.meets((a, &moved(direction * middle)), (b, pose_wb)) {
                     blocked = middle;
                 } else {
                     free = middle;
@@ -89,7 +91,7 @@ impl Query {
     }
 }
 
-/// How far the outermost box of a placed mesh reaches along `direction`, from the origin of the world.
+/// How far the box at the root of a placed mesh reaches along `direction`, from the origin of the world.
 fn reach(tree: &Tree, pose: &Isometry3<f64>, direction: Vector3<f64>) -> f64 {
     let obb = &tree.bounding;
     let direction_local = pose.rotation.inverse_transform_vector(&direction);

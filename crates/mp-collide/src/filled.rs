@@ -1,11 +1,11 @@
-//! Meshes as solids: closed surfaces with what is inside, and which meshes are inside of which.
+//! Filled meshes: closed surfaces together with their inside.
 
-use nalgebra::{Isometry3, Point3};
+use nalgebra::Point3;
 use thiserror::Error;
 
 use mp_geom::{NO_COMPONENT, TriMesh};
 
-use crate::mesh::CollisionMesh;
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::Relative;
 use crate::query::Query;
 
@@ -30,7 +30,7 @@ pub enum FillError {
         /// How many vertices.
         vertices: usize,
     },
-    /// Neighbouring triangles are turned against each other.
+    /// Neighbouring triangles have opposite orientations.
     #[error(
         "the mesh is not oriented: the triangles at {edges} edges are turned against each other; turn some"
     )]
@@ -38,7 +38,7 @@ pub enum FillError {
         /// At how many edges.
         edges: usize,
     },
-    /// All triangles face inward: a room.
+    /// All triangles face inward, as those of a room.
     #[error("the mesh faces inward: the volume it encloses is not positive; reverse its triangles")]
     InsideOut,
     /// Coordinates that are not finite.
@@ -47,10 +47,9 @@ pub enum FillError {
 }
 
 impl CollisionMesh {
-    /// The same mesh as a solid: the surface and everything inside, where it winds around a point outward. In a
-    /// [`Scene`](crate::Scene), and for [`Query::depth`] and [`Query::escape`], it then collides too with what is
-    /// wholly inside of it; all other queries compare surfaces. A saved tree does not say that its mesh was filled.
-    /// O(n log n) for n triangles.
+    /// The same mesh as a solid: the surface and all points around which it winds outward. In a
+    /// [`Scene`](crate::Scene), and for [`Query::depth`] and [`Query::escape`], it then also collides with what is
+    /// wholly inside of it; all other queries compare surfaces. O(n log n) for n triangles.
     ///
     /// ```
     /// use mp_collide::{CollisionMesh, Query, Scene};
@@ -84,13 +83,13 @@ impl CollisionMesh {
         if outward { Ok(Self { filled: true, ..self }) } else { Err(FillError::InsideOut) }
     }
 
-    /// Whether it is a solid: see [`CollisionMesh::filled`].
+    /// Whether the mesh counts as a solid: see [`CollisionMesh::filled`].
     #[must_use]
     pub fn is_filled(&self) -> bool {
         self.filled
     }
 
-    /// A corner of each part that hangs together by edges; found when first asked for.
+    /// A corner of each component connected by edges; computed on first use.
     fn parts(&self) -> &[Point3<f64>] {
         self.parts.get_or_init(|| {
             let triangles = self.triangles();
@@ -98,7 +97,7 @@ impl CollisionMesh {
             let found = mesh.topology();
             let mut known = vec![false; found.components];
             let first = triangles.iter().zip(&found.component).filter(|(_, part)| {
-                // What has no area of its own hangs together with nothing.
+                // A triangle with two corners in one place is connected to nothing.
                 **part == NO_COMPONENT || !std::mem::replace(&mut known[**part as usize], true)
             });
             first.map(|(triangle, _)| triangle[0]).collect()
@@ -108,44 +107,26 @@ impl CollisionMesh {
 
 impl Query {
     /// Whether two meshes have a point in common, filled ones with their inside.
-    pub(crate) fn meets(
-        &mut self,
-        a: &CollisionMesh,
-        pose_wa: &Isometry3<f64>,
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
-    ) -> bool {
-        self.intersects(a, pose_wa, b, pose_wb) || self.nested(a, pose_wa, b, pose_wb)
+    pub(crate) fn meets(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
+        self.intersects(a.0, a.1, b.0, b.1) || self.nested(a, b)
     }
 
-    /// Whether part of one of two meshes, whose surfaces are apart, is inside the other, which is filled.
-    pub(crate) fn nested(
-        &mut self,
-        a: &CollisionMesh,
-        pose_wa: &Isometry3<f64>,
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
-    ) -> bool {
-        self.holds(a, pose_wa, b, pose_wb) || self.holds(b, pose_wb, a, pose_wa)
+    /// Whether one of two meshes is filled and has a part of the other inside; the surfaces must be apart.
+    pub(crate) fn nested(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
+        self.holds(a, b) || self.holds(b, a)
     }
 
-    /// Whether `a` is filled and has a part of `b` inside. Where the surfaces are apart, all of a part is where its
-    /// first corner is.
-    fn holds(
-        &mut self,
-        a: &CollisionMesh,
-        pose_wa: &Isometry3<f64>,
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
-    ) -> bool {
-        if !a.filled {
+    /// Whether `a` is filled and has a component of `b` inside. As the surfaces are apart, one corner decides for each
+    /// component.
+    fn holds(&mut self, a: PosedMesh<'_>, b: PosedMesh<'_>) -> bool {
+        if !a.0.filled {
             return false;
         }
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else { return true };
+        let Some(relative) = Relative::of(a, b) else { return true };
         let (stack, counters) = (&mut self.stack, &mut self.counters);
         // On the surface counts as inside: touching is collision.
-        b.parts().iter().any(|p| {
-            let winding = a.tree().winding(&relative.point(p), stack, counters);
+        b.0.parts().iter().any(|p| {
+            let winding = a.0.tree().winding(&relative.point(p), stack, counters);
             winding.is_none_or(|turns| turns > 0)
         })
     }

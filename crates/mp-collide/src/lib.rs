@@ -1,15 +1,15 @@
 //! Exact collision detection between meshes, and with primitives, with trees of oriented bounding boxes.
 //!
-//! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads, saved and loaded.
+//! * [`CollisionMesh`]: the tree of a mesh, built once, immutable, shared between threads.
 //! * [`Query`]: one per thread; intersection, distance, clearance, tolerance, depth, batches of poses,
 //!   intervals of motions.
 //! * [`Solid`]: balls, capsules, boxes, cylinders, cones and half-spaces, to compare with meshes.
-//! * [`Scene`]: many named bodies with a broad phase, groups and allowed pairs; [filled](CollisionMesh::filled) ones
+//! * [`Scene`]: many named bodies with a broad phase and allowed pairs; [filled](CollisionMesh::filled) bodies
 //!   collide with what is inside of them.
 //! * [`triangle`]: the exact triangle–triangle test and the distance between triangles.
 //! * [`mod@reference`]: a second, plain implementation sharing no code with the first, to check it.
-//! * `parry`, with the feature of that name, which is off by default: shapes of parry3d (so of Rapier and Bevy) from and to
-//!   ours, convex hulls and decompositions. No other module has types of parry in its public API.
+//! * `parry`, with the feature of that name, which is off by default: conversions from and to shapes of parry3d (used
+//!   by Rapier and Bevy), convex hulls and decompositions. No other module has types of parry in its public API.
 //!
 //! ```
 //! use mp_collide::{CollisionMesh, Query};
@@ -28,7 +28,7 @@
 //!
 //! # Contract
 //! A mesh is the union of its triangles as closed sets: a surface, not a solid (a body wholly inside a
-//! closed shell does not collide with it; it does in a [`Scene`] when the shell is [filled](CollisionMesh::filled)).
+//! closed shell collides with it only in a [`Scene`], and when the shell is [filled](CollisionMesh::filled)).
 //! **Touching counts as collision.** Meshes are soups: cracks,
 //! holes, coplanar, overlapping and degenerate triangles (segments and points) are all welcome.
 //!
@@ -52,10 +52,10 @@
 //! or whose quaternion is not of unit length (within 1e-6; smaller deviations are normalised away), and a
 //! mesh with a coordinate beyond 1e75 or not a number (moved by a pose that is not finite), count as *in
 //! collision with everything*: `intersects` is `true`,
-//! distance and clearance are 0. A planner can so never pass through what cannot be decided.
+//! distance and clearance are 0. So a planner never passes through what cannot be decided.
 
-/// An array of three, for `k` 0, 1, 2. A closure would be compiled without the instruction set of the kernel
-/// around it unless it happens to be inlined.
+/// An array of three values, for `k` = 0, 1, 2. A closure that is not inlined would be compiled without the
+/// instruction set of the kernel around it.
 macro_rules! three {
     ($k:ident => $value:expr) => {
         [
@@ -82,16 +82,13 @@ mod depth;
 mod filled;
 mod kernels;
 mod mesh;
-mod mesh_obb;
 mod pose;
 mod query;
-mod save;
 mod scene;
 mod separation;
 mod simd;
 mod solid;
 
-pub mod fuzz;
 #[cfg(feature = "parry")]
 pub mod parry;
 pub mod reference;
@@ -102,8 +99,7 @@ pub use filled::FillError;
 pub use mesh::CollisionMesh;
 pub use query::Query;
 pub use query::interval::{IntervalCheck, RigidMotion};
-pub use save::{TreeError, TreeFileError};
-pub use scene::{Body, BodyId, Contact, Groups, Scene, SceneError, View};
+pub use scene::{Body, BodyId, Contact, Scene, SceneError};
 pub use separation::Separation;
 pub use simd::Isa;
 pub use solid::Solid;

@@ -1,20 +1,23 @@
-//! The mesh as queries see it.
+//! The mesh with its tree, which queries compare.
 
 use std::sync::{Arc, OnceLock};
 
 use mp_geom::TriMesh;
-use nalgebra::Point3;
+use nalgebra::{Isometry3, Point3};
 
 use crate::bvh::Tree;
 use crate::triangle::Triangle;
+
+/// A mesh and its pose in the world.
+pub(crate) type PosedMesh<'m> = (&'m CollisionMesh, &'m Isometry3<f64>);
 
 /// A mesh with its tree of oriented boxes: built once, immutable, cheap to clone, shared between threads.
 #[derive(Clone, Debug)]
 pub struct CollisionMesh {
     pub(crate) tree: Arc<Tree>,
-    /// Whether it is a solid.
+    /// Whether the mesh counts as a solid.
     pub(crate) filled: bool,
-    /// A corner of each part that hangs together.
+    /// A corner of each connected component.
     pub(crate) parts: Arc<OnceLock<Vec<Point3<f64>>>>,
 }
 
@@ -26,14 +29,10 @@ impl CollisionMesh {
         Self::from_triangles(triangles)
     }
 
-    /// `triangles`: at least one, at most `u32::MAX`, finite.
+    /// The mesh of `triangles`: at least one, at most `u32::MAX`.
     pub(crate) fn from_triangles(triangles: Vec<Triangle>) -> Self {
         let _span = tracing::debug_span!("build", triangles = triangles.len()).entered();
-        Self::from_tree(Tree::build(&triangles))
-    }
-
-    pub(crate) fn from_tree(tree: Tree) -> Self {
-        Self { tree: Arc::new(tree), filled: false, parts: Arc::default() }
+        Self { tree: Arc::new(Tree::build(&triangles)), filled: false, parts: Arc::default() }
     }
 
     /// How many triangles there are.

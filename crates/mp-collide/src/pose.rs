@@ -2,7 +2,8 @@
 
 use nalgebra::{Isometry3, Matrix3, Point3, Quaternion, Vector3};
 
-use crate::mesh_obb::MeshObb;
+use crate::bvh::root_box::RootBox;
+use crate::mesh::PosedMesh;
 use crate::triangle::Triangle;
 
 /// Coordinates beyond this could overflow in the exact predicates; see the contract in the crate docs.
@@ -20,11 +21,17 @@ const SLACK: f64 = 1e-13;
 pub(crate) struct Relative {
     pub(crate) rotation: Matrix3<f64>,
     pub(crate) translation: Vector3<f64>,
-    /// What to add to boxes (metres) so that rounding never makes them miss.
+    /// How much boxes are enlarged (metres), so that rounding never makes a query miss a contact.
     pub(crate) slack: f64,
 }
 
 impl Relative {
+    /// Of two meshes: see [`Relative::between`].
+    #[inline(always)]
+    pub(crate) fn of((a, pose_wa): PosedMesh<'_>, (b, pose_wb): PosedMesh<'_>) -> Option<Self> {
+        Self::between(pose_wa, a.radius(), pose_wb, b.radius())
+    }
+
     /// `None` when a pose or a mesh (by `radius`, its largest coordinate) is not within the limits.
     #[inline(always)]
     pub(crate) fn between(
@@ -39,7 +46,7 @@ impl Relative {
         let (q_wa, q_wb) = (pose_wa.rotation.quaternion(), pose_wb.rotation.quaternion());
         let (t_wa, t_wb) = (&pose_wa.translation.vector, &pose_wb.translation.vector);
         let apart = t_wb - t_wa;
-        // What stands still mostly has not been turned, and then the product below does nothing.
+        // Static bodies are mostly not rotated; then the product below is not needed.
         let (rotation, translation) = if is_identity(q_wa) {
             (rotation_matrix(q_wb), apart)
         } else {
@@ -77,9 +84,9 @@ impl Relative {
     }
 
     /// A box of `b` in the frame of `a`.
-    pub(crate) fn obb(&self, obb: &MeshObb) -> MeshObb {
+    pub(crate) fn obb(&self, obb: &RootBox) -> RootBox {
         let r = &self.rotation;
-        MeshObb {
+        RootBox {
             center: self.point(&obb.center),
             axes: [r * obb.axes[0], r * obb.axes[1], r * obb.axes[2]],
             half: obb.half,
@@ -130,7 +137,7 @@ mod tests {
     use super::*;
     use nalgebra::UnitQuaternion;
 
-    /// The short cuts for poses that are not turned are the formulas of the contract, bit for bit.
+    /// The short cuts for poses without rotation give the formulas of the contract, bit for bit.
     #[test]
     fn short_cuts_change_nothing() {
         let here = Isometry3::translation(0.3, -1.7, 0.9);

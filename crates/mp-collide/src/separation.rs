@@ -1,4 +1,4 @@
-//! How far bodies are apart.
+//! The answer to a distance query.
 
 use nalgebra::Point3;
 

@@ -1,23 +1,23 @@
 //! Meshes and solid primitives: balls, capsules, boxes, cylinders, cones, half-spaces.
 //!
-//! A ball is all that is near a point and a capsule all that is near a segment, so queries about them are
-//! distance queries against a mesh of one degenerate triangle. A box is a mesh of twelve and what is inside;
-//! cylinders and cones are compared with triangles as the convex solids of revolution they are; a half-space asks
-//! for the lowest point of the mesh.
+//! A ball is all points near a point and a capsule all points near a segment, so queries about them are
+//! distance queries against a mesh of one degenerate triangle. A box is a mesh of twelve triangles and its inside;
+//! cylinders and cones are compared with triangles as convex solids of revolution; for a half-space the lowest point of
+//! the mesh decides.
 
-use mp_geom::primitives::{PrimitiveError, cuboid};
+use mp_geom::primitives::{PrimitiveError, cuboid, positive};
 use nalgebra::{Isometry3, Point3, Vector3};
 
 use crate::bvh::frames::Frames;
-use crate::mesh::CollisionMesh;
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{Relative, to_world};
 use crate::query::Query;
 use crate::query::inside::{Inside, is_inside};
-use crate::query::revolved::{Apart, Frustum, Revolved};
+use crate::query::revolved::{Frustum, NearestPoints, Revolved};
 use crate::separation::Separation;
 use crate::simd::run;
 
-/// A primitive in a frame of its own: a closed *solid*, unlike a mesh, which is a surface.
+/// A geometric primitive in its own frame: a closed *solid*, unlike a mesh, which is a surface.
 ///
 /// ```
 /// use mp_collide::{CollisionMesh, Query, Solid};
@@ -33,13 +33,13 @@ use crate::simd::run;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Solid {
-    shape: Shape,
+    primitive: Primitive,
 }
 
 #[derive(Clone, Debug)]
-enum Shape {
+enum Primitive {
     /// All points within `radius` of a core.
-    SweepCheck {
+    Swept {
         core: CollisionMesh,
         radius: f64,
     },
@@ -48,19 +48,11 @@ enum Shape {
         half: Vector3<f64>,
     },
     Revolved {
-        /// The box around it.
+        /// A mesh of the box around it.
         around: CollisionMesh,
         frustum: Frustum,
     },
     HalfSpace,
-}
-
-fn positive(what: &'static str, value: f64) -> Result<f64, PrimitiveError> {
-    if value > 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err(PrimitiveError::NotPositive { what, value })
-    }
 }
 
 impl Solid {
@@ -84,7 +76,7 @@ impl Solid {
 
     fn swept([p, q]: [Point3<f64>; 2], radius: f64) -> Self {
         let core = CollisionMesh::from_triangles(vec![[p, q, q]]);
-        Self { shape: Shape::SweepCheck { core, radius } }
+        Self { primitive: Primitive::Swept { core, radius } }
     }
 
     /// The box of these edge lengths (metres), centred on the origin.
@@ -93,7 +85,7 @@ impl Solid {
     /// [`PrimitiveError::NotPositive`].
     pub fn cuboid(x: f64, y: f64, z: f64) -> Result<Self, PrimitiveError> {
         let surface = CollisionMesh::new(&cuboid(x, y, z)?);
-        Ok(Self { shape: Shape::Cuboid { surface, half: Vector3::new(x, y, z) * 0.5 } })
+        Ok(Self { primitive: Primitive::Cuboid { surface, half: Vector3::new(x, y, z) * 0.5 } })
     }
 
     /// The cylinder about Z of this radius and height (metres), centred on the origin.
@@ -117,26 +109,26 @@ impl Solid {
     fn revolved(frustum: Frustum) -> Result<Self, PrimitiveError> {
         let width = 2.0 * frustum.low.max(frustum.high);
         let around = CollisionMesh::new(&cuboid(width, width, 2.0 * frustum.half)?);
-        Ok(Self { shape: Shape::Revolved { around, frustum } })
+        Ok(Self { primitive: Primitive::Revolved { around, frustum } })
     }
 
-    /// All points with z ≤ 0: its pose says where the plane goes.
+    /// All points with z ≤ 0; its pose places the plane.
     #[must_use]
     pub fn half_space() -> Self {
-        Self { shape: Shape::HalfSpace }
+        Self { primitive: Primitive::HalfSpace }
     }
 
-    /// What it was made of.
+    /// The kind of solid and its lengths.
     #[cfg(feature = "parry")]
     pub(crate) fn dimensions(&self) -> Dimensions {
-        match &self.shape {
-            Shape::SweepCheck { core, radius } => {
+        match &self.primitive {
+            Primitive::Swept { core, radius } => {
                 let radius = *radius;
                 let half = core.triangles().first().map_or(0.0, |core| core[1].z);
                 if half > 0.0 { Dimensions::Capsule { radius, half } } else { Dimensions::Ball { radius } }
             }
-            Shape::Cuboid { half, .. } => Dimensions::Cuboid { half: *half },
-            Shape::Revolved { frustum, .. } => {
+            Primitive::Cuboid { half, .. } => Dimensions::Cuboid { half: *half },
+            Primitive::Revolved { frustum, .. } => {
                 let Frustum { low: radius, high, half } = *frustum;
                 if high > 0.0 {
                     Dimensions::Cylinder { radius, half }
@@ -144,7 +136,7 @@ impl Solid {
                     Dimensions::Cone { radius, half }
                 }
             }
-            Shape::HalfSpace => Dimensions::HalfSpace,
+            Primitive::HalfSpace => Dimensions::HalfSpace,
         }
     }
 }
@@ -165,8 +157,8 @@ pub(crate) enum Dimensions {
 ///
 /// The mesh is a surface and the solid is filled: a mesh wholly inside a solid collides with it, a solid
 /// wholly inside a closed mesh does not. **Touching counts**, to rounding: balls, capsules and half-spaces
-/// collide when the distance, computed as accurately as the crate docs say, is not above zero, and so do cylinders
-/// and cones, where about a microsecond goes into each triangle that may be the nearest; the surface
+/// collide when the distance, computed as accurately as the crate docs say, is not above zero. The same holds for cylinders
+/// and cones, which take about a microsecond for each triangle that may be the nearest. The surface
 /// of a box is compared exactly, as meshes are. Bad input counts as in collision with everything.
 impl Query {
     /// Whether mesh and solid have a point in common.
@@ -177,16 +169,18 @@ impl Query {
         solid: &Solid,
         pose_ws: &Isometry3<f64>,
     ) -> bool {
-        match &solid.shape {
-            Shape::SweepCheck { core, radius } => self.within(mesh, pose_wm, core, pose_ws, *radius),
-            Shape::Cuboid { surface, half } => {
+        match &solid.primitive {
+            Primitive::Swept { core, radius } => self.within(mesh, pose_wm, core, pose_ws, *radius),
+            Primitive::Cuboid { surface, half } => {
                 self.intersects(mesh, pose_wm, surface, pose_ws)
-                    || self.corner_inside(mesh, pose_wm, surface, half, pose_ws).is_some()
+                    || self.corner_inside((mesh, pose_wm), (surface, pose_ws), half).is_some()
             }
-            Shape::Revolved { around, frustum } => {
-                self.revolved(mesh, pose_wm, (around, frustum), pose_ws, 0.0, true).is_some()
+            Primitive::Revolved { around, frustum } => {
+                self.frustum((mesh, pose_wm), (around, pose_ws), frustum, 0.0, true).is_some()
             }
-            Shape::HalfSpace => self.lowest(mesh, pose_wm, pose_ws).is_none_or(|(height, _)| height <= 0.0),
+            Primitive::HalfSpace => {
+                self.lowest(mesh, pose_wm, pose_ws).is_none_or(|(height, _)| height <= 0.0)
+            }
         }
     }
 
@@ -201,8 +195,8 @@ impl Query {
         pose_ws: &Isometry3<f64>,
     ) -> Separation {
         let touching = |point| Separation { distance: 0.0, point_a: point, point_b: point };
-        match &solid.shape {
-            Shape::SweepCheck { core, radius } => {
+        match &solid.primitive {
+            Primitive::Swept { core, radius } => {
                 let hit = self.within(mesh, pose_wm, core, pose_ws, *radius);
                 let to_core = self.distance(mesh, pose_wm, core, pose_ws);
                 if hit {
@@ -212,23 +206,23 @@ impl Query {
                 let distance = (to_core.distance - radius).max(f64::MIN_POSITIVE);
                 Separation { distance, point_b: to_core.point_b + out * *radius, ..to_core }
             }
-            Shape::Cuboid { surface, half } => {
+            Primitive::Cuboid { surface, half } => {
                 let apart = self.distance(mesh, pose_wm, surface, pose_ws);
                 if apart.distance <= 0.0 {
                     return apart;
                 }
-                self.corner_inside(mesh, pose_wm, surface, half, pose_ws).map_or(apart, touching)
+                self.corner_inside((mesh, pose_wm), (surface, pose_ws), half).map_or(apart, touching)
             }
-            Shape::Revolved { around, frustum } => {
-                let solid = (around, frustum);
-                let nearest = self.revolved(mesh, pose_wm, solid, pose_ws, f64::INFINITY, false);
-                let Some(Apart { distance, other, solid }) = nearest else {
+            Primitive::Revolved { around, frustum } => {
+                let posed = (around, pose_ws);
+                let nearest = self.frustum((mesh, pose_wm), posed, frustum, f64::INFINITY, false);
+                let Some(NearestPoints { distance, other, solid }) = nearest else {
                     return touching(Point3::origin());
                 };
                 let [point_a, point_b] = [other, solid].map(|p| to_world(pose_wm, &p));
                 if distance > 0.0 { Separation { distance, point_a, point_b } } else { touching(point_a) }
             }
-            Shape::HalfSpace => match self.lowest(mesh, pose_wm, pose_ws) {
+            Primitive::HalfSpace => match self.lowest(mesh, pose_wm, pose_ws) {
                 None => touching(Point3::origin()),
                 Some((height, point)) if height <= 0.0 => touching(point),
                 Some((height, point)) => {
@@ -249,31 +243,31 @@ impl Query {
         pose_ws: &Isometry3<f64>,
         enough: f64,
     ) -> f64 {
-        match &solid.shape {
-            Shape::SweepCheck { core, radius } => {
-                // Touching first: then only a rounding error is left between the two.
+        match &solid.primitive {
+            Primitive::Swept { core, radius } => {
+                // Contact is decided first, by the same test as in `solid_intersects`.
                 if self.within(mesh, pose_wm, core, pose_ws, *radius) {
                     return 0.0;
                 }
                 let enough = enough.max(0.0);
                 let to_core = self.clearance(mesh, pose_wm, core, pose_ws, enough + radius);
                 let clearance = to_core - radius;
-                // What is far enough from the core is far enough from the solid.
+                // A mesh far enough from the core is far enough from the solid.
                 let far = to_core >= enough + radius;
                 if far { clearance.max(enough) } else { clearance }.max(f64::MIN_POSITIVE)
             }
-            Shape::Cuboid { surface, half } => {
+            Primitive::Cuboid { surface, half } => {
                 let clearance = self.clearance(mesh, pose_wm, surface, pose_ws, enough);
-                let inside =
-                    clearance > 0.0 && self.corner_inside(mesh, pose_wm, surface, half, pose_ws).is_some();
+                let inside = clearance > 0.0
+                    && self.corner_inside((mesh, pose_wm), (surface, pose_ws), half).is_some();
                 if inside { 0.0 } else { clearance }
             }
-            Shape::Revolved { around, frustum } => {
+            Primitive::Revolved { around, frustum } => {
                 let enough = if enough.is_nan() { f64::INFINITY } else { enough.max(0.0) };
-                let nearest = self.revolved(mesh, pose_wm, (around, frustum), pose_ws, enough, false);
+                let nearest = self.frustum((mesh, pose_wm), (around, pose_ws), frustum, enough, false);
                 nearest.map_or(enough.max(f64::MIN_POSITIVE), |apart| apart.distance)
             }
-            Shape::HalfSpace => {
+            Primitive::HalfSpace => {
                 self.lowest(mesh, pose_wm, pose_ws).map_or(0.0, |(height, _)| height.max(0.0))
             }
         }
@@ -289,40 +283,36 @@ impl Query {
         pose_ws: &Isometry3<f64>,
         tolerance: f64,
     ) -> bool {
-        match &solid.shape {
-            Shape::SweepCheck { core, radius } => {
+        match &solid.primitive {
+            Primitive::Swept { core, radius } => {
                 let tolerance = if tolerance.is_nan() { f64::INFINITY } else { tolerance.max(0.0) };
                 self.within(mesh, pose_wm, core, pose_ws, tolerance + radius)
             }
-            Shape::Cuboid { surface, half } => {
+            Primitive::Cuboid { surface, half } => {
                 self.within(mesh, pose_wm, surface, pose_ws, tolerance)
-                    || self.corner_inside(mesh, pose_wm, surface, half, pose_ws).is_some()
+                    || self.corner_inside((mesh, pose_wm), (surface, pose_ws), half).is_some()
             }
-            Shape::Revolved { around, frustum } => {
+            Primitive::Revolved { around, frustum } => {
                 let tolerance = if tolerance.is_nan() { f64::INFINITY } else { tolerance.max(0.0) };
-                self.revolved(mesh, pose_wm, (around, frustum), pose_ws, tolerance, true).is_some()
+                self.frustum((mesh, pose_wm), (around, pose_ws), frustum, tolerance, true).is_some()
             }
-            Shape::HalfSpace => {
+            Primitive::HalfSpace => {
                 let lowest = self.lowest(mesh, pose_wm, pose_ws);
                 tolerance.is_nan() || lowest.is_none_or(|(height, _)| height <= tolerance.max(0.0))
             }
         }
     }
 
-    /// The first corner (in the world) of some triangle that is inside a box whose surface the mesh does not
-    /// meet: then all of that triangle is. For bad input the origin.
+    /// The first corner (in the world) of some triangle inside a box; as the mesh does not meet the surface of the box,
+    /// all of that triangle is inside. For bad input the origin.
     fn corner_inside(
         &mut self,
-        mesh: &CollisionMesh,
-        pose_wm: &Isometry3<f64>,
-        surface: &CollisionMesh,
+        mesh: PosedMesh<'_>,
+        surface: PosedMesh<'_>,
         half: &Vector3<f64>,
-        pose_ws: &Isometry3<f64>,
     ) -> Option<Point3<f64>> {
-        let Some(relative) = Relative::between(pose_wm, mesh.radius(), pose_ws, surface.radius()) else {
-            return Some(Point3::origin());
-        };
-        let (a, b) = (mesh.tree(), surface.tree());
+        let Some(relative) = Relative::of(mesh, surface) else { return Some(Point3::origin()) };
+        let (a, b) = (mesh.0.tree(), surface.0.tree());
         let frames = Frames::new(a, b, &relative);
         if frames.apart > (a.radius_center + b.radius_center) * (1.0 + 1e-12) + relative.slack {
             return None;
@@ -334,26 +324,25 @@ impl Query {
             let mut corners = a.triangles.iter().map(|triangle| triangle[0]);
             corners.find(|corner| is_inside(corner, half, &relative))
         };
-        corner.map(|corner| to_world(pose_wm, &corner))
+        corner.map(|corner| to_world(mesh.1, &corner))
     }
 
-    /// Nearest points of mesh and solid in the frame of the mesh, if no farther apart than `enough` (metres), or any
-    /// that are not. For bad input the origin.
-    fn revolved(
+    /// Nearest points of mesh and solid in the frame of the mesh, if no farther apart than `enough` (metres); if `any`,
+    /// some points no farther apart than that. For bad input the origin.
+    fn frustum(
         &mut self,
-        mesh: &CollisionMesh,
-        pose_wm: &Isometry3<f64>,
-        (around, solid): (&CollisionMesh, &Frustum),
-        pose_ws: &Isometry3<f64>,
+        mesh: PosedMesh<'_>,
+        around: PosedMesh<'_>,
+        solid: &Frustum,
         enough: f64,
         any: bool,
-    ) -> Option<Apart> {
+    ) -> Option<NearestPoints> {
         self.counters.queries += 1;
-        let Some(relative) = Relative::between(pose_wm, mesh.radius(), pose_ws, around.radius()) else {
+        let Some(relative) = Relative::of(mesh, around) else {
             let origin = Point3::origin();
-            return Some(Apart { distance: 0.0, other: origin, solid: origin });
+            return Some(NearestPoints { distance: 0.0, other: origin, solid: origin });
         };
-        let (a, b) = (mesh.tree(), around.tree());
+        let (a, b) = (mesh.0.tree(), around.0.tree());
         let frames = Frames::new(a, b, &relative);
         if frames.apart > (a.radius_center + b.radius_center + enough) * (1.0 + 1e-12) + relative.slack {
             return None;

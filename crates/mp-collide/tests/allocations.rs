@@ -1,7 +1,7 @@
 //! Queries allocate nothing once their scratch has grown; clones share trees.
 
 use allocation_counter::measure;
-use mp_collide::{CollisionMesh, Groups, Query, Scene, Solid};
+use mp_collide::{CollisionMesh, Query, Scene, Solid};
 use mp_geom::primitives;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use rand::{RngExt, SeedableRng};
@@ -93,14 +93,8 @@ fn scene() -> Scene {
     let mut scene = Scene::new();
     for (i, pose) in poses(40, 4.0).into_iter().enumerate() {
         let shape = shapes[i % 2].clone();
-        let id = if i % 3 == 0 {
-            scene.insert_movable(format!("body {i}"), shape, pose)
-        } else {
-            scene.insert(format!("body {i}"), shape, pose)
-        };
-        if i % 4 == 0 {
-            scene.set_groups(id.unwrap(), Groups::new(2, !0)).unwrap();
-        }
+        let insert = if i % 3 == 0 { Scene::insert_movable } else { Scene::insert };
+        insert(&mut scene, format!("body {i}"), shape, pose).unwrap();
     }
     scene
 }
@@ -111,13 +105,11 @@ fn queries_of_scenes_allocate_nothing_after_warm_up() {
     let mut scene = scene();
     let poses = poses(60, 4.0);
     for _ in 0..2 {
-        for view in [scene.view(Groups::ALL), scene.view(Groups::new(!0, 1))] {
-            let hits = second_time(|q| poses.iter().filter(|p| view.collides(q, &mesh, p)).count());
-            assert!(hits > 2 && hits < 58, "{hits}");
-            second_time(|q| view.first_collision(q, &mesh, &poses).map_or(0, |(i, _)| i));
-            for enough in [0.0, 0.2, f64::INFINITY] {
-                second_time(|q| poses.iter().filter(|p| view.clearance(q, &mesh, p, enough).0 < 0.2).count());
-            }
+        let hits = second_time(|q| poses.iter().filter(|p| scene.collides(q, &mesh, p)).count());
+        assert!(hits > 2 && hits < 58, "{hits}");
+        second_time(|q| scene.first_collision(q, &mesh, &poses).map_or(0, |(i, _)| i));
+        for enough in [0.0, 0.2, f64::INFINITY] {
+            second_time(|q| poses.iter().filter(|p| scene.clearance(q, &mesh, p, enough).0 < 0.2).count());
         }
         second_time(|q| scene.bodies().filter(|(id, _)| scene.body_collides(q, *id).is_some()).count());
         scene.merge_static();

@@ -19,14 +19,14 @@ impl Aabb {
         Self { min, max }
     }
 
-    /// The empty box, neutral in [`union`](Aabb::union).
+    /// The empty box: its [`union`](Aabb::union) with another box is the other box.
     #[must_use]
     pub fn empty() -> Self {
         let inf = f64::INFINITY;
         Self { min: Point3::new(inf, inf, inf), max: Point3::new(-inf, -inf, -inf) }
     }
 
-    /// The smallest box holding `points`; empty when there are none.
+    /// The smallest box containing `points`; empty when there are none.
     #[must_use]
     pub fn of_points<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> Self {
         points.into_iter().fold(Self::empty(), |b, p| Self { min: b.min.inf(p), max: b.max.sup(p) })
@@ -62,14 +62,16 @@ impl Aabb {
         if self.is_empty() { 0.0 } else { (self.max - self.min).product() }
     }
 
-    /// The smallest box holding both.
+    /// The smallest box containing both.
     #[must_use]
+    #[inline]
     pub fn union(&self, other: &Self) -> Self {
         Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
     }
 
     /// The box grown by `margin` on every side (shrunk when negative).
     #[must_use]
+    #[inline]
     pub fn enlarged(&self, margin: f64) -> Self {
         Self { min: self.min.map(|v| v - margin), max: self.max.map(|v| v + margin) }
     }
@@ -82,6 +84,7 @@ impl Aabb {
 
     /// Whether the boxes share a point, boundaries included.
     #[must_use]
+    #[inline]
     pub fn intersects(&self, other: &Self) -> bool {
         (0..3).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
     }
@@ -101,7 +104,7 @@ impl Aabb {
         })
     }
 
-    /// The smallest axis-aligned box holding this one moved by `pose`.
+    /// The axis-aligned box around this box moved by `pose`.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
         Self::of_points(&self.corners().map(|c| pose * c))

@@ -81,7 +81,7 @@ impl TriMesh {
         Self::new(vertices, triangles)
     }
 
-    /// A mesh from triangle fans: the first corner of a fan with each two that follow each other.
+    /// A mesh from triangle fans: the first corner of a fan with each two consecutive others.
     /// Triangles that repeat an index are left out.
     ///
     /// # Errors
@@ -133,7 +133,7 @@ impl TriMesh {
         Self::new(vertices, triangles)
     }
 
-    /// The same triangles with vertices at identical coordinates made one and unused vertices dropped.
+    /// The same triangles, with vertices at identical coordinates merged and unused vertices dropped.
     #[must_use]
     pub fn welded(&self) -> Self {
         let soup: Vec<_> = (0..self.triangles().len()).map(|i| self.triangle(i)).collect();

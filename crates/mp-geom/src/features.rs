@@ -1,6 +1,6 @@
-//! What obstacle-geometry planners know of a body: where it is, how large, how full, and which way it runs.
+//! Features of a body for obstacle-geometry planners: its place, size, volume and direction.
 //!
-//! A. Benitez and D. Vallejo, "New technique to improve probabilistic roadmap methods", IBERAMIA 2004, as told
+//! A. Benitez and D. Vallejo, "New technique to improve probabilistic roadmap methods", IBERAMIA 2004, as described
 //! in A. Benitez et al., "Key Elements for Motion Planning Algorithms", 2010, section 3.5:
 //!
 //! - *straightness* is "the direction of an object with respect its longest side": here the longest side of
@@ -8,9 +8,9 @@
 //! - *volume* is "the size of an object respect to the volume of its surrounding sphere": here the solid's
 //!   volume over that of the sphere;
 //! - the surrounding sphere is about the centre of gravity;
-//! - where an obstacle "is built by smaller ones" each part has its own: here parts are what hangs together.
+//! - where an obstacle "is built by smaller ones" each part has its own features: here parts are connected components.
 
-use crate::{MassError, NO_COMPONENT, Sphere, TriMesh};
+use crate::{MassError, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Unit, Vector3};
 use std::f64::consts::PI;
 
@@ -19,10 +19,10 @@ use std::f64::consts::PI;
 pub struct Features {
     /// Centre of gravity of the solid; of the surface, where the mesh bounds no solid.
     pub center: Point3<f64>,
-    /// The largest distance of a point of the body from there: radius of the surrounding sphere.
+    /// The largest distance of a point of the body from `center`: the radius of the surrounding sphere.
     pub radius: f64,
-    /// Straightness: along the longest side of its tight box, the largest coordinate positive. Of sides
-    /// of equal length, any.
+    /// Straightness: the direction of the longest side of its tight box, with its largest coordinate positive. Any of
+    /// several sides of equal length.
     pub axis: Unit<Vector3<f64>>,
     /// Volume of the solid (m³); of the tight box, where the mesh bounds no solid.
     pub volume: f64,
@@ -35,7 +35,7 @@ impl Features {
         Sphere { center: self.center, radius: self.radius }
     }
 
-    /// The volume as a part of that of the surrounding sphere, in \[0, 1\]; 1 for a single point. A ball has
+    /// The volume as a fraction of that of the surrounding sphere, in \[0, 1\]; 1 for a single point. A ball has
     /// 1, a cube 0.37, a rod or a plate nearly 0.
     #[must_use]
     pub fn volume_ratio(&self) -> f64 {
@@ -43,14 +43,14 @@ impl Features {
         if sphere > 0.0 { (self.volume / sphere).min(1.0) } else { 1.0 }
     }
 
-    /// Those of the body moved by `pose`.
+    /// The features of the body moved by `pose`.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
         Self { center: pose * self.center, axis: upward(pose.rotation * self.axis.into_inner()), ..*self }
     }
 }
 
-/// The unit vector either way along `v`, its largest coordinate positive.
+/// The unit vector along `v` or against it, with its largest coordinate positive.
 fn upward(v: Vector3<f64>) -> Unit<Vector3<f64>> {
     let unit = Unit::try_new(v, 0.0).unwrap_or_else(Vector3::x_axis);
     if unit[unit.iamax()] < 0.0 { -unit } else { unit }
@@ -72,35 +72,6 @@ impl TriMesh {
             axis: upward(obb.axes()[longest]),
             volume: mass.map_or_else(|_| obb.volume(), |mass| mass.volume),
         }
-    }
-
-    /// The parts that hang together through edges, each with only its own vertices, in the order of their first
-    /// triangles. Triangles with two corners in one place belong to none; a mesh of nothing else is one part.
-    #[must_use]
-    pub fn parts(&self) -> Vec<TriMesh> {
-        let topology = self.topology();
-        if topology.components < 2 {
-            return vec![self.clone()];
-        }
-        let mut vertices = vec![Vec::new(); topology.components];
-        let mut triangles = vec![Vec::new(); topology.components];
-        // The part a vertex was last given to, and its number there: parts may share vertices.
-        let mut given = vec![(NO_COMPONENT, 0_u32); self.vertices().len()];
-        let mut order: Vec<usize> = (0..self.triangles().len()).collect();
-        order.sort_by_key(|&t| topology.component[t]);
-        for t in order {
-            let component = topology.component[t];
-            let Some(vertices) = vertices.get_mut(component as usize) else { continue };
-            triangles[component as usize].push(self.triangles()[t].map(|v| {
-                let slot = &mut given[v as usize];
-                if slot.0 != component {
-                    *slot = (component, vertices.len() as u32);
-                    vertices.push(self.vertices()[v as usize]);
-                }
-                slot.1
-            }));
-        }
-        vertices.into_iter().zip(triangles).filter_map(|(v, t)| TriMesh::new(v, t).ok()).collect()
     }
 
     /// The centre of gravity of the surface; of the corners, where it has no area.
@@ -175,34 +146,5 @@ mod tests {
             (point.center, point.radius, point.volume_ratio()),
             (Point3::new(1.0, 2.0, 3.0), 0.0, 1.0)
         );
-    }
-
-    #[test]
-    fn parts_are_taken_apart_again() {
-        let whole = [
-            cuboid(1.0, 1.0, 1.0).unwrap(),
-            sphere(0.5, 2).unwrap().transformed(&pose_from_six([4.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
-            // Touches the first in one corner, which they do not share.
-            cuboid(1.0, 1.0, 1.0).unwrap().transformed(&pose_from_six([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])),
-        ];
-        let merged = TriMesh::merged(&whole).unwrap();
-        let soup = |m: &TriMesh| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>();
-        assert!(merged.parts().iter().map(soup).eq(whole.iter().map(soup)));
-        assert_eq!(merged.welded().parts().len(), 3, "a shared corner joins nothing");
-        assert_eq!(whole[0].parts(), [whole[0].clone()]);
-        let volume: f64 = merged.parts().iter().map(|p| p.features().volume).sum();
-        assert!((volume - merged.signed_volume()).abs() < 1e-12);
-        // Triangles in turn from one part and the other.
-        let mut mixed = merged.triangles().to_vec();
-        mixed.sort_by_key(|t| t[0] % 7);
-        let mixed = TriMesh::new(merged.vertices().to_vec(), mixed).unwrap();
-        let areas = |parts: Vec<TriMesh>| {
-            let mut areas: Vec<f64> = parts.iter().map(TriMesh::area).collect();
-            areas.sort_by(f64::total_cmp);
-            areas
-        };
-        for (a, b) in areas(mixed.parts()).into_iter().zip(areas(whole.to_vec())) {
-            assert!((a - b).abs() < 1e-12);
-        }
     }
 }

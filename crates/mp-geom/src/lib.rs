@@ -1,13 +1,13 @@
 //! Triangle meshes, primitives, poses and bounding volumes for motion planning.
 //!
-//! - [`TriMesh`]: the indexed mesh, from a soup, strips, fans or polygons; [`TriMesh::topology`] tells
-//!   what is wrong with it.
+//! - [`TriMesh`]: the indexed mesh, from a soup, strips, fans or polygons; [`TriMesh::topology`] reports
+//!   its defects.
 //! - [`Aabb`], [`Obb`], [`Sphere`]: bounding volumes.
 //! - [`MassProperties`]: volume, centroid, inertia, principal axes.
-//! - [`Features`]: what obstacle-geometry planners know of a body, and [`TriMesh::parts`] of its parts.
+//! - [`Features`]: size, place and direction of a body for obstacle-geometry planners; [`TriMesh::parts`]: its components.
 //! - [`primitives`]: closed solids.
 //! - [`planar`]: polygons in the plane.
-//! - [`pose_from_six`] and its kin: poses to and from numbers.
+//! - [`pose_from_six`] and others: poses to and from numbers.
 //!
 //! Lengths are metres, angles radians.
 

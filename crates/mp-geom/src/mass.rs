@@ -44,14 +44,14 @@ pub struct MassProperties {
 /// Principal moments and axes of inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrincipalAxes {
-    /// Moments about the axes, ascending, m⁵: the first axis is the one the solid is longest along.
+    /// Moments about the axes, ascending, m⁵: along the first axis the solid is longest.
     pub moments: Vector3<f64>,
     /// Turns X, Y, Z into the axes; right-handed.
     pub rotation: UnitQuaternion<f64>,
 }
 
 impl MassProperties {
-    /// Principal moments and axes. Where moments are equal any axes between them do.
+    /// Principal moments and axes. Where moments are equal, some orthogonal axes are chosen.
     #[must_use]
     pub fn principal_axes(&self) -> PrincipalAxes {
         let (moments, axes) = sorted_eigen(&self.inertia);
@@ -64,7 +64,7 @@ impl MassProperties {
 /// for one that overflowed.
 pub(crate) fn sorted_eigen(m: &Matrix3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
     if m.iter().any(|v| !v.is_finite()) {
-        // The iteration would not end.
+        // The iteration would not terminate.
         return (m.diagonal(), Matrix3::identity());
     }
     let eigen = m.symmetric_eigen();
@@ -117,7 +117,7 @@ impl TriMesh {
         let bounds = self.aabb();
         let reference = bounds.center();
         let (volume, first, second) = self.moments(&reference);
-        // Below this, what is left is rounding.
+        // Below this, the volume is only rounding.
         if volume.abs() <= 1e-14 * self.area() * bounds.diagonal() {
             return Err(MassError::NoVolume);
         }

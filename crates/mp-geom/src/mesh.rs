@@ -22,7 +22,7 @@ pub enum MeshError {
         /// Its z.
         z: f64,
     },
-    /// A triangle names a vertex that does not exist.
+    /// A triangle refers to a vertex that does not exist.
     #[error("triangle {triangle} refers to vertex {index}, but there are only {vertices} vertices")]
     IndexOutOfRange {
         /// Which triangle, counted from 0.
@@ -52,7 +52,7 @@ pub enum MeshError {
     },
 }
 
-/// Whether 32 bits can number `count` things.
+/// An error unless 32 bits can number `count` things.
 fn check_count(what: &'static str, count: usize) -> Result<(), MeshError> {
     if u32::try_from(count).is_ok() { Ok(()) } else { Err(MeshError::TooLarge { what, count }) }
 }
@@ -60,7 +60,7 @@ fn check_count(what: &'static str, count: usize) -> Result<(), MeshError> {
 /// An indexed triangle mesh (boundary representation): a soup, with no promise of being closed,
 /// manifold, oriented or free of degenerate triangles.
 ///
-/// Never empty, every coordinate finite, every index in range: checked once, here.
+/// It is never empty, every coordinate is finite and every index in range: the constructors check this.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TriMesh {
     vertices: Vec<Point3<f64>>,
@@ -112,7 +112,7 @@ impl TriMesh {
         self.triangles[i].map(|v| self.vertices[v as usize])
     }
 
-    /// The same vertices with other triangles over them, which the caller knows to be in range.
+    /// The same vertices with other triangles, whose indices the caller knows to be in range.
     pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Self {
         Self { vertices: self.vertices.clone(), triangles }
     }

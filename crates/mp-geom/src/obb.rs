@@ -1,14 +1,14 @@
 //! Tight oriented boxes.
 //!
 //! Finding the box of least volume exactly takes cubic time (J. O'Rourke, "Finding minimal enclosing
-//! boxes", 1985). Two of its facts make good boxes cheap: with one axis fixed, the best box comes from the
+//! boxes", 1985). Two facts about it make good boxes cheap: with one axis fixed, the best box comes from the
 //! minimal rectangle around the projected points, which rotating calipers find exactly (G. Toussaint,
 //! 1983); and the best box has edges of the hull lying in adjacent faces. So:
 //!
-//! 1. the points are thinned to those extreme in many directions;
+//! 1. only points that are extreme in some of many directions are kept;
 //! 2. candidate axes: the mesh's own, those of the covariance of the surface (S. Gottschalk, M. C. Lin,
 //!    D. Manocha, "OBBTree", 1996), normals of the largest flat parts, normals of pairs of the longest edges,
-//!    and directions spread evenly; each with calipers about it;
+//!    and directions spread evenly; each refined by calipers about it;
 //! 3. the best few are improved: by calipers about each axis in turn, and by tilting the axis in smaller and
 //!    smaller steps (as a pattern search, in the spirit of C.-T. Chang, B. Gorissen, S. Melchior, "Fast
 //!    oriented bounding box optimization on the rotation group SO(3,R)", 2011);
@@ -66,15 +66,15 @@ impl Obb {
     }
 }
 
-/// Normals of flat parts tried.
+/// How many normals of flat parts are tried.
 const FLAT_PARTS: usize = 12;
-/// Edges of which all pairs are tried.
+/// How many edges are tried in all pairs.
 const EDGES: usize = 12;
-/// Evenly spread axes tried.
+/// How many evenly spread axes are tried.
 const SPREAD_AXES: usize = 64;
-/// Directions (and their opposites) whose extreme points stand for a large mesh.
+/// How many directions (each with its opposite) are used to find the extreme points of a large mesh.
 const THINNING_DIRECTIONS: usize = 256;
-/// Candidates improved to the end.
+/// How many candidates are improved.
 const FINALISTS: usize = 16;
 /// First tilt of the pattern search, radians, and the last one.
 const TILTS: [f64; 2] = [0.1, 1e-5];
@@ -92,7 +92,7 @@ impl TriMesh {
         let middle = self.aabb().center();
         let points: Vec<_> = self.vertices().iter().map(|p| p - middle).collect();
         let scale = points.iter().map(|p| p.amax()).fold(0.0, f64::max);
-        // Thickness lent to every side, so that flat boxes are compared by area and needles by length.
+        // Thickness added to every side, so that flat boxes are compared by area and needles by length.
         let thickness = 1e-6 * scale;
         let few = thinned(&points);
         let mut candidates = vec![Fit::new(&few, Matrix3::identity(), thickness)];
@@ -115,7 +115,7 @@ impl TriMesh {
         }
     }
 
-    /// Frames to try, calipers about the first axis to come.
+    /// Frames to try, before calipers about their first axis.
     fn candidate_frames(&self, middle: &Point3<f64>) -> Vec<Matrix3<f64>> {
         let surface = self.surface_frame(middle);
         let turned = |m: &Matrix3<f64>, k: usize| {
@@ -131,7 +131,7 @@ impl TriMesh {
         frames
     }
 
-    /// Unit directions of the longest edges, no two alike.
+    /// Unit directions of the longest edges, no two parallel.
     fn longest_edges(&self) -> Vec<Vector3<f64>> {
         let mut edges: Vec<_> = (0..self.triangles().len())
             .flat_map(|i| {
@@ -184,7 +184,7 @@ impl TriMesh {
             })
             .collect();
         sized.sort_by(|a, b| b.0.total_cmp(&a.0));
-        // Triangles of one plane are added up; only the largest are looked at, to stay linear.
+        // Areas of triangles in parallel planes are added; only the largest triangles are used, to stay linear.
         let mut parts: Vec<(f64, Vector3<f64>)> = Vec::new();
         for (size, n) in sized.into_iter().take(4096) {
             match parts.iter().position(|(_, m)| m.dot(&n) > 1.0 - 1e-8) {
@@ -199,7 +199,7 @@ impl TriMesh {
     }
 }
 
-/// A frame (unit columns) and how large its box is.
+/// A frame (unit columns) and the volume of its box.
 struct Fit {
     frame: Matrix3<f64>,
     size: f64,
@@ -224,7 +224,7 @@ fn extents(points: &[Vector3<f64>], frame: &Matrix3<f64>) -> (Vector3<f64>, Vect
     })
 }
 
-/// Points that matter to boxes: all when few, else those extreme in many directions.
+/// The points that decide a box: all when few, else those extreme in some of many directions.
 fn thinned(points: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     if points.len() <= 2 * THINNING_DIRECTIONS {
         return points.to_vec();
@@ -298,7 +298,7 @@ fn tilted(points: &[Vector3<f64>], mut fit: Fit, thickness: f64) -> Fit {
     fit
 }
 
-/// Some right-handed frame with first axis along `x`; `None` when `x` is zero.
+/// A right-handed frame with its first axis along `x`; `None` when `x` is zero.
 fn frame_of(x: &Vector3<f64>) -> Option<Matrix3<f64>> {
     let x = x.try_normalize(0.0)?;
     let mut least = Vector3::zeros();

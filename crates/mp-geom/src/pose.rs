@@ -1,8 +1,8 @@
-//! Rigid poses: the six numbers of the key-elements paper, quaternions and homogeneous matrices.
+//! Rigid poses from and to six numbers (as in the key-elements paper), quaternions and homogeneous matrices.
 //!
 //! A. Benitez, I. Huitzil, D. Vallejo, J. de la Calleja, M. A. Medina, "Key Elements for Motion Planning
 //! Algorithms", 2010, section 2.2, equations 1 to 4. Equations 2 and 4 are garbled in print (signs and
-//! rows are missing, and sines stand as cosines); followed here are the paper's text and its equations
+//! rows are missing, and sines are printed as cosines). This module follows the paper's text and its equations
 //! 1 and 3: *yaw* α is a counter-clockwise rotation about Z, *pitch* β about Y, *roll* γ about X, and
 //!
 //! ```text

@@ -1,7 +1,7 @@
 //! Closed solids with outward triangles, in metres.
 //!
 //! All are centred on the origin with their axis along Z, except [`prism`] and [`tetrahedron_of`], whose
-//! corners are the caller's. Curved ones are inscribed: vertices lie on the surface, the mesh inside it.
+//! corners are given. Curved ones are inscribed: vertices lie on the surface, the mesh inside it.
 
 use crate::{
     MeshError, TriMesh,
@@ -12,9 +12,9 @@ use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use thiserror::Error;
 
-/// Most segments around a curved primitive.
+/// The most segments around a curved primitive.
 pub const MAX_SEGMENTS: u32 = 4096;
-/// Most subdivisions of [`sphere`]: 1.3 million triangles.
+/// The most subdivisions of [`sphere`]: 1.3 million triangles.
 pub const MAX_SUBDIVISIONS: u32 = 8;
 
 /// Why a primitive could not be made.
@@ -70,7 +70,11 @@ pub enum PrimitiveError {
 
 type Made = Result<TriMesh, PrimitiveError>;
 
-fn positive(what: &'static str, value: f64) -> Result<f64, PrimitiveError> {
+/// `value`, if it is positive and finite.
+///
+/// # Errors
+/// [`PrimitiveError::NotPositive`], which names it `what`.
+pub fn positive(what: &'static str, value: f64) -> Result<f64, PrimitiveError> {
     if value > 0.0 && value.is_finite() {
         Ok(value)
     } else {
@@ -122,7 +126,7 @@ pub fn sphere(radius: f64, subdivisions: u32) -> Made {
             directions.push(Vector3::from_fn(|r, _| v[(r + 3 - k) % 3]));
         }
     }
-    // Every three vertices at the distance of an edge, turned outward.
+    // Every three vertices an edge apart, oriented outward.
     let edge = 2.0 / (1.0 + golden * golden).sqrt() + 1e-6;
     let near = |a: usize, b: usize| (directions[a] - directions[b]).norm() < edge;
     let mut triangles = Vec::new();
@@ -240,7 +244,7 @@ pub fn tetrahedron_of(corners: [Point3<f64>; 4]) -> Made {
     let (u, v, w) = (b - a, c - a, d - a);
     let volume = u.cross(&v).dot(&w);
     let scale = u.norm().max(v.norm()).max(w.norm());
-    // NaN is left for the mesh to report.
+    // NaN passes here: the mesh reports it.
     if volume.abs() <= 1e-14 * scale.powi(3) {
         return Err(PrimitiveError::Flat);
     }

@@ -9,8 +9,8 @@
 //! 3. among the spheres through that point and at most three support points, take the one that best
 //!    encloses all five, and go to 2. The radius grows at every turn, so this ends.
 //!
-//! Step 3 compares how far spheres truly reach instead of testing signs of barycentric coordinates, so no
-//! tolerance is needed, and repeated, collinear or cospherical points do no harm.
+//! Step 3 compares the distances of the farthest points instead of testing signs of barycentric coordinates, so no
+//! tolerance is needed, and repeated, collinear or cospherical points are no problem.
 
 use crate::TriMesh;
 use nalgebra::{DMatrix, DVector, Point3, Vector3};
@@ -25,14 +25,14 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// Whether `p` is inside or on it, as computed: `‖p − center‖ ≤ radius`.
+    /// Whether `p` is inside or on the sphere, as computed: `‖p − center‖ ≤ radius`.
     #[must_use]
     pub fn contains(&self, p: &Point3<f64>) -> bool {
         (p - self.center).norm() <= self.radius
     }
 }
 
-/// More turns than any input has been seen to need; only rounding could ask for more.
+/// More iterations than any input has been seen to need; only rounding could require more.
 const MAX_TURNS: usize = 1000;
 
 /// The smallest sphere enclosing `points`, exact up to rounding; `None` when there are no points.

@@ -1,4 +1,4 @@
-//! Which triangles meet where, and what is wrong with a mesh.
+//! Adjacency of triangles, and the defects of a mesh.
 
 use crate::{TriMesh, build::Welder};
 use std::collections::BTreeMap;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// Adjacency of a mesh and a report on its defects.
 ///
 /// Vertices at identical coordinates count as one, named by the first of them, so a mesh whose file
-/// repeats points is judged by its shape. Triangles with two corners in one place have no part in edges.
+/// repeats points is judged by its shape. Triangles with two corners in one place are not counted at edges.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Topology {
@@ -21,7 +21,7 @@ pub struct Topology {
     pub boundary_edges: Vec<[u32; 2]>,
     /// Edges of more than two triangles.
     pub crowded_edges: Vec<[u32; 2]>,
-    /// Edges along which neighbours are turned against each other.
+    /// Edges along which neighbours have opposite orientations.
     pub misoriented_edges: Vec<[u32; 2]>,
     /// Vertices whose triangles do not form one fan (surfaces touching in a point).
     pub pinched_vertices: Vec<u32>,
@@ -37,7 +37,7 @@ pub struct Topology {
     pub closed: bool,
     /// No crowded edge and no pinched vertex: the surface is locally a disc or half disc.
     pub manifold: bool,
-    /// Every edge shared by triangles is passed as often one way as the other.
+    /// Every edge shared by triangles is used as often in one direction as in the other.
     pub oriented: bool,
 }
 
@@ -56,10 +56,10 @@ impl Topology {
     }
 }
 
-/// In [`Topology::component`]: a triangle with two corners in one place.
+/// The value in [`Topology::component`] of a triangle with two corners in one place.
 pub const NO_COMPONENT: u32 = u32::MAX;
 
-/// A corner of a triangle with this height or less, relative to the longest edge, has no area.
+/// A triangle of at most this height, relative to its longest edge, has no area.
 const FLAT: f64 = 1e-14;
 
 /// One use of an edge: the triangle, which of its edges, and whether from the lower to the higher vertex.
@@ -160,7 +160,36 @@ impl TriMesh {
         out
     }
 
-    /// The triangles with every vertex named by the first one at its position.
+    /// The components connected through edges, each with only its own vertices, in the order of their first
+    /// triangles. Triangles with two corners in one place belong to none; a mesh of only such triangles is one part.
+    #[must_use]
+    pub fn parts(&self) -> Vec<TriMesh> {
+        let topology = self.topology();
+        if topology.components < 2 {
+            return vec![self.clone()];
+        }
+        let mut vertices = vec![Vec::new(); topology.components];
+        let mut triangles = vec![Vec::new(); topology.components];
+        // The part a vertex was last given to, and its number there: parts may share vertices.
+        let mut given = vec![(NO_COMPONENT, 0_u32); self.vertices().len()];
+        let mut order: Vec<usize> = (0..self.triangles().len()).collect();
+        order.sort_by_key(|&t| topology.component[t]);
+        for t in order {
+            let component = topology.component[t];
+            let Some(vertices) = vertices.get_mut(component as usize) else { continue };
+            triangles[component as usize].push(self.triangles()[t].map(|v| {
+                let slot = &mut given[v as usize];
+                if slot.0 != component {
+                    *slot = (component, vertices.len() as u32);
+                    vertices.push(self.vertices()[v as usize]);
+                }
+                slot.1
+            }));
+        }
+        vertices.into_iter().zip(triangles).filter_map(|(v, t)| TriMesh::new(v, t).ok()).collect()
+    }
+
+    /// The triangles, with every vertex replaced by the first one at its position.
     fn by_position(&self) -> Vec<[u32; 3]> {
         let mut welder = Welder::default();
         let mut first = Vec::new();
@@ -214,7 +243,8 @@ impl DisjointSets {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::primitives::{cuboid, torus};
+    use crate::pose_from_six;
+    use crate::primitives::{cuboid, sphere, torus};
     use nalgebra::Isometry3;
     use proptest::prelude::*;
 
@@ -283,6 +313,34 @@ mod tests {
         assert_eq!(apart.components, 2);
     }
 
+    #[test]
+    fn parts_are_taken_apart_again() {
+        let whole = [
+            cuboid(1.0, 1.0, 1.0).unwrap(),
+            sphere(0.5, 2).unwrap().transformed(&pose_from_six([4.0, 0.0, 0.0, 0.0, 0.0, 0.0])),
+            // Touches the first in one corner, which they do not share.
+            cuboid(1.0, 1.0, 1.0).unwrap().transformed(&pose_from_six([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])),
+        ];
+        let merged = TriMesh::merged(&whole).unwrap();
+        let soup = |m: &TriMesh| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>();
+        assert!(merged.parts().iter().map(soup).eq(whole.iter().map(soup)));
+        assert_eq!(merged.welded().parts().len(), 3, "a shared corner joins nothing");
+        assert_eq!(whole[0].parts(), [whole[0].clone()]);
+        let volume: f64 = merged.parts().iter().map(|p| p.features().volume).sum();
+        assert!((volume - merged.signed_volume()).abs() < 1e-12);
+        // Triangles in turn from one part and the other.
+        let mut mixed = merged.triangles().to_vec();
+        mixed.sort_by_key(|t| t[0] % 7);
+        let mixed = TriMesh::new(merged.vertices().to_vec(), mixed).unwrap();
+        let areas = |parts: Vec<TriMesh>| {
+            let mut areas: Vec<f64> = parts.iter().map(TriMesh::area).collect();
+            areas.sort_by(f64::total_cmp);
+            areas
+        };
+        for (a, b) in areas(mixed.parts()).into_iter().zip(areas(whole.to_vec())) {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
     proptest! {
         #[test]
         fn a_soup_in_any_order_is_judged_the_same(shuffle in Just((0..96_usize).collect::<Vec<_>>()).prop_shuffle(), gone in 0_usize..4) {

@@ -2,17 +2,17 @@
 //!
 //! G. H. Meisters, "Polygons have ears", 1975. Orientation tests are exact (J. R. Shewchuk, "Adaptive
 //! precision floating-point arithmetic and fast robust geometric predicates", 1997), so collinear runs,
-//! needles and large coordinates are decided right. Among the ears the one with the best-shaped triangle
-//! is cut, which also keeps collinear corners from becoming degenerate triangles.
+//! needles and large coordinates are decided correctly. The ear with the best-shaped triangle is cut first, which also
+//! keeps collinear corners from becoming degenerate triangles.
 
 use nalgebra::{Point2, Point3, Vector3};
 use robust::{Coord, orient2d};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Newell's normal of a closed polygon: twice its area long, right also when it is concave.
+/// Newell's normal of a closed polygon, whose length is twice the area; correct for concave polygons too.
 pub(crate) fn newell_normal(corners: &[Point3<f64>]) -> Vector3<f64> {
-    // Relative to the first corner, so that distance from the origin costs no digits.
+    // Relative to the first corner, so that no digits are lost far from the origin.
     let Some(origin) = corners.first() else { return Vector3::zeros() };
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(p, q)| (p - origin).cross(&(q - origin))).sum()
@@ -32,8 +32,8 @@ pub(crate) fn triangulate(corners: &[Point3<f64>]) -> Vec<[usize; 3]> {
     if normal[drop] < 0.0 {
         (u, v) = (v, u);
     }
-    let flat: Vec<_> = corners.iter().map(|p| Point2::new(p[u], p[v])).collect();
-    triangulate_ccw(&flat)
+    let projected: Vec<_> = corners.iter().map(|p| Point2::new(p[u], p[v])).collect();
+    triangulate_ccw(&projected)
 }
 
 /// As [`triangulate`], for a counter-clockwise polygon of the plane. O(n log n) on ordinary polygons, O(n²)
@@ -54,7 +54,7 @@ pub(crate) fn triangulate_ccw(corners: &[Point2<f64>]) -> Vec<[usize; 3]> {
         };
         let corner = match ear {
             Some(ear) => ear.corner,
-            // Cutting may have freed others; if not, the polygon is not simple.
+            // Cutting may have made other corners ears; if not, the polygon is not simple.
             None => {
                 ears.extend(ring.corners_left().filter_map(|k| ring.ear(k)));
                 match ears.peek() {
@@ -89,12 +89,12 @@ impl PartialOrd for Ear {
 }
 impl Ord for Ear {
     fn cmp(&self, other: &Self) -> Ordering {
-        // Of equals the first corner.
+        // Of equals, the first corner.
         self.quality.total_cmp(&other.quality).then(other.corner.cmp(&self.corner))
     }
 }
 
-/// What is left of a polygon while it is cut down.
+/// The rest of a polygon while ears are cut.
 struct Ring<'p> {
     corners: &'p [Point2<f64>],
     previous: Vec<usize>,
@@ -148,7 +148,7 @@ impl<'p> Ring<'p> {
             return None;
         }
         let (low, high) = (a.inf(&b).inf(&c), a.sup(&b).sup(&c));
-        // Whichever axis leaves fewer corners to look at.
+        // The axis along which fewer corners are within the triangle's range.
         let [in_x, in_y] = [0, 1].map(|axis| {
             let order = &self.sorted[axis];
             let from = order.partition_point(|&i| self.corners[i][axis] < low[axis]);
@@ -181,7 +181,7 @@ fn turn([a, b, c]: [Point2<f64>; 3]) -> f64 {
     orient2d(coord(a), coord(b), coord(c))
 }
 
-/// Whether the closed polygon is simple: at least three corners, no two equal, no two sides touching but
+/// Whether the closed polygon is simple: at least three corners, no two equal, and no two sides touch except
 /// neighbours at their common corner.
 pub(crate) fn is_simple(corners: &[Point2<f64>]) -> bool {
     let n = corners.len();

@@ -6,48 +6,39 @@ use std::ops::Range;
 use nalgebra::{Point3, Vector3};
 
 use crate::bvh::collapse::{Choice, children, choose};
-use crate::bvh::split::{Binary, Item, split_all};
+use crate::bvh::root_box::RootBox;
+use crate::bvh::split::{BinaryNode, BuildTriangle, split_all};
 use crate::bvh::{LEAF, Leaf, Node, NodeBox, Tree, WIDTH};
 use crate::triangle::Triangle;
 
-/// What a tree knows of all its corners.
-pub(crate) struct Size {
-    pub(crate) center: Point3<f64>,
-    pub(crate) radius_center: f64,
-    pub(crate) radius: f64,
-}
-
-impl Size {
-    pub(crate) fn of<'a>(corners: impl Iterator<Item = &'a Point3<f64>> + Clone) -> Self {
+impl Tree {
+    /// The tree of `triangles`, which are at least one and at most `u32::MAX`, as [`mp_geom::TriMesh`] ensures.
+    pub(crate) fn build(triangles: &[Triangle]) -> Self {
+        let corners = || triangles.iter().flatten();
         let (mut lo, mut hi) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-        for p in corners.clone() {
+        for p in corners() {
             lo = lo.inf(&p.coords);
             hi = hi.sup(&p.coords);
         }
         let center = Point3::from(lo * 0.5 + hi * 0.5);
         let up = 1.0 + 1e-15;
-        // A mesh moved by a pose that is not finite has corners that are none: infinitely far away.
+        // A mesh moved by a pose that is not finite has NaN coordinates: they count as infinitely far away.
         let farthest = |far: f64, r: f64| if r.is_nan() { f64::INFINITY } else { far.max(r) };
-        let radius = corners.clone().map(|p| p.coords.norm()).fold(0.0, farthest) * up;
-        let radius_center = corners.map(|p| (p - center).norm()).fold(0.0, farthest) * up;
-        Self { center, radius_center, radius }
-    }
-}
-
-impl Tree {
-    /// `triangles` is neither empty nor longer than `u32` can count: `TriMesh` has seen to it.
-    pub(crate) fn build(triangles: &[Triangle]) -> Self {
-        let Size { center, radius_center, radius } = Size::of(triangles.iter().flatten());
+        let radius = corners().map(|p| p.coords.norm()).fold(0.0, farthest) * up;
+        let radius_center = corners().map(|p| (p - center).norm()).fold(0.0, farthest) * up;
         // Meshes so small that this overflows are not decided by boxes (`Frames::fits_f32`).
         let scale = Some(radius_center.recip()).filter(|s| s.is_finite()).unwrap_or(1.0);
         let in_unit = |p: &Point3<f64>| {
             let p = (p - center) * scale;
             [p.x as f32, p.y as f32, p.z as f32, 0.0]
         };
-        let mut items: Vec<Item> = triangles
+        let mut items: Vec<BuildTriangle> = triangles
             .iter()
             .enumerate()
-            .map(|(i, t)| Item { corners: [in_unit(&t[0]), in_unit(&t[1]), in_unit(&t[2])], id: i as u32 })
+            .map(|(i, t)| BuildTriangle {
+                corners: [in_unit(&t[0]), in_unit(&t[1]), in_unit(&t[2])],
+                id: i as u32,
+            })
             .collect();
         let binary = split_all(&mut items);
         let choices = choose(&binary);
@@ -58,7 +49,7 @@ impl Tree {
             node_boxes: Vec::new(),
             leaf_boxes: Vec::with_capacity(leaves),
             root: 0,
-            bounding: crate::mesh_obb::MeshObb::fit(triangles.iter()),
+            bounding: RootBox::fit(triangles.iter()),
             triangles: items.iter().map(|i| triangles[i.id as usize]).collect(),
             ids: items.iter().map(|i| i.id).collect(),
             center,
@@ -73,7 +64,14 @@ impl Tree {
     }
 
     /// Adds binary node `n`, whose box is `obb`, and all below; returns the reference to it.
-    fn emit(&mut self, items: &[Item], binary: &[Binary], choices: &[Choice], n: usize, obb: NodeBox) -> u32 {
+    fn emit(
+        &mut self,
+        items: &[BuildTriangle],
+        binary: &[BinaryNode],
+        choices: &[Choice],
+        n: usize,
+        obb: NodeBox,
+    ) -> u32 {
         let b = &binary[n];
         if b.children == 0 {
             self.leaves.push(leaf(&self.triangles, &self.center, &b.range, &obb));
@@ -92,7 +90,7 @@ impl Tree {
     }
 }
 
-/// The leaf of `triangles[range]`, neither none nor more than eight, with the box around them.
+/// The leaf of `triangles[range]`, one to eight, with the box around them.
 pub(crate) fn leaf(
     triangles: &[Triangle],
     center: &Point3<f64>,

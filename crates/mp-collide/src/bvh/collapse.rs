@@ -1,7 +1,7 @@
 //! From two children to eight: dynamic programming over the binary tree.
 
 use crate::bvh::WIDTH;
-use crate::bvh::split::Binary;
+use crate::bvh::split::BinaryNode;
 
 /// The cheapest forest under a binary node with at most k + 1 roots, for k in 0..8: what it costs, and how
 /// many roots go left (0: the node itself is the root).
@@ -12,9 +12,9 @@ pub(crate) struct Choice {
     node_left: u8,
 }
 
-/// From the leaves up: where to make nodes of eight so that the boxes a query is likely to test are fewest
+/// From the leaves up: where to make nodes of eight so that queries are expected to test the fewest boxes
 /// (the chance that a box is reached is proportional to its surface).
-pub(crate) fn choose(binary: &[Binary]) -> Vec<Choice> {
+pub(crate) fn choose(binary: &[BinaryNode]) -> Vec<Choice> {
     let mut choices: Vec<Choice> = Vec::with_capacity(binary.len());
     choices.resize_with(binary.len(), || Choice { cost: [0.0; WIDTH], left: [0; WIDTH], node_left: 1 });
     for n in (0..binary.len()).rev() {
@@ -24,8 +24,8 @@ pub(crate) fn choose(binary: &[Binary]) -> Vec<Choice> {
             continue;
         }
         let (l, r) = (b.children, b.children + 1);
-        // Cheapest division of k + 1 roots, k ≥ 1, between the children: some division too where all costs
-        // have overflowed.
+        // The cheapest division of k + 1 roots, k ≥ 1, between the children; where all costs have overflowed,
+        // some division.
         let mut divided = [(f32::INFINITY, 1u8); WIDTH + 1];
         for (k, best) in divided.iter_mut().enumerate().skip(1).take(WIDTH - 1) {
             for left in 0..k {
@@ -47,7 +47,7 @@ pub(crate) fn choose(binary: &[Binary]) -> Vec<Choice> {
 }
 
 /// The children of a wide node made at binary node `n`.
-pub(crate) fn children(binary: &[Binary], choices: &[Choice], n: usize) -> Vec<usize> {
+pub(crate) fn children(binary: &[BinaryNode], choices: &[Choice], n: usize) -> Vec<usize> {
     let mut roots = Vec::with_capacity(WIDTH);
     let left = usize::from(choices[n].node_left);
     forest(binary, choices, binary[n].children, left, &mut roots);
@@ -56,7 +56,7 @@ pub(crate) fn children(binary: &[Binary], choices: &[Choice], n: usize) -> Vec<u
 }
 
 /// The roots of the cheapest forest under `n` with at most `k` roots.
-fn forest(binary: &[Binary], choices: &[Choice], n: usize, k: usize, roots: &mut Vec<usize>) {
+fn forest(binary: &[BinaryNode], choices: &[Choice], n: usize, k: usize, roots: &mut Vec<usize>) {
     // The least number of roots that reaches this cost.
     let c = &choices[n];
     let mut k = k;

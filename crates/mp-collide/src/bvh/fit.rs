@@ -1,33 +1,36 @@
-//! Choosing the axes of a box: those of least surface among several frames.
+//! The axes of the boxes of nodes: those of least surface among several frames, in `f32` from a sample of triangles.
+//!
+//! A build fits one box for each node, so this is a rough and fast fit. The box at the root is fitted once more, in `f64`
+//! from all triangles (`root_box`); the box of least volume, which takes far longer, is [`mp_geom::TriMesh::obb`].
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::bvh::split::{Item, Vec4, along, max, min, surface};
+use crate::bvh::split::{BuildTriangle, Vec4, along, max, min, surface};
 
 /// Three orthonormal axes.
-pub(crate) type Frame = [[f32; 3]; 3];
+pub(crate) type Axes = [[f32; 3]; 3];
 
 /// The axes of the mesh.
-pub(crate) const MESH: Frame = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+pub(crate) const MESH: Axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// At most so many triangles are looked at.
+/// The most triangles of a sample.
 const SAMPLE: usize = 48;
 
-/// By how much boxes are turned to make them smaller: tangents of half the angle.
+/// The turns by which boxes are made smaller: tangents of half the angle.
 const TURNS: [f64; 3] = [0.05, 0.025, 0.0125];
 
-/// The axes of a small box around `items`: the axes of the mesh; principal axes of surface, corners and
-/// normals; or the largest triangle's normal and shortest edge.
-pub(crate) fn frame(items: &[Item]) -> Frame {
+/// The axes of a small box around `items`, the best of: the axes of the mesh; the principal axes of surface, corners and
+/// normals; the largest triangle's normal and shortest edge.
+pub(crate) fn frame(items: &[BuildTriangle]) -> Axes {
     let (sample, count) = sample(items);
-    let mut best = Best { corners: sample[..count].as_flattened(), surface: f32::INFINITY, frame: MESH };
+    let mut best = BestAxes { corners: sample[..count].as_flattened(), surface: f32::INFINITY, frame: MESH };
     best.offer(&MESH);
     principal(&sample[..count], &mut best);
     best.frame
 }
 
-/// At most [`SAMPLE`] triangles, evenly spread, and how many.
-fn sample(items: &[Item]) -> ([[Vec4; 3]; SAMPLE], usize) {
+/// At most [`SAMPLE`] triangles, evenly spread over the list, and their number.
+fn sample(items: &[BuildTriangle]) -> ([[Vec4; 3]; SAMPLE], usize) {
     let mut sample = [[[0.0; 4]; 3]; SAMPLE];
     let step = items.len().div_ceil(SAMPLE);
     let mut count = 0;
@@ -38,9 +41,9 @@ fn sample(items: &[Item]) -> ([[Vec4; 3]; SAMPLE], usize) {
     (sample, count)
 }
 
-/// Turns `frame` a little about one axis after the other as long as the box around `items` shrinks. `None`
-/// where it does not.
-pub(crate) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
+/// Turns `frame` by small angles about one axis after the other where the box around `items` shrinks. `None`
+/// where it never does.
+pub(crate) fn refine(items: &[BuildTriangle], frame: &Axes) -> Option<Axes> {
     let (sample, count) = sample(items);
     let corners = sample[..count].as_flattened();
     let mut axes = frame.map(|u| Vector3::from(u.map(f64::from)));
@@ -53,7 +56,7 @@ pub(crate) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
         let (sine, cosine) = (2.0 * half_tangent / (1.0 + square), (1.0 - square) / (1.0 + square));
         for (k, i, j) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
             let [ci, cj, si, sj] = [axes[i] * cosine, axes[j] * cosine, axes[i] * sine, axes[j] * sine];
-            // Both ways at once.
+            // Both senses of rotation at once.
             let turned = [ci + sj, cj - si, ci - sj, cj + si];
             let columns = std::array::from_fn(|d| turned.map(|u| u[d] as f32));
             let (lo, hi) = extent(corners, &columns);
@@ -71,9 +74,18 @@ pub(crate) fn refine(items: &[Item], frame: &Frame) -> Option<Frame> {
     if best >= start {
         return None;
     }
-    let x = axes[0].normalize();
-    let y = (axes[1] - x * x.dot(&axes[1])).normalize();
-    Some([x, y, x.cross(&y)].map(|u| [u.x as f32, u.y as f32, u.z as f32]))
+    Some(rounded(&orthonormal(&axes[0], &axes[1])))
+}
+
+/// Right-handed unit axes: along `x`, and by Gram and Schmidt along `y`.
+pub(crate) fn orthonormal(x: &Vector3<f64>, y: &Vector3<f64>) -> [Vector3<f64>; 3] {
+    let x = x.normalize();
+    let y = (y - x * x.dot(y)).normalize();
+    [x, y, x.cross(&y)]
+}
+
+fn rounded(axes: &[Vector3<f64>; 3]) -> Axes {
+    axes.map(|u| [u.x as f32, u.y as f32, u.z as f32])
 }
 
 /// The least and the greatest coordinate along each axis.
@@ -89,19 +101,19 @@ pub(crate) fn extent<'a>(corners: impl IntoIterator<Item = &'a Vec4>, columns: &
 
 /// The columns of a frame, to multiply four at a time.
 #[inline(always)]
-pub(crate) fn columns(frame: &Frame) -> [Vec4; 3] {
+pub(crate) fn columns(frame: &Axes) -> [Vec4; 3] {
     std::array::from_fn(|d| [frame[0][d], frame[1][d], frame[2][d], 0.0])
 }
 
 /// The best frame so far.
-struct Best<'a> {
+struct BestAxes<'a> {
     corners: &'a [Vec4],
     surface: f32,
-    frame: Frame,
+    frame: Axes,
 }
 
-impl Best<'_> {
-    fn offer(&mut self, frame: &Frame) {
+impl BestAxes<'_> {
+    fn offer(&mut self, frame: &Axes) {
         let (lo, hi) = extent(self.corners, &columns(frame));
         let surface = surface(&lo, &hi);
         if surface < self.surface * 0.999 && frame.as_flattened().iter().all(|x| x.is_finite()) {
@@ -110,12 +122,12 @@ impl Best<'_> {
     }
 
     fn offer_axes(&mut self, axes: &[Vector3<f64>; 3]) {
-        self.offer(&axes.map(|u| [u.x as f32, u.y as f32, u.z as f32]));
+        self.offer(&rounded(axes));
     }
 }
 
 /// Offers the frames that depend on the triangles.
-fn principal(triangles: &[[Vec4; 3]], best: &mut Best<'_>) {
+fn principal(triangles: &[[Vec4; 3]], best: &mut BestAxes<'_>) {
     let at = |p: &Vec4| Vector3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]));
     let (mut area, mut mean) = (0.0, Vector3::zeros());
     let (mut largest, mut largest_area) = (0, -1.0);
@@ -146,7 +158,7 @@ fn principal(triangles: &[[Vec4; 3]], best: &mut Best<'_>) {
     for moment in [surface, corners, normals] {
         best.offer_axes(&moment.principal_axes());
     }
-    // Of a triangle with a right angle, as boxes are made of, the shortest edge lies along an axis.
+    // In a mesh of a box all triangles have a right angle, and the shortest edge lies along an axis of the box.
     let [a, b, c] = [at(&triangles[largest][0]), at(&triangles[largest][1]), at(&triangles[largest][2])];
     let mut edge = b - a;
     for other in [c - b, a - c] {
@@ -155,7 +167,7 @@ fn principal(triangles: &[[Vec4; 3]], best: &mut Best<'_>) {
         }
     }
     let normal = (b - a).cross(&(c - a)).try_normalize(f64::MIN_POSITIVE);
-    // Orthogonal to the normal of a sliver only after taking the normal's part away.
+    // The edge of a sliver is orthogonal to the normal only after its component along the normal is removed.
     let along = normal.and_then(|n| (edge - n * n.dot(&edge)).try_normalize(f64::MIN_POSITIVE));
     if let (Some(n), Some(e)) = (normal, along) {
         best.offer_axes(&[e, n.cross(&e), n]);
@@ -213,9 +225,6 @@ impl Moment {
                 break;
             }
         }
-        let x: Vector3<f64> = v.column(0).normalize();
-        let y: Vector3<f64> = v.column(1).into();
-        let y = (y - x * x.dot(&y)).normalize();
-        [x, y, x.cross(&y)]
+        orthonormal(&v.column(0).into(), &v.column(1).into())
     }
 }

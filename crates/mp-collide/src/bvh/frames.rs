@@ -1,4 +1,4 @@
-//! How two trees lie to each other: exactly in `f64` for triangles, in `f32` with a margin for boxes.
+//! The relative pose of two trees: in `f64` for triangles, in `f32` with a margin for boxes.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,12 +8,12 @@ use crate::simd::Lanes;
 
 /// A rigid motion in `f32`, between centred frames.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
+pub(crate) struct RigidTransform {
     pub(crate) r: [[f32; 3]; 3],
     t: [f32; 3],
 }
 
-impl Frame {
+impl RigidTransform {
     #[inline(always)]
     fn new(r: &Matrix3<f64>, t: &Vector3<f64>) -> Self {
         Self {
@@ -27,7 +27,7 @@ impl Frame {
     }
 }
 
-/// A [`Frame`] that carries boxes: rows 0 and 1 side by side, then row 2.
+/// A [`RigidTransform`] of boxes, in lanes: rows 0 and 1 side by side, then row 2.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameTransform<L> {
     r: [[L; 3]; 2],
@@ -37,7 +37,7 @@ pub(crate) struct FrameTransform<L> {
 
 impl<L: Lanes> FrameTransform<L> {
     #[inline(always)]
-    pub(crate) fn new(frame: &Frame) -> Self {
+    pub(crate) fn new(frame: &RigidTransform) -> Self {
         let (r, t) = (&frame.r, &frame.t);
         Self {
             r: [three!(k => L::halves(r[0][k], r[1][k])), three!(k => L::splat(r[2][k]))],
@@ -61,7 +61,7 @@ impl<L: Lanes> FrameTransform<L> {
     }
 }
 
-/// A box carried into the frame of another tree.
+/// A box moved into the frame of another tree.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placed<'b> {
     /// As [`NodeBox::frame`], the first two rows side by side.
@@ -70,7 +70,7 @@ pub(crate) struct Placed<'b> {
 }
 
 impl<'b> Placed<'b> {
-    /// A box in the frame of its own tree, moved there so that its centre is the origin.
+    /// A box in the frame of its own tree, moved so that its centre is the origin.
     #[inline(always)]
     pub(crate) fn at_origin(b: &'b NodeBox) -> Self {
         let [x, y, z] = &b.frame;
@@ -110,14 +110,14 @@ impl<'b> Placed<'b> {
     }
 }
 
-/// Everything about the relative pose of tree `a` and tree `b`.
+/// The relative pose of tree `a` and tree `b`, in all the forms that queries use.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frames {
-    /// From the frame of `b` into that of `a`: the motion the contract speaks of.
+    /// From the frame of `b` into that of `a`: the transform of the contract in the crate docs.
     pub(crate) exact: Relative,
     /// From centred `b` to centred `a`, and back.
-    pub(crate) into_a: Frame,
-    pub(crate) into_b: Frame,
+    pub(crate) into_a: RigidTransform,
+    pub(crate) into_b: RigidTransform,
     /// Boxes are apart only when the gap exceeds this (metres): [`PAD`], and the rounding of the triangles
     /// themselves in `f64`, which outweighs it far from the origin of a mesh.
     pub(crate) pad: f32,
@@ -127,7 +127,7 @@ pub(crate) struct Frames {
     pub(crate) apart: f64,
 }
 
-/// Rounding in `f32` of carrying a box into the other frame and testing it, in parts of the size of the
+/// Rounding in `f32` of moving a box into the other frame and testing it, relative to the size of the
 /// problem `s = radius a + radius b + distance of the centres`.
 ///
 /// A coordinate of a placed centre is a sum of four products, wrong by at most 6u·s (u = 2⁻²⁴); its
@@ -145,15 +145,15 @@ impl Frames {
         let pad = PAD * (a.radius_center + b.radius_center + apart) + exact.slack;
         Self {
             exact: *exact,
-            into_a: Frame::new(&r, &shift),
-            into_b: Frame::new(&r.transpose(), &shift_back),
+            into_a: RigidTransform::new(&r, &shift),
+            into_b: RigidTransform::new(&r.transpose(), &shift_back),
             pad: (pad * (1.0 + 1e-6)) as f32,
             slack: (exact.slack * (1.0 + 1e-6)) as f32,
             apart,
         }
     }
 
-    /// Whether lanes may be used: products of four lengths must neither overflow nor vanish in `f32`.
+    /// Whether lanes may be used: products of four lengths must neither overflow nor underflow in `f32`.
     pub(crate) fn fits_f32(&self, a: &Tree, b: &Tree) -> bool {
         fits(a.radius_center) && fits(b.radius_center) && self.apart <= 1e9
     }

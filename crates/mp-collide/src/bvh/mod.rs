@@ -6,10 +6,12 @@ pub(crate) mod build;
 mod collapse;
 mod fit;
 pub(crate) mod frames;
+pub(crate) mod root_box;
 mod split;
 
 use crate::triangle::Triangle;
 use nalgebra::Point3;
+use root_box::RootBox;
 
 /// Boxes and triangles per node, and lanes per vector.
 pub(crate) const WIDTH: usize = 8;
@@ -20,7 +22,7 @@ pub(crate) const LEAF: u32 = 1 << 31;
 /// One value per lane.
 pub(crate) type Lane = [f32; WIDTH];
 
-/// A box, alone, in the centred frame of its tree. 64 bytes.
+/// The box of one node or leaf, in the centred frame of its tree. 64 bytes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct NodeBox {
@@ -42,7 +44,7 @@ impl NodeBox {
 #[repr(C, align(64))]
 pub(crate) struct Node {
     pub(crate) center: [Lane; 3],
-    /// Negative in lanes not used, so that nothing touches them.
+    /// Negative in unused lanes, so that nothing touches them.
     pub(crate) half: [Lane; 3],
     /// `axes[k][d]`: coordinate `d` of axis `k`.
     pub(crate) axes: [[Lane; 3]; 3],
@@ -72,7 +74,7 @@ impl Node {
 
     /// The children, from lane 0 on.
     pub(crate) fn children(&self) -> impl Iterator<Item = u32> {
-        // Not a number, in a box too large for `f32`, is no empty lane.
+        // A lane with NaN is used: its box is too large for `f32`.
         let used = self.half[0].iter().take_while(|half| half.is_nan() || **half >= 0.0).count();
         self.child[..used].iter().copied()
     }
@@ -82,7 +84,7 @@ impl Node {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Leaf {
-    /// `corner[k][d]`: coordinate `d` of corner `k`. Lanes not used repeat the last triangle.
+    /// `corner[k][d]`: coordinate `d` of corner `k`. Unused lanes repeat the last triangle.
     pub(crate) corner: [[Lane; 3]; 3],
     /// The centre, in the frame of the mesh.
     pub(crate) center: [f64; 3],
@@ -113,7 +115,7 @@ pub(crate) struct Tree {
     pub(crate) leaf_boxes: Vec<NodeBox>,
     pub(crate) root: u32,
     /// The box around everything, in `f64`, in the frame of the mesh.
-    pub(crate) bounding: crate::mesh_obb::MeshObb,
+    pub(crate) bounding: RootBox,
     /// In the order of the leaves.
     pub(crate) triangles: Vec<Triangle>,
     /// The index of each triangle in the mesh it came from.
@@ -137,7 +139,7 @@ impl Tree {
         }
     }
 
-    /// Whether the tree is too large for the caches near the core, so that it pays to fetch ahead.
+    /// Whether the tree is too large for the caches near the core, so that prefetching pays.
     pub(crate) fn is_large(&self) -> bool {
         size_of_val(&self.nodes[..]) + size_of_val(&self.leaves[..]) > 1 << 18
     }

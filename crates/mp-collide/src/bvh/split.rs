@@ -1,53 +1,53 @@
 //! A binary tree by the surface-area heuristic, along the axes of the mesh and those of each box.
 //!
-//! Everything here is in the unit of the mesh: relative to its centre, in parts of its radius, in `f32`.
+//! All coordinates here are relative to the centre of the mesh, in units of its radius, in `f32`.
 
 use std::ops::Range;
 
-use crate::bvh::fit::{self, Frame};
+use crate::bvh::fit::{self, Axes};
 use crate::bvh::{NodeBox, WIDTH};
 
 /// Bins along an axis: a power of two.
 const BINS: usize = 32;
-/// Between this and its double the numbers of `f32` are whole, and their last bits count from 0.
+/// From this number to its double the numbers of `f32` are whole, and their last bits count from 0.
 const UNITS: f32 = (1 << 23) as f32;
-/// Up to so many triangles every division is tried, not only those between bins.
+/// Up to this many triangles every division is tried, not only those between bins.
 const SWEEP: usize = 16;
-/// What fits a leaf is divided all the same where its box has so many times the surface of the two parts:
-/// opposite walls of a room are better kept apart.
+/// Triangles that fit a leaf are divided nevertheless where their box has this many times the surface of the boxes of two
+/// parts: opposite walls of a room are better in two leaves.
 const WORTH: f32 = 1.1;
-/// A coordinate along an axis of a box is wrong by no more: u = 2⁻²⁴ from rounding the corner, 3u from the
+/// A bound on the error of a coordinate along an axis of a box: u = 2⁻²⁴ from rounding the corner, 3u from the
 /// sum of three products, all of vectors no longer than 1.
 const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 
 /// Three coordinates in a register of four.
 pub(crate) type Vec4 = [f32; 4];
 
-/// A triangle on its way through the build.
+/// A triangle during the build.
 #[derive(Clone, Copy)]
-pub(crate) struct Item {
+pub(crate) struct BuildTriangle {
     pub(crate) corners: [Vec4; 3],
     pub(crate) id: u32,
 }
 
-pub(crate) struct Binary {
-    /// Children, which are neighbours; 0 in a leaf.
+pub(crate) struct BinaryNode {
+    /// The index of the first child, which the second follows; 0 in a leaf.
     pub(crate) children: usize,
     pub(crate) range: Range<usize>,
     pub(crate) surface: f32,
-    frame: Frame,
+    frame: Axes,
     lo: Vec4,
     hi: Vec4,
 }
 
-impl Binary {
+impl BinaryNode {
     fn new(range: Range<usize>) -> Self {
         Self { children: 0, range, surface: 0.0, frame: fit::MESH, lo: [0.0; 4], hi: [0.0; 4] }
     }
 
-    /// The box around these of `items`, whatever was rounded: of a mesh whose radius is `unit` metres, relative
+    /// The box around the node's part of `items`, rounding included, in metres: `unit` is the radius of the mesh. Relative
     /// to the centre of the mesh.
-    pub(crate) fn obb(&self, items: &[Item], unit: f64) -> NodeBox {
+    pub(crate) fn obb(&self, items: &[BuildTriangle], unit: f64) -> NodeBox {
         let items = &items[self.range.clone()];
         let (f, lo, hi) = match fit::refine(items, &self.frame) {
             Some(frame) => {
@@ -60,14 +60,14 @@ impl Binary {
         let wide = f.map(|u| u.map(f64::from));
         let lo: [f64; 3] = std::array::from_fn(|k| (f64::from(lo[k]) - ROUNDING) * unit);
         let hi: [f64; 3] = std::array::from_fn(|k| (f64::from(hi[k]) + ROUNDING) * unit);
-        // Infinities would make numbers that are none, and those no box.
+        // Infinities would give NaN in the box.
         let center: [f32; 3] = std::array::from_fn(|d| {
             let x = (0..3).map(|k| wide[k][d] * 0.5 * (lo[k] + hi[k])).sum::<f64>();
             (x as f32).clamp(f32::MIN, f32::MAX)
         });
         let half: [f32; 3] = std::array::from_fn(|k| {
-            // The rounded axes are not quite orthogonal: measure from where the centre really is. A box
-            // test takes them for orthonormal; `Frames::pad` covers that.
+            // The rounded axes are not quite orthogonal: measured from the rounded centre. Box
+            // tests assume orthonormal axes; `Frames::pad` covers the difference.
             let at: f64 = (0..3).map(|d| wide[k][d] * f64::from(center[d])).sum();
             ((hi[k] - at).max(at - lo[k]) * (1.0 + 3e-7)) as f32
         });
@@ -77,11 +77,11 @@ impl Binary {
 }
 
 /// The binary tree, parents before children, its leaves of at most [`WIDTH`] items.
-pub(crate) fn split_all(items: &mut [Item]) -> Vec<Binary> {
+pub(crate) fn split_all(items: &mut [BuildTriangle]) -> Vec<BinaryNode> {
     let mut own = Vec::with_capacity(items.len());
     let mut aside = items.to_vec();
     let mut binary = Vec::with_capacity(items.len() / 2 + 1);
-    binary.push(Binary::new(0..items.len()));
+    binary.push(BinaryNode::new(0..items.len()));
     let mut todo = vec![0];
     while let Some(n) = todo.pop() {
         let range = binary[n].range.clone();
@@ -96,22 +96,22 @@ pub(crate) fn split_all(items: &mut [Item]) -> Vec<Binary> {
         if let Some(first) = split(items, &own, frames, b.surface, &mut aside) {
             let children = binary.len();
             binary[n].children = children;
-            binary.push(Binary::new(range.start..range.start + first));
-            binary.push(Binary::new(range.start + first..range.end));
+            binary.push(BinaryNode::new(range.start..range.start + first));
+            binary.push(BinaryNode::new(range.start + first..range.end));
             todo.extend([children, children + 1]);
         }
     }
     binary
 }
 
-/// Extent along the axes of the mesh, then along those of a box.
+/// Extents along the axes of the mesh, then along those of a box.
 #[derive(Clone, Copy)]
-struct Bounds {
+struct Extents {
     lo: [Vec4; 2],
     hi: [Vec4; 2],
 }
 
-impl Bounds {
+impl Extents {
     const EMPTY: Self = Self { lo: [[f32::INFINITY; 4]; 2], hi: [[f32::NEG_INFINITY; 4]; 2] };
 
     #[inline(always)]
@@ -158,15 +158,15 @@ pub(crate) fn along(columns: &[Vec4; 3], p: &Vec4) -> Vec4 {
     std::array::from_fn(|k| columns[0][k] * p[0] + columns[1][k] * p[1] + columns[2][k] * p[2])
 }
 
-/// The bounds of each item, in `own`, and of all.
-fn bounds(items: &[Item], frame: &Frame, own: &mut Vec<Bounds>) -> Bounds {
+/// The extents of each triangle, in `own`, and of all.
+fn bounds(items: &[BuildTriangle], frame: &Axes, own: &mut Vec<Extents>) -> Extents {
     let columns = fit::columns(frame);
-    let mut all = Bounds::EMPTY;
+    let mut all = Extents::EMPTY;
     own.clear();
     for item in items {
         let [a, b, c] = &item.corners;
         let [x, y, z] = [along(&columns, a), along(&columns, b), along(&columns, c)];
-        let one = Bounds {
+        let one = Extents {
             lo: [min(&min(a, b), c), min(&min(&x, &y), &z)],
             hi: [max(&max(a, b), c), max(&max(&x, &y), &z)],
         };
@@ -176,9 +176,15 @@ fn bounds(items: &[Item], frame: &Frame, own: &mut Vec<Bounds>) -> Bounds {
     all
 }
 
-/// Reorders `items` in two parts, neither empty; returns the length of the first. `None` where they had
-/// better stay together, in a leaf.
-fn split(items: &mut [Item], own: &[Bounds], frames: usize, whole: f32, aside: &mut [Item]) -> Option<usize> {
+/// Reorders `items` into two parts, neither empty, and returns the length of the first. `None` where one leaf is
+/// better.
+fn split(
+    items: &mut [BuildTriangle],
+    own: &[Extents],
+    frames: usize,
+    whole: f32,
+    aside: &mut [BuildTriangle],
+) -> Option<usize> {
     let n = items.len();
     if n > SWEEP {
         return Some(bin(items, own, frames, aside));
@@ -189,7 +195,7 @@ fn split(items: &mut [Item], own: &[Bounds], frames: usize, whole: f32, aside: &
     if n == 1 {
         return None;
     }
-    // A leaf costs the same whatever it holds.
+    // The cost of a leaf does not depend on how many triangles it holds.
     let (first, surface) = sweep(items, own, frames, aside, |bounds, _| bounds.surface());
     (surface * WORTH < whole).then_some(first)
 }
@@ -197,11 +203,11 @@ fn split(items: &mut [Item], own: &[Bounds], frames: usize, whole: f32, aside: &
 /// The best of all divisions in the order of the middles along each axis, and what it costs.
 #[inline(always)]
 fn sweep(
-    items: &mut [Item],
-    own: &[Bounds],
+    items: &mut [BuildTriangle],
+    own: &[Extents],
     frames: usize,
-    aside: &mut [Item],
-    cost: impl Fn(&Bounds, usize) -> f32,
+    aside: &mut [BuildTriangle],
+    cost: impl Fn(&Extents, usize) -> f32,
 ) -> (usize, f32) {
     let n = items.len();
     let mut best = (n / 2, f32::INFINITY);
@@ -215,12 +221,12 @@ fn sweep(
         order.sort_unstable();
         let at = |i: usize| &own[order[i] as u32 as usize];
         let mut above = [0.0; SWEEP];
-        let mut right = Bounds::EMPTY;
+        let mut right = Extents::EMPTY;
         for i in (1..n).rev() {
             right.join(at(i));
             above[i] = cost(&right, n - i);
         }
-        let mut left = Bounds::EMPTY;
+        let mut left = Extents::EMPTY;
         let before = best.1;
         for i in 1..n {
             left.join(at(i - 1));
@@ -240,7 +246,7 @@ fn sweep(
     best
 }
 
-/// An integer in the order of `f32::total_cmp`.
+/// An integer with the order of `f32::total_cmp`.
 #[inline(always)]
 fn ordered(x: f32) -> u32 {
     let bits = x.to_bits();
@@ -248,7 +254,7 @@ fn ordered(x: f32) -> u32 {
 }
 
 /// The best division between bins along each axis.
-fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) -> usize {
+fn bin(items: &mut [BuildTriangle], own: &[Extents], frames: usize, aside: &mut [BuildTriangle]) -> usize {
     let n = items.len();
     let mut best: Option<(f32, usize, usize, usize)> = None;
     let (mut start, mut scale) = ([[0.0; 4]; 2], [[0.0; 4]; 2]);
@@ -259,7 +265,7 @@ fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) ->
             (lo, hi) = (min(&middle, &lo), max(&middle, &hi));
         }
         (start[f], scale[f]) = (lo, std::array::from_fn(|k| (BINS - 1) as f32 / (hi[k] - lo[k])));
-        let mut bins = [[(Bounds::EMPTY, 0u32); BINS]; 3];
+        let mut bins = [[(Extents::EMPTY, 0u32); BINS]; 3];
         for o in own {
             let at = place(o, f, &start[f], &scale[f]);
             for k in 0..3 {
@@ -270,13 +276,13 @@ fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) ->
         }
         for k in (0..3).filter(|&k| scale[f][k].is_finite()) {
             let mut above = [0.0; BINS];
-            let (mut right, mut count) = (Bounds::EMPTY, 0);
+            let (mut right, mut count) = (Extents::EMPTY, 0);
             for i in (1..BINS).rev() {
                 right.join(&bins[k][i].0);
                 count += bins[k][i].1;
                 above[i] = right.surface() * count as f32;
             }
-            let (mut left, mut count) = (Bounds::EMPTY, 0);
+            let (mut left, mut count) = (Extents::EMPTY, 0);
             for i in 1..BINS {
                 left.join(&bins[k][i - 1].0);
                 count += bins[k][i - 1].1;
@@ -307,7 +313,7 @@ fn bin(items: &mut [Item], own: &[Bounds], frames: usize, aside: &mut [Item]) ->
 
 /// The bins of an item along three axes.
 #[inline(always)]
-fn place(o: &Bounds, frame: usize, start: &Vec4, scale: &Vec4) -> [usize; 3] {
+fn place(o: &Extents, frame: usize, start: &Vec4, scale: &Vec4) -> [usize; 3] {
     let middle = o.middle(frame);
     std::array::from_fn(|k| {
         // Rounded to the nearest by the addition, and never out of range.

@@ -1,4 +1,4 @@
-//! Leaves: eight triangles, carried into another frame, and against a box. A filter that never loses a triangle
+//! Leaves: eight triangles, moved into another frame, and compared with a box, by a filter that keeps every triangle
 //! that meets the box.
 
 use crate::bvh::frames::{FrameTransform, Frames, Placed};
@@ -6,7 +6,7 @@ use crate::bvh::{Leaf, NodeBox};
 use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 
-/// Added to every margin: products of lengths so small that they underflow decide nothing.
+/// Added to every margin, so that products that underflow decide nothing.
 pub(crate) const TINY: f32 = 1e-34;
 
 /// Corners of eight triangles: `[k][d]` is coordinate `d` of corner `k`.
@@ -25,23 +25,23 @@ pub(crate) fn corners<L: Lanes>(leaf: &Leaf) -> Corners<L> {
 /// u: the relative rounding of `f32`.
 pub(crate) const U: f32 = 6e-8;
 
-/// Two leaves in the frame of the first, its origin moved to that leaf's centre, and how wrong `f32` makes
-/// what is computed there.
+/// The frame in which two leaves are compared, that of the first with its origin moved to the leaf's centre, and the
+/// rounding error of `f32` there.
 ///
 /// Corners of the first, within `m` of its centre, are rounded once: u·m. Those of the second, within `n`
 /// of its centre, which is at `t`, are wrong by u·√3·n each for the rounding of the corner, of the rotation and of
 /// three products, by u·(√3·n + t) for each of three sums and by u·t for that of the shift, and by what `f64`
 /// loses in the triangles that the contract speaks of. All in each coordinate.
-pub(crate) struct Near {
+pub(crate) struct LeafFrame {
     /// Centre of the second leaf.
     pub(crate) shift: [f32; 3],
-    /// The largest coordinate of that.
+    /// Its largest coordinate in magnitude.
     pub(crate) t: f32,
-    /// How wrong a coordinate of the first may be together with one of the second.
+    /// A bound on the error of a coordinate of the first leaf plus that of one of the second.
     pub(crate) wrong: f32,
 }
 
-impl Near {
+impl LeafFrame {
     #[inline(always)]
     pub(crate) fn new(a: &Leaf, b: &Leaf, frames: &Frames) -> Self {
         let center = frames.exact.point(&b.center.into());
@@ -51,7 +51,7 @@ impl Near {
         Self { shift, t, wrong }
     }
 
-    /// The triangles of the second leaf.
+    /// Moves the triangles of the second leaf into this frame.
     #[inline(always)]
     pub(crate) fn carry<L: Lanes>(&self, v: &Corners<L>, frames: &Frames) -> Corners<L> {
         let r = &frames.into_a.r;
@@ -65,7 +65,13 @@ impl Near {
 /// The triangles (with edges up to `edge` long) that may come within `margin` of box `q`, all in the frame of
 /// `near`: axes of the box, then the normals of the triangles.
 #[inline(always)]
-pub(crate) fn near_box<L: Lanes>(v: &Corners<L>, edge: f32, q: &Placed<'_>, near: &Near, margin: f32) -> u32 {
+pub(crate) fn near_box<L: Lanes>(
+    v: &Corners<L>,
+    edge: f32,
+    q: &Placed<'_>,
+    near: &LeafFrame,
+    margin: f32,
+) -> u32 {
     let c = q.center::<L>();
     let d = [sub(&v[0], &c), sub(&v[1], &c), sub(&v[2], &c)];
     let margin = margin + 2.0 * near.wrong;
@@ -102,7 +108,7 @@ pub(crate) fn near_each_other<L: Lanes>(
     into_a: &FrameTransform<L>,
     margin: f32,
 ) -> (u32, u32) {
-    let near = Near::new(a, b, frames);
+    let near = LeafFrame::new(a, b, frames);
     let box_b = into_a.place(box_b).centred_at(near.shift);
     let mask_a = near_box(&corners::<L>(a), a.edge, &box_b, &near, margin) & a.all();
     if mask_a == 0 {

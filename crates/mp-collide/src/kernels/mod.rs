@@ -1,4 +1,4 @@
-//! Kernels: boxes and triangles compared eight at a time in `f32` with error margins; what is too close to call is decided
+//! Kernels: boxes and triangles compared eight at a time in `f32` with error margins. What these do not decide is decided
 //! in `f64`.
 
 #![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.

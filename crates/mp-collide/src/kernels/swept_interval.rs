@@ -1,5 +1,4 @@
-//! Parts of a motion: how two trees lie in the middle of one, and how far the points of the first get from
-//! where they are there.
+//! An interval of a motion: how two trees lie in its middle, and how far the points of the first move from there.
 
 use nalgebra::Vector3;
 
@@ -8,9 +7,8 @@ use crate::bvh::{NodeBox, Tree};
 use crate::pose::Relative;
 use crate::simd::Lanes;
 
-/// How far (m) and which way points of `a` move while a part of a motion goes from its middle to one of its
-/// ends, to first order: `shift + turn × p`, in the centred frame of a tree. Toward the other end it is the
-/// opposite.
+/// The displacement (m) of points of `a` from the middle of an interval to one of its ends, to first order:
+/// `shift + turn × p`, in the centred frame of a tree. To the other end it is the opposite.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drift {
     shift: [f32; 3],
@@ -18,20 +16,20 @@ pub(crate) struct Drift {
 }
 
 impl Drift {
-    /// `shift` is that of the point `origin`.
+    /// The drift that moves the point `origin` by `shift`.
     pub(crate) fn new(turn: &Vector3<f64>, shift: &Vector3<f64>, origin: &Vector3<f64>) -> Self {
         let shift = shift - turn.cross(origin);
         Self { shift: shift.map(|x| x as f32).into(), turn: turn.map(|x| x as f32).into() }
     }
 
-    /// At one point.
+    /// The drift of one point.
     #[inline(always)]
     pub(crate) fn at_point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let wide = |v: [f32; 3]| Vector3::from(v.map(f64::from));
         wide(self.shift) + wide(self.turn).cross(p)
     }
 
-    /// At a point in each lane.
+    /// The drift of a point in each lane.
     #[inline(always)]
     pub(crate) fn at<L: Lanes>(&self, p: &[L; 3]) -> [L; 3] {
         let w = [L::splat(self.turn[0]), L::splat(self.turn[1]), L::splat(self.turn[2])];
@@ -44,8 +42,8 @@ impl Drift {
     }
 }
 
-/// How `a` moves over half a part of a motion, in `f64` and in the frame of `b`: the origin of `a` by
-/// `shift`, a point at `p` from it by `turn × p` beside that, and in any direction by `rest` more; by `most`
+/// A bound on the motion of `a` over half an interval, in `f64` and in the frame of `b`: the origin of `a` moves by
+/// `shift`, a point at `p` from it by `shift + turn × p`, and by up to `rest` more in any direction; by `most`
 /// in all.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Travel {
@@ -58,30 +56,30 @@ pub(crate) struct Travel {
 }
 
 impl Travel {
-    /// Standing still.
+    /// No motion.
     pub(crate) fn none() -> Self {
         Self { shift: Vector3::zeros(), turn: Vector3::zeros(), rest: 0.0, most: 0.0 }
     }
 }
 
-/// What lies where in a part of a motion of `a` past `b`, about its middle.
+/// How `a` lies to `b` in the middle of an interval of its motion, and how it moves from there.
 #[derive(Clone, Debug)]
 pub(crate) struct SweptInterval {
     pub(crate) frames: Frames,
-    /// In the frame of `a` as it is in the middle, and in that of `b`.
+    /// The drift in the frame of `a` as it is in the middle, and in the frame of `b`.
     pub(crate) in_a: Drift,
     pub(crate) in_b: Drift,
     /// How much the drift differs between points of `a`, per metre between them.
     pub(crate) rate: f32,
     /// How much farther than its drift a point may move (m), in any direction.
     pub(crate) rest: f32,
-    /// Boxes and triangles are apart when their gap exceeds this (m) and what they move: rounding, and
+    /// Boxes and triangles are apart when their gap exceeds this (m) and their motion: rounding, and
     /// the clearance to keep.
     pub(crate) margin: f32,
 }
 
-/// For what is rounded to `f32`.
-const UP: f64 = 1.0 + 1e-6;
+/// A factor that outweighs rounding to `f32`.
+pub(crate) const UP: f64 = 1.0 + 1e-6;
 
 impl SweptInterval {
     /// `None` when `a` stays farther than `clearance` from `b` by the balls around them.
@@ -117,77 +115,5 @@ impl SweptInterval {
     #[inline(always)]
     pub(crate) fn slop(&self, obb: &NodeBox) -> f32 {
         self.rate * (obb.size.sqrt() * 1.000_001) + self.rest
-    }
-}
-
-/// A part of a motion.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Part {
-    /// What it covers, in whatever counts it: from the first to before the last.
-    pub(crate) range: [u32; 2],
-    /// How far any point moves at most (m) from the middle to either end; 0 for a single pose.
-    pub(crate) most: f32,
-    /// The first of its two halves, once made.
-    halves: u32,
-    /// Its span, once made.
-    span: u32,
-}
-
-impl Part {
-    /// Not made yet.
-    const NONE: u32 = u32::MAX;
-    /// Made, and found to be nowhere near.
-    const FAR: u32 = u32::MAX - 1;
-}
-
-/// The parts of a motion that were looked at, and their spans.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Parts {
-    parts: Vec<Part>,
-    spans: Vec<SweptInterval>,
-}
-
-impl Parts {
-    pub(crate) fn clear(&mut self) {
-        self.parts.clear();
-        self.spans.clear();
-    }
-
-    #[inline]
-    pub(crate) fn part(&self, index: u32) -> &Part {
-        &self.parts[index as usize]
-    }
-
-    /// Adds a part over `range` in which points move by `most` (m) at most.
-    pub(crate) fn add(&mut self, range: [u32; 2], most: f64) {
-        let most = (most * UP) as f32;
-        self.parts.push(Part { range, most, halves: Part::NONE, span: Part::NONE });
-    }
-
-    /// What [`Parts::set_span`] was given for a part; `None` when it was not yet called.
-    #[inline]
-    pub(crate) fn span(&self, index: u32) -> Option<Option<&SweptInterval>> {
-        let span = self.part(index).span;
-        (span != Part::NONE).then(|| self.spans.get(span as usize))
-    }
-
-    /// Says where things are in a part; `None` when the bodies are nowhere near each other.
-    pub(crate) fn set_span(&mut self, index: u32, span: Option<SweptInterval>) {
-        self.parts[index as usize].span = if span.is_some() { self.spans.len() as u32 } else { Part::FAR };
-        self.spans.extend(span);
-    }
-
-    /// The first half of a part; `None` when it was not halved yet.
-    #[inline]
-    pub(crate) fn half(&self, index: u32) -> Option<u32> {
-        let half = self.part(index).halves;
-        (half != Part::NONE).then_some(half)
-    }
-
-    /// Says that the next two parts to be added are the halves of this one; returns the first.
-    pub(crate) fn set_half(&mut self, index: u32) -> u32 {
-        let half = self.parts.len() as u32;
-        self.parts[index as usize].halves = half;
-        half
     }
 }

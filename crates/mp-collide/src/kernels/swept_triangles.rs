@@ -1,49 +1,49 @@
-//! Do triangles stay apart while some of them move?
+//! Whether triangles of two leaves stay apart while those of one leaf move.
 
 use nalgebra::{Point3, Vector3};
 
 use crate::bvh::{LEAF, NodeBox, Tree};
 use crate::counters::Counters;
 use crate::kernels::swept_interval::{Drift, SweptInterval};
-use crate::kernels::triangle_distance::{Bounds, DistanceKernel, SeparatingDirection};
+use crate::kernels::triangle_distance::{DistanceBounds, DistanceKernel, SeparatingDirection};
 use crate::simd::Lanes;
 use crate::triangle::{Triangle, closest_within, intersect};
 
-/// How things keep away from each other over a part of a motion.
+/// Whether triangles keep a distance over a part of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LeafCheck {
-    /// By what is to be kept, all along.
+    /// They keep it all along.
     Free,
-    /// Not shown to.
+    /// They were not shown to keep it.
     Unproven,
-    /// By less, in the middle.
+    /// They are nearer in the middle.
     TooClose,
-    /// Not at all: they meet in the middle.
+    /// They meet in the middle.
     Collision,
 }
 
-/// How the triangles of `mask_a` keep away from those of `mask_b` over a part in which no point moves farther than
-/// `most` (metres) from the middle, when `keep` (metres) is to be kept.
+/// Whether the triangles of `mask_a` keep the distance `keep` (metres) from those of `mask_b` over a part in which no point
+/// moves farther than `most` (metres) from the middle.
 ///
-/// Those that may come that near by distance are kept apart along a direction, where only what moves along it counts.
+/// Pairs whose distance does not decide are separated along a direction: only motion along that direction counts.
 #[inline(always)]
 pub(crate) fn triangles<L: Lanes>(
     ((a, x, mask_a), (b, y, mask_b)): ((&Tree, u32, u32), (&Tree, u32, u32)),
-    span: &SweptInterval,
+    interval: &SweptInterval,
     (most, keep): (f32, f64),
     counters: &mut Counters,
 ) -> LeafCheck {
     let (i, j) = ((x & !LEAF) as usize, (y & !LEAF) as usize);
-    let (leaf_a, leaf_b, frames) = (&a.leaves[i], &b.leaves[j], &span.frames);
-    let swept = SweepCheck::new(a, &a.leaf_boxes[i], span, most, keep);
-    let gaps = DistanceKernel::<L>::new(leaf_a, &SeparatingDirection::default());
+    let (leaf_a, leaf_b, frames) = (&a.leaves[i], &b.leaves[j], &interval.frames);
+    let swept = LeafMotion::new(a, &a.leaf_boxes[i], interval, most, keep);
+    let kernel = DistanceKernel::<L>::new(leaf_a, &SeparatingDirection::default());
     let mut singles = mask_b;
     while singles != 0 {
         let l = leaf_b.first as usize + singles.trailing_zeros() as usize;
         singles &= singles - 1;
         let single = frames.exact.triangle(&b.triangles[l]);
         counters.triangle_tests += 1;
-        let close = gaps.between(&single, mask_a, swept.maybe, &mut Bounds::default());
+        let close = kernel.between(&single, mask_a, swept.maybe, &mut DistanceBounds::default());
         let mut lanes = close.near | close.crossing;
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
@@ -63,36 +63,36 @@ pub(crate) fn triangles<L: Lanes>(
     LeafCheck::Free
 }
 
-/// How the triangles of a leaf of `a` move over a part.
-struct SweepCheck<'s> {
+/// The motion of the triangles of a leaf of `a` over a part.
+struct LeafMotion<'s> {
     drift: &'s Drift,
     /// The origin of the drift, in the frame of `a`.
     origin: &'s Point3<f64>,
     /// The distance to keep (metres).
     keep: f64,
-    /// How much more in any direction, and the distance to keep (metres).
+    /// How far points may leave their drift, in any direction, plus the distance to keep (metres).
     beside: f64,
-    /// Squared: triangles farther apart than this stay apart whichever way they move,
+    /// Squared: triangles farther apart than this keep the distance in whatever direction they move.
     squared: f64,
-    /// rounded up.
+    /// The same, rounded up.
     maybe: f32,
 }
 
-impl<'s> SweepCheck<'s> {
+impl<'s> LeafMotion<'s> {
     #[inline(always)]
-    fn new(a: &'s Tree, own: &NodeBox, span: &'s SweptInterval, most: f32, keep: f64) -> Self {
+    fn new(a: &'s Tree, own: &NodeBox, interval: &'s SweptInterval, most: f32, keep: f64) -> Self {
         let center = three!(d => f64::from(own.frame[d][0]));
-        let far = span.in_a.at_point(&center.into()).norm() + f64::from(span.slop(own));
-        // Rounding of the transform is on top of what is to be kept.
-        let rounded = keep + f64::from(span.frames.slack);
+        let far = interval.in_a.at_point(&center.into()).norm() + f64::from(interval.slop(own));
+        // The rounding of the transform is added to the distance to keep.
+        let rounded = keep + f64::from(interval.frames.slack);
         let squared = (far.min(f64::from(most)) + rounded).powi(2);
         let maybe = ((squared * (1.0 + 1e-6)) as f32).next_up();
-        let beside = f64::from(span.rest) + rounded;
-        Self { drift: &span.in_a, origin: &a.center, keep, beside, squared, maybe }
+        let beside = f64::from(interval.rest) + rounded;
+        Self { drift: &interval.in_a, origin: &a.center, keep, beside, squared, maybe }
     }
 
-    /// How two triangles that do not intersect in the middle keep away: along the join of their nearest points, or
-    /// along a normal, as where that join leads to an edge within a wall.
+    /// Whether two triangles that do not intersect in the middle keep the distance: along the line through their nearest
+    /// points, or along a normal, which helps where that line ends at an edge inside a flat wall.
     fn gap(&self, a: &Triangle, b: &Triangle) -> LeafCheck {
         let Some(closest) = closest_within(a, b, self.squared) else { return LeafCheck::Free };
         if closest.squared < self.keep * self.keep {
@@ -105,8 +105,8 @@ impl<'s> SweepCheck<'s> {
         if kept { LeafCheck::Free } else { LeafCheck::Unproven }
     }
 
-    /// Whether triangles stay apart along `way`, of any length: each corner of `a` gets as far along it as it drifts,
-    /// at one of the two ends.
+    /// Whether triangles stay apart along `way`, of any length: each corner of `a` moves along it by up to its drift, at
+    /// one of the two ends.
     fn keeps(&self, a: &Triangle, b: &Triangle, way: &Vector3<f64>) -> bool {
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
@@ -121,7 +121,7 @@ impl<'s> SweepCheck<'s> {
             low[1] = low[1].min(along);
             high[1] = high[1].max(along);
         }
-        // What rounding makes of these is part of the slack in `beside`.
+        // The rounding of these is covered by the slack in `beside`.
         let beside = self.beside * way.norm() * (1.0 + 1e-9);
         low[1] - high[0] > beside || low[0] - high[1] > beside
     }
@@ -132,8 +132,8 @@ mod tests {
     use super::*;
     use crate::triangle::closest;
 
-    /// Slivers, triangles without area and far from the origin among others: moved as far as they are said to,
-    /// triangles that are kept apart are as far apart as is to be kept.
+    /// Triangles found free keep the distance when they are moved along their drift: slivers, triangles without area and
+    /// far from the origin among them.
     #[test]
     fn what_is_kept_apart_stays_apart() {
         let mut state = 3u64;
@@ -156,7 +156,7 @@ mod tests {
             let drifts = a.map(|corner| drift.at_point(&(corner - origin)));
             let far = drifts.iter().map(|d| d.norm()).fold(0.0, f64::max);
             let squared = (far + keep).powi(2);
-            let swept = SweepCheck {
+            let swept = LeafMotion {
                 drift: &drift,
                 origin: &origin,
                 keep,

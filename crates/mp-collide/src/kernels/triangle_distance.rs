@@ -1,7 +1,7 @@
 //! The distance of one triangle from eight, in lanes, with an error margin.
 //!
 //! Nine pairs of edges (Ericson 2005, *Real-Time Collision Detection*, §5.1.9) and six corners against
-//! faces. Triangles that intersect are only told from those that surely do not.
+//! faces. For triangles that may intersect no distance is bounded; they are only reported.
 
 use nalgebra::Vector3;
 
@@ -14,35 +14,35 @@ use crate::triangle::Triangle;
 /// Keeps quotients finite where an edge or a triangle has no extent.
 const TINY: f32 = 1e-37;
 
-/// A normal is used only when no more than 1e-4 wrong in direction. From corners wrong by u·`g` (u = 2⁻²⁴)
+/// A normal is used only when its direction is wrong by at most 1e-4. From corners wrong by u·`g` (u = 2⁻²⁴)
 /// and edges up to `e` it is wrong by 6u·e·(g + e); squared, with what is lost to underflow on top:
 /// |n|² is to be at least `SOUND` · e² (g² + e²) + `SOUND_AT_LEAST`.
 const SOUND: f32 = 2.6e-5;
 const SOUND_AT_LEAST: f32 = 1e-30;
 
-/// A normal wrong by the angle δ makes the height of a point over the triangle wrong by δ·e; δ² is so much of what
-/// `SOUND` asks for over |n|².
+/// A normal wrong by the angle δ makes the height of a point over the triangle wrong by δ·e; δ² is `TILT` times the bound
+/// of `SOUND`, divided by |n|².
 const TILT: f32 = 1e-8;
 
 /// Below this size (metres) products of four lengths are lost to underflow.
 const SMALL: f32 = 1e-7;
 
-/// Added to the margin of a height: products of lengths so small that they underflow decide nothing.
+/// Added to the margin of a height, so that products that underflow decide nothing.
 const TINY_HEIGHT: f32 = 1e-34;
 
 /// Squared distances: `near` ≤ distance² ≤ `far` where the triangles do not intersect.
 #[derive(Default)]
-pub(crate) struct Bounds {
+pub(crate) struct DistanceBounds {
     pub(crate) near: Lane,
     pub(crate) far: Lane,
 }
 
-/// A direction, shorter than a unit by a little; or none.
+/// A direction along which triangles may be apart, a little shorter than a unit vector; or zero.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct SeparatingDirection(pub(crate) [f32; 3]);
 
 impl SeparatingDirection {
-    /// Along `join`, if it has a length.
+    /// The direction of `join`, if it has a length.
     pub(crate) fn across(join: &Vector3<f64>) -> Self {
         let scale = (1.0 - 1e-6) / join.norm();
         if scale.is_finite() {
@@ -53,12 +53,12 @@ impl SeparatingDirection {
     }
 }
 
-/// Which triangles are close.
+/// Masks of the triangles that are close.
 #[derive(Default)]
 pub(crate) struct Close {
-    /// Those for which `Bounds::near` is at most what was asked for; the bounds hold for these.
+    /// Those for which `DistanceBounds::near` is at most the limit; the bounds hold for these.
     pub(crate) near: u32,
-    /// Those that may intersect.
+    /// Those that may intersect the single triangle.
     pub(crate) crossing: u32,
 }
 
@@ -71,17 +71,17 @@ pub(crate) struct DistanceKernel<L> {
     inverse: [L; 3],
     n: [L; 3],
     nn: L,
-    /// Infinite for triangles whose normal is lost in rounding, 0 for the others.
-    flat: L,
-    /// How wrong a height may be for the normal's error in direction.
+    /// Infinite for triangles whose normal is lost to rounding, 0 for the others.
+    unsound: L,
+    /// How wrong a height may be through the error of the normal's direction.
     tilt: L,
-    /// In the plane, across each edge, inward.
+    /// Vectors in the plane, at right angles to each edge, inward.
     inward: [[L; 3]; 3],
     lo: [L; 3],
     hi: [L; 3],
-    /// How far they reach along a direction.
+    /// How far the triangles reach along `direction`.
     top: L,
-    slab: [f32; 3],
+    direction: [f32; 3],
     center: [f64; 3],
     magnitude: f32,
     edge: f32,
@@ -89,7 +89,7 @@ pub(crate) struct DistanceKernel<L> {
 
 impl<L: Lanes> DistanceKernel<L> {
     #[inline(always)]
-    pub(crate) fn new(leaf: &Leaf, slab: &SeparatingDirection) -> Self {
+    pub(crate) fn new(leaf: &Leaf, direction: &SeparatingDirection) -> Self {
         let v = corners::<L>(leaf);
         let f = [sub(&v[1], &v[0]), sub(&v[2], &v[1]), sub(&v[0], &v[2])];
         let n = cross(&f[0], &f[1]);
@@ -101,9 +101,9 @@ impl<L: Lanes> DistanceKernel<L> {
         let square = L::splat(leaf.magnitude * leaf.magnitude).add(longest);
         let least = L::splat(SOUND).mul(longest).mul_add(square, L::splat(SOUND_AT_LEAST));
         let huge = L::splat(1e38);
-        let along = slab.0.map(L::splat);
+        let along = direction.0.map(L::splat);
         Self {
-            flat: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
+            unsound: least.sub(nn).max(L::splat(0.0)).mul(huge).mul(huge),
             tilt: L::splat(TILT).mul(longest).mul(least.div(nn.max(L::splat(SOUND_AT_LEAST)))).sqrt(),
             ff,
             inverse: [one.div(ff[0].max(tiny)), one.div(ff[1].max(tiny)), one.div(ff[2].max(tiny))],
@@ -112,7 +112,7 @@ impl<L: Lanes> DistanceKernel<L> {
             lo: three!(d => v[0][d].min(v[1][d]).min(v[2][d])),
             hi: three!(d => v[0][d].max(v[1][d]).max(v[2][d])),
             top: dot(&along, &v[0]).max(dot(&along, &v[1])).max(dot(&along, &v[2])),
-            slab: slab.0,
+            direction: direction.0,
             center: leaf.center,
             magnitude: leaf.magnitude,
             edge: leaf.edge,
@@ -125,7 +125,13 @@ impl<L: Lanes> DistanceKernel<L> {
     /// The lanes, of those in `mask`, whose squared distance from `triangle` (in the frame of the mesh) may be
     /// at most `best`.
     #[inline(always)]
-    pub(crate) fn between(&self, triangle: &Triangle, mask: u32, best: f32, bounds: &mut Bounds) -> Close {
+    pub(crate) fn between(
+        &self,
+        triangle: &Triangle,
+        mask: u32,
+        best: f32,
+        bounds: &mut DistanceBounds,
+    ) -> Close {
         let c = &self.center;
         let p: [[f32; 3]; 3] = three!(k => {
             [(triangle[k].x - c[0]) as f32, (triangle[k].y - c[1]) as f32, (triangle[k].z - c[2]) as f32]
@@ -144,8 +150,8 @@ impl<L: Lanes> DistanceKernel<L> {
             let apart = self.lo[d].sub(L::splat(hi)).max(L::splat(lo).sub(self.hi[d])).max(zero);
             gap = apart.mul_add(apart, gap);
         }
-        // The same along the slab: each of its two sides is wrong by up to 7u·g.
-        let along = three!(k => self.slab[0] * p[k][0] + self.slab[1] * p[k][1] + self.slab[2] * p[k][2]);
+        // The gap along the direction: each of its two sides is wrong by up to 7u·g.
+        let along = three!(k => self.direction[0] * p[k][0] + self.direction[1] * p[k][1] + self.direction[2] * p[k][2]);
         let bottom = along[0].min(along[1]).min(along[2]) - 4.0 * wrong;
         let apart = L::splat(bottom).sub(self.top).max(zero);
         let gap = apart.square().max(gap);
@@ -156,7 +162,7 @@ impl<L: Lanes> DistanceKernel<L> {
             return Close::default();
         }
         let s: [[L; 3]; 3] = three!(k => [L::splat(p[k][0]), L::splat(p[k][1]), L::splat(p[k][2])]);
-        // All of the one on one side of the planes of the eight: height² / |n|² bounds. Corners are wrong by
+        // Where all of the single triangle is on one side of the plane of a lane, height² / |n|² is a bound. Corners are wrong by
         // u·g and no farther apart than 2√3·g, so a normal is wrong by 7u·g·e + 3u·e² and a height, with the
         // corners' own error and the rounding of the products, by 24u·g²·e + 28u·g·e².
         let edge = self.edge;
@@ -179,7 +185,7 @@ impl<L: Lanes> DistanceKernel<L> {
         let mm = m[0] * m[0] + m[1] * m[1] + m[2] * m[2];
         let longest = own * own;
         let sound = mm >= SOUND * longest * longest + SOUND_AT_LEAST && own.max(edge) >= SMALL;
-        let flat = L::splat(if sound { 0.0 } else { f32::INFINITY });
+        let unsound = L::splat(if sound { 0.0 } else { f32::INFINITY });
         let n = [L::splat(m[0]), L::splat(m[1]), L::splat(m[2])];
         let error = L::splat(g * own * (1.5e-6 * g + 2e-6 * own));
         let w: [L; 3] = three!(k => dot(&n, &sub(&self.v[k], &s[0])));
@@ -198,15 +204,15 @@ impl<L: Lanes> DistanceKernel<L> {
                 edges = between.min(edges);
             }
         }
-        // A corner whose foot is inside the face: height² / |n|². Outside, a penalty rules it out, and so
-        // where the normal is not sound.
+        // A corner whose foot is inside the face: height² / |n|². A penalty rules out feet outside, and normals that
+        // are not sound.
         let penalty = L::splat(-1e30);
         let mut faces = L::splat(f32::INFINITY);
         let inverse = L::splat(1.0).div(self.nn.max(L::splat(TINY)));
         for k in 0..3 {
             let inside = three!(j => dot(&self.inward[j], &sub(&s[k], &self.v[j])));
             let outside = inside[0].min(inside[1]).min(inside[2]).min(zero).mul(penalty);
-            faces = h[k].mul(inverse).mul_add(h[k], outside.add(self.flat)).min(faces);
+            faces = h[k].mul(inverse).mul_add(h[k], outside.add(self.unsound)).min(faces);
         }
         let inverse = L::splat(1.0 / mm.max(TINY));
         let across = three!(k => { let u = cross_scalar(&m, &e[k]); [L::splat(u[0]), L::splat(u[1]), L::splat(u[2])] });
@@ -214,10 +220,10 @@ impl<L: Lanes> DistanceKernel<L> {
         for k in 0..3 {
             let inside = three!(j => dot(&across[j], &sub(&self.v[k], &s[j])));
             let outside = inside[0].min(inside[1]).min(inside[2]).min(zero).mul(penalty);
-            face = w[k].mul(inverse).mul_add(w[k], outside.add(flat)).min(face);
+            face = w[k].mul(inverse).mul_add(w[k], outside.add(unsound)).min(face);
         }
         // Points of edges are points of the triangles, so only their rounding, 16u·g, can make the result too small.
-        // Too large it is also where edges are not met at the best place: an edge e is met elsewhere by at most
+        // The result is too large where the nearest points of two edges are misplaced: along an edge e by at most
         // δ = (14u·r/e + 8u)/sin², which costs (e·δ·sin)² and never more than (e·sin)²: 4e-6·g·e and 1e-6·e² where the
         // two are the same. A height is wrong by the tilt of the normal either way, and by as much rounding;
         // a foot is on the wrong side of an edge by 1e-4 of the height, which is 1e-8 of its square. Where a face
@@ -229,7 +235,7 @@ impl<L: Lanes> DistanceKernel<L> {
         let error = self.tilt.max(L::splat(tilt)).add(L::splat(2e-6 * g));
         let parallel = L::splat(size * (4e-6 * g + 1e-5 * size));
         let below = squared.sub(parallel).max(zero).sqrt().sub(error).max(zero).square();
-        let below = below.mul(L::splat(1.0 - 2e-6)).sub(self.flat.add(flat));
+        let below = below.mul(L::splat(1.0 - 2e-6)).sub(self.unsound.add(unsound));
         let low = below.max(gap.mul(L::splat(1.0 - 1e-5)));
         low.store(&mut bounds.near);
         squared.sqrt().add(error).square().mul(L::splat(1.0 + 2e-6)).store(&mut bounds.far);
@@ -257,7 +263,7 @@ fn unit<L: Lanes>(x: L) -> L {
     x.max(L::splat(0.0)).min(L::splat(1.0))
 }
 
-/// How far three heights of one sign are from zero; at most 0 when they are on both sides.
+/// The least distance of three heights from zero when all have one sign; at most 0 otherwise.
 #[inline(always)]
 fn one_sided<L: Lanes>(h: &[L; 3]) -> L {
     let (lo, hi) = (h[0].min(h[1]).min(h[2]), h[0].max(h[1]).max(h[2]));
@@ -282,12 +288,12 @@ mod tests {
     struct Between<'t>(&'t Leaf, &'t Triangle);
 
     impl Kernel for Between<'_> {
-        type Output = (Bounds, Close);
+        type Output = (DistanceBounds, Close);
         #[inline(always)]
         fn run<L: Lanes>(self) -> Self::Output {
-            let mut bounds = Bounds::default();
-            let gaps = DistanceKernel::<L>::new(self.0, &SeparatingDirection::default());
-            let close = gaps.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
+            let mut bounds = DistanceBounds::default();
+            let kernel = DistanceKernel::<L>::new(self.0, &SeparatingDirection::default());
+            let close = kernel.between(self.1, self.0.all(), f32::INFINITY, &mut bounds);
             (bounds, close)
         }
     }

@@ -1,30 +1,30 @@
-//! Eight triangles against eight others: a filter that never loses a pair that meets, and never finds one that
-//! does not.
+//! Eight triangles against eight others: a filter that keeps every pair that meets, and calls none sure that does
+//! not.
 
 use crate::bvh::frames::Frames;
 use crate::bvh::{Lane, Leaf, WIDTH};
-use crate::kernels::leaf_pair::{Corners, Near, TINY, U};
+use crate::kernels::leaf_pair::{Corners, LeafFrame, TINY, U};
 use crate::kernels::separating_axes::{cross, dot, sub};
 use crate::simd::{Lanes, Mask};
 
-/// How wrong heights over the planes of the first leaf, over those of the second, and volumes may be.
-struct Bounds {
+/// Bounds on the errors of heights over the planes of the first leaf, over those of the second, and of volumes.
+struct ErrorBounds {
     height_a: f32,
     height_b: f32,
     volume: f32,
 }
 
-impl Bounds {
+impl ErrorBounds {
     /// With corners up to `far` apart and coordinates up to `g`, the height of a corner over a plane of the other leaf
     /// is wrong by the error of the normal over that distance, by the errors of two corners, and by 20u·g·e² for
     /// sums; a volume (p − v)·(e × f) by the errors of corners and edges, and by 40u·g·e·f for sums.
     #[inline(always)]
-    fn new(leaf_a: &Leaf, leaf_b: &Leaf, near: &Near) -> Self {
+    fn new(leaf_a: &Leaf, leaf_b: &Leaf, near: &LeafFrame) -> Self {
         let (m, reach) = (leaf_a.magnitude, near.t + 1.74 * leaf_b.magnitude);
         let (far, corner) = (1.74 * (m + reach), 1.75 * near.wrong);
         let g = m.max(reach);
-        let (a, b) = (Size::of(leaf_a), Size::of(leaf_b));
-        let height = |s: &Size| s.wrong_normal * far + s.edge * s.edge * (corner + 20.0 * U * g) + TINY;
+        let (a, b) = (EdgeErrors::of(leaf_a), EdgeErrors::of(leaf_b));
+        let height = |s: &EdgeErrors| s.wrong_normal * far + s.edge * s.edge * (corner + 20.0 * U * g) + TINY;
         let edges = a.wrong_edge * b.edge + b.wrong_edge * a.edge;
         Self {
             height_a: height(&a),
@@ -34,14 +34,14 @@ impl Bounds {
     }
 }
 
-/// The longest edge of a leaf; how wrong edges (in length) and normals, products of two, may be.
-struct Size {
+/// The longest edge of a leaf, and bounds on the errors of edges (in length) and of normals, products of two edges.
+struct EdgeErrors {
     edge: f32,
     wrong_edge: f32,
     wrong_normal: f32,
 }
 
-impl Size {
+impl EdgeErrors {
     /// An edge as the difference of two corners is wrong by 2√3·u·m and √3·u·e; turned, by 7u·e more. A product of
     /// two is wrong by 2e times that and by 3√3·u·e² for its sums.
     #[inline(always)]
@@ -68,10 +68,10 @@ fn turn<L: Lanes>(e: &Corners<L>, frames: &Frames) -> Corners<L> {
     }))
 }
 
-/// Eight triangles in memory, to be taken all at once or one by one, with what sides and volumes are computed from.
+/// Eight triangles in memory, read all at once or one by one, with the products from which sides and volumes are computed.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
-struct Eight {
+struct EightTriangles {
     corner: [[Lane; 3]; 3],
     edge: [[Lane; 3]; 3],
     /// Corner × edge: with the edge, Plücker's coordinates of the line.
@@ -81,7 +81,7 @@ struct Eight {
     height: Lane,
 }
 
-impl Eight {
+impl EightTriangles {
     const NONE: Self = Self {
         corner: [[[0.0; WIDTH]; 3]; 3],
         edge: [[[0.0; WIDTH]; 3]; 3],
@@ -108,22 +108,22 @@ impl Eight {
     }
 }
 
-/// Eight triangles against others one by one.
+/// Compares eight triangles with others, one by one.
 #[derive(Clone, Debug)]
 pub(crate) struct TriangleFilter {
-    block: Eight,
-    singles: Eight,
-    /// How wrong heights over the planes of the eight, over that of the one, and volumes may be.
+    block: EightTriangles,
+    singles: EightTriangles,
+    /// Bounds on the errors of heights over the planes of the eight, over the plane of the single one, and of volumes.
     wrong_block: f32,
     wrong_single: f32,
     wrong_volume: f32,
 }
 
-/// What lanes say of eight pairs of triangles.
+/// The answer for eight pairs of triangles.
 pub(crate) struct Verdict {
-    /// Those that may meet.
+    /// The pairs that may meet.
     pub(crate) maybe: u32,
-    /// Those among them that surely do.
+    /// The pairs among them that surely meet.
     pub(crate) sure: u32,
 }
 
@@ -132,38 +132,38 @@ impl Verdict {
 }
 
 impl TriangleFilter {
-    /// Of no triangles.
+    /// The filter of no triangles.
     pub(crate) const NONE: Self = Self {
-        block: Eight::NONE,
-        singles: Eight::NONE,
+        block: EightTriangles::NONE,
+        singles: EightTriangles::NONE,
         wrong_block: 0.0,
         wrong_single: 0.0,
         wrong_volume: 0.0,
     };
 
-    /// Leaf `a` with its corners, and leaf `b` with its corners here and in its own frame: the latter's triangles one
-    /// by one. Always the latter's: taking those of the leaf with fewer that matter is slower, as the choice is
-    /// hard to predict and what it chooses is copied.
+    /// Takes leaf `a` with its corners, and leaf `b` with its corners in this frame and in its own. The triangles of `b`
+    /// are the single ones, always: taking those of the leaf with fewer triangles left is slower, as the choice is
+    /// hard to predict and its result is copied.
     #[inline(always)]
     pub(crate) fn set<L: Lanes>(
         &mut self,
         (leaf_a, corners_a): (&Leaf, &Corners<L>),
         (leaf_b, corners_b, own_b): (&Leaf, &Corners<L>, &Corners<L>),
-        (near, frames): (&Near, &Frames),
+        (near, frames): (&LeafFrame, &Frames),
     ) {
-        let Bounds { height_a, height_b, volume } = Bounds::new(leaf_a, leaf_b, near);
+        let ErrorBounds { height_a, height_b, volume } = ErrorBounds::new(leaf_a, leaf_b, near);
         (self.wrong_block, self.wrong_single, self.wrong_volume) = (height_a, height_b, volume);
         self.singles.set(corners_b, &turn(&edges(own_b), frames));
         self.block.set(corners_a, &edges(corners_a));
     }
 
     /// Compares single `l` with the lanes in `mask`: sides of planes first, then the signed volumes of the nine
-    /// pairs of edges. An edge passes through a triangle when it crosses its plane and runs past all three of its
-    /// edges on the same side.
+    /// pairs of edges. An edge passes through a triangle when it crosses the plane and passes all three edges of
+    /// the triangle on the same side.
     #[inline(always)]
     pub(crate) fn of<L: Lanes>(&self, l: usize, mask: u32) -> Verdict {
         let (block, singles, l) = (&self.block, &self.singles, l & (WIDTH - 1));
-        // Corners of the one against the planes of the eight.
+        // Corners of the single triangle against the planes of the eight.
         let corner: Corners<L> = three!(k => splat3(&singles.corner[k], l));
         let (normal, height) = (load3(&block.normal), L::load(&block.height));
         let sides = three!(k => dot(&corner[k], &normal).sub(height));
@@ -172,7 +172,7 @@ impl TriangleFilter {
         if mask == 0 {
             return Verdict::NONE;
         }
-        // Corners of the eight against the plane of the one.
+        // Corners of the eight against the plane of the single triangle.
         let normal: [L; 3] = splat3(&singles.normal, l);
         let height = L::splat(singles.height[l]);
         let others = three!(k => dot(&load3(&block.corner[k]), &normal).sub(height));
@@ -214,14 +214,14 @@ fn splat3<L: Lanes>(v: &[Lane; 3], l: usize) -> [L; 3] {
     [L::splat(v[0][l]), L::splat(v[1][l]), L::splat(v[2][l])]
 }
 
-/// Three numbers, eight times, each wrong by up to `wrong`, and what can be said of their signs.
+/// Three numbers in each lane, with errors up to `wrong`, and what is known of their signs.
 struct Signs<L> {
     x: [L; 3],
     wrong: f32,
 }
 
 impl<L: Lanes> Signs<L> {
-    /// The least and the greatest of some of the numbers: one may be at least zero, one at most.
+    /// Whether, for the least and the greatest of some numbers, the least may be at most zero and the greatest at least.
     #[inline(always)]
     fn either(&self, (low, high): (L, L)) -> L::Mask {
         low.le(L::splat(self.wrong)) & L::splat(-self.wrong).le(high)
@@ -240,33 +240,33 @@ impl<L: Lanes> Signs<L> {
         (x.min(y), x.max(y))
     }
 
-    /// Some of the three may be at least zero, some at most.
+    /// Whether the three may differ in sign.
     #[inline(always)]
     fn differ(&self) -> L::Mask {
         self.either(self.all())
     }
 
-    /// Numbers `i` and its successor may have different signs.
+    /// Whether number `i` and its successor may have different signs.
     #[inline(always)]
     fn crossed(&self, i: usize) -> L::Mask {
         self.either(self.two(i))
     }
 
-    /// They have.
+    /// Whether number `i` and its successor surely have different signs.
     #[inline(always)]
     fn surely_crossed(&self, i: usize) -> L::Mask {
         let (low, high) = self.two(i);
         low.lt(L::splat(-self.wrong)) & L::splat(self.wrong).lt(high)
     }
 
-    /// All three may have the same sign.
+    /// Whether all three may have the same sign.
     #[inline(always)]
     fn agree(&self) -> L::Mask {
         let (low, high) = self.all();
         L::splat(-self.wrong).le(low) | high.le(L::splat(self.wrong))
     }
 
-    /// They have.
+    /// Whether all three surely have the same sign.
     #[inline(always)]
     fn surely_agree(&self) -> L::Mask {
         let (low, high) = self.all();
@@ -296,7 +296,7 @@ mod tests {
             .collect()
     }
 
-    /// Lanes neither lose a pair that meets nor find one that does not, down to the last digit.
+    /// Answers agree with the exact test down to the last digit.
     #[test]
     fn eight_against_eight_near_contact() {
         let mut rng = Pcg64::seed_from_u64(3);

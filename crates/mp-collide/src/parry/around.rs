@@ -1,4 +1,4 @@
-//! Meshes that hold a solid.
+//! Meshes around a solid.
 
 use mp_geom::{TriMesh, primitives};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -6,12 +6,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use super::ParryError;
 use crate::solid::{Dimensions, Solid};
 
-/// A mesh that holds the solid and is nowhere more than `excess` beyond it.
+/// A mesh that contains the solid and extends nowhere more than `excess` beyond it.
 pub(super) fn mesh(solid: &Solid, excess: f64) -> Result<TriMesh, ParryError> {
     if excess.is_nan() || excess <= 0.0 {
         return Err(out_of_range(excess));
     }
-    // Primitives are inscribed: made larger until their faces touch the solid from outside.
+    // The meshes of `primitives` are inscribed: they are enlarged until their faces touch the solid from outside.
     match solid.dimensions() {
         Dimensions::Cuboid { half } => Ok(primitives::cuboid(2.0 * half.x, 2.0 * half.y, 2.0 * half.z)?),
         Dimensions::Cylinder { radius, half } => {
@@ -23,7 +23,7 @@ pub(super) fn mesh(solid: &Solid, excess: f64) -> Result<TriMesh, ParryError> {
             Ok(primitives::cone(radius * larger, 2.0 * half, n)?)
         }
         Dimensions::Capsule { radius, half } => {
-            // Not quite half for the circles about the axis and for those through the poles: they multiply.
+            // A little less than half for the circles about the axis and for those through the poles: the factors multiply.
             let (n, larger) = segments(radius, 0.45 * excess)?;
             let rings = n.div_ceil(4);
             let bands = 1.0 / (0.5 * FRAC_PI_2 / f64::from(rings)).cos();
@@ -47,8 +47,8 @@ pub(super) fn mesh(solid: &Solid, excess: f64) -> Result<TriMesh, ParryError> {
     }
 }
 
-/// How many segments a circle needs to be held by a polygon that is nowhere more than `excess` beyond it, and how much
-/// larger than the circle that polygon is. A multiple of four.
+/// The number of segments, a multiple of four, of a polygon around a circle that extends nowhere more than `excess` beyond
+/// it, and the factor by which the polygon is larger than the circle.
 fn segments(radius: f64, excess: f64) -> Result<(u32, f64), ParryError> {
     let angle = (radius / (radius + excess)).acos();
     let wanted = (PI / angle / 4.0).ceil() * 4.0;

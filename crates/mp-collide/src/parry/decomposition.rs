@@ -1,7 +1,7 @@
 //! Convex decompositions: cuts by parry's V-HACD, hulls of the exact pieces.
 //!
-//! V-HACD cuts along planes of its voxels, so the voxels of a part fill a box but for what is outside of the mesh. The hull
-//! of what the mesh has in that box is made of the triangles clipped to it, and the corners of the box that are inside.
+//! V-HACD cuts along planes of its voxels, so the voxels of a part fill a box, except for voxels outside of the mesh. The
+//! hull of the part is that of the triangles clipped to the box and of the corners of the box that are inside the mesh.
 //! (Hulls of voxels would be up to a voxel larger; those that parry makes of clipped triangles miss such corners.)
 
 use std::collections::HashSet;
@@ -19,11 +19,11 @@ use crate::query::Query;
 /// How finely [`convex_decomposition`] cuts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decomposition {
-    /// Voxels along the longest side of the mesh's box, 8 to 256: what is thinner than a voxel is not cut. Time and memory
+    /// Voxels along the longest side of the mesh's box, 8 to 256: features thinner than a voxel are not cut. Time and memory
     /// grow with its cube.
     pub resolution: u32,
-    /// How much volume the hull of a part may have that the part has not, by its voxels, as a share of the volume of the hull
-    /// of all, 0 to 1. Parts are cut no further when there are as many as there may be.
+    /// The volume by which the hull of a part may exceed the part, by its voxels, as a fraction of the volume of the hull
+    /// of the mesh, 0 to 1. Parts are cut no further when there are `max_parts`.
     pub concavity: f64,
     /// The largest number of parts, 4 to 4096; rounded down to a power of two.
     pub max_parts: u32,
@@ -37,9 +37,9 @@ impl Default for Decomposition {
 }
 
 /// Convex meshes that together cover `mesh`: its triangles and, when it [bounds a solid](mp_geom::Topology::is_solid), the
-/// inside, but for the rounding of what is cut, about 1e-15 of its size. They cover more than it where pieces are not
-/// convex, and where a part is flat, which is thickened by half a voxel on all sides. Of a mesh that is not closed the inside
-/// is what its voxels enclose. A mesh that is convex (to `concavity`) is one part, its [hull](convex_hull). The
+/// inside, up to rounding at the cuts, about 1e-15 of its size. They cover more where pieces are not convex, and where a
+/// part is flat, which is thickened by half a voxel on all sides. The inside of a mesh that is not closed is what its
+/// voxels enclose. A mesh that is convex (to `concavity`) is one part, its [hull](convex_hull). The
 /// same mesh and parameters give the same parts.
 ///
 /// V-HACD (Mamou, *Volumetric hierarchical approximate convex decomposition*, in *Game Engine Gems 3*, 2016) by parry: some
@@ -63,16 +63,16 @@ pub fn convex_decomposition(mesh: &TriMesh, params: &Decomposition) -> Result<Ve
     let triangles: Vec<_> = (0..mesh.triangles().len()).map(|i| mesh.triangle(i)).collect();
     let mesh = TriMesh::from_soup(&triangles)?;
     let (low, high) = bounds(mesh.vertices()).ok_or(ParryError::Flat)?;
-    // parry's own numbers are well within what squares and cubes can hold; powers of two change no digits.
+    // Scaled so that squares and cubes in parry do not overflow; powers of two change no digits.
     let size = low.coords.amax().max(high.coords.amax());
     let scale = size.log2().floor().clamp(-1000.0, 1000.0).exp2();
     if (high - low).amax() / scale <= f64::EPSILON {
         return Err(ParryError::Flat);
     }
     let scaled = resized(&mesh, 1.0 / scale)?;
-    let mut pieces = Pieces::new(&scaled);
-    // Voxels would make steps of what is convex but slanted.
-    if pieces.solid
+    let mut part_points = PartPoints::new(&scaled);
+    // Voxels would turn convex but slanted surfaces into steps.
+    if part_points.solid
         && let Ok(hull) = convex_hull(&scaled)
         && hull.signed_volume() - scaled.signed_volume() <= params.concavity * hull.signed_volume()
     {
@@ -84,7 +84,7 @@ pub fn convex_decomposition(mesh: &TriMesh, params: &Decomposition) -> Result<Ve
 
     let mut parts = Vec::new();
     for voxels in cuts.voxel_parts() {
-        let points = pieces.points(voxels);
+        let points = part_points.points(voxels);
         if points.is_empty() {
             continue;
         }
@@ -114,28 +114,28 @@ fn checked(params: &Decomposition) -> Result<VHACDParameters, ParryError> {
     }
     // parry halves once more than this number of hulls asks for, and does not merge afterwards.
     let max_convex_hulls = 1 << (max_parts.ilog2() - 1);
-    // Of every voxel: where they are thinned out, parry finds even a cube concave.
+    // Hulls of all voxels: with downsampling parry finds even a cube concave.
     let convex_hull_downsampling = 1;
     let others = VHACDParameters::default();
     Ok(VHACDParameters { resolution, concavity, max_convex_hulls, convex_hull_downsampling, ..others })
 }
 
-/// What is to be taken to pieces.
-struct Pieces<'a> {
+/// Finds the points whose hulls are the parts.
+struct PartPoints<'a> {
     mesh: &'a TriMesh,
     tree: CollisionMesh,
     query: Query,
-    /// Whether the surface says what is inside.
+    /// Whether the surface bounds a solid; otherwise voxels decide what is inside.
     solid: bool,
 }
 
-impl<'a> Pieces<'a> {
+impl<'a> PartPoints<'a> {
     fn new(mesh: &'a TriMesh) -> Self {
         let solid = mesh.topology().is_solid() && mesh.signed_volume() > 0.0;
         Self { mesh, tree: CollisionMesh::new(mesh), query: Query::default(), solid }
     }
 
-    /// Points whose hull is that of what the mesh has in the box of a part.
+    /// Points whose hull is that of the mesh within the box of a part.
     fn points(&mut self, voxels: &VoxelSet) -> Vec<Point3<f64>> {
         let cells = voxels.voxels().iter().map(|voxel| voxel.coords.to_array());
         let Some([first, last]) = cells.clone().fold(None, |range: Option<[[i64; 3]; 2]>, cell| {
@@ -171,7 +171,7 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// Adds the corners of what a triangle has in a box (Sutherland and Hodgman, *Reentrant polygon clipping*, 1974).
+/// Adds the corners of a triangle clipped to a box (Sutherland and Hodgman, *Reentrant polygon clipping*, 1974).
 fn clip(triangle: [Point3<f64>; 3], low: &Point3<f64>, high: &Point3<f64>, points: &mut Vec<Point3<f64>>) {
     let mut polygon = triangle.to_vec();
     for k in 0..3 {

@@ -1,4 +1,4 @@
-//! Why something of parry could not come in, or something of ours could not go out.
+//! Errors of conversions from and to parry.
 
 use mp_geom::{MeshError, PrimitiveError};
 use thiserror::Error;
@@ -9,10 +9,10 @@ use crate::filled::FillError;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ParryError {
-    /// A mesh that parry allows and we refuse: no triangles, an index out of range, a coordinate that is not finite.
-    #[error("a mesh of parry is none of ours: {0}; repair it first")]
+    /// A mesh that parry allows and [`mp_geom::TriMesh`] refuses: no triangles, an index out of range, a coordinate that is not finite.
+    #[error("a mesh of parry is not valid here: {0}; repair it first")]
     Mesh(#[from] MeshError),
-    /// A length that parry allows and we refuse: zero, negative or not finite.
+    /// A length that parry allows and [`Solid`](crate::Solid) refuses: zero, negative or not finite.
     #[error("a shape of parry has no volume: {0}; leave it out or give it a size")]
     Size(#[from] PrimitiveError),
     /// A solid mesh whose surface encloses nothing.
@@ -33,7 +33,7 @@ pub enum ParryError {
     },
     /// A shape with a round border.
     #[error(
-        "a {what} with a round border of {border} m is none of our shapes; convert its inner shape and ask \
+        "a {what} with a round border of {border} m cannot be converted; convert its inner shape and ask \
          whether anything is within {border} m of that, or put a larger {what} without border in its place"
     )]
     Round {
@@ -45,7 +45,7 @@ pub enum ParryError {
     /// A shape of the user's own.
     #[error("a custom shape of parry says nothing of its geometry; convert a mesh of it instead")]
     Custom,
-    /// Something is wrong with a part of a compound.
+    /// A part of a compound could not be converted.
     #[error("part {part} of a compound: {source}")]
     Part {
         /// Which part, counted from 0.

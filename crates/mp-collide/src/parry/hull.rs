@@ -1,8 +1,8 @@
 //! Convex hulls, by quickhull on exact predicates (Barber, Dobkin and Huhdanpaa, *The quickhull algorithm for convex hulls*,
 //! 1996).
 //!
-//! parry's own hull is not used: it takes points for flat whose thickness is below a thousandth of their extent, such as
-//! a sheet of metal, and of points in a grid that is turned it now and then makes a surface that is not convex.
+//! parry's own hull is not used: it treats points as flat whose thickness is below a thousandth of their extent, such as
+//! a metal sheet, and for points of a rotated grid it sometimes makes a surface that is not convex.
 
 use std::collections::HashMap;
 
@@ -12,12 +12,12 @@ use robust::{Coord3D, orient3d};
 
 use super::ParryError;
 
-/// What is thinner than this part of its length is flat.
+/// Points whose extent is thinner than this fraction of their length count as flat.
 const FLAT: f64 = 1e-9;
 
 /// The convex hull of the surface of `mesh`: closed, outward, its vertices some of the mesh's own to the bit. It is convex
-/// and has every vertex of the mesh inside or on it *exactly*, as in real arithmetic. The same mesh gives the same hull. Some
-/// O(n log n) for n vertices, in practice.
+/// and has every vertex of the mesh inside or on it *exactly*, as in real arithmetic. The same mesh gives the same hull. In
+/// practice O(n log n) for n vertices.
 ///
 /// ```
 /// let torus = mp_geom::primitives::torus(1.0, 0.25, 32, 16)?;
@@ -54,7 +54,7 @@ pub(super) fn hull_of(points: &[Point3<f64>]) -> Result<TriMesh, ParryError> {
     Ok(TriMesh::new(corners.iter().map(|&i| points[i]).collect(), triangles)?)
 }
 
-/// The points times a power of two, so that none of their products overflows, and none that matters vanishes.
+/// The points times a power of two, so that no product of coordinates overflows, and none that matters underflows.
 fn power_of_two(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
     let size = points.iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
     let scale = (-size.log2().floor()).clamp(-1000.0, 1000.0).exp2();
@@ -68,9 +68,9 @@ struct Facet {
     corners: [usize; 3],
     /// The facets across its edges: corner 0–1, 1–2, 2–0.
     across: [usize; 3],
-    /// Points it can be seen from, which no other facet has.
+    /// Points it can be seen from; each point belongs to one facet only.
     outside: Vec<usize>,
-    /// Whether it is part of the hull still.
+    /// Whether it is still part of the hull.
     alive: bool,
 }
 
@@ -97,7 +97,7 @@ impl<'a> Hull<'a> {
         let (area, c) = farthest(&|p| along.cross(&(p - points[a])).norm())?;
         let height = |p: &Point3<f64>| orient([&points[a], &points[b], &points[c]], p);
         let (volume, d) = farthest(&|p| height(p).abs())?;
-        // Of a parallelogram and a parallelepiped; also false where something is not a number.
+        // Area and volume of a parallelogram and a parallelepiped; false for NaN too.
         let thick = area > FLAT * length * length && volume > FLAT * length * area;
         if !thick {
             return Err(ParryError::Flat);
@@ -116,7 +116,7 @@ impl<'a> Hull<'a> {
         Ok(hull)
     }
 
-    /// How far a facet is below a point: above 0 when it can be seen from there, and 0 in its plane, exactly.
+    /// The height of a point over a facet: above 0 when the facet can be seen from there, 0 in its plane, with exact sign.
     fn height(&self, facet: usize, point: usize) -> f64 {
         orient(self.facets[facet].corners.map(|i| &self.points[i]), &self.points[point])
     }
@@ -145,7 +145,7 @@ impl<'a> Hull<'a> {
         let outside = self.facets[facet].outside.iter();
         let heights = outside.map(|&point| (self.height(facet, point), point));
         let Some((_, apex)) = heights.max_by(|x, y| x.0.total_cmp(&y.0)) else { return Ok(()) };
-        // All that can be seen from it hangs together; facets in a plane with it stay.
+        // The facets that can be seen from it are connected; facets in one plane with it stay.
         let (mut horizon, mut seen) = (Vec::new(), vec![facet]);
         self.facets[facet].alive = false;
         let mut next = 0;
@@ -165,7 +165,7 @@ impl<'a> Hull<'a> {
                 }
             }
         }
-        // A fan from the edges around it to the point. These are a circle, so there is one edge from each corner.
+        // A fan from the edges of the horizon to the point. The horizon is a closed loop: one edge starts at each corner.
         let first = self.facets.len();
         let number = |i: usize| first + i;
         let from: HashMap<usize, usize> =

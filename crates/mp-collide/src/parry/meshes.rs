@@ -1,4 +1,4 @@
-//! Triangle meshes of both sides.
+//! Conversions of triangle meshes.
 
 use mp_geom::TriMesh;
 use nalgebra::Point3;
@@ -10,7 +10,7 @@ use super::{ParryError, guarded, point_from_parry, point_to_parry};
 /// The same vertices and triangles as a mesh of parry, whose tree it builds: O(n log n) for n triangles.
 ///
 /// # Errors
-/// [`ParryError::Failed`], which no mesh of ours should bring about.
+/// [`ParryError::Failed`], which no [`TriMesh`] should cause.
 pub fn mesh_to_parry(mesh: &TriMesh) -> Result<shape::TriMesh, ParryError> {
     let vertices = mesh.vertices().iter().map(point_to_parry).collect();
     let made = guarded("building of a mesh", || shape::TriMesh::new(vertices, mesh.triangles().to_vec()))?;
@@ -25,7 +25,7 @@ pub fn mesh_from_parry(mesh: &shape::TriMesh) -> Result<TriMesh, ParryError> {
     made_of(mesh.vertices(), mesh.indices().to_vec())
 }
 
-/// A mesh of what parry gives as two lists.
+/// A mesh of vertices and triangles of parry.
 pub(super) fn made_of(vertices: &[Vector], triangles: Vec<[u32; 3]>) -> Result<TriMesh, ParryError> {
     Ok(TriMesh::new(vertices.iter().copied().map(point_from_parry).collect(), triangles)?)
 }

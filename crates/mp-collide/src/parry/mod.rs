@@ -1,18 +1,17 @@
-//! Shapes of [`parry3d_f64`], the collision library under Rapier, from and to ours; convex hulls and decompositions.
+//! Conversions from and to shapes of [`parry3d_f64`], the collision library of Rapier; convex hulls and decompositions.
 //!
 //! Only with the feature `parry`, which is off by default; types of parry are in the public API of this module and nowhere
-//! else. What is on parry's side is written with the path of its crate: `parry3d_f64::shape::TriMesh` beside
-//! [`mp_geom::TriMesh`]. Scenes of Rapier and Bevy come in by their shapes: of `rapier3d-f64` and of Avian with its feature
-//! `f64` as they are, while those of single precision (`parry3d`) are other types, to be made anew from their numbers.
+//! else. Types of parry are written with the path of its crate: `parry3d_f64::shape::TriMesh` beside
+//! [`mp_geom::TriMesh`]. Scenes of Rapier and Bevy are converted shape by shape. Shapes of `rapier3d-f64`, and of Avian with
+//! its feature `f64`, are of these types; those of single precision (`parry3d`) must first be made anew in `f64`.
 //!
 //! # Frames
-//! Lengths are metres on both sides. The axis of a cylinder or a cone is Y there and Z here; capsules lie along any segment
-//! there, along Z about the origin here; half-spaces have any normal there, Z here. So a shape always comes with the
-//! pose at which it is the same set of points; turning costs rounding, about 1e-16 of the size.
+//! Lengths are metres on both sides. The axis of a cylinder or a cone is Y in parry and Z here; capsules lie along any
+//! segment in parry, along Z about the origin here; half-spaces have any normal in parry, Z here. So a converted shape comes
+//! with the pose at which it is the same set of points; the rotation costs rounding, about 1e-16 of the size.
 //!
 //! # What is solid
-//! A mesh is a surface, here and there. Convex polyhedra are solids there, and come in as [filled](Shape::Mesh)
-//! meshes.
+//! A mesh is a surface on both sides. Convex polyhedra are solids in parry, and become [filled](Shape::Mesh) meshes.
 //!
 //! ```
 //! use mp_collide::{CollisionMesh, Query, Scene, parry};
@@ -58,8 +57,8 @@ pub use meshes::{mesh_from_parry, mesh_to_parry};
 pub use poses::{point_from_parry, point_to_parry, pose_from_parry, pose_to_parry};
 pub use shapes::{Part, Shape, from_parry, solid_to_parry};
 
-/// What `work` returns, or an error when parry panics: it asserts what its algorithms take for granted.
+/// The result of `work`, or an error when parry panics: it asserts the preconditions of its algorithms.
 fn guarded<T>(what: &'static str, work: impl FnOnce() -> T) -> Result<T, ParryError> {
-    // Nothing that was half changed is seen again: what `work` borrows it only reads.
+    // Unwind-safe: `work` only reads what it borrows.
     std::panic::catch_unwind(std::panic::AssertUnwindSafe(work)).map_err(|_| ParryError::Failed { what })
 }

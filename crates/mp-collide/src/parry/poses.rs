@@ -1,4 +1,4 @@
-//! Points and poses: nalgebra's here, those of `glamx` there.
+//! Conversions of points and poses: nalgebra's here, those of `glamx` in parry.
 
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use parry3d_f64::math::{Pose, Rotation, Vector};
@@ -41,16 +41,16 @@ pub fn pose_from_parry(pose: &Pose) -> Result<Isometry3<f64>, ParryError> {
     Ok(Isometry3::from_parts(Translation3::new(at.x, at.y, at.z), rotation))
 }
 
-/// Turns our Z into parry's Y.
+/// The rotation from our Z to parry's Y.
 pub(super) fn upright() -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::x_axis(), -FRAC_PI_2)
 }
 
-/// Turns Z into the direction `way`. `None` when that has none.
+/// A rotation from Z to the direction `way`; `None` when `way` has no direction.
 pub(super) fn toward(way: &Vector3<f64>) -> Option<UnitQuaternion<f64>> {
-    // Of the largest coordinate first, as squares of large ones overflow, and of small ones vanish.
+    // Divided by the largest coordinate first, as squares of large coordinates overflow and of small ones underflow.
     let way = (way / way.amax()).try_normalize(0.0).filter(|way| way.iter().all(|c| c.is_finite()))?;
-    // By a quarter turn at most, which is well conditioned; downward ones after half a turn.
+    // By a quarter turn at most, which is well conditioned; for downward directions after half a turn.
     let (up, first) = if way.z < 0.0 {
         (-Vector3::z(), UnitQuaternion::new_unchecked(Quaternion::new(0.0, 1.0, 0.0, 0.0)))
     } else {

@@ -1,4 +1,4 @@
-//! Solids and shapes of all kinds.
+//! Conversions of solids and of shapes of all kinds.
 
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
@@ -12,7 +12,7 @@ use super::{ParryError, around, mesh_from_parry, point_from_parry, pose_from_par
 use crate::mesh::CollisionMesh;
 use crate::solid::{Dimensions, Solid};
 
-/// What a shape of parry is here.
+/// The shape that a shape of parry is converted to.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Shape {
@@ -20,26 +20,26 @@ pub enum Shape {
     Mesh {
         /// The surface (metres).
         mesh: TriMesh,
-        /// Whether its inside belongs to it, as that of a convex polyhedron does.
+        /// Whether its inside belongs to it, as for a convex polyhedron.
         filled: bool,
     },
     /// A ball, capsule, box, cylinder, cone or half-space.
     Solid(Solid),
 }
 
-/// One part of what came from parry.
+/// One part of a converted shape.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Part {
-    /// What it is.
+    /// Its shape.
     pub shape: Shape,
-    /// Where it is in the frame of the shape of parry.
+    /// Its pose in the frame of the shape of parry.
     pub pose: Isometry3<f64>,
 }
 
 impl Shape {
-    /// A mesh around it: a mesh and a box as they are, curved solids by a mesh that holds them and is nowhere more than
-    /// `excess` (metres) beyond them, to rounding. Needs some √(size/`excess`) triangles for a cylinder or cone and
+    /// A mesh of the shape: of a mesh or a box exact, of a curved solid a mesh that contains it and extends nowhere more than
+    /// `excess` (metres) beyond it, to rounding. Needs some √(size/`excess`) triangles for a cylinder or cone and
     /// size/`excess` for a ball or capsule.
     ///
     /// # Errors
@@ -91,14 +91,14 @@ pub fn solid_to_parry(solid: &Solid) -> (SharedShape, Pose) {
     }
 }
 
-/// What a shape of parry is here, and where: one part, or as many as a compound has, in its order. A
+/// Converts a shape of parry: one part with its pose, or as many as a compound has, in its order. A
 /// [`SharedShape`] is given as `&*shape`.
 ///
 /// * Balls, capsules, cuboids, cylinders, cones and half-spaces are [`Solid`]s; a capsule without length is a ball.
-/// * Meshes, height fields and voxels are surfaces; voxels are solid in parry, so what is wholly inside of them is the
-///   caller's to mind. Convex polyhedra are filled meshes, made anew from their points (parry joins faces that are nearly in
+/// * Meshes, height fields and voxels are surfaces; voxels are solid in parry, so the caller must take care of bodies wholly
+///   inside of them. Convex polyhedra are filled meshes, made anew from their points (parry joins faces that are nearly in
 ///   one plane, which may leave cracks); flat ones are surfaces.
-/// * Triangles, segments and polylines are meshes, of triangles that have two corners in one place where need be.
+/// * Triangles, segments and polylines are meshes, of triangles with two corners in one place where needed.
 /// * Shapes with a round border, and custom ones, are errors.
 ///
 /// # Errors

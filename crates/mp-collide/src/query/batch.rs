@@ -1,24 +1,24 @@
-//! Many poses of one mesh at once.
+//! Collision checks of a sequence of poses of one mesh.
 
 use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::bvh::Tree;
 use crate::bvh::frames::Frames;
-use crate::kernels::swept_interval::{Parts, SweptInterval, Travel};
-use crate::mesh::CollisionMesh;
+use crate::kernels::swept_interval::{SweptInterval, Travel};
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{Relative, is_rigid};
 use crate::query::Query;
-use crate::query::sweep::Schedule;
+use crate::query::schedule::Schedule;
 
-/// Poses are taken so many at a time.
+/// How many poses are checked at a time.
 const CHUNK: usize = 64;
 
 impl Query {
     /// The index of the first of `poses_wa` at which `a` collides with `b`; `None` when it never does.
     ///
     /// The answer is that of [`Query::intersects`] pose by pose. When neighbours in `poses_wa` are near each
-    /// other, as along an edge of a planner, it comes much sooner: whole runs of poses are shown to be free
-    /// at once, as far as the bodies are from each other.
+    /// other, as along an edge of a planner, this is much faster: whole runs of poses are shown to be free
+    /// at once where the bodies are far from each other.
     pub fn first_collision(
         &mut self,
         a: &CollisionMesh,
@@ -28,7 +28,7 @@ impl Query {
     ) -> Option<usize> {
         let mut done = 0;
         for poses in poses_wa.chunks(CHUNK) {
-            if let Some(i) = self.first_in_chunk(a, poses, b, pose_wb) {
+            if let Some(i) = self.first_in_chunk(a, poses, (b, pose_wb)) {
                 return Some(done + i);
             }
             done += poses.len();
@@ -40,13 +40,13 @@ impl Query {
         &mut self,
         a: &CollisionMesh,
         poses: &[Isometry3<f64>],
-        b: &CollisionMesh,
-        pose_wb: &Isometry3<f64>,
+        (b, pose_wb): PosedMesh<'_>,
     ) -> Option<usize> {
-        let pace = Pace::of(poses);
-        let step = pace.step + 2.0 * pace.turn * a.radius();
-        let near =
-            pace.rigid && step <= NEAR * a.tree().radius_center && in_lanes(a, &poses[0], b, pose_wb, step);
+        let steps = StepBounds::of(poses);
+        let step = steps.step + 2.0 * steps.turn * a.radius();
+        let near = steps.rigid
+            && step <= NEAR * a.tree().radius_center
+            && in_lanes((a, &poses[0]), (b, pose_wb), step);
         let first = if near { 1 } else { poses.len() };
         if let Some(i) = poses[..first].iter().position(|p| self.intersects(a, p, b, pose_wb)) {
             return Some(i);
@@ -55,50 +55,43 @@ impl Query {
             return None;
         }
         let (a, b) = (a.tree(), b.tree());
-        let (back, parts) = (pose_wb.rotation.inverse(), std::mem::take(&mut self.parts));
-        let mut course = Poses { a, b, poses, pose_wb, back, pace, parts };
-        let found = self.sweep(a, b, &mut course, [first as u32, poses.len() as u32]);
-        self.parts = course.parts;
-        let found = found.map(|met| met.range[0] as usize);
+        let schedule = PoseSchedule { a, b, poses, pose_wb, back: pose_wb.rotation.inverse(), steps };
+        let found = self.sweep(a, b, &schedule, [first as u32, poses.len() as u32]);
+        let found = found.map(|end| end.range[0] as usize);
         self.counters.queries += found.unwrap_or(poses.len() - 1) as u64;
         found
     }
 }
 
-/// Whether sizes are such that lanes may be used on poses from `first` on, each within `step` of the one before.
-fn in_lanes(
-    a: &CollisionMesh,
-    first: &Isometry3<f64>,
-    b: &CollisionMesh,
-    pose_wb: &Isometry3<f64>,
-    step: f64,
-) -> bool {
-    let Some(relative) = Relative::between(first, a.radius(), pose_wb, b.radius()) else { return false };
-    let frames = Frames::new(a.tree(), b.tree(), &relative);
-    frames.fits_f32(a.tree(), b.tree()) && frames.apart + step * CHUNK as f64 <= 1e8
+/// Whether sizes allow lanes for a chunk of poses of `a` that starts at its pose here, each within `step` of the one before.
+fn in_lanes(a: PosedMesh<'_>, b: PosedMesh<'_>, step: f64) -> bool {
+    let Some(relative) = Relative::of(a, b) else { return false };
+    let (a, b) = (a.0.tree(), b.0.tree());
+    let frames = Frames::new(a, b, &relative);
+    frames.fits_f32(a, b) && frames.apart + step * CHUNK as f64 <= 1e8
 }
 
-/// Only a single pose stands still (metres).
-const LEAST: f64 = 1e-30;
+/// The least motion (metres) of more than one pose: only a single pose is still.
+const LEAST_MOTION: f64 = 1e-30;
 
-/// Poses are taken together that are no farther apart than this many times the body's radius.
+/// Poses are checked together when neighbours are no farther apart than this many times the body's radius.
 const NEAR: f64 = 0.25;
 
-/// How a sequence of poses advances: the most of all steps.
+/// Bounds on the steps between the poses of a sequence: the largest of each kind.
 #[derive(Clone, Copy, Debug)]
-struct Pace {
+struct StepBounds {
     /// Whether all poses are within the limits of the crate docs; if not, the rest means nothing.
     rigid: bool,
-    /// Of the origin, metres.
+    /// How far the origin moves in a step, metres.
     step: f64,
-    /// Between quaternions of unit length.
+    /// The length of the difference of the unit quaternions of a step.
     turn: f64,
-    /// How much two steps in a row differ.
+    /// How much two steps in a row differ in the origin (metres), and in the quaternion.
     bend: f64,
     twist: f64,
 }
 
-impl Pace {
+impl StepBounds {
     fn of(poses: &[Isometry3<f64>]) -> Self {
         let (mut step, mut turn, mut bend, mut twist) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         let mut before: Option<(Vector3<f64>, Quaternion<f64>)> = None;
@@ -112,7 +105,7 @@ impl Pace {
             rigid &= is_rigid(pose);
             let p = pose.translation.vector;
             let q = *pose.rotation.quaternion();
-            // Of the two quaternions of a rotation the nearer.
+            // A rotation has two quaternions: the nearer one.
             let q = if last.1.dot(&q) < 0.0 { -q } else { q };
             raise(&mut length, (q.norm_squared() - 1.0).abs());
             let by = (p - last.0, q - last.1);
@@ -125,7 +118,7 @@ impl Pace {
             before = Some(by);
             last = (p, q);
         }
-        // Quaternions off unit length by `length` differ by up to so much from those that are not.
+        // Quaternions whose squared length is off by `length` differ by up to this much from unit quaternions.
         let off = 2.0 * length + 1e-15;
         Self {
             rigid,
@@ -145,29 +138,28 @@ fn raise(greatest: &mut f64, x: f64) {
     }
 }
 
-/// Poses in a row; parts are ranges of them.
-struct Poses<'q> {
+/// A sequence of poses; parts are ranges of them.
+struct PoseSchedule<'q> {
     a: &'q Tree,
     b: &'q Tree,
     poses: &'q [Isometry3<f64>],
     pose_wb: &'q Isometry3<f64>,
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
-    pace: Pace,
-    parts: Parts,
+    steps: StepBounds,
 }
 
-impl Poses<'_> {
-    /// How far a point gets at most in `n` steps.
+impl PoseSchedule<'_> {
+    /// A bound on how far a point moves in `n` steps.
     fn farthest(&self, n: usize) -> f64 {
-        n as f64 * (self.pace.step + 2.0 * self.pace.turn * self.a.radius)
+        n as f64 * (self.steps.step + 2.0 * self.steps.turn * self.a.radius)
     }
 
-    /// How far points get in `n` steps from pose `middle`, where they are at `q`, turned from the frame of `a`.
+    /// How far points move in `n` steps from pose `middle`; q is a point there, turned from the frame of `a`.
     ///
-    /// With g half the way from the pose before to the pose after (or the whole way from or to one of them),
-    /// and steps in a row that differ by at most c, what is n steps on is at n·g to within c·n·(n + 1)/2: both
-    /// places and quaternions. A quaternion r + d turns p to where r does, and by d·p·r* + r·p·d* + d·p·d*; for
+    /// With g half the difference of the pose after and the pose before (or, at an end, the whole difference to the one
+    /// neighbour), and steps in a row that differ by at most c, the change after n steps is n·g to within c·n·(n + 1)/2,
+    /// for both positions and quaternions. A quaternion r + d turns p to where r does, and by d·p·r* + r·p·d* + d·p·d*; for
     /// d = n·g and g·r* = (s, w) the first two are n·2·(s·q + w × q).
     fn travel(&self, relative: &Relative, middle: usize, n: usize) -> Travel {
         let most = self.farthest(n);
@@ -176,19 +168,19 @@ impl Poses<'_> {
         let scale = n / (after - before) as f64;
         let (from, to) = (&self.poses[before], &self.poses[after]);
         let here = self.poses[middle].rotation.quaternion();
-        // Of the two quaternions of a rotation the nearer.
+        // A rotation has two quaternions: the nearer one.
         let near = |pose: &Isometry3<f64>| {
             let q = *pose.rotation.quaternion();
             if q.dot(here) < 0.0 { -q } else { q }
         };
         let by = (near(to) - near(from)) * here.conjugate() * (2.0 * scale);
         let shift = (to.translation.vector - from.translation.vector) * scale;
-        let Pace { turn, bend, twist, .. } = self.pace;
+        let StepBounds { turn, bend, twist, .. } = self.steps;
         let radius = self.a.radius;
         let curve = n * (n + 1.0) * (0.5 * bend + twist * radius) + (n * turn).powi(2) * radius;
         let rest = curve + by.w.abs() * radius + n * relative.slack;
         if rest > 0.5 * most {
-            // Not smooth: no direction is known.
+            // The poses are not smooth: points may move in any direction.
             return Travel { rest: most, most, ..Travel::none() };
         }
         let back = self.back;
@@ -196,22 +188,12 @@ impl Poses<'_> {
     }
 }
 
-impl Schedule for Poses<'_> {
+impl Schedule for PoseSchedule<'_> {
     const ORDERED: bool = true;
-
-    #[inline]
-    fn parts(&self) -> &Parts {
-        &self.parts
-    }
-
-    #[inline]
-    fn parts_mut(&mut self) -> &mut Parts {
-        &mut self.parts
-    }
 
     fn most(&self, [lo, hi]: [u32; 2]) -> f64 {
         let steps = hi - 1 - u32::midpoint(lo, hi - 1);
-        if hi - lo == 1 { 0.0 } else { self.farthest(steps as usize).max(LEAST) }
+        if hi - lo == 1 { 0.0 } else { self.farthest(steps as usize).max(LEAST_MOTION) }
     }
 
     fn make(&self, range: [u32; 2]) -> Option<SweptInterval> {

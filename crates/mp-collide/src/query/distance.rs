@@ -7,7 +7,8 @@ use crate::bvh::frames::Frames;
 use crate::mesh::CollisionMesh;
 use crate::pose::{Relative, to_world};
 use crate::query::Query;
-use crate::query::nearest::Nearest;
+use crate::query::branch_and_bound::BranchAndBound;
+use crate::query::descend::Descend;
 use crate::query::within::Within;
 use crate::separation::Separation;
 use crate::simd::run;
@@ -26,7 +27,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> Separation {
         self.counters.queries += 1;
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else {
+        let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else {
             return Separation { distance: 0.0, point_a: Point3::origin(), point_b: Point3::origin() };
         };
         if let Some((i, j)) = self.colliding_pair(a.tree(), b.tree(), &relative) {
@@ -46,8 +47,8 @@ impl Query {
     /// A lower bound on the distance of the meshes that is exact when below `enough` (metres) and some
     /// value of at least `enough` otherwise; 0 exactly when they intersect.
     ///
-    /// The smaller `enough`, the sooner the search ends. The value returned beyond `enough` is the best
-    /// bound that came for free. NaN counts as infinity.
+    /// The smaller `enough`, the sooner the search ends. A value beyond `enough` is the best
+    /// bound known without further search. NaN counts as infinity.
     pub fn clearance(
         &mut self,
         a: &CollisionMesh,
@@ -57,7 +58,7 @@ impl Query {
         enough: f64,
     ) -> f64 {
         self.counters.queries += 1;
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else { return 0.0 };
+        let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else { return 0.0 };
         self.clearance_with(a.tree(), b.tree(), &relative, enough).0
     }
 
@@ -74,7 +75,7 @@ impl Query {
         tolerance: f64,
     ) -> bool {
         self.counters.queries += 1;
-        let Some(relative) = Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) else { return true };
+        let Some(relative) = Relative::of((a, pose_wa), (b, pose_wb)) else { return true };
         let tolerance = if tolerance.is_nan() { f64::INFINITY } else { tolerance.max(0.0) };
         if tolerance == f64::INFINITY {
             return true;
@@ -91,12 +92,13 @@ impl Query {
             return self.colliding_pair(a, b, &relative).is_some()
                 || self.nearest(a, b, &relative, tolerance.next_up()).is_some();
         }
-        let (stack, counters) = (&mut self.stack, &mut self.counters);
-        run(self.isa, Within { a, b, frames: &frames, tolerance, stack, counters })
+        let leaves = Within::new(tolerance, &frames, &mut self.counters);
+        let (margin, stack) = (leaves.margin, &mut self.stack);
+        run(self.isa, Descend { a, b, frames: &frames, margin, stack, leaves }).is_some()
     }
 
-    /// [`Query::clearance`], and the triangle of `b` (its position in the tree) that is nearest, if looked
-    /// at.
+    /// [`Query::clearance`], and the position in the tree of the nearest triangle of `b`, if triangles were
+    /// compared.
     pub(crate) fn clearance_with(
         &mut self,
         a: &Tree,
@@ -140,11 +142,11 @@ impl Query {
             return nearest_of_all(a, b, &frames, enough);
         }
         let (scratch, counters) = (&mut self.scratch, &mut self.counters);
-        run(self.isa, Nearest { a, b, frames: &frames, enough, scratch, counters })
+        run(self.isa, BranchAndBound { a, b, frames: &frames, enough, scratch, counters })
     }
 }
 
-/// Every pair of triangles, for sizes that do not fit the lanes.
+/// The nearest of all pairs of triangles, for sizes that do not fit the lanes.
 fn nearest_of_all(a: &Tree, b: &Tree, frames: &Frames, enough: f64) -> Option<(Closest, usize, usize)> {
     let mut squared = enough * enough;
     let mut witness = None;

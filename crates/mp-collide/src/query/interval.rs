@@ -1,23 +1,24 @@
-//! Intervals of motions, proved free.
+//! Continuous collision checks: intervals of motions proved free.
 
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use crate::bvh::Tree;
 use crate::bvh::frames::Frames;
-use crate::kernels::swept_interval::{Parts, SweptInterval, Travel};
+use crate::kernels::swept_interval::{SweptInterval, Travel};
 use crate::kernels::swept_triangles::LeafCheck;
 use crate::mesh::CollisionMesh;
 use crate::pose::{LIMIT, Relative};
 use crate::query::Query;
-use crate::query::sweep::{Met, Schedule};
+use crate::query::schedule::Schedule;
+use crate::query::sweep::SweepEnd;
 
-/// How a rigid body moves over an interval of a motion, seen from the pose in its middle: from there it moves at constant
-/// speed to one end of the interval, and likewise back to the other.
+/// The motion of a rigid body over an interval, relative to the pose in its middle: from there the body moves at constant
+/// velocity to one end of the interval, and in the same way back to the other end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RigidMotion {
     /// How far the origin of the body moves from the middle to the end, in the world (metres).
     pub shift: Vector3<f64>,
-    /// The axis through the origin about which the body turns meanwhile, in the world, times the angle
+    /// The axis through the origin about which the body turns from the middle to the end, in the world, times the angle
     /// (radians).
     pub turn: Vector3<f64>,
     /// A bound on how far any point of the body moves from the middle to either end (metres).
@@ -31,9 +32,9 @@ impl RigidMotion {
         Self { shift, turn, most: (shift.norm() + turn.norm() * radius) * (1.0 + 1e-12) }
     }
 
-    /// The part `share` of the motion from `from` to `to` as spaces interpolate it: the origin on a straight
-    /// line, the turn about a fixed axis by the shorter way, both at constant speed; `None` when the turn is
-    /// so near to half a turn that either way may be the shorter.
+    /// The fraction `share` of the motion from `from` to `to` as spaces interpolate it: the origin on a straight
+    /// line, the turn about a fixed axis by the smaller angle, both at constant speed. `None` when the turn is
+    /// so near to half a turn that either direction may be the shorter.
     #[must_use]
     pub fn of_motion(from: &Isometry3<f64>, to: &Isometry3<f64>, share: f64, most: f64) -> Option<Self> {
         let shift = (to.translation.vector - from.translation.vector) * share;
@@ -55,8 +56,8 @@ impl RigidMotion {
     }
 }
 
-/// Whether a body keeps a margin from everything all along an interval of a motion. Where it does not, `at` is the place
-/// as a share of the way from the middle of the interval to its end, from −1 to 1.
+/// Whether a body keeps a margin all along an interval of a motion. In `TooClose` and `Collision`, `at` is the place as a
+/// fraction of the way from the middle of the interval to its end, from −1 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalCheck {
     /// Proved to keep the margin.
@@ -87,12 +88,12 @@ impl Query {
     /// Whether `a` stays at least `margin` (metres) from `b` all along an interval about `middle_wa`.
     ///
     /// Whenever the clearance in the middle is at least `motion.most + margin`, up to rounding, the answer is
-    /// [`IntervalCheck::Free`]; but far longer intervals are found clear too, as the bound of each part of `a` is its own,
-    /// and counts toward `b` only. One traversal, in which the interval is divided where the bodies are near each
-    /// other; it ends where they are in contact or too near (in a pose that is rounded as that of a place between).
+    /// [`IntervalCheck::Free`]; but far longer intervals are found free too, as each part of `a` has its own bound on motion,
+    /// and only motion toward `b` counts. One traversal, in which the interval is divided where the bodies are near each
+    /// other; it ends where they are in contact or too close (at an intermediate pose, computed with rounding).
     ///
-    /// What counts as in collision with everything (see the crate docs), a motion or a margin that is not
-    /// finite, and a turn of more than 4 radians are [`IntervalCheck::Unproven`]; a negative margin counts as 0.
+    /// Input that counts as in collision with everything (see the crate docs), a motion or margin that is not
+    /// finite, and a turn of more than 4 radians give [`IntervalCheck::Unproven`]; a negative margin counts as 0.
     pub fn check_interval(
         &mut self,
         a: &CollisionMesh,
@@ -103,7 +104,7 @@ impl Query {
         margin: f64,
     ) -> IntervalCheck {
         self.counters.queries += 1;
-        let relative = Relative::between(middle_wa, a.radius(), pose_wb, b.radius());
+        let relative = Relative::of((a, middle_wa), (b, pose_wb));
         let Some(relative) = relative.filter(|_| motion.is_usable() && margin.abs() <= LIMIT) else {
             return IntervalCheck::Unproven;
         };
@@ -115,11 +116,10 @@ impl Query {
             let clear = self.clearance_with(a, b, &relative, enough).0 >= enough;
             return if clear { IntervalCheck::Free } else { IntervalCheck::Unproven };
         }
-        let (back, parts) = (pose_wb.rotation.inverse(), std::mem::take(&mut self.parts));
-        let mut course = Smooth { a, b, middle_wa, motion, pose_wb, back, margin, parts };
-        let met = self.sweep(a, b, &mut course, [0, PIECES]);
-        self.parts = course.parts;
-        met.map_or(IntervalCheck::Free, |Met { range, gap }| match gap {
+        let back = pose_wb.rotation.inverse();
+        let schedule = IntervalSchedule { a, b, middle_wa, motion, pose_wb, back, margin };
+        let end = self.sweep(a, b, &schedule, [0, SUBINTERVALS]);
+        end.map_or(IntervalCheck::Free, |SweepEnd { range, check }| match check {
             LeafCheck::Collision => IntervalCheck::Collision { at: middle(range) },
             LeafCheck::TooClose => IntervalCheck::TooClose { at: middle(range) },
             LeafCheck::Free | LeafCheck::Unproven => IntervalCheck::Unproven,
@@ -127,14 +127,14 @@ impl Query {
     }
 }
 
-/// An interval is divided into no more pieces than this.
-const PIECES: u32 = 32;
+/// An interval is divided into at most so many subintervals.
+const SUBINTERVALS: u32 = 32;
 
-/// Triangles are compared over parts of no more pieces than this. Measured: half as many or twice as many are slower.
+/// Triangles are compared over parts of at most so many subintervals. Measured: half as many or twice as many are slower.
 const FINE: u32 = 4;
 
-/// An interval of a motion; parts are ranges of its pieces.
-struct Smooth<'q> {
+/// An interval of a motion; parts are ranges of its subintervals.
+struct IntervalSchedule<'q> {
     a: &'q Tree,
     b: &'q Tree,
     middle_wa: &'q Isometry3<f64>,
@@ -143,31 +143,20 @@ struct Smooth<'q> {
     /// From the world into the frame of `b`.
     back: UnitQuaternion<f64>,
     margin: f64,
-    parts: Parts,
 }
 
 /// Half of a part, as a share of half the interval.
 fn share([lo, hi]: [u32; 2]) -> f64 {
-    f64::from(hi - lo) / f64::from(PIECES)
+    f64::from(hi - lo) / f64::from(SUBINTERVALS)
 }
 
 /// The middle of a part, as a share of half the interval.
 fn middle([lo, hi]: [u32; 2]) -> f64 {
-    f64::from(lo + hi) / f64::from(PIECES) - 1.0
+    f64::from(lo + hi) / f64::from(SUBINTERVALS) - 1.0
 }
 
-impl Schedule for Smooth<'_> {
+impl Schedule for IntervalSchedule<'_> {
     const ORDERED: bool = false;
-
-    #[inline]
-    fn parts(&self) -> &Parts {
-        &self.parts
-    }
-
-    #[inline]
-    fn parts_mut(&mut self) -> &mut Parts {
-        &mut self.parts
-    }
 
     fn most(&self, range: [u32; 2]) -> f64 {
         (self.motion.most * share(range)).max(1e-30)
@@ -185,7 +174,7 @@ impl Schedule for Smooth<'_> {
             Isometry3::from_parts(Translation3::from(place), turned)
         };
         let turn = motion.turn * half;
-        // A point at most `radius` from the axis moves on a circle: this far from its tangent.
+        // A point at most `radius` from the axis moves on a circle, and leaves its tangent by this much.
         let rest = 0.5 * turn.norm_squared() * self.a.radius;
         let travel = Travel {
             shift: self.back * (motion.shift * half),

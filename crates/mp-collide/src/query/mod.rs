@@ -3,13 +3,17 @@
 #![allow(clippy::needless_range_loop)] // Coordinates and axes are indices here, several arrays at a time.
 
 mod batch;
+mod branch_and_bound;
+pub(crate) mod descend;
 mod distance;
 pub(crate) mod inside;
 mod intersect;
 pub(crate) mod interval;
-mod nearest;
+mod lowest;
 pub(crate) mod revolved;
+pub(crate) mod schedule;
 mod sweep;
+mod winding;
 mod within;
 
 use nalgebra::Isometry3;
@@ -17,30 +21,31 @@ use nalgebra::Isometry3;
 use crate::bvh::Tree;
 use crate::bvh::frames::Frames;
 use crate::counters::Counters;
-use crate::kernels::swept_interval::Parts;
 use crate::kernels::triangle_pair::TriangleFilter;
 use crate::mesh::CollisionMesh;
 use crate::pose::Relative;
+use crate::query::branch_and_bound::Scratch;
+use crate::query::descend::Descend;
 use crate::query::intersect::Intersect;
-use crate::query::nearest::Scratch;
-use crate::query::sweep::Item;
+use crate::query::schedule::MotionParts;
+use crate::query::sweep::SweptPair;
 use crate::simd::{Isa, run};
 use crate::triangle::intersect;
 
-/// Scratch and counters of one thread: make one per thread and keep it.
+/// Runs queries: scratch memory and counters of one thread. Make one per thread and keep it.
 ///
 /// All queries are between mesh `a` at `pose_wa` and mesh `b` at `pose_wb` (poses in the world); answers
 /// depend on nothing else, and nothing is allocated once the scratch has grown. The contract, with what
 /// happens to bad input, is in the [crate documentation](crate).
 #[derive(Clone, Debug)]
 pub struct Query {
-    /// What was done so far; set to `Counters::default()` to start over.
+    /// The work done so far; set to `Counters::default()` to start over.
     pub counters: Counters,
     pub(crate) stack: Vec<(u32, u32)>,
-    pub(crate) meeting: TriangleFilter,
+    pub(crate) filter: TriangleFilter,
     pub(crate) scratch: Scratch,
-    pub(crate) items: Vec<Item>,
-    pub(crate) parts: Parts,
+    pub(crate) swept_pairs: Vec<SweptPair>,
+    pub(crate) parts: MotionParts,
     pub(crate) isa: Isa,
 }
 
@@ -58,10 +63,10 @@ impl Query {
         Self {
             counters: Counters::default(),
             stack: Vec::new(),
-            meeting: TriangleFilter::NONE,
+            filter: TriangleFilter::NONE,
             scratch: Scratch::default(),
-            items: Vec::new(),
-            parts: Parts::default(),
+            swept_pairs: Vec::new(),
+            parts: MotionParts::default(),
             isa,
         }
     }
@@ -75,7 +80,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> bool {
         self.counters.queries += 1;
-        match Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) {
+        match Relative::of((a, pose_wa), (b, pose_wb)) {
             Some(relative) => self.collide(a.tree(), b.tree(), relative, true).is_some(),
             None => true,
         }
@@ -91,7 +96,7 @@ impl Query {
         pose_wb: &Isometry3<f64>,
     ) -> Option<(usize, usize)> {
         self.counters.queries += 1;
-        match Relative::between(pose_wa, a.radius(), pose_wb, b.radius()) {
+        match Relative::of((a, pose_wa), (b, pose_wb)) {
             Some(relative) => self
                 .colliding_pair(a.tree(), b.tree(), &relative)
                 .map(|(i, j)| (a.tree().ids[i] as usize, b.tree().ids[j] as usize)),
@@ -119,13 +124,13 @@ impl Query {
         if !frames.fits_f32(a, b) {
             return any_of_all(a, b, &frames);
         }
-        let (frames, stack) = (&frames, &mut self.stack);
-        let (meeting, counters) = (&mut self.meeting, &mut self.counters);
-        run(self.isa, Intersect { a, b, frames, any, stack, meeting, counters })
+        let leaves = Intersect { any, filter: &mut self.filter, counters: &mut self.counters };
+        let (margin, stack) = (frames.pad, &mut self.stack);
+        run(self.isa, Descend { a, b, frames: &frames, margin, stack, leaves })
     }
 }
 
-/// Every pair of triangles, for sizes that do not fit the lanes.
+/// The first two triangles that meet, of all pairs: for sizes that do not fit the lanes.
 fn any_of_all(a: &Tree, b: &Tree, frames: &Frames) -> Option<(usize, usize)> {
     b.triangles.iter().enumerate().find_map(|(l, triangle)| {
         let single = frames.exact.triangle(triangle);

@@ -1,4 +1,4 @@
-//! How far is a mesh from a solid of revolution: a cylinder or a cone?
+//! The distance of a mesh from a solid of revolution: a cylinder or a cone.
 
 use nalgebra::{Point3, Vector3};
 
@@ -18,20 +18,20 @@ pub(crate) struct Frustum {
     pub(crate) half: f64,
 }
 
-/// A point of something and the nearest of a solid.
+/// A point of a point, segment or triangle, and the nearest point of a solid.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Apart {
+pub(crate) struct NearestPoints {
     /// Metres; 0 when they meet.
     pub(crate) distance: f64,
     pub(crate) other: Point3<f64>,
     pub(crate) solid: Point3<f64>,
 }
 
-/// Halvings of an edge in search of its nearest point: its place is then exact to rounding.
+/// Halvings of an edge in search of its nearest point, which is then exact to rounding.
 const HALVINGS: usize = 54;
 
 impl Frustum {
-    /// The point of the solid that is nearest to `p`: `p` itself inside.
+    /// The point of the solid that is nearest to `p`; `p` itself, if it is inside.
     fn nearest(&self, p: &Point3<f64>) -> Point3<f64> {
         let rho = (p.x * p.x + p.y * p.y).sqrt();
         let (r, z) = self.nearest_in_profile(rho, p.z);
@@ -39,7 +39,7 @@ impl Frustum {
         if r == rho { Point3::new(p.x, p.y, z) } else { Point3::new(x * r, y * r, z) }
     }
 
-    /// The same in the half-plane of distances from the axis and heights, where the solid is a trapezium.
+    /// [`Frustum::nearest`] in the half-plane of distances from the axis and heights, where the solid is a trapezium.
     fn nearest_in_profile(&self, rho: f64, z: f64) -> (f64, f64) {
         let &Self { low, high, half } = self;
         let (across, up) = (high - low, 2.0 * half);
@@ -59,7 +59,7 @@ impl Frustum {
         best.1
     }
 
-    /// The point that is farthest along `n`; of several one in their middle.
+    /// The point that is farthest along `n`; of several, one in their middle.
     fn farthest(&self, n: &Vector3<f64>) -> Point3<f64> {
         let level = (n.x * n.x + n.y * n.y).sqrt();
         let top = self.high * level + self.half * n.z > self.low * level - self.half * n.z;
@@ -67,15 +67,15 @@ impl Frustum {
         if level > 0.0 { Point3::new(r * n.x / level, r * n.y / level, z) } else { Point3::new(0.0, 0.0, z) }
     }
 
-    fn near_point(&self, p: &Point3<f64>) -> Apart {
+    fn near_point(&self, p: &Point3<f64>) -> NearestPoints {
         let solid = self.nearest(p);
         let distance = (p - solid).norm();
-        // What cannot be decided is collision.
-        Apart { distance: if distance.is_nan() { 0.0 } else { distance }, other: *p, solid }
+        // NaN counts as collision.
+        NearestPoints { distance: if distance.is_nan() { 0.0 } else { distance }, other: *p, solid }
     }
 
-    /// The distance grows along a line on both sides of where it is least, as the solid is convex.
-    fn near_segment(&self, p: &Point3<f64>, q: &Point3<f64>) -> Apart {
+    /// By bisection: as the solid is convex, the distance grows along a line to both sides of its minimum.
+    fn near_segment(&self, p: &Point3<f64>, q: &Point3<f64>) -> NearestPoints {
         let along = q - p;
         let at = |t: f64| p + along * t;
         let slope = |x: &Point3<f64>| (x - self.nearest(x)).dot(&along);
@@ -101,9 +101,9 @@ impl Frustum {
         self.near_point(&at(hi))
     }
 
-    /// The nearest points of a triangle and the solid: on an edge, or within the face below the point of the solid
-    /// that is farthest toward its plane.
-    pub(crate) fn near_triangle(&self, t: &Triangle) -> Apart {
+    /// The nearest points of a triangle and the solid: on an edge, or within the face, below the point of the solid
+    /// that is nearest to its plane.
+    pub(crate) fn near_triangle(&self, t: &Triangle) -> NearestPoints {
         let mut best = self.near_segment(&t[0], &t[1]);
         for k in 1..3 {
             let other = self.near_segment(&t[k], &t[(k + 1) % 3]);
@@ -119,14 +119,14 @@ impl Frustum {
         let ends = [self.farthest(&-n), self.farthest(&n)];
         let heights = ends.map(|end| (end - t[0]).dot(&n));
         let foot = if heights[0] > 0.0 {
-            Apart { distance: heights[0], other: ends[0] - n * heights[0], solid: ends[0] }
+            NearestPoints { distance: heights[0], other: ends[0] - n * heights[0], solid: ends[0] }
         } else if heights[1] < 0.0 {
-            Apart { distance: -heights[1], other: ends[1] - n * heights[1], solid: ends[1] }
+            NearestPoints { distance: -heights[1], other: ends[1] - n * heights[1], solid: ends[1] }
         } else {
-            // The plane cuts the solid, and no edge meets it: all of the cut is within the triangle or none.
+            // The plane cuts the solid, and no edge meets it: either all of the cut is within the triangle, or none.
             let share = -heights[0] / (heights[1] - heights[0]);
             let cut = ends[0] + (ends[1] - ends[0]) * if share.is_finite() { share } else { 0.5 };
-            Apart { distance: 0.0, other: cut, solid: cut }
+            NearestPoints { distance: 0.0, other: cut, solid: cut }
         };
         let within = (0..3).all(|k| {
             let (p, q) = (t[k], t[(k + 1) % 3]);
@@ -135,12 +135,12 @@ impl Frustum {
         if within && foot.distance < best.distance { foot } else { best }
     }
 
-    /// The same for a triangle of `a`, in the frame of `a`.
-    pub(crate) fn near_triangle_of_a(&self, t: &Triangle, pose_ab: &Relative) -> Apart {
+    /// [`Frustum::near_triangle`] for a triangle of `a`, in the frame of `a`.
+    pub(crate) fn near_triangle_of_a(&self, t: &Triangle, pose_ab: &Relative) -> NearestPoints {
         let Relative { rotation, translation, .. } = pose_ab;
         let local = t.map(|p| Point3::from(rotation.tr_mul(&(p.coords - translation))));
         let apart = self.near_triangle(&local);
-        Apart { other: pose_ab.point(&apart.other), solid: pose_ab.point(&apart.solid), ..apart }
+        NearestPoints { other: pose_ab.point(&apart.other), solid: pose_ab.point(&apart.solid), ..apart }
     }
 }
 
@@ -151,9 +151,9 @@ pub(crate) struct Revolved<'q> {
     pub(crate) b: &'q Tree,
     pub(crate) solid: &'q Frustum,
     pub(crate) frames: &'q Frames,
-    /// Only points no farther apart than this (metres) are of interest,
+    /// Only points no farther apart than this (metres) are of interest.
     pub(crate) enough: f64,
-    /// and any of these will do.
+    /// Whether any of these will do, not only the nearest.
     pub(crate) any: bool,
     pub(crate) stack: &'q mut Vec<(u32, u32)>,
     pub(crate) counters: &'q mut Counters,
@@ -161,14 +161,14 @@ pub(crate) struct Revolved<'q> {
 
 impl Kernel for Revolved<'_> {
     /// In the frame of `a`.
-    type Output = Option<Apart>;
+    type Output = Option<NearestPoints>;
 
     #[inline(always)]
     fn run<L: Lanes>(self) -> Self::Output {
         let Self { a, b, solid, frames, enough, any, stack, counters } = self;
         let place = FrameTransform::<L>::new(&frames.into_a).place(b.own(b.root));
-        let mut best: Option<Apart> = None;
-        // Squared, rounded up.
+        let mut best: Option<NearestPoints> = None;
+        // The square, rounded up.
         let up = |x: f64| ((x * x * (1.0 + 1e-6)) as f32).next_up();
         let mut limit = up(enough);
         stack.clear();
@@ -205,7 +205,7 @@ impl Kernel for Revolved<'_> {
                 mask &= mask - 1;
                 stack.push((node.child[lane], bound[lane].to_bits()));
             }
-            // The bits of numbers that are not negative are in the order of the numbers.
+            // The bits of non-negative numbers are in the order of the numbers.
             stack[from..].sort_unstable_by_key(|&(x, bound)| std::cmp::Reverse((bound, x)));
         }
         best

@@ -2,7 +2,7 @@
 //!
 //! Two convex sets meet exactly when the origin is in the set of their differences, here the convex hull of
 //! the nine differences of corners. By Carathéodory's theorem it is then in the hull of four or fewer of them
-//! that are affinely independent. All subsets are tried: nothing of this is how the engine works.
+//! that are affinely independent. All subsets are tried: the library decides in an entirely different way.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
@@ -19,8 +19,8 @@ impl<N> Exact for N where N: Clone + Ord + Default + Add<Output = N> + Sub<Outpu
 /// or a point.
 ///
 /// `known` may tell how the volume det(d₁, d₂, d₃) of three differences compares to zero where the caller knows
-/// for certain; the difference of corner i of `a` and corner j of `b` has the number 3·i + j, and numbers are
-/// ascending. All else is computed. Numbers as small as those of determinants of differences must fit.
+/// for certain; the difference of corner i of `a` and corner j of `b` has the number 3·i + j, and the numbers it is called
+/// with ascend. All else is computed. `N` must hold determinants of differences exactly.
 #[must_use]
 pub fn triangles_meet<N: Exact>(
     a: &[[N; 3]; 3],

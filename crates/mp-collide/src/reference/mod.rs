@@ -5,9 +5,9 @@
 //! It is not exact at contact: whatever is nearer than about 1e-13 of the coordinates counts as touching.
 
 pub mod exact;
-mod hull;
 mod pairs;
 mod sweep;
+mod swept_triangle;
 mod triangle;
 
 use mp_geom::TriMesh;
@@ -18,7 +18,7 @@ pub use triangle::triangle_distance;
 
 use triangle::{Triangle, point_triangle};
 
-/// Anything nearer than this part of the coordinates counts as touching.
+/// Anything nearer than this fraction of the coordinates counts as touching.
 const TOUCHING: f64 = 1e-13;
 
 /// A ball around some triangles.
@@ -64,7 +64,7 @@ impl RefMesh {
 
     /// Whether the distance from this mesh at `pose_wa` to `other` at `pose_wb` is at least `enough` (metres):
     /// `Ok` with a lower bound on it, or `Err` with the distance of some pair of triangles that are nearer (0
-    /// when they intersect or touch), the first found. Much sooner done than [`RefMesh::clearance`] when the
+    /// when they intersect or touch), the first found. Much faster than [`RefMesh::clearance`] when the
     /// meshes are near.
     ///
     /// # Errors
@@ -117,7 +117,7 @@ impl RefMesh {
         }
         let pose_ab = IsometryMatrix3::from_parts(pose_ab.translation, pose_ab.rotation.to_rotation_matrix());
         let touching = TOUCHING * scale;
-        // Look a little further than asked, so that touching is always seen.
+        // A little more than `enough`, so that touching is always found.
         let best = if enough.is_nan() { f64::INFINITY } else { enough.max(2.0 * touching) };
         Some(Search { a: self, b: other, pose_ab, touching, best, any: false })
     }
@@ -131,12 +131,12 @@ struct Search<'a> {
     touching: f64,
     /// The smallest distance so far; at first, the distance that is enough.
     best: f64,
-    /// Whether the first that is nearer ends the search.
+    /// Whether the first distance below `enough` ends the search.
     any: bool,
 }
 
 impl Search<'_> {
-    /// The distance found, 0 for touching; a bound when it is not below that to begin with.
+    /// The distance found, 0 for touching; a lower bound when the roots are farther apart than is enough.
     fn run(mut self) -> f64 {
         let (root_a, root_b) = (self.a.balls.len() - 1, self.b.balls.len() - 1);
         let bound = self.bound(root_a, root_b);
@@ -147,7 +147,7 @@ impl Search<'_> {
         if self.best <= self.touching { 0.0 } else { self.best }
     }
 
-    /// A lower bound on the distance of what two balls hold.
+    /// A lower bound on the distance of the triangles of two balls.
     fn bound(&self, i: usize, j: usize) -> f64 {
         let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
         // For a ball against a single triangle, the triangle itself is the better bound.
@@ -164,7 +164,7 @@ impl Search<'_> {
         distance - self.touching
     }
 
-    /// Lowers `best` to the distance of what two balls hold, if that is smaller.
+    /// Lowers `best` to the distance of the triangles of two balls, if that is smaller.
     /// Returns whether the search is over.
     fn visit(&mut self, i: usize, j: usize) -> bool {
         let (ball_a, ball_b) = (&self.a.balls[i], &self.b.balls[j]);
@@ -195,13 +195,13 @@ impl Search<'_> {
     }
 }
 
-/// Whether `pose` is a rigid motion, and finite with meshes of that size.
+/// Whether `pose` is a rigid motion within the limits, for meshes of that size.
 fn is_usable(pose: &Isometry3<f64>, size: f64) -> bool {
     let rigid = (pose.rotation.quaternion().norm() - 1.0).abs() < 1e-6;
     rigid && pose.translation.vector.norm() + size < 1e75
 }
 
-/// Adds the balls of the triangles in `order`, children first; returns the index of the outermost.
+/// Adds the balls of the triangles in `order`, children first; returns the index of the ball around them all.
 fn build(triangles: &[Triangle], order: &mut [usize], balls: &mut Vec<Ball>) -> usize {
     let content = if let [only] = order {
         Content::Triangle(*only)
@@ -224,7 +224,7 @@ fn build(triangles: &[Triangle], order: &mut [usize], balls: &mut Vec<Ball>) -> 
     balls.len() - 1
 }
 
-/// A ball around the points: the middle of their box, the distance of the farthest.
+/// A ball around the points, about the middle of their box.
 fn enclosing_ball(points: impl Iterator<Item = Point3<f64>> + Clone, content: Content) -> Ball {
     let low = points.clone().reduce(|p, q| p.inf(&q)).unwrap_or_default();
     let high = points.clone().reduce(|p, q| p.sup(&q)).unwrap_or_default();

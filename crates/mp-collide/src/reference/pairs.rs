@@ -1,11 +1,11 @@
-//! Which triangles can touch at all.
+//! Pairs of triangles that may touch.
 
 use super::{Content, RefMesh};
 use nalgebra::Isometry3;
 
 impl RefMesh {
     /// Calls `visit` with every pair of triangles, of this mesh at `pose_wa` and of `other` at `pose_wb`, whose
-    /// balls meet, and maybe with some more, until it says `true`. Returns whether it did; `true` for bad input.
+    /// balls meet, and perhaps some more, until it returns `true`. Returns whether it did; `true` for bad input.
     ///
     /// Triangles that touch, or come as near as rounding of the poses, are always among them.
     pub fn any_near_pair(

@@ -1,6 +1,6 @@
-//! Whole motions of a mesh past another, proved free.
+//! Whole motions of a mesh past another mesh, proved free.
 
-use super::hull::Hull;
+use super::swept_triangle::SweptTriangle;
 use super::triangle::{Triangle, triangle_gap};
 use super::{Ball, Content, RefMesh, TOUCHING, is_usable};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
@@ -13,7 +13,7 @@ pub enum SweepCheck {
         /// A lower bound on the distance all along, at least the margin (m).
         clearance: f64,
     },
-    /// The meshes touch at fraction `at` of the motion, or have no distance there.
+    /// The meshes touch at fraction `at` of the motion, or the pose there is not usable.
     Collision {
         /// The fraction.
         at: f64,
@@ -26,49 +26,49 @@ pub enum SweepCheck {
     },
 }
 
-/// Proves that a mesh that moves keeps a distance from one that stands: a search over balls of the one that
-/// moves and parts of the motion, with a list of the balls of the other that may be near. Holds the memory that takes.
+/// Proves that a moving mesh keeps a distance from a static mesh: a search over balls of the moving mesh and parts of
+/// the motion, with a list of the balls of the static mesh that may be near. Keeps its memory between searches.
 ///
 /// While its mesh goes straight and turns by θ about a fixed axis, both at constant speed, a point at
-/// distance r from the origin of its frame keeps within r·θ²/8 of the point that moves evenly from where it
-/// begins to where it ends (the error of linear interpolation). So
+/// distance r from the origin of its frame stays within r·θ²/8 of the point that moves in a straight line at constant speed
+/// from its start to its end (the error of linear interpolation). So
 ///
-/// - what a ball holds, and the box around it, is swept within the box around both ends, so much wider, which
-///   is kept apart from the boxes of what stands;
-/// - a triangle is swept within the hull of its corners at both ends, so much wider, which is kept apart from
-///   a triangle by a direction.
+/// - the triangles of a ball sweep within the box around them at both ends, widened by this much, which
+///   is compared with the boxes of static balls;
+/// - a triangle is swept within the hull of its corners at both ends, widened by this much, which is
+///   separated from a static triangle by a direction.
 ///
-/// Of what is not shown to be apart the larger is split: balls that stand, those that move or, when it is longer than those,
+/// Where this does not separate, the largest is split: static balls, moving balls or, when it is longer than those,
 /// the motion. Triangles nearer than twice the margin in the middle of a part end the search.
 #[derive(Clone, Debug, Default)]
 pub struct Sweep {
     parts: Vec<Part>,
     moments: Vec<Moment>,
     open: Vec<Open>,
-    /// What stands and may be near, as the open ones list it, and what is being looked at.
+    /// The static balls that may be near, listed for each open ball, and those still to be compared.
     near: Vec<Near>,
     todo: Vec<Near>,
     compared: u64,
 }
 
-/// A ball that moves, during a part of the motion.
+/// A moving ball during a part of the motion.
 #[derive(Clone, Copy, Debug)]
 struct Open {
     ball: usize,
     part: usize,
-    /// From where to where what may be near is listed.
+    /// The range of `Sweep::near` that lists what may be near.
     near: [usize; 2],
 }
 
-/// A ball that stands and may be near.
+/// A static ball that may be near.
 #[derive(Clone, Copy, Debug)]
 struct Near {
     ball: usize,
-    /// A direction that may keep triangles apart; zero when none is known.
+    /// A direction that may separate triangles; zero when none is known.
     way: Vector3<f64>,
 }
 
-/// A part of a motion, cut when need be.
+/// A part of a motion, halved on demand.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     /// Indices of moments.
@@ -79,20 +79,20 @@ struct Part {
     halves: Option<(usize, [usize; 2])>,
 }
 
-/// Where a ball goes in a part of the motion.
+/// The space that a ball sweeps in a part of the motion.
 #[derive(Clone, Copy, Debug)]
 struct Swath {
     /// The box around what the ball holds at both ends.
     low: Vector3<f64>,
     high: Vector3<f64>,
-    /// How far the center goes, and what the bend counts against that.
+    /// How far the center moves, plus [`BEND`] times `bend`.
     length: f64,
-    /// By how much points leave the straight way.
+    /// How far points may leave the straight line.
     bend: f64,
 }
 
 impl Swath {
-    /// A lower bound on the distance of what goes here from what a ball holds, if it is at least `enough`.
+    /// A lower bound on the distance of this swath from the triangles of a static ball, if it is at least `enough`.
     fn apart(&self, ball: &Ball, enough: f64) -> Option<f64> {
         let (low, high) = (ball.center.coords - ball.half, ball.center.coords + ball.half);
         let gap = (self.low - high).sup(&(low - self.high)).sup(&Vector3::zeros());
@@ -118,7 +118,7 @@ impl Moment {
     }
 }
 
-/// What a sweep is about.
+/// The two meshes of a sweep, and its distances.
 struct Task<'a> {
     moving: &'a RefMesh,
     standing: &'a RefMesh,
@@ -126,11 +126,11 @@ struct Task<'a> {
     touching: f64,
 }
 
-/// More pairs than this are not compared.
+/// A sweep gives up after comparing this many pairs.
 const MAX_COMPARED: u64 = 20_000_000;
 
-/// What a bend counts against the length of a motion when it is decided whether to cut in time: a cut makes it
-/// four times smaller.
+/// The weight of a bend against the length of a motion in the decision whether to halve the motion: halving makes
+/// the bend four times smaller.
 const BEND: f64 = 20.0;
 
 impl Sweep {
@@ -144,9 +144,9 @@ impl Sweep {
     /// motion that takes its frame to `pose_at` of the fractions 0 to 1.
     ///
     /// The motion must take the origin on a straight line and turn by at most half a turn about a fixed axis,
-    /// both at constant speed. Found free is every motion with a distance of at least twice the margin all
-    /// along, unless it takes more than 20 million comparisons. A pose that is not finite or not a rigid motion,
-    /// and coordinates beyond 1e75, give contact.
+    /// both at constant speed. Every motion with a distance of at least twice the margin all along is found
+    /// free, unless it takes more than 20 million comparisons. A pose that is not finite or not a rigid motion,
+    /// and coordinates beyond 1e75, give a collision.
     pub fn sweep(
         &mut self,
         moving: &RefMesh,
@@ -225,8 +225,8 @@ impl Sweep {
         SweepCheck::Free { clearance: least }
     }
 
-    /// Lists what may be near a ball in a part of the motion, of what was listed for a larger one: balls not larger than
-    /// the ball or its motion; of a triangle, triangles.
+    /// Lists the static balls that may be near a ball in a part of the motion, from the list of its parent: balls no larger
+    /// than the ball or its motion; for a ball with one triangle, single triangles.
     fn list(&mut self, task: &Task<'_>, open: &Open, swath: &Swath, least: &mut f64) {
         let [from, to] = open.near;
         self.near.truncate(to);
@@ -250,7 +250,7 @@ impl Sweep {
         }
     }
 
-    /// Drops the triangles last listed that a direction keeps apart from one that moves.
+    /// Drops the triangles last listed that a direction separates from a moving triangle.
     fn drop_apart(
         &mut self,
         task: &Task<'_>,
@@ -261,16 +261,16 @@ impl Sweep {
     ) {
         let ends = self.parts[open.part].ends.map(|end| &self.moments[end]);
         let [from, to] = ends.map(|moment| triangle.map(|p| moment.place(&p)));
-        let hull = Hull::new(from, to);
+        let hull = SweptTriangle::new(from, to);
         let enough = task.margin + task.touching;
         let first = open.near[1];
         let mut kept = first;
         for i in first..self.near.len() {
             let near = self.near[i];
-            let ahead = |stands| hull.ahead_of(stands, near.way, enough + swath.bend).0 - swath.bend;
-            let ahead = task.stands(&near).map_or(f64::NEG_INFINITY, ahead);
-            if ahead >= enough {
-                *least = least.min(ahead - task.touching);
+            let gap = |stands| hull.gap_from(stands, near.way, enough + swath.bend).0 - swath.bend;
+            let gap = task.stands(&near).map_or(f64::NEG_INFINITY, gap);
+            if gap >= enough {
+                *least = least.min(gap - task.touching);
             } else {
                 self.near[kept] = near;
                 kept += 1;
@@ -279,12 +279,12 @@ impl Sweep {
         self.near.truncate(kept);
     }
 
-    /// Where a ball goes in a part of the motion.
+    /// The space that a ball sweeps in a part of the motion.
     fn swath(&self, ball: &Ball, part: usize) -> Swath {
         let Part { ends, bend, .. } = self.parts[part];
         let ends = ends.map(|end| &self.moments[end]);
         let [from, to] = ends.map(|moment| moment.place(&ball.center).coords);
-        // The box around a turned box, or around the ball if that is smaller.
+        // The box around a rotated box, or around the ball if that is smaller.
         let round = Vector3::repeat(ball.radius);
         let [at_from, at_to] = ends.map(|moment| (moment.spread * ball.half).inf(&round));
         let bend = ball.reach * bend;
@@ -296,7 +296,7 @@ impl Sweep {
         }
     }
 
-    /// Notes a moment; whether it can be computed with.
+    /// Adds a moment; returns whether its pose is usable.
     fn moment(&mut self, at: f64, pose: &Isometry3<f64>, size: f64) -> bool {
         let rotation = pose.rotation.to_rotation_matrix().into_inner();
         self.moments.push(Moment { at, rotation, spread: rotation.abs(), origin: pose.translation.vector });
@@ -309,7 +309,7 @@ impl Sweep {
         0.5 * (self.moments[a].at + self.moments[b].at)
     }
 
-    /// The moment in the middle of a part and both halves; `None` when that is no pose.
+    /// The moment in the middle of a part and both halves; `None` when the pose there is not usable.
     fn cut(
         &mut self,
         part: usize,
@@ -338,7 +338,7 @@ impl Sweep {
 }
 
 impl Task<'_> {
-    /// The triangle that stands; of a triangle that moves only triangles are listed.
+    /// The static triangle; for a moving triangle only single triangles are listed.
     fn stands(&self, near: &Near) -> Option<&Triangle> {
         match self.standing.balls[near.ball].content {
             Content::Triangle(l) => Some(&self.standing.triangles[l]),
@@ -346,15 +346,15 @@ impl Task<'_> {
         }
     }
 
-    /// A direction in which a triangle is ahead of one that stands by twice the margin.
+    /// A direction along which a moved triangle is twice the margin apart from a static one.
     ///
     /// # Errors
     /// Their distance when it is less.
     fn way(&self, moved: &Triangle, near: &Near) -> Result<Vector3<f64>, f64> {
         let Some(stands) = self.stands(near) else { return Err(0.0) };
         let enough = 2.0 * self.margin + self.touching;
-        let (ahead, way) = Hull::new(*moved, *moved).ahead_of(stands, near.way, enough);
-        if ahead >= enough {
+        let (gap, way) = SweptTriangle::new(*moved, *moved).gap_from(stands, near.way, enough);
+        if gap >= enough {
             return Ok(way);
         }
         let gap = triangle_gap(moved, stands);
@@ -370,7 +370,7 @@ mod tests {
     use mp_geom::{TriMesh, pose_from_six, primitives};
     use proptest::prelude::*;
 
-    /// A straight way with a turn at constant speed about a fixed axis.
+    /// A straight motion with a turn at constant speed about a fixed axis.
     fn motion(from: Isometry3<f64>, by: [f64; 6]) -> impl Fn(f64) -> Isometry3<f64> {
         let [x, y, z, a, b, c] = by;
         move |t| {
@@ -431,7 +431,7 @@ mod tests {
         assert!(sweep.compared() < 20_000, "{}", sweep.compared());
     }
 
-    /// Nothing of a search is left for the next.
+    /// A search leaves nothing behind that changes the next.
     #[test]
     fn a_sweep_used_before_finds_the_same() {
         let [bar, other] = meshes();

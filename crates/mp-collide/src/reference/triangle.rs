@@ -1,4 +1,4 @@
-//! Distances of triangles, the plain way.
+//! Distances of triangles, by plain formulas.
 
 use nalgebra::{Point3, Vector3};
 
@@ -12,7 +12,7 @@ pub fn triangle_distance(a: &[Point3<f64>; 3], b: &[Point3<f64>; 3]) -> f64 {
     triangle_gap(a, b).norm()
 }
 
-/// The shortest way from triangle `b` to triangle `a`; zero when an edge of one passes through the other.
+/// The shortest vector from triangle `b` to triangle `a`; zero when an edge of one passes through the other.
 ///
 /// The least of: corners to the other triangle; common perpendiculars of edges.
 pub(super) fn triangle_gap(a: &Triangle, b: &Triangle) -> Vector3<f64> {
@@ -36,7 +36,7 @@ pub(super) fn triangle_gap(a: &Triangle, b: &Triangle) -> Vector3<f64> {
     least.way
 }
 
-/// The shortest of some vectors.
+/// The shortest of the vectors offered.
 struct Shortest {
     way: Vector3<f64>,
     square: f64,
@@ -62,12 +62,12 @@ pub(super) fn point_triangle(p: &Point3<f64>, t: &Triangle) -> f64 {
     to_point(p, t).norm()
 }
 
-/// The shortest way from a triangle to a point.
+/// The shortest vector from a triangle to a point.
 fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
     let (u, v) = (t[1] - t[0], t[2] - t[0]);
     let normal = u.cross(&v);
     let square = normal.norm_squared();
-    // A sliver thinner than rounding is as good as its edges.
+    // A sliver thinner than rounding is replaced by its edges.
     if square.sqrt() > 1e-14 * u.norm_squared().max(v.norm_squared()) {
         let inside = EDGES.iter().all(|&(i, j)| normal.dot(&(t[j] - t[i]).cross(&(p - t[i]))) >= 0.0);
         if inside {
@@ -81,7 +81,7 @@ fn to_point(p: &Point3<f64>, t: &Triangle) -> Vector3<f64> {
     least.way
 }
 
-/// The shortest way from a segment to a point.
+/// The shortest vector from a segment to a point.
 pub(super) fn from_segment(p: &Point3<f64>, a: &Point3<f64>, b: &Point3<f64>) -> Vector3<f64> {
     let (along, to_p) = (b - a, p - a);
     let reach = to_p.dot(&along);
@@ -95,7 +95,7 @@ pub(super) fn from_segment(p: &Point3<f64>, a: &Point3<f64>, b: &Point3<f64>) ->
     }
 }
 
-/// The way from the second of two segments to the first along their common perpendicular, when it meets both.
+/// The vector from the second of two segments to the first along their common perpendicular, when that meets both.
 fn common_perpendicular(
     a: &Point3<f64>,
     b: &Point3<f64>,

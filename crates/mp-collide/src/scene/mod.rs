@@ -1,26 +1,22 @@
-//! Scenes of many named bodies: what is in them. Queries are in `view` and `pairs`.
+//! Scenes of many named bodies: what is in them. Queries are in `queries`, `motion` and `pairs`.
 
-mod groups;
 mod merged;
 mod motion;
-mod nearest;
 mod pairs;
-mod view;
+mod queries;
 
 use std::collections::BTreeSet;
 
+use mp_geom::Aabb;
 use nalgebra::Isometry3;
 use thiserror::Error;
 
-use crate::broad::{Bounds, BroadPhase};
-use crate::mesh::CollisionMesh;
+use crate::broad::BroadPhase;
+use crate::mesh::{CollisionMesh, PosedMesh};
 use crate::pose::{LIMIT, Relative};
 use merged::Merged;
 
-pub use groups::Groups;
-pub use view::View;
-
-/// Names a body of one [`Scene`]; never used again after the body is removed.
+/// The name of a body in one [`Scene`]; not reused after the body is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct BodyId(u32);
 
@@ -65,9 +61,8 @@ pub struct Body {
     name: String,
     mesh: CollisionMesh,
     pose: Isometry3<f64>,
-    groups: Groups,
     movable: bool,
-    bounds: Bounds,
+    bounds: Aabb,
     handle: usize,
 }
 
@@ -90,16 +85,14 @@ impl Body {
         &self.pose
     }
 
-    /// Which bodies it is compared with.
-    #[must_use]
-    pub fn groups(&self) -> Groups {
-        self.groups
-    }
-
     /// Whether it is left out of [`Scene::merge_static`].
     #[must_use]
     pub fn is_movable(&self) -> bool {
         self.movable
+    }
+
+    fn posed(&self) -> PosedMesh<'_> {
+        (&self.mesh, &self.pose)
     }
 }
 
@@ -114,13 +107,12 @@ pub struct Contact {
     pub depth: f64,
 }
 
-/// Many named bodies, with a broad phase, [`Groups`] and pairs that are allowed to touch.
+/// Many named bodies, with a broad phase and pairs that are allowed to touch.
 ///
 /// Changing a scene takes `&mut`; queries take `&` and a [`Query`](crate::Query) per thread. A clone shares
-/// the meshes and their trees, the merged ones too. A moving mesh that is asked about need not be a body of
-/// the scene. Meshes are surfaces, but those that are [filled](CollisionMesh::filled) collide also with what is wholly
-/// inside of them. What counts as in collision with everything (see the crate docs) collides with every body here
-/// too, as far as groups let it.
+/// the meshes and their trees, the merged ones too. The mesh of a query need not be a body of the scene. Meshes are
+/// surfaces, but those that are [filled](CollisionMesh::filled) also collide with what is wholly inside of them. What
+/// counts as in collision with everything (see the crate docs) collides with every body here too.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     bodies: Vec<Option<Body>>,
@@ -129,7 +121,7 @@ pub struct Scene {
     movable: BroadPhase,
     allowed: BTreeSet<(BodyId, BodyId)>,
     /// All static bodies, or nothing.
-    merged: Vec<Merged>,
+    merged: Option<Merged>,
     /// How many bodies are filled.
     filled: usize,
 }
@@ -141,7 +133,7 @@ impl Scene {
         Self::default()
     }
 
-    /// Adds a static body at `pose_wb` in the world, in all groups.
+    /// Adds a static body at `pose_wb` in the world.
     ///
     /// # Errors
     /// [`SceneError::BadPose`], [`SceneError::TooLarge`], [`SceneError::Full`].
@@ -178,7 +170,7 @@ impl Scene {
         let index = u32::try_from(self.bodies.len()).map_err(|_| SceneError::Full)?;
         let handle = self.broad_phase(movable).insert(index, bounds);
         self.filled += usize::from(mesh.is_filled());
-        self.bodies.push(Some(Body { name, mesh, pose, groups: Groups::ALL, movable, bounds, handle }));
+        self.bodies.push(Some(Body { name, mesh, pose, movable, bounds, handle }));
         self.changed(movable);
         Ok(BodyId(index))
     }
@@ -190,7 +182,7 @@ impl Scene {
     /// Undoes merging when a static body has changed.
     fn changed(&mut self, movable: bool) {
         if !movable {
-            self.merged.clear();
+            self.merged = None;
         }
     }
 
@@ -209,22 +201,6 @@ impl Scene {
         body.handle = broad.insert(id.0, body.bounds);
         let movable = body.movable;
         self.changed(movable);
-        Ok(())
-    }
-
-    /// Says which bodies a body is compared with. For a static body this undoes [`Scene::merge_static`].
-    ///
-    /// # Errors
-    /// [`SceneError::NoSuchBody`].
-    pub fn set_groups(&mut self, id: BodyId, groups: Groups) -> Result<(), SceneError> {
-        let Some(body) = self.bodies.get_mut(id.index()).and_then(Option::as_mut) else {
-            return Err(SceneError::NoSuchBody { index: id.index() });
-        };
-        let old = std::mem::replace(&mut body.groups, groups);
-        let movable = body.movable;
-        if old != groups {
-            self.changed(movable);
-        }
         Ok(())
     }
 
@@ -268,9 +244,8 @@ impl Scene {
         self.bodies().next().is_none()
     }
 
-    /// Lets two bodies touch and overlap from now on (`allowed`), or forbids it again. It is about
-    /// [`Scene::colliding_pairs`] and [`Scene::body_collides`] only; it has no effect when there is no such
-    /// body.
+    /// Allows two bodies to touch and overlap (`allowed`), or forbids it again. Only [`Scene::colliding_pairs`] and
+    /// [`Scene::body_collides`] are affected; without such bodies it has no effect.
     pub fn allow_pair(&mut self, x: BodyId, y: BodyId, allowed: bool) {
         let pair = (x.min(y), x.max(y));
         if allowed && self.body(x).is_some() && self.body(y).is_some() {
@@ -286,36 +261,33 @@ impl Scene {
         self.allowed.contains(&(x.min(y), x.max(y)))
     }
 
-    /// Makes one tree of all static bodies, which is faster to query; answers still name the body. Bodies of
-    /// different [`Groups`] go into different trees.
+    /// Makes one tree of all static bodies, which is faster to query; answers still name the body.
     ///
-    /// Adding, moving or removing a static body, or changing its groups, undoes it; call it again
-    /// afterwards. The vertices of the merged meshes are rounded to the world frame, so answers may differ by
-    /// that rounding. Does nothing when there are no static bodies, or their coordinates in the world are
-    /// beyond 1e75, or they have more than `u32::MAX` triangles.
+    /// Adding, moving or removing a static body undoes it; call it again afterwards. The vertices of the merged
+    /// mesh are rounded to the world frame, so answers may differ by that rounding. Does nothing when there are no static
+    /// bodies, or their coordinates in the world are beyond 1e75, or they have more than `u32::MAX` triangles.
     pub fn merge_static(&mut self) {
         let fixed: Vec<_> = self.bodies().filter(|(_, body)| !body.movable).collect();
-        self.merged = Merged::all(&fixed).unwrap_or_default();
+        self.merged = Merged::of(&fixed);
     }
 
     /// Whether static bodies are merged at the moment.
     #[must_use]
     pub fn is_merged(&self) -> bool {
-        !self.merged.is_empty()
+        self.merged.is_some()
     }
 }
 
 /// The box in the world of a mesh at a pose, a little enlarged so that rounding never cuts anything off;
 /// `None` when mesh or pose are beyond the limits.
-fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Bounds> {
+fn bounds(mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Option<Aabb> {
     let relative = Relative::between(&Isometry3::identity(), 0.0, pose, mesh.radius())?;
     let obb = relative.obb(&mesh.tree().bounding);
     let half = obb.aligned_half().add_scalar(relative.slack);
-    let (min, max) = (obb.center - half, obb.center + half);
-    Some(Bounds { min, max })
+    Some(Aabb::new(obb.center - half, obb.center + half))
 }
 
-fn placed(name: &str, mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Result<Bounds, SceneError> {
+fn placed(name: &str, mesh: &CollisionMesh, pose: &Isometry3<f64>) -> Result<Aabb, SceneError> {
     if mesh.radius() > LIMIT {
         return Err(SceneError::TooLarge { name: name.into() });
     }

@@ -1,14 +1,13 @@
-//! Batches of poses and whole motions in a scene.
+//! Sequences of poses and intervals of motions in a scene.
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::Isometry3;
 
-use super::{BodyId, Groups, Scene, View, bounds};
-use crate::broad::Bounds;
+use super::{BodyId, Scene, bounds};
 use crate::mesh::CollisionMesh;
 use crate::query::Query;
 use crate::query::interval::{IntervalCheck, RigidMotion};
 
-impl View<'_> {
+impl Scene {
     /// The index of the first of `poses_wm` at which `mesh` collides with a body, and the body. Much faster than
     /// pose by pose where neighbours are near each other: see [`Query::first_collision`].
     pub fn first_collision(
@@ -23,21 +22,19 @@ impl View<'_> {
         nested.find_map(|(i, pose_wm)| Some((i, self.nested(query, mesh, pose_wm)?))).or(touching)
     }
 
-    /// The same for surfaces.
+    /// [`Scene::first_collision`] of surfaces: filled meshes count as surfaces too.
     fn first_touching(
         &self,
         query: &mut Query,
         mesh: &CollisionMesh,
         poses_wm: &[Isometry3<f64>],
     ) -> Option<(usize, BodyId)> {
-        let scene = self.scene;
         let mut before = poses_wm.len();
-        for merged in scene.merged.iter().filter(|merged| merged.groups.meets(self.groups)) {
-            let world = Isometry3::identity();
-            let hit = query.first_collision(mesh, &poses_wm[..before], &merged.mesh, &world);
+        if let Some(merged) = &self.merged {
+            let hit = query.first_collision(mesh, poses_wm, &merged.mesh, &Isometry3::identity());
             before = hit.unwrap_or(before);
         }
-        let fixed = !scene.is_merged();
+        let fixed = !self.is_merged();
         for (i, pose_wm) in poses_wm[..before].iter().enumerate() {
             let hit = self.near(mesh, pose_wm, fixed, |id, body| {
                 query.intersects(mesh, pose_wm, &body.mesh, &body.pose).then_some(id)
@@ -60,61 +57,29 @@ impl View<'_> {
         motion: &RigidMotion,
         margin: f64,
     ) -> IntervalCheck {
-        let scene = self.scene;
-        for merged in scene.merged.iter().filter(|merged| merged.groups.meets(self.groups)) {
+        if let Some(merged) = &self.merged {
             let found =
                 query.check_interval(mesh, middle_wm, motion, &merged.mesh, &Isometry3::identity(), margin);
             if !found.is_free() {
                 return found;
             }
         }
-        // Whatever is farther than this from the box in the middle is never near; NaN is near everything.
+        // A body farther than this from the box in the middle stays farther than the margin. Without a box, or with
+        // a reach that is NaN, every body is compared.
         let reach = (motion.most + margin) * (1.0 + 1e-9);
-        let own = bounds(mesh, middle_wm).filter(|_| reach >= 0.0).map(|own| Bounds {
-            min: own.min - Vector3::repeat(reach),
-            max: own.max + Vector3::repeat(reach),
-        });
-        let blocked = self.phases(!scene.is_merged()).find_map(|broad| {
+        let own = bounds(mesh, middle_wm).filter(|_| reach >= 0.0).map(|own| own.enlarged(reach));
+        let blocked = self.phases(!self.is_merged()).find_map(|broad| {
             broad.find(
-                |bounds| own.is_none_or(|own| own.overlaps(bounds)),
+                |bounds| own.is_none_or(|own| own.intersects(bounds)),
                 |item| {
-                    let body = scene.bodies[item as usize].as_ref()?;
-                    if !body.groups.meets(self.groups) {
-                        return None;
-                    }
+                    let body = self.bodies[item as usize].as_ref()?;
                     let found = query.check_interval(mesh, middle_wm, motion, &body.mesh, &body.pose, margin);
                     (!found.is_free()).then_some(found)
                 },
             )
         });
-        // Nothing gets inside or outside without a surface in its way.
+        // Nothing gets inside or outside without meeting a surface, so the middle decides for the interval.
         let nested = || self.nested(query, mesh, middle_wm).map(|_| IntervalCheck::Collision { at: 0.0 });
         blocked.or_else(nested).unwrap_or(IntervalCheck::Free)
-    }
-}
-
-impl Scene {
-    /// The index of the first of `poses_wm` at which `mesh` collides with a body, and the body: see
-    /// [`View::first_collision`].
-    pub fn first_collision(
-        &self,
-        query: &mut Query,
-        mesh: &CollisionMesh,
-        poses_wm: &[Isometry3<f64>],
-    ) -> Option<(usize, BodyId)> {
-        self.view(Groups::ALL).first_collision(query, mesh, poses_wm)
-    }
-
-    /// Whether `mesh` stays at least `margin` (metres) from all bodies along an interval of a motion: see
-    /// [`Query::check_interval`].
-    pub fn check_interval(
-        &self,
-        query: &mut Query,
-        mesh: &CollisionMesh,
-        middle_wm: &Isometry3<f64>,
-        motion: &RigidMotion,
-        margin: f64,
-    ) -> IntervalCheck {
-        self.view(Groups::ALL).check_interval(query, mesh, middle_wm, motion, margin)
     }
 }

@@ -3,17 +3,15 @@
 use super::{Body, BodyId, Scene};
 use crate::query::Query;
 
-/// Bodies against each other, as far as their groups and the allowed pairs let them be compared.
+/// Bodies against each other, but for the allowed pairs.
 impl Scene {
-    /// A body of the scene that body `id` collides with, allowed pairs apart: the first one found, always
+    /// A body of the scene that body `id` collides with, allowed pairs excepted: the first one found, always
     /// the same. `None` when there is none, or no body `id`.
     pub fn body_collides(&self, query: &mut Query, id: BodyId) -> Option<BodyId> {
         let body = self.body(id)?;
-        self.view(body.groups).near(&body.mesh, &body.pose, true, |other_id, other| {
-            (other_id != id
-                && !self.is_allowed(id, other_id)
-                && query.meets(&body.mesh, &body.pose, &other.mesh, &other.pose))
-            .then_some(other_id)
+        self.near(&body.mesh, &body.pose, true, |other_id, other| {
+            let compared = other_id != id && !self.is_allowed(id, other_id);
+            (compared && query.meets(body.posed(), other.posed())).then_some(other_id)
         })
     }
 
@@ -27,10 +25,9 @@ impl Scene {
             let reach =
                 sorted[i + 1..].iter().take_while(|(_, other)| other.bounds.min.x <= body.bounds.max.x);
             for (other_id, other) in reach {
-                if body.bounds.overlaps(&other.bounds)
-                    && body.groups.meets(other.groups)
+                if body.bounds.intersects(&other.bounds)
                     && !self.is_allowed(*id, *other_id)
-                    && query.meets(&body.mesh, &body.pose, &other.mesh, &other.pose)
+                    && query.meets(body.posed(), other.posed())
                 {
                     pairs.push((*id.min(other_id), *id.max(other_id)));
                 }

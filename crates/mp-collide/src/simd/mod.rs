@@ -1,4 +1,4 @@
-//! Eight `f32` lanes on every CPU: the one module of this crate that may say `unsafe`.
+//! Eight `f32` lanes on every CPU: the one module of this crate that may use `unsafe`.
 //!
 //! A kernel is generic over [`Lanes`] and never names an instruction set. [`run`] picks the widest
 //! implementation the CPU has. [`Scalar`] is the twin the others are tested against.
@@ -25,8 +25,8 @@ use x86::Sse2 as Scalar;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Isa {
-    /// Plain arrays, on any CPU. On x86-64 and aarch64 compiled only with the feature `scalar`; without it this is what
-    /// every such CPU has, which answers the same.
+    /// Plain arrays, on any CPU. On x86-64 and aarch64 compiled only with the feature `scalar`; without that feature this
+    /// is the set that every such CPU has, with the same answers.
     Scalar,
     /// Two 128-bit registers (every x86-64).
     Sse2,
@@ -82,9 +82,9 @@ impl Isa {
     }
 }
 
-/// The answers of a comparison in eight lanes.
+/// The result of a comparison in eight lanes.
 pub(crate) trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
-    /// Bit `i` set where lane `i` answers yes.
+    /// Bit `i` is set where the comparison holds in lane `i`.
     fn bits(self) -> u32;
 }
 
@@ -128,8 +128,8 @@ pub(crate) trait Lanes: Copy {
     fn lt(self, b: Self) -> Self::Mask;
 }
 
-/// A computation generic over the lanes. `run` must be `#[inline(always)]`, and so must all it
-/// calls, so that it is compiled with the instruction set it is run on.
+/// A computation generic over the lanes. `run` and all it calls must be `#[inline(always)]`, so that it is compiled
+/// for the instruction set it runs on.
 pub(crate) trait Kernel {
     type Output;
     fn run<L: Lanes>(self) -> Self::Output;

@@ -1,4 +1,4 @@
-//! The distance between triangles and the points where it is taken.
+//! The distance between triangles and their nearest points.
 //!
 //! Two triangles apart are closest either edge to edge or corner to face: nine pairs of segments and six
 //! points against triangles. Minima are found by orthogonal projection rather than normal equations, so
@@ -10,7 +10,7 @@ use nalgebra::{Point3, Vector3};
 use super::{Triangle, intersect};
 use crate::separation::Separation;
 
-/// Squared distance and the points where it is taken.
+/// A squared distance and the two points that far apart.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closest {
     pub(crate) squared: f64,
@@ -47,7 +47,7 @@ pub fn closest(a: &Triangle, b: &Triangle) -> Separation {
     }
 }
 
-/// The nearest points of two triangles that do not intersect, when nearer than the root of `squared`.
+/// The nearest points of two triangles that do not intersect, when their squared distance is below `squared`.
 pub(crate) fn closest_within(a: &Triangle, b: &Triangle, squared: f64) -> Option<Closest> {
     let mut best = Closest { squared, ..Closest::NONE };
     let mut found = false;
@@ -75,22 +75,22 @@ pub(crate) fn closest_within(a: &Triangle, b: &Triangle, squared: f64) -> Option
     found.then_some(best)
 }
 
-/// Whether the slab between `p` on `a` and `q` on `b`, at right angles to their join, keeps the triangles
-/// apart: then no points are nearer, up to rounding.
+/// Whether `p` on `a` and `q` on `b` are nearest points, up to rounding: the slab between them, orthogonal to their join,
+/// separates the triangles.
 pub(crate) fn is_nearest(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> bool {
     let (gap, rounding) = gap_along(a, b, p, q);
     gap >= (q - p).norm_squared() - rounding
 }
 
-/// Whether `a` and `b` are farther apart than `p` and `q` are, points of other triangles, by more than rounding
-/// makes of one distance: by the gap between them along the join of the points.
+/// Whether `a` and `b` are farther apart than `p` and `q`, points of other triangles, by more than the rounding of a
+/// distance: shown by the gap between the triangles along the join of the points.
 pub(crate) fn is_farther(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> bool {
     let (gap, rounding) = gap_along(a, b, p, q);
     gap > (q - p).norm_squared() * (1.0 + 1e-9) + 1e3 * rounding
 }
 
-/// The gap between triangles along the join of two points, times the length of the join, and what rounding makes
-/// of it.
+/// The gap between triangles along the join of two points, times the length of the join, and a bound on its rounding
+/// error.
 fn gap_along(a: &Triangle, b: &Triangle, p: Point3<f64>, q: Point3<f64>) -> (f64, f64) {
     let join = q - p;
     let (mut top_a, mut bottom_b, mut size) = (f64::NEG_INFINITY, f64::INFINITY, 0.0_f64);
@@ -114,7 +114,7 @@ fn between_segments(
 ) -> (Point3<f64>, Point3<f64>) {
     let (u, v, r) = (p1 - p0, q1 - q0, q0 - p0);
     let vv = v.norm_squared();
-    // What u and r are beside v; the distance of the lines depends on nothing else.
+    // The components of u and r orthogonal to v: the distance of the lines depends on them only.
     let beside = |w: &Vector3<f64>| if vv > 0.0 { w - v * (w.dot(&v) / vv) } else { *w };
     let (u_beside, r_beside) = (beside(&u), beside(&r));
     let mut s = ratio(r_beside.dot(&u_beside), u_beside.norm_squared());
@@ -131,7 +131,7 @@ fn between_segments(
     (at(p0, p1, s), at(q0, q1, t))
 }
 
-/// The point at `s` of the way; the ends themselves at 0 and 1.
+/// The point at fraction `s` from `p0` to `p1`; exactly the ends at 0 and 1.
 fn at(p0: &Point3<f64>, p1: &Point3<f64>, s: f64) -> Point3<f64> {
     if s < 1.0 { p0 + (p1 - p0) * s } else { *p1 }
 }
@@ -178,7 +178,7 @@ pub(crate) fn crossing(a: &Triangle, b: &Triangle) -> Point3<f64> {
             }
         }
     }
-    // Where no edge goes through a face, or what it meets is too thin to say where.
+    // No edge passes through a face, or the face is too thin to compute where.
     let size = a.iter().chain(b).fold(0.0, |size: f64, p| size.max((p - a[0]).amax()));
     if best.squared.sqrt() > 1e-13 * size {
         best = closest_within(a, b, best.squared).unwrap_or(best);

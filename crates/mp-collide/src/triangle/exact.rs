@@ -19,7 +19,7 @@ pub fn intersect(a: &Triangle, b: &Triangle) -> bool {
     clear_cut(a, b).unwrap_or_else(|| decide(a, b))
 }
 
-/// The answer where plain `f64` is sure of it: the usual case, at a fraction of the cost.
+/// The answer where error bounds in plain `f64` decide it: the usual case, at a fraction of the cost.
 ///
 /// With u = 2⁻⁵³, coordinates of edges up to `e` and `f` and of differences of corners up to `d`, a coordinate of
 /// a product of edges is wrong by 8u·e·f; a volume, three products of that with a difference, by 48u·d·e·f.
@@ -78,7 +78,7 @@ fn largest(v: &[Vector3<f64>; 3]) -> f64 {
     v.iter().flatten().fold(0.0, |m, x| max(x.abs(), m))
 }
 
-/// Whether three signs are the same; unknown where one is 0 and the others do not differ.
+/// Whether three signs are the same; `None` where one is 0 and the others do not differ.
 fn same(s: [i8; 3]) -> Option<bool> {
     let (up, down) = (s.contains(&1), s.contains(&-1));
     if up && down {
@@ -115,11 +115,11 @@ fn decide(a: &Triangle, b: &Triangle) -> bool {
         || (0..3).any(|i| crosses(side_of_b[i], side_of_b[next(i)]) && agree((0..3).map(|j| twist(i, j))))
 }
 
-/// How the ray from `p` along x leaves a triangle: 1 through its front, −1 through its back, 0 when it passes by;
+/// How the ray from `p` along x passes a triangle: 1 outward, −1 inward, 0 when it misses;
 /// `None` when `p` is on it. Exactly.
 ///
-/// Seen along x, `p` counts as moved by ε along y and ε² along z, so that no edge and no corner is met, and of
-/// triangles that share an edge each ray passes through the right number.
+/// By symbolic perturbation: seen along x, `p` counts as moved by ε along y and ε² along z. So the ray meets no edge or
+/// corner, and of triangles that share an edge it passes through the right number.
 pub(crate) fn passes(p: &Point3<f64>, t: &Triangle) -> Option<i8> {
     let side = |u: &Point3<f64>, v: &Point3<f64>| {
         let signs = [area(u, v, p, 0), sign(u.z - v.z), sign(v.y - u.y)];
@@ -153,7 +153,7 @@ fn crosses(p: i8, q: i8) -> bool {
     p * q <= 0 && (p, q) != (0, 0)
 }
 
-/// No two of opposite sign.
+/// Whether no two signs are opposite.
 fn agree(signs: impl Iterator<Item = i8>) -> bool {
     let (mut positive, mut negative) = (false, false);
     for s in signs {
@@ -172,7 +172,7 @@ fn sign(x: f64) -> i8 {
 
 /// The sign of the volume of a tetrahedron, exactly.
 ///
-/// The determinant with Shewchuk's first error bound decides nearly always; his adaptive arithmetic the rest.
+/// The determinant with Shewchuk's first error bound decides nearly always; his adaptive arithmetic decides the rest.
 #[inline]
 fn volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) -> i8 {
     const BOUND: f64 = 7.771_561_172_376_103e-16;
@@ -196,14 +196,14 @@ fn exact_volume(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f6
 }
 
 /// The point without coordinate `drop`.
-fn flat(p: &Point3<f64>, drop: usize) -> Coord<f64> {
+fn projected(p: &Point3<f64>, drop: usize) -> Coord<f64> {
     let (x, y) = [(1, 2), (0, 2), (0, 1)][drop];
     Coord { x: p[x], y: p[y] }
 }
 
 /// The sign of the area of a triangle seen along axis `drop`, exactly.
 fn area(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, drop: usize) -> i8 {
-    sign(orient2d(flat(a, drop), flat(b, drop), flat(c, drop)))
+    sign(orient2d(projected(a, drop), projected(b, drop), projected(c, drop)))
 }
 
 /// An axis along which the triangle is seen to have an area; `None` when its corners lie on a line.
@@ -211,7 +211,7 @@ fn visible_along(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>) -> Option<us
     (0..3).find(|&drop| area(a, b, c, drop) != 0)
 }
 
-/// Whether a closed segment meets a closed triangle, whatever degenerates.
+/// Whether a closed segment meets a closed triangle; both may be degenerate.
 fn segment_meets(p: &Point3<f64>, q: &Point3<f64>, t: &Triangle) -> bool {
     let (sp, sq) = (volume(&t[0], &t[1], &t[2], p), volume(&t[0], &t[1], &t[2], q));
     if crosses(sp, sq) {
@@ -224,7 +224,7 @@ fn segment_meets(p: &Point3<f64>, q: &Point3<f64>, t: &Triangle) -> bool {
         // All in one plane, which is seen undistorted (up to an affine map) along `drop`.
         Some(drop) => {
             agree(edges(t).map(|(u, v)| area(u, v, p, drop)))
-                || edges(t).any(|(u, v)| segments_meet_flat(p, q, u, v, drop))
+                || edges(t).any(|(u, v)| segments_meet_in_plane(p, q, u, v, drop))
         }
         None => edges(t).any(|(u, v)| segments_meet(p, q, u, v)),
     }
@@ -241,13 +241,13 @@ fn segments_meet(p: &Point3<f64>, q: &Point3<f64>, u: &Point3<f64>, v: &Point3<f
         .or_else(|| visible_along(u, v, p))
         .or_else(|| visible_along(u, v, q));
     match drop {
-        Some(drop) => segments_meet_flat(p, q, u, v, drop),
+        Some(drop) => segments_meet_in_plane(p, q, u, v, drop),
         None => on_line_overlap(p, q, u, v),
     }
 }
 
 /// Whether two closed segments of one plane meet, seen along axis `drop`, which must not be in the plane.
-fn segments_meet_flat(
+fn segments_meet_in_plane(
     p: &Point3<f64>,
     q: &Point3<f64>,
     u: &Point3<f64>,

@@ -1,4 +1,4 @@
-//! Two triangles: do they intersect (exactly), how far apart are they.
+//! Two triangles: whether they intersect (exactly), and their distance.
 
 mod closest;
 mod exact;

@@ -10,7 +10,6 @@ mod motions;
 mod parry;
 mod properties;
 mod referee;
-mod saved;
 mod scene_model;
 mod scenes;
 mod shapes;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use mp_collide::{BodyId, CollisionMesh, Groups, Query, Scene};
+use mp_collide::{BodyId, CollisionMesh, Query, Scene};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 
@@ -13,21 +13,12 @@ const ROUNDING: f64 = 1e-13;
 
 #[derive(Clone, Debug)]
 enum Change {
-    Insert { mesh: usize, movable: bool, pose: Isometry3<f64>, groups: Groups },
+    Insert { mesh: usize, movable: bool, pose: Isometry3<f64> },
     Move { body: usize, pose: Isometry3<f64> },
-    SetGroups { body: usize, groups: Groups },
     Remove { body: usize },
     Allow { pair: (usize, usize), allowed: bool },
     Merge,
     Clone,
-}
-
-fn groups() -> impl Strategy<Value = Groups> {
-    prop_oneof![
-        2 => Just(Groups::ALL),
-        1 => Just(Groups::NONE),
-        5 => (0..8_u32, 0..8_u32).prop_map(|(member, with)| Groups::new(member, with)),
-    ]
 }
 
 fn pose() -> impl Strategy<Value = Isometry3<f64>> {
@@ -39,10 +30,9 @@ fn pose() -> impl Strategy<Value = Isometry3<f64>> {
 fn change() -> impl Strategy<Value = Change> {
     let body = 0..1000_usize;
     prop_oneof![
-        5 => (0..3_usize, any::<bool>(), pose(), groups())
-            .prop_map(|(mesh, movable, pose, groups)| Change::Insert { mesh, movable, pose, groups }),
+        5 => (0..3_usize, any::<bool>(), pose())
+            .prop_map(|(mesh, movable, pose)| Change::Insert { mesh, movable, pose }),
         3 => (body.clone(), pose()).prop_map(|(body, pose)| Change::Move { body, pose }),
-        2 => (body.clone(), groups()).prop_map(|(body, groups)| Change::SetGroups { body, groups }),
         1 => body.clone().prop_map(|body| Change::Remove { body }),
         2 => (body.clone(), body, any::<bool>())
             .prop_map(|(x, y, allowed)| Change::Allow { pair: (x, y), allowed }),
@@ -54,7 +44,7 @@ fn change() -> impl Strategy<Value = Change> {
 struct Model {
     meshes: [CollisionMesh; 3],
     scene: Scene,
-    bodies: Vec<(BodyId, usize, Isometry3<f64>, Groups)>,
+    bodies: Vec<(BodyId, usize, Isometry3<f64>)>,
     allowed: BTreeSet<(BodyId, BodyId)>,
     query: Query,
 }
@@ -77,12 +67,11 @@ impl Model {
     fn apply(&mut self, change: &Change) {
         let n = self.bodies.len();
         match *change {
-            Change::Insert { mesh, movable, pose, groups } => {
+            Change::Insert { mesh, movable, pose } => {
                 let shape = self.meshes[mesh].clone();
                 let insert = if movable { Scene::insert_movable } else { Scene::insert };
                 let id = insert(&mut self.scene, "body", shape, pose).unwrap();
-                self.scene.set_groups(id, groups).unwrap();
-                self.bodies.push((id, mesh, pose, groups));
+                self.bodies.push((id, mesh, pose));
             }
             Change::Merge => self.scene.merge_static(),
             Change::Clone => self.scene = self.scene.clone(),
@@ -92,15 +81,13 @@ impl Model {
                 self.scene.move_body(body.0, pose).unwrap();
                 body.2 = pose;
             }
-            Change::SetGroups { body, groups } => {
-                let body = &mut self.bodies[body % n];
-                self.scene.set_groups(body.0, groups).unwrap();
-                body.3 = groups;
-            }
             Change::Remove { body } => {
                 let (id, ..) = self.bodies.remove(body % n);
                 assert!(self.scene.remove(id).is_some());
-                assert!(self.scene.remove(id).is_none() && self.scene.set_groups(id, Groups::ALL).is_err());
+                assert!(
+                    self.scene.remove(id).is_none()
+                        && self.scene.move_body(id, Isometry3::identity()).is_err()
+                );
                 self.allowed.retain(|(x, y)| *x != id && *y != id);
             }
             Change::Allow { pair: (x, y), allowed } => {
@@ -117,24 +104,21 @@ impl Model {
     }
 
     /// A mesh that is not in the scene, against every body.
-    fn check_probe(&mut self, mesh: usize, at: &Isometry3<f64>, groups: Groups) {
+    fn check_probe(&mut self, mesh: usize, at: &Isometry3<f64>) {
         let (scene, query, mesh) = (&self.scene, &mut self.query, &self.meshes[mesh]);
-        let view = scene.view(groups);
         let mut distances = Vec::new();
-        for (id, own, pose, its) in &self.bodies {
-            if its.member & groups.with != 0 && groups.member & its.with != 0 {
-                distances.push((*id, query.distance(mesh, at, &self.meshes[*own], pose).distance));
-            }
+        for (id, own, pose) in &self.bodies {
+            distances.push((*id, query.distance(mesh, at, &self.meshes[*own], pose).distance));
         }
-        assert!(view.bodies().map(|(id, _)| id).eq(distances.iter().map(|(id, _)| *id)));
+        assert!(scene.bodies().map(|(id, _)| id).eq(distances.iter().map(|(id, _)| *id)));
         let hits: Vec<BodyId> = distances.iter().filter(|(_, d)| *d == 0.0).map(|(id, _)| *id).collect();
         let least = distances.iter().map(|(_, d)| *d).fold(f64::INFINITY, f64::min);
-        let hit = view.collide_body(query, mesh, at);
+        let hit = scene.collide_body(query, mesh, at);
         assert_eq!(hit.is_some(), !hits.is_empty());
         assert!(hit.is_none_or(|id| hits.contains(&id)));
-        assert_eq!(view.first_collision(query, mesh, &[*at]), hit.map(|id| (0, id)));
+        assert_eq!(scene.first_collision(query, mesh, &[*at]), hit.map(|id| (0, id)));
         for enough in [0.0, 0.5 * least, 0.3, f64::INFINITY] {
-            let (clearance, body) = view.clearance(query, mesh, at, enough);
+            let (clearance, body) = scene.clearance(query, mesh, at, enough);
             assert!(clearance <= least + ROUNDING && clearance >= enough.min(least) - ROUNDING);
             assert_eq!(clearance == 0.0, !hits.is_empty());
             match body {
@@ -144,23 +128,15 @@ impl Model {
                 None => assert!(clearance >= enough && hits.is_empty()),
             }
         }
-        if groups == Groups::ALL {
-            assert_eq!(scene.collide_body(query, mesh, at), hit);
-            let infinity = f64::INFINITY;
-            let all = scene.clearance(query, mesh, at, infinity);
-            assert_eq!(all, view.clearance(query, mesh, at, infinity));
-        }
     }
 
     /// The bodies against each other.
     fn check_pairs(&mut self) {
         let mut expected = Vec::new();
-        for (i, (x, mesh_x, pose_x, groups_x)) in self.bodies.iter().enumerate() {
-            for (y, mesh_y, pose_y, groups_y) in &self.bodies[i + 1..] {
+        for (i, (x, mesh_x, pose_x)) in self.bodies.iter().enumerate() {
+            for (y, mesh_y, pose_y) in &self.bodies[i + 1..] {
                 let (mesh_x, mesh_y) = (&self.meshes[*mesh_x], &self.meshes[*mesh_y]);
-                if groups_x.meets(*groups_y)
-                    && !self.allowed.contains(&(*x, *y))
-                    && self.query.intersects(mesh_x, pose_x, mesh_y, pose_y)
+                if !self.allowed.contains(&(*x, *y)) && self.query.intersects(mesh_x, pose_x, mesh_y, pose_y)
                 {
                     expected.push((*x, *y));
                 }
@@ -182,20 +158,20 @@ proptest! {
     #[test]
     fn any_sequence_of_changes_leaves_a_scene_as_a_list_of_its_bodies(
         changes in proptest::collection::vec(change(), 1..60),
-        probes in proptest::collection::vec((0..3_usize, pose(), groups()), 8),
+        probes in proptest::collection::vec((0..3_usize, pose()), 8),
     ) {
         let mut model = Model::new();
         for (step, change) in changes.iter().enumerate() {
             model.apply(change);
-            let (mesh, at, groups) = &probes[step % probes.len()];
-            model.check_probe(*mesh, at, *groups);
+            let (mesh, at) = &probes[step % probes.len()];
+            model.check_probe(*mesh, at);
             if step % 7 == 0 {
                 model.check_pairs();
             }
         }
         model.scene.merge_static();
-        for (mesh, at, groups) in &probes {
-            model.check_probe(*mesh, at, *groups);
+        for (mesh, at) in &probes {
+            model.check_probe(*mesh, at);
         }
         model.check_pairs();
     }

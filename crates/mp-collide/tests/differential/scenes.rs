@@ -1,6 +1,6 @@
 //! Scenes against a loop over all bodies.
 
-use mp_collide::{BodyId, CollisionMesh, Groups, Query, Scene, SceneError};
+use mp_collide::{BodyId, CollisionMesh, Query, Scene, SceneError};
 use nalgebra::{Isometry3, Vector3};
 use rand::RngExt;
 
@@ -181,56 +181,16 @@ fn contacts_name_body_and_depth() {
 }
 
 #[test]
-fn groups_say_who_is_compared_with_whom() {
-    let mesh = CollisionMesh::new(&cuboid(Vector3::new(0.5, 0.5, 0.5)));
-    let here = Isometry3::identity();
-    let mut scene = Scene::new();
-    let mut query = Query::default();
-    let wall = scene.insert("wall", mesh.clone(), here).unwrap();
-    let glass = scene.insert("glass", mesh.clone(), here).unwrap();
-    let cart = scene.insert_movable("cart", mesh.clone(), here).unwrap();
-    // Bit 0: what stands; bit 1: what one sees through; bit 2: what moves.
-    scene.set_groups(wall, Groups::new(0b001, 0b100)).unwrap();
-    scene.set_groups(glass, Groups::new(0b010, 0b100)).unwrap();
-    scene.set_groups(cart, Groups::new(0b100, 0b011)).unwrap();
-    let sight = Groups::new(0b100, 0b101);
-    for _ in 0..2 {
-        assert_eq!(scene.colliding_pairs(&mut query), [(wall, cart), (glass, cart)]);
-        assert_eq!(scene.view(sight).collide_body(&mut query, &mesh, &here), Some(wall));
-        assert_eq!(scene.view(sight).clearance(&mut query, &mesh, &here, 1.0), (0.0, Some(wall)));
-        let seen = scene.view(sight).contacts(&mut query, &mesh, &here);
-        assert_eq!(seen.iter().map(|c| c.body).collect::<Vec<_>>(), [wall]);
-        let cart_only = Groups::new(0b001, 0b100);
-        assert_eq!(scene.view(cart_only).collide_body(&mut query, &mesh, &here), Some(cart));
-        assert!(!scene.view(Groups::NONE).collides(&mut query, &mesh, &here));
-        let nothing = scene.view(Groups::NONE).clearance(&mut query, &mesh, &here, 1.0);
-        assert_eq!(nothing, (f64::INFINITY, None));
-        scene.merge_static();
-        assert!(scene.is_merged());
-    }
-    // The same groups again change nothing; others undo the merge, but not those of a movable body.
-    scene.set_groups(wall, Groups::new(0b001, 0b100)).unwrap();
-    scene.set_groups(cart, Groups::ALL).unwrap();
-    assert!(scene.is_merged());
-    scene.set_groups(wall, Groups::ALL).unwrap();
-    assert!(!scene.is_merged());
-    assert_eq!(scene.body(cart).unwrap().groups(), Groups::ALL);
-}
-
-#[test]
-fn what_has_no_place_collides_with_every_body_of_the_view() {
+fn what_has_no_place_collides_with_every_body() {
     let mesh = CollisionMesh::new(&cuboid(Vector3::new(0.5, 0.5, 0.5)));
     let nowhere = Isometry3::translation(f64::NAN, 0.0, 0.0);
     let mut scene = Scene::new();
     let mut query = Query::default();
-    let ghost = scene.insert("ghost", mesh.clone(), Isometry3::identity()).unwrap();
     let wall = scene.insert("wall", mesh.clone(), Isometry3::identity()).unwrap();
-    scene.set_groups(ghost, Groups::NONE).unwrap();
     for _ in 0..2 {
         assert_eq!(scene.collide_body(&mut query, &mesh, &nowhere), Some(wall));
         assert_eq!(scene.clearance(&mut query, &mesh, &nowhere, 1.0), (0.0, Some(wall)));
         assert_eq!(scene.contacts(&mut query, &mesh, &nowhere).len(), 1);
-        assert!(!scene.view(Groups::NONE).collides(&mut query, &mesh, &nowhere));
         scene.merge_static();
     }
 }

@@ -176,7 +176,7 @@ fn bad_input_is_an_error() {
         Err(ParryError::Mesh(MeshError::NotFinite { vertex: 2, .. }))
     ));
     let round = shape::RoundCuboid { inner_shape: shape::Cuboid::new(Vector::ONE), border_radius: 0.1 };
-    let line = "a cuboid with a round border of 0.1 m is none of our shapes; convert its inner shape and ask \
+    let line = "a cuboid with a round border of 0.1 m cannot be converted; convert its inner shape and ask \
                 whether anything is within 0.1 m of that, or put a larger cuboid without border in its place";
     assert_eq!(from_parry(&round).unwrap_err().to_string(), line);
 

@@ -1,37 +1,37 @@
-//! A grid whose cells know what can be nearest to their points.
+//! A grid whose cells list the edges that can be nearest to their points.
 
 use super::edge::Edge;
 use super::polygon::crosses_ray;
 use super::tree::EdgeTree;
 use nalgebra::{Point2, Vector2};
 
-/// Cells for each edge, and the fewest and most there are.
+/// The number of cells per edge, and the least and the greatest number of cells.
 const CELLS_PER_EDGE: f64 = 16.0;
 const FEWEST: f64 = 1024.0;
 const MOST: f64 = 100_000.0;
 
-/// What is in a cell.
+/// The content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum CellKind {
     /// No obstacle.
     Open,
-    /// Nothing but an obstacle.
+    /// Wholly inside an obstacle.
     Solid,
-    /// There may be edges.
+    /// There may be edges in it.
     Mixed,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
-    pub(super) kind: Kind,
-    /// Where its candidates begin; they end where those of the next begin.
+    pub(super) kind: CellKind,
+    /// The index of its first candidate; its candidates end where those of the next cell begin.
     first: u32,
     /// The distance of its centre from the nearest edge.
     pub(super) from_center: f64,
 }
 
-/// A grid over a box. The edge nearest to any point of a cell is among the candidates of the cell: those
-/// no farther from its centre than the nearest one and its diagonal.
+/// A grid over a box. The edge nearest to any point of a cell is among the candidates of the cell: the edges
+/// no farther from its centre than the nearest edge plus its diagonal.
 #[derive(Clone, Debug)]
 pub(super) struct Cells {
     low: Point2<f64>,
@@ -45,7 +45,7 @@ pub(super) struct Cells {
     /// Edges in each row of cells, by polygon; the first of each row.
     rows: Vec<u32>,
     row_starts: Vec<u32>,
-    /// Cells are right for points as far outside of them as this.
+    /// Candidates are right for points up to this far outside of their cell.
     pub(super) slack: f64,
     /// No point of a cell is farther from its centre.
     pub(super) half_diagonal: f64,
@@ -57,7 +57,7 @@ impl Cells {
     pub(super) fn new([low, high]: [Point2<f64>; 2], edges: &[Edge], solid: usize, tree: &EdgeTree) -> Self {
         let extent = high - low;
         let wanted = (CELLS_PER_EDGE * edges.len() as f64).clamp(FEWEST, MOST);
-        // Long and thin worlds have one row.
+        // Long and thin worlds get one row.
         let side = (extent.x * extent.y / wanted).sqrt().max(extent.max() / wanted);
         let counts = [extent.x, extent.y].map(|e| ((e / side).ceil().max(1.0)) as usize);
         let size = Vector2::new(extent.x / counts[0] as f64, extent.y / counts[1] as f64);
@@ -82,7 +82,7 @@ impl Cells {
             }
         }
         let first = cells.candidates.len() as u32;
-        cells.cells.push(Cell { kind: Kind::Open, first, from_center: 0.0 });
+        cells.cells.push(Cell { kind: CellKind::Open, first, from_center: 0.0 });
         cells
     }
 
@@ -94,7 +94,7 @@ impl Cells {
                 row.push(i as u32);
             }
         }
-        // Edges come by polygon, so rows hold them by polygon.
+        // Edges are ordered by polygon, and so they are in rows.
         for row in rows {
             self.row_starts.push(self.rows.len() as u32);
             self.rows.extend(row);
@@ -112,9 +112,9 @@ impl Cells {
         });
         let from_center = nearest.sqrt();
         let kind = match from_center > reach {
-            false => Kind::Mixed,
-            true if self.row_contains(&center, edges) => Kind::Solid,
-            true => Kind::Open,
+            false => CellKind::Mixed,
+            true if self.row_contains(&center, edges) => CellKind::Solid,
+            true => CellKind::Open,
         };
         let first = self.candidates.len();
         self.cells.push(Cell { kind, first: first as u32, from_center });
@@ -156,7 +156,7 @@ impl Cells {
         (cell, &self.candidates[cell.first as usize..next.first as usize])
     }
 
-    /// The fraction of the segment from `a` at which it leaves a cell; `inverse` is one over each component of its way.
+    /// The fraction of the segment from `a` at which it leaves a cell; `inverse` holds the reciprocals of its components.
     #[inline]
     pub(super) fn leaves(
         &self,
@@ -174,7 +174,7 @@ impl Cells {
         at(column, 0).min(at(row, 1))
     }
 
-    /// Whether `p` is in a polygon: each has its edges in the row together.
+    /// Whether `p` is in a polygon, by the edges in its row, which are grouped by polygon.
     pub(super) fn row_contains(&self, p: &Point2<f64>, edges: &[Edge]) -> bool {
         if self.locate(p).is_none() {
             return false;

@@ -1,4 +1,4 @@
-//! Edges of obstacles, and how far points and segments are from them.
+//! Edges of obstacles, and the distances of points and segments from them.
 
 use super::polygon::side;
 use nalgebra::{Point2, Vector2, distance};
@@ -11,7 +11,7 @@ pub(super) struct Edge {
     along: Vector2<f64>,
     /// One over the square of its length; zero when that is zero.
     inverse: f64,
-    /// The polygon it is of.
+    /// The polygon it belongs to.
     pub(super) polygon: u32,
 }
 
@@ -40,7 +40,7 @@ impl Edge {
         [self.a.inf(&self.b), self.a.sup(&self.b)]
     }
 
-    /// Whether it is wholly on one side of the line through the other edge, and farther than `far` from it: a quick look.
+    /// Whether it is wholly on one side of the line through the other edge, and farther than `far` from it: a quick rejection.
     #[inline]
     pub(super) fn is_beside(&self, other: &Edge, far: f64) -> bool {
         let (a, b) = (other.along.perp(&(self.a - other.a)), other.along.perp(&(self.b - other.a)));

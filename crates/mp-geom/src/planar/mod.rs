@@ -1,7 +1,7 @@
-//! The plane: polygons, and worlds of them that answer distances fast.
+//! The plane: polygons, and worlds of polygons with fast distance queries.
 //!
 //! - [`Polygon`]: rings of points, holes included.
-//! - [`PlanarWorld`]: polygons, and perhaps walls around, with what is nearest to a point or a segment.
+//! - [`PlanarWorld`]: polygons, with or without walls around them, and distances from points and segments.
 //! - [`outline`]: the polygon of the occupied squares of a grid map.
 //!
 //! ```
@@ -26,4 +26,4 @@ mod world;
 
 pub use outline::outline;
 pub use polygon::{Polygon, PolygonError};
-pub use world::{Nearest, NearestToSegment, PlanarWorld, PlanarWorldError};
+pub use world::{NearestToPoint, NearestToSegment, PlanarWorld, PlanarWorldError};

@@ -1,4 +1,4 @@
-//! The outline of what is occupied on a grid map.
+//! The outline of the occupied squares of a grid map.
 
 use super::{Polygon, PolygonError};
 use nalgebra::Point2;
@@ -6,8 +6,8 @@ use nalgebra::Point2;
 /// The polygon of the occupied squares of a map of `width` × `height` squares with sides of `size` metres, whose
 /// lower left corner is at `origin`: `occupied(column, row)`, rows counted upward. `None` when none is.
 ///
-/// Rings run along the sides of squares, straight stretches being one edge; where two squares touch at a corner only,
-/// they touch. O(width · height).
+/// Rings run along the sides of squares, with one edge for each straight stretch; where two squares touch at a corner
+/// only, rings touch. O(width · height).
 ///
 /// # Errors
 /// When a coordinate is not finite or beyond 10⁶⁰.
@@ -17,8 +17,8 @@ pub fn outline(
     origin: [f64; 2],
     occupied: impl Fn(usize, usize) -> bool,
 ) -> Result<Option<Polygon>, PolygonError> {
-    // Lines between squares: east[y·(width+1) + x] is the side from corner (x, y) to (x+1, y), when squares below
-    // and above it differ; so with north.
+    // Lines between squares: east[y·(width+1) + x] is the side from corner (x, y) to (x+1, y), when the squares below
+    // and above it differ; `north` likewise for sides from (x, y) to (x, y+1).
     let at = |x: usize, y: usize| y * (width + 1) + x;
     let inside = |x: usize, y: usize| x < width && y < height && occupied(x, y);
     let mut east = vec![false; (width + 1) * (height + 1)];
@@ -26,7 +26,7 @@ pub fn outline(
     for y in 0..=height {
         for x in 0..=width {
             let here = inside(x, y);
-            // Outside of the map is free; so is what wraps below zero.
+            // Squares outside of the map are free, as are indices that wrap below zero.
             east[at(x, y)] = here != inside(x, y.wrapping_sub(1));
             north[at(x, y)] = here != inside(x.wrapping_sub(1), y);
         }
@@ -45,7 +45,7 @@ pub fn outline(
     if rings.is_empty() { Ok(None) } else { Polygon::new(rings).map(Some) }
 }
 
-/// The corners of a ring that begins with the side east of `start`; its sides are taken away.
+/// The corners of a ring that begins with the side east of `start`; its sides are removed from `east` and `north`.
 fn follow(
     start: (usize, usize),
     (width, height): (usize, usize),
@@ -58,8 +58,8 @@ fn follow(
     // 0 east, 1 north, 2 west, 3 south.
     let mut heading = 4;
     loop {
-        // Every corner has an even number of sides, so a way on is found until the ring is closed. As rings are
-        // even-odd, either turn will do where four meet.
+        // Every corner has an even number of sides, so the ring continues until it is closed. By the even-odd rule
+        // either turn is right where four sides meet.
         let next = [0, 1, 2, 3].into_iter().find(|&way| {
             let side = match way {
                 0 => (x < width).then(|| &mut east[at(x, y)]),

@@ -4,7 +4,7 @@ use nalgebra::{Isometry2, Point2, distance};
 use robust::{Coord, orient2d};
 use thiserror::Error;
 
-/// Why rings make no polygon.
+/// Why a polygon could not be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PolygonError {
@@ -38,12 +38,12 @@ pub enum PolygonError {
     },
 }
 
-/// Largest coordinate: its square is far from overflow.
+/// The largest coordinate allowed: its square is far from overflow.
 const MAX_COORDINATE: f64 = 1e60;
 
-/// Closed rings of points; inside is what an odd number of rings goes around (the even-odd rule).
+/// Closed rings of points; a point is inside when an odd number of rings goes around it (the even-odd rule).
 ///
-/// So a ring inside another is a hole, whichever way either runs, and rings that cross themselves have a meaning.
+/// So a ring inside another is a hole, whatever their orientations, and rings may cross themselves.
 /// Convex or not; the last point of a ring is joined to its first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
@@ -141,7 +141,7 @@ impl Polygon {
         self.rings.iter().flatten().map(|p| distance(p, center)).fold(0.0, f64::max)
     }
 
-    /// Its area, of rings that cross neither themselves nor each other: outer rings less holes.
+    /// Its area, outer rings less holes; right for rings that cross neither themselves nor each other.
     #[must_use]
     pub fn area(&self) -> f64 {
         let inside = |p: &Point2<f64>, ring: &[Point2<f64>]| odd(closed(ring), p);
@@ -157,7 +157,7 @@ impl Polygon {
         self.rings.iter().enumerate().map(|(i, ring)| sign(i) * area(ring)).sum()
     }
 
-    /// Whether `p` is inside, by exact predicates; on the boundary either may be answered.
+    /// Whether `p` is inside, by exact predicates; on the boundary the answer may be either.
     #[must_use]
     pub fn contains(&self, p: &Point2<f64>) -> bool {
         odd(self.edges(), p)

@@ -1,4 +1,4 @@
-//! A tree of boxes over edges.
+//! A tree of axis-aligned boxes over edges.
 
 use super::edge::Edge;
 use nalgebra::{Point2, Vector2};
@@ -10,7 +10,7 @@ const LEAF: usize = 4;
 struct Node {
     low: Point2<f64>,
     high: Point2<f64>,
-    /// Of a leaf, its edges; else its second child, the first being next to it.
+    /// Of a leaf the position of its first edge; otherwise the index of the second child (the first child comes next).
     from: u32,
     /// Zero for inner nodes.
     count: u32,
@@ -22,7 +22,7 @@ impl Node {
     }
 }
 
-/// Edges sorted into boxes. The order of the edges is that of the slice it was made of.
+/// A tree over edges, which are named by their index in the slice it was made of.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EdgeTree {
     nodes: Vec<Node>,
@@ -66,7 +66,7 @@ impl EdgeTree {
     /// Calls `visit` with edges that may be less than the square root of `within` from `p`, nearer boxes first;
     /// it returns the new `within`, at most the old.
     pub(super) fn near(&self, p: &Point2<f64>, mut within: f64, mut visit: impl FnMut(u32, f64) -> f64) {
-        // Deeper than log₂ of the number of edges a tree by medians is not.
+        // Split at medians, the tree is no deeper than log₂ of the number of edges.
         let mut open = [(0_u32, 0.0_f64); 64];
         let mut count = usize::from(!self.nodes.is_empty());
         while count > 0 {

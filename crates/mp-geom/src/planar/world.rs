@@ -1,6 +1,6 @@
 //! Obstacles in the plane.
 
-use super::cells::{Cells, Kind};
+use super::cells::{CellKind, Cells};
 use super::edge::Edge;
 use super::tree::EdgeTree;
 use super::{Polygon, PolygonError};
@@ -11,7 +11,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlanarWorldError {
-    /// Bounds that hold nothing.
+    /// The walls enclose nothing.
     #[error("the bounds from ({}, {}) to ({}, {}) must be finite, the first corner below the second", .low[0], .low[1], .high[0], .high[1])]
     Bounds {
         /// The lower corner.
@@ -27,26 +27,26 @@ pub enum PlanarWorldError {
         /// How many there may be.
         max: usize,
     },
-    /// A polygon that is none.
+    /// A polygon is invalid.
     #[error(transparent)]
     Polygon(#[from] PolygonError),
 }
 
-/// Most edges: memory, not principle.
+/// The most edges, limited by memory only.
 const MAX_EDGES: usize = 20_000_000;
 
-/// So many edges are remembered on the way along a segment.
+/// How many edges are remembered along a segment, so that they are not compared again.
 const SEEN: usize = 8;
 
-/// The name edges of the walls have for a polygon: after all others.
+/// The polygon number of the edges of the walls, above all others.
 const WALLS: u32 = u32::MAX - 1;
 
-/// The point of an obstacle's boundary that is nearest to something.
+/// The point of an obstacle's boundary that is nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nearest {
-    /// Where it is.
+pub struct NearestToPoint {
+    /// The nearest point.
     pub point: Point2<f64>,
-    /// How far, metres.
+    /// Its distance, metres.
     pub distance: f64,
     /// The index of the polygon; `None` for the walls.
     pub obstacle: Option<usize>,
@@ -55,22 +55,21 @@ pub struct Nearest {
 /// Where a segment and the boundary of an obstacle are nearest to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestToSegment {
-    /// Where on the segment.
+    /// The point on the segment.
     pub on_segment: Point2<f64>,
-    /// Where on the boundary.
+    /// The point on the boundary.
     pub point: Point2<f64>,
-    /// How far from each other, metres; zero when they cross or touch.
+    /// Their distance, metres; zero when they cross or touch.
     pub distance: f64,
     /// The index of the polygon; `None` for the walls.
     pub obstacle: Option<usize>,
 }
 
-/// Polygons, which may overlap, and perhaps walls: outside of them everything is obstacle.
+/// Polygons, which may overlap, with or without walls around them; everything outside of the walls is obstacle.
 ///
-/// Distances are to boundaries, exact up to rounding. What is nearest is looked up in a grid whose cells hold all
-/// edges that can be nearest to one of their points, made once in O((n + cells) log n): some tens of
-/// nanoseconds for a point, and for a segment about as many times that as there are cells near obstacles on
-/// its way.
+/// Distances are to boundaries, exact up to rounding. They are found by a grid whose cells list all edges that can be
+/// nearest to one of their points, made once in O((n + cells) log n). A point takes some tens of nanoseconds, a segment
+/// that many for each cell near obstacles along it.
 #[derive(Clone, Debug)]
 pub struct PlanarWorld {
     polygons: Vec<Polygon>,
@@ -85,10 +84,10 @@ pub struct PlanarWorld {
 }
 
 impl PlanarWorld {
-    /// `polygons`, and `walls` from a lower to an upper corner around what is free.
+    /// The world of `polygons`, and of `walls` from a lower to an upper corner around the free space.
     ///
     /// # Errors
-    /// When the walls are not finite or hold nothing, or there are more than 2·10⁷ edges.
+    /// When the walls are not finite or enclose nothing, or there are more than 2·10⁷ edges.
     pub fn new(polygons: Vec<Polygon>, walls: Option<[[f64; 2]; 2]>) -> Result<Self, PlanarWorldError> {
         let mut edges = Vec::new();
         for (i, polygon) in polygons.iter().enumerate() {
@@ -108,8 +107,8 @@ impl PlanarWorld {
             (low, high) = (low.inf(&l), high.sup(&h));
         }
         let tree = EdgeTree::new(&edges);
-        let flat = |v: f64| v > 0.0 && v.is_finite();
-        let has_area = flat(high.x - low.x) && flat(high.y - low.y);
+        let positive = |v: f64| v > 0.0 && v.is_finite();
+        let has_area = positive(high.x - low.x) && positive(high.y - low.y);
         let cells = has_area.then(|| Cells::new([low, high], &edges, solid, &tree));
         let mut corners: Vec<Point2<f64>> = polygons.iter().flat_map(Polygon::rings).map(|r| r[0]).collect();
         corners.sort_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
@@ -129,7 +128,7 @@ impl PlanarWorld {
         self.walls
     }
 
-    /// The box around walls and polygons; `None` of nothing.
+    /// The box around walls and polygons; `None` for an empty world.
     #[must_use]
     pub fn bounds(&self) -> Option<[Point2<f64>; 2]> {
         (!self.edges.is_empty()).then_some([self.low, self.high])
@@ -141,7 +140,7 @@ impl PlanarWorld {
         self.edges.len()
     }
 
-    /// Whether `p` is in an obstacle, by exact predicates; on a boundary either may be answered, and the distance
+    /// Whether `p` is in an obstacle, by exact predicates; on a boundary the answer may be either, and the distance
     /// is zero.
     #[must_use]
     pub fn contains(&self, p: &Point2<f64>) -> bool {
@@ -150,15 +149,15 @@ impl PlanarWorld {
         }
         let Some(cells) = &self.cells else { return self.polygons.iter().any(|polygon| polygon.contains(p)) };
         match cells.locate(p).map(|at| cells.cell(at).0.kind) {
-            None | Some(Kind::Open) => false,
-            Some(Kind::Solid) => true,
-            Some(Kind::Mixed) => cells.row_contains(p, &self.edges),
+            None | Some(CellKind::Open) => false,
+            Some(CellKind::Solid) => true,
+            Some(CellKind::Mixed) => cells.row_contains(p, &self.edges),
         }
     }
 
-    /// The point of the boundary of an obstacle that is nearest to `p`; `None` where there is nothing.
+    /// The point of the boundary of an obstacle that is nearest to `p`; `None` in an empty world.
     #[must_use]
-    pub fn nearest(&self, p: &Point2<f64>) -> Option<Nearest> {
+    pub fn nearest(&self, p: &Point2<f64>) -> Option<NearestToPoint> {
         let mut best = (f64::INFINITY, u32::MAX);
         match self.cells.as_ref().and_then(|cells| Some(cells.cell(cells.locate(p)?).1)) {
             Some(candidates) => {
@@ -178,18 +177,22 @@ impl PlanarWorld {
             }),
         }
         let edge = self.edges.get(best.1 as usize)?;
-        Some(Nearest { point: edge.nearest(p), distance: best.0.sqrt(), obstacle: self.obstacle(edge) })
+        Some(NearestToPoint {
+            point: edge.nearest(p),
+            distance: best.0.sqrt(),
+            obstacle: self.obstacle(edge),
+        })
     }
 
-    /// The distance from `p` to the nearest obstacle; in an obstacle, minus that to the nearest boundary, which where
-    /// obstacles overlap is less than the depth. Infinite where there is nothing.
+    /// The distance from `p` to the nearest obstacle; in an obstacle, minus the distance to the nearest boundary, which where
+    /// obstacles overlap is less than the depth. Infinite in an empty world.
     #[must_use]
     pub fn signed_distance(&self, p: &Point2<f64>) -> f64 {
         let distance = self.nearest(p).map_or(f64::INFINITY, |n| n.distance);
         if self.contains(p) { -distance } else { distance }
     }
 
-    /// Whether `p` is in no obstacle and farther than `distance` (m) from every one. Often one look into the grid.
+    /// Whether `p` is in no obstacle and farther than `distance` (m) from every one. Often decided by one cell of the grid.
     #[must_use]
     pub fn is_clear(&self, p: &Point2<f64>, distance: f64) -> bool {
         let found = self.cells.as_ref().and_then(|cells| Some((cells, cells.locate(p)?)));
@@ -198,7 +201,7 @@ impl PlanarWorld {
         };
         let (cell, candidates) = cells.cell(at);
         let off = (p - cells.center(at.0, at.1)).norm() + cells.slack;
-        if cell.kind == Kind::Solid || cell.from_center + off < distance {
+        if cell.kind == CellKind::Solid || cell.from_center + off < distance {
             return false;
         }
         let near = |i: &u32| self.edges[*i as usize].squared(p).sqrt() <= distance;
@@ -207,7 +210,7 @@ impl PlanarWorld {
     }
 
     /// Where the segment from `a` to `b` and the boundary of an obstacle are nearest to each other, if that is less
-    /// than `below` metres. Says nothing about which side of the boundary the segment is on.
+    /// than `below` metres; the segment may be on either side of the boundary.
     #[must_use]
     pub fn nearest_to_segment(
         &self,
@@ -245,7 +248,7 @@ impl PlanarWorld {
         Some(NearestToSegment { on_segment, point, distance: best.0, obstacle })
     }
 
-    /// Calls `look` with edges of which one is nearest to the segment, if it is less than `below` from it; it
+    /// Calls `look` with edges, among them the one nearest to the segment if that is nearer than `below`; `look`
     /// returns the new `below`.
     fn along(&self, a: &Point2<f64>, b: &Point2<f64>, below: f64, look: &mut impl FnMut(u32, f64) -> f64) {
         let (u, mut below) = (b - a, below);
@@ -253,7 +256,7 @@ impl PlanarWorld {
         let inside =
             self.cells.as_ref().filter(|cells| cells.locate(a).is_some() && cells.locate(b).is_some());
         let Some(cells) = inside else {
-            // All that can be near is within a ball around the segment.
+            // Edges that can be near are within a disc around the segment.
             let (middle, half) = (a + u * 0.5, 0.5 * length);
             let within = |below: f64| (half + below).powi(2) * (1.0 + 1e-12);
             self.tree.near(&middle, within(below), |i, _| {
@@ -269,8 +272,8 @@ impl PlanarWorld {
             let p = a + u * t;
             let Some(at) = cells.locate(&p) else { return };
             let (cell, candidates) = cells.cell(at);
-            // No edge is nearer to the centre than the nearest, so none is near about it: anywhere in the cell, or
-            // at least about `p`.
+            // No edge is within `from_center` of the centre, so none is within `below` of any point of the cell, or at
+            // least of points around `p`.
             let clear = cell.from_center - below - cells.slack;
             if clear <= cells.half_diagonal {
                 for &i in candidates {
@@ -282,7 +285,7 @@ impl PlanarWorld {
             }
             let clear = clear - (p - cells.center(at.0, at.1)).norm();
             let next = (cells.leaves(a, &inverse, at) + nudge).max(t + nudge).max(t + clear * per_length);
-            // A segment of no length leaves nowhere, or never.
+            // Infinite or NaN for a segment of no length.
             if next.is_nan() || next >= 1.0 {
                 return;
             }
@@ -290,8 +293,8 @@ impl PlanarWorld {
         }
     }
 
-    /// A corner of an obstacle for which `inside` is true, among those between `low` and `high`: one corner of each
-    /// ring is asked about, so a ring that lies wholly in something is found.
+    /// A corner of an obstacle for which `inside` is true, among those between `low` and `high`. One corner of each ring is
+    /// tested, so a ring that lies wholly inside of a shape is found.
     #[must_use]
     pub fn ring_in(
         &self,

@@ -1,4 +1,4 @@
-//! How far are two trees apart?
+//! The nearest points of two trees, by branch and bound.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -8,40 +8,40 @@ use crate::bvh::{LEAF, Tree, WIDTH};
 use crate::counters::Counters;
 use crate::kernels::leaf_pair::near_each_other;
 use crate::kernels::separating_axes::distances;
-use crate::kernels::triangle_distance::{Bounds, DistanceKernel, SeparatingDirection};
-use crate::query::intersect::prefetch_node;
+use crate::kernels::triangle_distance::{DistanceBounds, DistanceKernel, SeparatingDirection};
+use crate::query::descend::{opens_first, prefetch_node};
 use crate::simd::{Kernel, Lanes, Mask};
 use crate::triangle::{Closest, closest_within, is_farther, is_nearest};
 
-/// Two nodes whose boxes are at least the root of `bound` apart; the greatest of several is the nearest.
+/// Two nodes whose boxes are at least the square root of `bound` apart; ordered so that the nearest is the greatest.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair {
+pub(crate) struct NodePair {
     bound: f32,
     a: u32,
     b: u32,
 }
 
-impl Ord for Pair {
+impl Ord for NodePair {
     fn cmp(&self, other: &Self) -> Ordering {
         other.bound.total_cmp(&self.bound).then((other.a, other.b).cmp(&(self.a, self.b)))
     }
 }
 
-impl PartialOrd for Pair {
+impl PartialOrd for NodePair {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Pair {
+impl PartialEq for NodePair {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Pair {}
+impl Eq for NodePair {}
 
-/// Two triangles (positions in the trees) at least the root of `bound` apart that may be the nearest.
+/// Two triangles (positions in the trees) at least the square root of `bound` apart that may be the nearest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
     bound: f32,
@@ -49,16 +49,16 @@ pub(crate) struct Candidate {
     b: u32,
 }
 
-/// What a search for nearest points needs between queries.
+/// Memory of a search for nearest points, kept between queries.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
-    pairs: BinaryHeap<Pair>,
+    pairs: BinaryHeap<NodePair>,
     candidates: Vec<Candidate>,
 }
 
 /// Branch and bound over pairs of nodes, the nearest first, in `f32`; the candidates left are compared
 /// in `f64`.
-pub(crate) struct Nearest<'q> {
+pub(crate) struct BranchAndBound<'q> {
     pub(crate) a: &'q Tree,
     pub(crate) b: &'q Tree,
     pub(crate) frames: &'q Frames,
@@ -68,8 +68,8 @@ pub(crate) struct Nearest<'q> {
     pub(crate) counters: &'q mut Counters,
 }
 
-impl Kernel for Nearest<'_> {
-    /// Nearest points in the frame of `a`, and the triangles they are on, if near enough.
+impl Kernel for BranchAndBound<'_> {
+    /// The nearest points in the frame of `a`, and the triangles they are on, if near enough.
     type Output = Option<(Closest, usize, usize)>;
 
     #[inline(always)]
@@ -82,10 +82,10 @@ impl Kernel for Nearest<'_> {
         let mut best = Best {
             squared: up(enough * enough),
             closest: Closest::NONE,
-            slab: SeparatingDirection::default(),
+            direction: SeparatingDirection::default(),
         };
         let far = a.is_large() || b.is_large();
-        let mut next = Some(Pair { bound: 0.0, a: a.root, b: b.root });
+        let mut next = Some(NodePair { bound: 0.0, a: a.root, b: b.root });
         while let Some(pair) = next.take().or_else(|| self.scratch.pairs.pop()) {
             if pair.bound > best.squared {
                 break;
@@ -101,7 +101,7 @@ impl Kernel for Nearest<'_> {
                 self.leaf_pair::<L>(i, j, &into_a, &mut best);
                 continue;
             }
-            let open_a = x & LEAF == 0 && (y & LEAF != 0 || a.own(x).size >= b.own(y).size);
+            let open_a = opens_first((a, x), (b, y));
             let (node, place) = if open_a {
                 (&a.nodes[x as usize], into_a.place(b.own(y)))
             } else {
@@ -113,13 +113,13 @@ impl Kernel for Nearest<'_> {
             let mut bound = [0.0; WIDTH];
             bounds.store(&mut bound);
             let pairs = &mut self.scratch.pairs;
-            // The nearest child goes on, unless another pair waits that is nearer; straight down to the first
-            // leaves.
+            // The nearest child is next, unless a pair in the queue is nearer; before the first leaves, the search goes
+            // straight down.
             while mask != 0 {
                 let lane = mask.trailing_zeros() as usize & 7;
                 mask &= mask - 1;
                 let (a, b) = if open_a { (node.child[lane], y) } else { (x, node.child[lane]) };
-                let pair = Pair { bound: bound[lane], a, b };
+                let pair = NodePair { bound: bound[lane], a, b };
                 match &mut next {
                     Some(first) if pair > *first => pairs.push(std::mem::replace(first, pair)),
                     Some(_) => pairs.push(pair),
@@ -138,17 +138,17 @@ impl Kernel for Nearest<'_> {
     }
 }
 
-/// What is known of the nearest points.
+/// The nearest points so far.
 struct Best {
-    /// Not less than their squared distance.
+    /// An upper bound on their squared distance.
     squared: f32,
     /// The nearest found.
     closest: Closest,
-    /// Across the join of the nearest found, in the frame of `a`.
-    slab: SeparatingDirection,
+    /// Along the segment between the nearest found, in the frame of `a`.
+    direction: SeparatingDirection,
 }
 
-impl Nearest<'_> {
+impl BranchAndBound<'_> {
     /// Compares the triangles of two leaves.
     #[inline(always)]
     fn leaf_pair<L: Lanes>(&mut self, i: usize, j: usize, into_a: &FrameTransform<L>, best: &mut Best) {
@@ -163,14 +163,14 @@ impl Nearest<'_> {
                 return;
             }
         }
-        let gaps = DistanceKernel::<L>::new(leaf_a, &best.slab);
+        let kernel = DistanceKernel::<L>::new(leaf_a, &best.direction);
         let mut nearest = None;
         while singles != 0 {
             let position = leaf_b.first + singles.trailing_zeros();
             singles &= singles - 1;
             let single = frames.exact.triangle(&b.triangles[position as usize]);
-            let mut bounds = Bounds::default();
-            let mut near = gaps.between(&single, lanes, best.squared, &mut bounds).near;
+            let mut bounds = DistanceBounds::default();
+            let mut near = kernel.between(&single, lanes, best.squared, &mut bounds).near;
             self.counters.triangle_tests += 1;
             while near != 0 {
                 let lane = near.trailing_zeros() as usize & 7;
@@ -186,13 +186,13 @@ impl Nearest<'_> {
         if let Some((k, single)) = nearest
             && let Some(closest) = closest_within(&a.triangles[k as usize], &single, f64::INFINITY)
         {
-            // What lanes say is a little too much, and the larger the meshes, the more pairs are so near the least.
+            // The bound of the lanes is a little too large; the larger the meshes, the more pairs lie below such a bound.
             best.squared = best.squared.min(up(closest.squared));
             if closest.squared < best.closest.squared {
                 best.closest = closest;
             }
             let join = closest.on_b - closest.on_a;
-            best.slab = SeparatingDirection::across(&join);
+            best.direction = SeparatingDirection::across(&join);
         }
     }
 }
@@ -218,7 +218,7 @@ fn refine(
     for c in candidates.iter() {
         let (i, j) = (c.a as usize, c.b as usize);
         let single = frames.exact.triangle(&b.triangles[j]);
-        // Mostly neighbours that share the point found.
+        // Most candidates are neighbours that share the points found.
         if let Some((closest, ..)) = &witness
             && is_nearest(&a.triangles[i], &single, closest.on_a, closest.on_b)
         {

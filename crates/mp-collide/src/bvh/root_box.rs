@@ -1,23 +1,24 @@
-//! The box around a whole mesh, in `f64`: fitting, a lower bound on distance.
+//! The oriented box around a whole mesh, in `f64`: fitting, and a lower bound on distance.
 //!
 //! Gottschalk, Lin, Manocha, *OBBTree: A Hierarchical Structure for Rapid Interference Detection*,
 //! SIGGRAPH 1996.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
+use crate::bvh::fit::orthonormal;
 use crate::triangle::Triangle;
 
-/// A box: centre, three orthonormal axes, half its extent along each.
+/// An oriented box: centre, three orthonormal axes, half its extent along each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct MeshObb {
+pub(crate) struct RootBox {
     pub(crate) center: Point3<f64>,
     pub(crate) axes: [Vector3<f64>; 3],
     pub(crate) half: Vector3<f64>,
 }
 
-impl MeshObb {
-    /// A small box around `triangles`: the one of least surface among several frames (the axes of the
-    /// mesh, the principal axes of the surface, the largest triangle's).
+impl RootBox {
+    /// A small box around `triangles`: the one of least surface along several frames (the principal axes of the surface,
+    /// the frame of the largest triangle, the axes of the mesh). O(n).
     pub(crate) fn fit<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> Self {
         let frames = [
             principal_axes(triangles.clone()),
@@ -47,7 +48,7 @@ impl MeshObb {
         Self { center, axes, half: (max - min) * 0.5 }
     }
 
-    /// An eighth of the surface of the box: enough to compare by.
+    /// An eighth of the surface of the box, to compare boxes.
     fn surface(&self) -> f64 {
         let h = &self.half;
         h.x * h.y + h.y * h.z + h.z * h.x
@@ -81,7 +82,7 @@ impl MeshObb {
 
 /// The principal axes of the surface of `triangles` (of their corners when that has no area).
 fn principal_axes<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> [Vector3<f64>; 3] {
-    // Around a corner, not the origin of the mesh: less cancellation far away from it.
+    // Relative to a corner: less cancellation for meshes far from their origin.
     let Some(origin) = triangles.clone().next().map(|t| t[0]) else {
         return [Vector3::x(), Vector3::y(), Vector3::z()];
     };
@@ -107,7 +108,7 @@ fn principal_axes<'a>(triangles: impl Iterator<Item = &'a Triangle> + Clone) -> 
     eigenvectors(moment / weight - mean * mean.transpose())
 }
 
-/// The frame of the largest triangle: its longest edge, its normal, and what is left.
+/// The frame of the largest triangle: its longest edge, its normal, and the direction orthogonal to both.
 fn largest_triangle_axes<'a>(triangles: impl Iterator<Item = &'a Triangle>) -> [Vector3<f64>; 3] {
     let mut best = (0.0, [Vector3::x(), Vector3::y(), Vector3::z()]);
     for t in triangles {
@@ -129,7 +130,7 @@ fn largest_triangle_axes<'a>(triangles: impl Iterator<Item = &'a Triangle>) -> [
     best.1
 }
 
-/// The eigenvectors of a symmetric matrix, by Jacobi's rotations: orthonormal whatever comes in.
+/// The eigenvectors of a symmetric matrix, by Jacobi's rotations: orthonormal for any input.
 fn eigenvectors(mut m: Matrix3<f64>) -> [Vector3<f64>; 3] {
     let mut v = Matrix3::identity();
     if m.iter().all(|c| c.is_finite()) {
@@ -149,9 +150,6 @@ fn eigenvectors(mut m: Matrix3<f64>) -> [Vector3<f64>; 3] {
             }
         }
     }
-    // Rounding adds up over the rotations; boxes want axes orthonormal to the last place.
-    let x: Vector3<f64> = v.column(0).normalize();
-    let y: Vector3<f64> = v.column(1).into();
-    let y = (y - x * x.dot(&y)).normalize();
-    [x, y, x.cross(&y)]
+    // Rounding adds up over the rotations, and the axes of a box must be orthonormal to the last place.
+    orthonormal(&v.column(0).into(), &v.column(1).into())
 }

@@ -1,0 +1,182 @@
+//! Queries of one mesh against the bodies of a scene.
+
+use nalgebra::Isometry3;
+
+use super::{Body, BodyId, Contact, Scene, bounds};
+use crate::broad::BroadPhase;
+use crate::mesh::{CollisionMesh, PosedMesh};
+use crate::pose::Relative;
+use crate::query::Query;
+
+/// Queries of a mesh, which need not be a body of the scene, against all bodies.
+impl Scene {
+    /// A body that `mesh` at `pose_wm` collides with: the first one found, always the same. Touching counts.
+    pub fn collide_body(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+    ) -> Option<BodyId> {
+        if let Some(merged) = &self.merged {
+            let hit = query.intersecting_triangles(mesh, pose_wm, &merged.mesh, &Isometry3::identity());
+            if let Some((_, triangle)) = hit {
+                return Some(merged.owner(triangle));
+            }
+        }
+        self.near(mesh, pose_wm, !self.is_merged(), |id, body| {
+            query.intersects(mesh, pose_wm, &body.mesh, &body.pose).then_some(id)
+        })
+        .or_else(|| self.nested(query, mesh, pose_wm))
+    }
+
+    /// A body with a part inside of `mesh`, or that has a part of `mesh` inside, the outer one being filled;
+    /// surfaces are assumed not to meet.
+    pub(super) fn nested(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+    ) -> Option<BodyId> {
+        if self.filled == 0 && !mesh.is_filled() {
+            return None;
+        }
+        self.near(mesh, pose_wm, true, |id, body| query.nested((mesh, pose_wm), body.posed()).then_some(id))
+    }
+
+    /// Whether `mesh` at `pose_wm` collides with any body.
+    pub fn collides(&self, query: &mut Query, mesh: &CollisionMesh, pose_wm: &Isometry3<f64>) -> bool {
+        let mut merged = self.merged.iter();
+        // Any pair of triangles will do here, which is found sooner than always the same pair.
+        merged.any(|merged| query.intersects(mesh, pose_wm, &merged.mesh, &Isometry3::identity()))
+            || self
+                .near(mesh, pose_wm, !self.is_merged(), |_, body| {
+                    query.intersects(mesh, pose_wm, &body.mesh, &body.pose).then_some(())
+                })
+                .is_some()
+            || self.nested(query, mesh, pose_wm).is_some()
+    }
+
+    /// A lower bound on the distance from `mesh` at `pose_wm` to the bodies, exact when below `enough`
+    /// (metres), and the nearest body in that case; otherwise some value of at least `enough` and no body.
+    /// 0 exactly when it collides. Infinity when there are no bodies.
+    pub fn clearance(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        enough: f64,
+    ) -> (f64, Option<BodyId>) {
+        let mut nearest = NearestBody {
+            query,
+            limit: if enough.is_nan() { f64::INFINITY } else { enough },
+            body: None,
+            beyond: f64::INFINITY,
+        };
+        let posed = (mesh, pose_wm);
+        if let Some(merged) = &self.merged {
+            nearest.look(posed, (&merged.mesh, &Isometry3::identity()), |t| merged.owner(t));
+        }
+        for broad in self.phases(!self.is_merged()) {
+            let Some(own) = bounds(mesh, pose_wm) else {
+                return match self.bodies().next() {
+                    Some((id, _)) => (0.0, Some(id)),
+                    None => (f64::INFINITY, None),
+                };
+            };
+            let passed_over = broad.nearest(&own, nearest.limit, |item| {
+                if let Some(body) = &self.bodies[item as usize] {
+                    nearest.look(posed, body.posed(), |_| BodyId(item));
+                }
+                nearest.limit
+            });
+            nearest.beyond = nearest.beyond.min(passed_over);
+        }
+        let found = match nearest.body {
+            Some(body) => (nearest.limit, Some(body)),
+            None => (nearest.beyond, None),
+        };
+        let nested = if found.0 > 0.0 { self.nested(query, mesh, pose_wm) } else { None };
+        nested.map_or(found, |id| (0.0, Some(id)))
+    }
+
+    /// All bodies that `mesh` at `pose_wm` collides with, in the order of insertion, with an estimate of
+    /// the depth. For messages: it takes thousands of times longer than [`Scene::collides`].
+    pub fn contacts(
+        &self,
+        query: &mut Query,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+    ) -> Vec<Contact> {
+        let mut contacts = Vec::new();
+        let _: Option<()> = self.near(mesh, pose_wm, true, |id, body| {
+            if query.meets((mesh, pose_wm), body.posed()) {
+                let depth = query.depth(mesh, pose_wm, &body.mesh, &body.pose);
+                contacts.push(Contact { body: id, name: body.name.clone(), depth });
+            }
+            None
+        });
+        contacts.sort_by_key(|contact| contact.body);
+        contacts
+    }
+
+    /// Visits the bodies whose boxes overlap the box of the mesh, until `visit` returns something; all bodies
+    /// when mesh or pose are beyond the limits. Static bodies are visited only when `fixed`.
+    pub(super) fn near<T>(
+        &self,
+        mesh: &CollisionMesh,
+        pose_wm: &Isometry3<f64>,
+        fixed: bool,
+        mut visit: impl FnMut(BodyId, &Body) -> Option<T>,
+    ) -> Option<T> {
+        let mut phases = self.phases(fixed).peekable();
+        phases.peek()?;
+        let own = bounds(mesh, pose_wm);
+        phases.find_map(|broad| {
+            broad.find(
+                |bounds| own.is_none_or(|own| own.intersects(bounds)),
+                |item| visit(BodyId(item), self.bodies[item as usize].as_ref()?),
+            )
+        })
+    }
+
+    /// The broad phases that are not empty; that of the static bodies only when `fixed`.
+    pub(super) fn phases(&self, fixed: bool) -> impl Iterator<Item = &BroadPhase> {
+        let phases = [fixed.then_some(&self.fixed), Some(&self.movable)];
+        phases.into_iter().flatten().filter(|broad| !broad.is_empty())
+    }
+}
+
+/// The search for the nearest body.
+struct NearestBody<'q> {
+    query: &'q mut Query,
+    /// The distance to `body`; while there is none, the distance that is enough.
+    limit: f64,
+    body: Option<BodyId>,
+    /// A lower bound on the distance of all bodies that were compared and found beyond the limit.
+    beyond: f64,
+}
+
+impl NearestBody<'_> {
+    /// Compares the mesh with another; `owner` names the body of a triangle of the other.
+    fn look(&mut self, mesh: PosedMesh<'_>, other: PosedMesh<'_>, owner: impl Fn(usize) -> BodyId) {
+        if self.limit == 0.0 && self.body.is_some() {
+            return;
+        }
+        self.query.counters.queries += 1;
+        let (clearance, triangle) = match Relative::of(mesh, other) {
+            Some(relative) => {
+                let (clearance, position) =
+                    self.query.clearance_with(mesh.0.tree(), other.0.tree(), &relative, self.limit);
+                (clearance, position.map(|position| other.0.tree().ids[position] as usize))
+            }
+            None => (0.0, Some(0)),
+        };
+        match triangle {
+            Some(triangle) if clearance < self.limit || clearance == 0.0 => {
+                self.limit = clearance;
+                self.body = Some(owner(triangle));
+            }
+            _ => self.beyond = self.beyond.min(clearance),
+        }
+    }
+}
