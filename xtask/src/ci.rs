@@ -29,8 +29,8 @@ pub(crate) fn run(tests: bool) -> ExitCode {
     }
     let tidy = match tidy::check(&root()) {
         Ok(findings) => {
-            findings.iter().for_each(|finding| note(&format!("  {finding}")));
-            !findings.iter().any(|f| f.is_error)
+            findings.iter().for_each(|finding| note(&format!("  error: {finding}")));
+            findings.is_empty()
         }
         Err(e) => {
             note(&format!("  {e}"));
