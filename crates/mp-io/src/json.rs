@@ -1,8 +1,6 @@
 //! Paths and results of planning as JSON.
 
 use crate::error::{Error, ErrorKind};
-use crate::gempa::PathFile;
-use crate::source::decode;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -48,25 +46,6 @@ pub(crate) fn rows_text<R: Serialize>(path: &[R]) -> String {
     // Numbers of a path are finite and its shape is fixed, so this cannot fail.
     let one_line = serde_json::to_string(&OnlyPath { path }).unwrap_or_default();
     one_line.replace("[[", "[\n[").replace("],[", "],\n[").replace("]]", "]\n]") + "\n"
-}
-
-impl PathFile {
-    /// Reads `bytes`, the content of a JSON file that errors call `file`: an object with a member `path`, a
-    /// list of six-tuples; its other members are skipped.
-    ///
-    /// # Errors
-    /// [`Error`] when it is not JSON or has no path, with the line and column.
-    pub fn parse_json(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let text = decode(file, bytes)?;
-        let configurations = parse_rows(file, text, "{\"path\": [[x, y, z, α, β, γ], …]}")?;
-        Ok(Self { configurations })
-    }
-
-    /// The path as JSON: an object with the member `path`, one six-tuple on a line.
-    #[must_use]
-    pub fn to_json(&self) -> String {
-        rows_text(&self.configurations)
-    }
 }
 
 /// The byte before which serde_json found fault; its lines count from 1, its columns are bytes read.

@@ -23,6 +23,7 @@ mod number;
 mod obj;
 mod off;
 mod ompl;
+mod path;
 mod planar;
 mod problem;
 mod robot;
@@ -34,15 +35,16 @@ mod text;
 pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
 pub use error::{Error, ErrorKind};
-pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
+pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
 pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh};
 pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
+pub use path::{JointPath, PathFile};
 pub use planar::{
     GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
-pub use robot::{JointPath, ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
+pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
 pub use source::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use stl::{parse_stl, stl_text, write_stl};

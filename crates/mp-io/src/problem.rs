@@ -285,7 +285,7 @@ fn check_inside(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PathFile, write_gempa_mesh, write_off};
+    use crate::{write_gempa_mesh, write_off};
     use mp_geom::primitives;
 
     const ENV: &str = "Robot\nrobot.txt\n0 0 0 0 0 0\n5 0 0 1 0 0\nObstacle #1\nwall.off\n2 0 0 0 0 0\n\
@@ -327,23 +327,5 @@ mod tests {
         let e = RigidProblem::load(&path).unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(3), Some(7)));
         assert!(e.file().ends_with("wall.off") && e.to_string().ends_with("scene.env:6:1)"), "{e}");
-    }
-
-    #[test]
-    fn paths_round_trip_as_text_and_json() {
-        let dir = folder();
-        let path = PathFile { configurations: vec![[0.1, 2.0, -0.0, 1e-9, 0.25, 3.0], [1.0; 6]] };
-        for name in ["p.txt", "p.json"] {
-            let file = dir.path().join(name);
-            path.write(&file).unwrap();
-            assert_eq!(PathFile::read(&file).unwrap(), path);
-        }
-        assert_eq!(path.to_text(), "2\n0.1 2 -0 1e-9 0.25 3\n1 1 1 1 1 1\n");
-        assert_eq!(
-            path.to_json(),
-            "{\"path\":[\n[0.1,2.0,-0.0,1e-9,0.25,3.0],\n[1.0,1.0,1.0,1.0,1.0,1.0]\n]}\n"
-        );
-        let e = PathFile::parse_json("r.json", b"{\"solved\": true,\n \"path\": [[1,2,3]]}").unwrap_err();
-        assert_eq!(e.line(), Some(2), "{e}");
     }
 }

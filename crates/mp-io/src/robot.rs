@@ -1,9 +1,6 @@
 //! Robot problems: an arm, obstacles, a start and goals, in TOML.
 
 mod load;
-mod path;
-
-pub use path::JointPath;
 
 use crate::error::Error;
 use crate::problem::PlacedBody;

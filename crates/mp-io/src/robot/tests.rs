@@ -136,30 +136,3 @@ fn packages_are_found_where_they_are_installed() {
     let lost = problem.mesh("file:///lost/arm.off").unwrap_err();
     assert!(lost.contains("/lost/arm.off") && lost.contains("no such file"), "{lost}");
 }
-
-#[test]
-fn paths_round_trip_and_faults_are_placed() {
-    let dir = tempfile::tempdir().unwrap();
-    let path = JointPath { configurations: vec![vec![0.1, -0.0, 1e-9], vec![1.0, 2.0, 3.0]] };
-    for name in ["p.txt", "p.json"] {
-        path.write(dir.path().join(name)).unwrap();
-        assert_eq!(JointPath::read(dir.path().join(name)).unwrap(), path);
-    }
-    for (text, line, words) in [
-        ("", None, "empty"),
-        ("2\n0 0\n", Some(1), "two counts"),
-        ("2 2 2\n0 0\n", Some(1), "two counts"),
-        ("0 2\n", Some(1), "without"),
-        ("2 2\n0 0\n", Some(2), "configuration 2 of 2"),
-        ("1 2\n0 0\n1 1\n", Some(3), "follows"),
-        ("1 2\n0 0 0\n", Some(2), "3 numbers"),
-        ("1 2\n0 x\n", Some(2), "not a number"),
-    ] {
-        let error = JointPath::parse("p.txt", text.as_bytes()).unwrap_err();
-        assert!(line.is_none() || error.line() == line, "{error}");
-        assert!(error.to_string().contains(words), "{error}");
-    }
-    for text in ["{}", "[]", "{\"path\": []}", "{\"path\": [[]]}", "{\"path\": [[1], [1, 2]]}"] {
-        assert!(JointPath::parse_json("p.json", text.as_bytes()).is_err(), "{text}");
-    }
-}
