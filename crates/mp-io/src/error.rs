@@ -163,6 +163,11 @@ impl Error {
         self.0.help.as_deref()
     }
 
+    /// What to do about a file that another file names and that cannot be used.
+    pub(crate) fn remedy_of_named_file(&self) -> &str {
+        self.remedy().unwrap_or("check the name of the file")
+    }
+
     /// A few lines for a person: what is wrong and where, the line of the file with a mark under what is wrong in it,
     /// and what to do. They end without a line break.
     ///

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind};
 use crate::gempa::environment::{self, Environment};
 use crate::mesh::read_mesh_of;
 use crate::ompl;
-use crate::source::{Disk, Files, MAX_TEXT_BYTES, decode};
+use crate::source::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use crate::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::{Isometry3, Point3};
@@ -183,7 +183,7 @@ impl RigidProblem {
             };
             obstacles.push(PlacedBody { name, file, mesh, pose: pose_from_six(o.pose) });
         }
-        let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let name = stem(path);
         let (start, goal) = (pose_from_six(start), pose_from_six(goal));
         Ok(Self { name, space, robot, obstacles, start, goal, bounds })
     }
@@ -216,8 +216,7 @@ pub(crate) fn cited<T>(
         // What cannot be opened is the fault of this line; what is in the mesh file, of that file.
         Err(e) if e.kind() == ErrorKind::Io => {
             let message = format!("the mesh of {what} is not readable: {}: {}", e.file(), e.message());
-            let remedy = e.remedy().unwrap_or("check the name of the file").to_owned();
-            Err(text.error(place, message).help(remedy).with_kind(ErrorKind::Io))
+            Err(text.error(place, message).help(e.remedy_of_named_file()).with_kind(ErrorKind::Io))
         }
         Err(e) => Err(e.cited_at(text.place(place))),
     }
@@ -230,7 +229,7 @@ pub(crate) fn check_mesh(
     file: &Path,
     mesh: &TriMesh,
 ) -> Result<(), Error> {
-    match mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE)) {
+    match vertex_beyond(mesh) {
         None => Ok(()),
         Some(v) => {
             let message = format!("vertex ({:e}, {:e}, {:e}) is beyond {MAX_COORDINATE:e} m", v.x, v.y, v.z);
@@ -241,6 +240,12 @@ pub(crate) fn check_mesh(
     }
 }
 
+/// A vertex too far away to compute with, if there is one.
+pub(crate) fn vertex_beyond(mesh: &TriMesh) -> Option<&Point3<f64>> {
+    mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE))
+}
+
+/// Refuses numbers beyond [`MAX_COORDINATE`]; `what` has them.
 pub(crate) fn check_size(text: &Text<'_>, place: Token<'_>, what: &str, values: &[f64]) -> Result<(), Error> {
     match values.iter().find(|v| v.abs() > MAX_COORDINATE) {
         None => Ok(()),

@@ -108,6 +108,11 @@ pub fn read_text(path: &Path) -> Result<(String, Vec<u8>), Error> {
     Ok((path.display().to_string(), read_file(path, MAX_TEXT_BYTES)?))
 }
 
+/// The name of a file, without folders and extension.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+}
+
 fn missing_help(path: &Path) -> String {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {

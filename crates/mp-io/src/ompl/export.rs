@@ -26,29 +26,29 @@ impl Default for OmplExport {
 }
 
 #[derive(Serialize)]
-struct Exported<'a> {
+struct JsonProblem<'a> {
     name: &'a str,
     space: String,
-    start: State,
-    goal: State,
-    bounds: Bounds,
+    start: JsonState,
+    goal: JsonState,
+    bounds: JsonBounds,
     goal_threshold: f64,
     resolution_fraction: f64,
-    robot: Mesh,
-    env: Mesh,
+    robot: JsonMesh,
+    env: JsonMesh,
 }
 
 #[derive(Serialize)]
-struct State {
+struct JsonState {
     position: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    quaternion: Option<Quaternion>,
+    quaternion: Option<JsonQuaternion>,
     #[serde(skip_serializing_if = "Option::is_none")]
     yaw: Option<f64>,
 }
 
 #[derive(Serialize)]
-struct Quaternion {
+struct JsonQuaternion {
     x: f64,
     y: f64,
     z: f64,
@@ -56,13 +56,13 @@ struct Quaternion {
 }
 
 #[derive(Serialize)]
-struct Bounds {
+struct JsonBounds {
     low: Vec<f64>,
     high: Vec<f64>,
 }
 
 #[derive(Serialize)]
-struct Mesh {
+struct JsonMesh {
     mesh: String,
 }
 
@@ -97,30 +97,30 @@ pub fn export_ompl(
         match problem.space {
             SpaceKind::Se3 => {
                 let q = pose.rotation;
-                let quaternion = Quaternion { x: q.i, y: q.j, z: q.k, w: q.w };
-                State { position, quaternion: Some(quaternion), yaw: None }
+                let quaternion = JsonQuaternion { x: q.i, y: q.j, z: q.k, w: q.w };
+                JsonState { position, quaternion: Some(quaternion), yaw: None }
             }
             SpaceKind::Se2 => {
                 let yaw = mp_geom::six_from_pose(pose)[3];
-                State { position, quaternion: None, yaw: Some(yaw) }
+                JsonState { position, quaternion: None, yaw: Some(yaw) }
             }
         }
     };
     let bounds = problem.position_bounds();
     let meshes = ["robot", "env"].map(|part| format!("{name}_{part}.off"));
-    let exported = Exported {
+    let exported = JsonProblem {
         name: &problem.name,
         space: problem.space.to_string(),
         start: state(&problem.start),
         goal: state(&problem.goal),
-        bounds: Bounds {
+        bounds: JsonBounds {
             low: bounds.min.coords.as_slice()[..dimensions].to_vec(),
             high: bounds.max.coords.as_slice()[..dimensions].to_vec(),
         },
         goal_threshold: options.goal_threshold,
         resolution_fraction: options.resolution_fraction,
-        robot: Mesh { mesh: meshes[0].clone() },
-        env: Mesh { mesh: meshes[1].clone() },
+        robot: JsonMesh { mesh: meshes[0].clone() },
+        env: JsonMesh { mesh: meshes[1].clone() },
     };
     let text = serde_json::to_string_pretty(&exported).map_err(|e| {
         Error::new(ErrorKind::Content, json.display(), format!("cannot write the problem: {e}"))

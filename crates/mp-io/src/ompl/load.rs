@@ -5,7 +5,7 @@ use crate::collada::{Scene, center::center_of_mesh};
 use crate::error::{Error, ErrorKind};
 use crate::mesh::{MeshFormat, read_mesh_of};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
-use crate::source::{Files, MAX_MESH_BYTES};
+use crate::source::{Files, MAX_MESH_BYTES, stem};
 use crate::text::Text;
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -62,9 +62,8 @@ pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Ri
     check_size(text, places.robot, "the volume", bounds.min.coords.as_slice())?;
     check_size(text, places.robot, "the volume", bounds.max.coords.as_slice())?;
 
-    let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     Ok(RigidProblem {
-        name: read.name.unwrap_or(stem),
+        name: read.name.unwrap_or_else(|| stem(path)),
         space: read.space,
         robot,
         obstacles,

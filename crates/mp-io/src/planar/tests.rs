@@ -1,5 +1,5 @@
 use super::*;
-use crate::PlanarProblem;
+use crate::tables::tests::is_clear;
 
 const GOOD: &str = "[world]\nwalls = [[0, 0], [4, 3]]\n\n[robot]\ndisc = 0.07\n\n[motion]\nstart = [0.3, 0.3]\n\
                     goal = [3.5, 2.5]\n\n[[obstacle]]\nname = \"box\"\nrectangle = [[1, 1], [2, 1.5]]\n\n\
@@ -91,10 +91,8 @@ fn faults_have_their_place() {
         assert!(good.contains(from), "{from}");
         let (_dir, path) = folder(&good.replacen(from, to, 1));
         let error = PlanarProblem::load(&path).unwrap_err();
-        let shown = error.to_string();
-        let placed = error.line() == Some(line) && shown.contains(words);
-        if !placed || error.remedy().is_none() || shown.contains('\n') {
-            wrong.push(format!("{to}: {shown}"));
+        if !is_clear(&error, line, words) {
+            wrong.push(format!("{to}: {error}"));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

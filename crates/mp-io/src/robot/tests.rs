@@ -1,4 +1,5 @@
 use super::*;
+use crate::tables::tests::is_clear;
 
 const GOOD: &str = "[robot]\nurdf = \"arm.urdf\"\nbase = [0, 0, 0.5, 0, 0, 0]\nlimits = { elbow = [-1, 1.5] }\n\n\
                     [motion]\nstart = [0, 0.5]\ngoals = [[1, 0], [0.0, -1]]\n\n\
@@ -59,10 +60,8 @@ fn faults_have_their_place() {
         assert!(GOOD.contains(from), "{from}");
         let (_dir, path) = folder(&GOOD.replacen(from, to, 1));
         let error = RobotProblem::load(&path).unwrap_err();
-        let shown = error.to_string();
-        let placed = error.line() == Some(line) && shown.contains(words);
-        if !placed || error.remedy().is_none() || shown.contains('\n') {
-            wrong.push(format!("{to}: {shown}"));
+        if !is_clear(&error, line, words) {
+            wrong.push(format!("{to}: {error}"));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

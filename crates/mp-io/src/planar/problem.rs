@@ -1,12 +1,26 @@
 //! Worlds in the plane and the files they name.
 
-use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, RosMap};
+use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, RosMap};
 use crate::error::Error;
 use crate::problem::MAX_COORDINATE;
-use crate::source::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES};
+use crate::source::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 use std::path::Path;
+
+/// A world in the plane, all files read.
+#[derive(Clone, Debug)]
+pub struct PlanarProblem {
+    /// The name of the file, without extension.
+    pub name: String,
+    /// What the file says.
+    pub file: PlanarFile,
+    /// The obstacles: those of the file, then that of the image or map.
+    pub obstacles: Vec<PlanarObstacle>,
+    /// Lower and upper corner of where the origin of the robot may be: as the file says, else within the walls,
+    /// else on the image.
+    pub bounds: [[f64; 2]; 2],
+}
 
 impl PlanarProblem {
     /// Whether a file is a world in the plane: its name ends in `.toml`, and it has a table `world`.
@@ -51,9 +65,8 @@ impl PlanarProblem {
             let (polygon, corners) =
                 read_map(files, map, file.unknown_is_free, folder).map_err(|e| match e {
                     Fault::File(e) => {
-                        let help = e.remedy().unwrap_or("check the name of the file").to_owned();
-                        file.fault(PlanarPart::Map, &format!("this file is not usable: {e}"), &help)
-                            .with_kind(e.kind())
+                        let message = format!("this file is not usable: {e}");
+                        file.fault(PlanarPart::Map, &message, e.remedy_of_named_file()).with_kind(e.kind())
                     }
                     Fault::Size(message) => {
                         file.fault(PlanarPart::Map, &message, "coordinates are metres: check the scale")
@@ -70,8 +83,7 @@ impl PlanarProblem {
                 "say `walls = [[x, y], [x, y]]`, or `bounds`",
             ));
         };
-        let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        Ok(Self { name, file, obstacles, bounds })
+        Ok(Self { name: stem(path), file, obstacles, bounds })
     }
 }
 

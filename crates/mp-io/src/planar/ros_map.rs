@@ -1,14 +1,11 @@
 //! Maps of ROS's map_server.
 
-use super::GridMap;
+use super::{GUIDE, GridMap};
 use crate::error::{Error, ErrorKind};
 use crate::problem::MAX_COORDINATE;
 use crate::source::decode;
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
-
-/// The page that describes the format.
-const GUIDE: &str = "the format is described in docs/formats/planar-world.md";
 
 /// What the YAML file of a map says.
 #[derive(Clone, Debug, PartialEq)]
