@@ -1,6 +1,6 @@
 //! Entry points for fuzzing: one function for each format, to be called with any bytes at all.
 //!
-//! Each reads the bytes, and when they are good checks that writing and reading again gives the same. None
+//! Each reads the bytes and, when they are valid, checks that writing and reading again gives the same. None
 //! may panic, whatever the bytes. The test `fuzz` of this crate calls them with mutated files, as many as
 //! `MP_FUZZ_ITERATIONS` says; `docs/fuzzing.md` tells how to call them from a coverage-guided fuzzer.
 
@@ -11,7 +11,7 @@ use crate::{
 use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
 
-/// Reads bytes that may be anything; tells whether they were good.
+/// Reads any bytes; returns whether they were valid.
 pub type Target = fn(&[u8]) -> bool;
 
 /// The formats: a name, and the function to call.
@@ -129,13 +129,13 @@ pub fn ros_map(bytes: &[u8]) -> bool {
     good(RosMap::parse("f.yaml", bytes)).is_some()
 }
 
-/// Images, and what is dark in them.
+/// Images, and the outline of their dark pixels.
 pub fn map_image(bytes: &[u8]) -> bool {
     let Some(grid) = good(GridMap::parse("f.png", bytes)) else { return false };
     grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0).is_ok()
 }
 
-/// What was read. An error must be fit to be shown: one line, a place inside the file, a remedy.
+/// The value that was read. Checks of an error that it can be shown: one line, a place inside the file, a remedy.
 fn good<T>(read: Result<T, Error>) -> Option<T> {
     let error = match read {
         Ok(value) => return Some(value),

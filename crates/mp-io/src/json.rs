@@ -1,10 +1,10 @@
-//! Paths and results of planning as JSON.
+//! Paths in JSON, alone or in a result of planning.
 
 use crate::error::{Error, ErrorKind};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// What is read of a result: its path. All other members may be there and are skipped.
+/// The part of a result that is read: its path. All other members are skipped.
 #[derive(Deserialize)]
 struct HasPath<R> {
     path: Option<Vec<R>>,
@@ -48,7 +48,7 @@ pub(crate) fn rows_text<R: Serialize>(path: &[R]) -> String {
     one_line.replace("[[", "[\n[").replace("],[", "],\n[").replace("]]", "]\n]") + "\n"
 }
 
-/// The byte before which serde_json found fault; its lines count from 1, its columns are bytes read.
+/// The byte at which serde_json found the error; its lines count from 1, its columns are the bytes read.
 fn offset(text: &str, line: usize, column: usize) -> usize {
     let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     (start + column.saturating_sub(1)).min(text.len())

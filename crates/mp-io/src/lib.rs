@@ -5,9 +5,9 @@
 //! - [`PlanarProblem::load`] reads a world in the plane.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
-//! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: mesh formats.
+//! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: single mesh formats.
 //!
-//! Every reader takes a path, or bytes with the name errors should give. Errors ([`Error`]) say file, line,
+//! Every reader takes a path, or bytes and the name that errors call them. Errors ([`Error`]) say file, line,
 //! column, what was expected and what to do; no input makes a reader panic, hang or use memory out of
 //! proportion to its size. Every writer writes to a temporary file and renames it. Lengths are metres and
 //! angles radians. The formats are documented in `docs/formats/`.

@@ -8,7 +8,7 @@ pub use write::{off_text, write_off};
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 
-/// A colour as an OFF file writes it.
+/// A colour, in the form in which an OFF file has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OffColor {
     /// Index into a colour map.
@@ -47,7 +47,7 @@ pub struct OffFace {
     pub color: Option<OffColor>,
 }
 
-/// What an OFF file says, nothing added and nothing left out.
+/// The whole content of an OFF file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OffDocument {
     /// The comments, without the `#`, in the order of the file.

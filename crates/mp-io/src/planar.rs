@@ -38,13 +38,13 @@ pub enum PlanarShape {
 /// An obstacle of a [`PlanarFile`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanarObstacle {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Its shape in the world, metres.
     pub polygon: Polygon,
 }
 
-/// The image of a world, as the file says it.
+/// The image or map of a world, as the file names it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlanarMap {
     /// An image with its scale.
@@ -55,23 +55,23 @@ pub enum PlanarMap {
         scale: f64,
         /// The lower left corner, metres.
         origin: [f64; 2],
-        /// What is darker, of 0 (black) to 1 (white), is obstacle.
+        /// Pixels darker than this are obstacles; 0 is black, 1 white.
         threshold: f64,
     },
-    /// The name of a map as ROS's map_server has them.
+    /// The name of a map file of ROS's map_server.
     Ros(String),
 }
 
-/// What a file of a world in the plane says, other files not yet read.
+/// The content of a file of a world in the plane; the files that it names are not yet read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanarFile {
     /// Lower and upper corner of walls around everything.
     pub walls: Option<[[f64; 2]; 2]>,
-    /// Lower and upper corner of where the origin of the robot may be.
+    /// Lower and upper corner of the region in which the origin of the robot may be.
     pub bounds: Option<[[f64; 2]; 2]>,
     /// An image whose dark pixels are obstacles.
     pub map: Option<PlanarMap>,
-    /// Whether what a ROS map does not know is free.
+    /// Whether the unknown pixels of a ROS map are free.
     pub unknown_is_free: bool,
     /// The polygons.
     pub obstacles: Vec<PlanarObstacle>,
@@ -154,7 +154,7 @@ impl PlanarFile {
     /// Reads `bytes`, the content of a world in the plane that errors call `file`. No other file is read.
     ///
     /// # Errors
-    /// [`Error`] when it is none, with the line and column.
+    /// [`Error`] when it is not a world in the plane, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
         let source = TomlText { file, text, guide: GUIDE };
@@ -202,7 +202,7 @@ impl PlanarFile {
         })
     }
 
-    /// An error about a part of the file, for faults that show only when the world is made.
+    /// An error about a part of the file, for faults that are found only when the world is made.
     #[must_use]
     pub fn fault(&self, part: PlanarPart, message: &str, help: &str) -> Error {
         let span = match part {
@@ -230,7 +230,7 @@ fn corners(
     Err(source.error(&span, message).expected("the lower left corner, then the upper right"))
 }
 
-/// The image or map, and that nothing is said of another kind.
+/// The image or map. Refuses settings of an image where there is none.
 fn map_of(
     source: &TomlText<'_>,
     world: WorldTable,
@@ -248,7 +248,7 @@ fn map_of(
             Err(source.error(&map.span(), message).expected("`image` or `map`, not both"))
         }
         (None, _, Some((name, span))) => {
-            let message = format!("`{name}` is of an image, and there is none");
+            let message = format!("`{name}` belongs to an image, and there is none");
             Err(source.error(&span, message).expected("`image = \"FILE\"` beside it"))
         }
         (None, map, None) => Ok(map.map(|name| PlanarMap::Ros(name.into_inner()))),
@@ -285,6 +285,7 @@ fn map_of(
     }
 }
 
+/// The shape of the robot.
 fn body(source: &TomlText<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape, Error> {
     let span = robot.span();
     match robot.into_inner() {
@@ -296,12 +297,13 @@ fn body(source: &TomlText<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape
             Ok(PlanarShape::Polygon(polygon(source, "the robot", vec![ring])?))
         }
         _ => {
-            let message = "the robot is not one of a disc and a polygon";
+            let message = "the robot is not exactly one of a disc and a polygon";
             Err(source.error(&span, message).expected("`disc = RADIUS` or `polygon = [[x, y], ...]`"))
         }
     }
 }
 
+/// The polygon of these rings; errors call it `what`.
 fn polygon(source: &TomlText<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) -> Result<Polygon, Error> {
     let mut points = Vec::new();
     let mut whole = 0..0;
@@ -320,6 +322,7 @@ fn polygon(source: &TomlText<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>
     Polygon::new(points).map_err(|e| source.error(&whole, format!("{what}: {e}")).expected("a polygon"))
 }
 
+/// The obstacle of a table.
 fn entry(
     source: &TomlText<'_>,
     index: usize,
@@ -350,14 +353,14 @@ fn entry(
             made(&circle.span(), Polygon::around_circle([x, y], radius, CORNERS))?
         }
         _ => {
-            let message = format!("{shown} has not one shape");
+            let message = format!("{shown} needs exactly one shape");
             return Err(source.error(&span, message).expected("one of `polygon`, `rectangle`, `circle`"));
         }
     };
     match table.holes.first() {
         None => Ok(PlanarObstacle { name, polygon }),
         Some(hole) => {
-            let message = format!("{shown} has holes, but is no polygon");
+            let message = format!("{shown} has holes, but is not a polygon");
             Err(source.error(&hole.span(), message).expected("`holes` beside `polygon` only"))
         }
     }

@@ -1,4 +1,4 @@
-//! A problem to plan on, whatever file it came from.
+//! Problems for rigid bodies, read from any of their formats.
 
 use crate::error::{Error, ErrorKind};
 use crate::gempa::environment::{self, Environment};
@@ -14,13 +14,13 @@ use std::path::{Path, PathBuf};
 /// The largest coordinate of a problem, metres: beyond it single precision and volumes lose their meaning.
 pub const MAX_COORDINATE: f64 = 1e9;
 
-/// In which space the robot moves.
+/// The space in which the robot moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SpaceKind {
-    /// SE(3): anywhere, turned anyhow.
+    /// SE(3): any position and any rotation.
     #[default]
     Se3,
-    /// SE(2): in the plane z = 0, turned about Z.
+    /// SE(2): a position in the plane z = 0 and a rotation about Z.
     Se2,
 }
 
@@ -44,7 +44,7 @@ pub struct Body {
     pub mesh: TriMesh,
 }
 
-/// A body that stands in the world.
+/// A body at a pose in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedBody {
     /// What messages call it.
@@ -62,7 +62,7 @@ pub struct PlacedBody {
 pub struct RigidProblem {
     /// The name of the file, without extension.
     pub name: String,
-    /// Where the robot moves.
+    /// The space in which the robot moves.
     pub space: SpaceKind,
     /// The robot.
     pub robot: Body,
@@ -72,7 +72,7 @@ pub struct RigidProblem {
     pub start: Isometry3<f64>,
     /// The robot's pose in the world at the goal.
     pub goal: Isometry3<f64>,
-    /// Where the origin of the robot may be, if the file says so. Contains start and goal.
+    /// The box in which the origin of the robot may be, if the file gives one. Contains start and goal.
     pub bounds: Option<Aabb>,
 }
 
@@ -108,7 +108,7 @@ impl RigidProblem {
         Self::load_from(&Disk, path.as_ref())
     }
 
-    /// The same of files from elsewhere.
+    /// As [`load`](Self::load), with the files read through `files`.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -130,7 +130,7 @@ impl RigidProblem {
         }
     }
 
-    /// Where the origin of the robot may be: [`bounds`](Self::bounds), or, when the file says nothing, a box
+    /// The box in which the origin of the robot may be: [`bounds`](Self::bounds), or, when the file gives none, a box
     /// around all obstacles, start and goal, enlarged on every side by the diameter of the robot about its
     /// origin or a tenth of the diagonal of the box, whichever is more, so that it can go around everything.
     #[must_use]
@@ -175,7 +175,7 @@ impl RigidProblem {
         for (i, o) in env.obstacles.iter().enumerate() {
             let name = format!("Obstacle #{}", o.number);
             check_size(text, places.poses[i], "the pose", &o.pose[..3])?;
-            // The same mesh often stands in many places: read it once.
+            // Many obstacles often share a mesh: read it once.
             let seen = (0..i).find(|&k| env.obstacles[k].mesh == o.mesh);
             let (file, mesh) = match seen {
                 Some(k) => (obstacles[k].file.clone(), obstacles[k].mesh.clone()),
@@ -202,7 +202,7 @@ fn body_mesh(
     Ok((file, mesh))
 }
 
-/// What `read` makes of the file named at `place`; errors tell where it is named.
+/// The file named at `place` and what `read` makes of it; errors say where it is named.
 pub(crate) fn cited<T>(
     text: &Text<'_>,
     folder: &Path,
@@ -213,7 +213,7 @@ pub(crate) fn cited<T>(
     let file = folder.join(place.text);
     match read(&file) {
         Ok(mesh) => Ok((file, mesh)),
-        // What cannot be opened is the fault of this line; what is in the mesh file, of that file.
+        // A file that cannot be opened is an error of this line; bad content is an error of that file.
         Err(e) if e.kind() == ErrorKind::Io => {
             let message = format!("the mesh of {what} is not readable: {}: {}", e.file(), e.message());
             Err(text.error(place, message).help(e.remedy_of_named_file()).with_kind(ErrorKind::Io))
@@ -222,7 +222,7 @@ pub(crate) fn cited<T>(
     }
 }
 
-/// Refuses coordinates too large to compute with.
+/// Refuses a mesh with coordinates too large to compute with.
 pub(crate) fn check_mesh(
     text: &Text<'_>,
     place: Token<'_>,

@@ -18,7 +18,7 @@ use toml::Spanned;
 /// The page that describes the format.
 const GUIDE: &str = "the format is described in docs/formats/robot-problem.md";
 
-/// The shape of an obstacle, as the file says it: metres, about its own origin.
+/// The shape of an obstacle, as the file gives it: metres, centred on its own origin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleShape {
     /// The name of a mesh file.
@@ -34,7 +34,7 @@ pub enum ObstacleShape {
 /// An obstacle of a [`RobotFile`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleEntry {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Its shape.
     pub shape: ObstacleShape,
@@ -44,7 +44,7 @@ pub struct ObstacleEntry {
     span: Range<usize>,
 }
 
-/// What a robot problem file says, other files not yet read.
+/// The content of a robot problem file; the files that it names are not yet read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
     /// The name of the URDF file.
@@ -55,7 +55,7 @@ pub struct RobotFile {
     pub packages: Option<String>,
     /// The pose of the root link, six numbers.
     pub base: [f64; 6],
-    /// Limits in place of those of the URDF, by joint.
+    /// Limits that replace those of the URDF, by joint.
     pub limits: Vec<(String, [f64; 2])>,
     /// The joint values at the start.
     pub start: Vec<f64>,
@@ -170,7 +170,7 @@ impl RobotFile {
         })
     }
 
-    /// An error about a part of the file, for faults that show only when the robot is made.
+    /// An error about a part of the file, for faults that are found only when the robot is made.
     #[must_use]
     pub fn fault(&self, part: RobotPart, message: &str, help: &str) -> Error {
         let span = match part {
@@ -188,6 +188,7 @@ impl RobotFile {
     }
 }
 
+/// The obstacle of a table.
 fn entry(source: &TomlText<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<ObstacleEntry, Error> {
     let span = table.span();
     let table = table.into_inner();

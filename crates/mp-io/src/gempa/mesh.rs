@@ -1,6 +1,6 @@
 //! GEMPA `.txt` meshes: a triangle soup in text.
 //!
-//! The papers name the format and print none of it; `docs/formats/gempa-mesh.md` defines it here: the
+//! The papers name the format but do not show it; `docs/formats/gempa-mesh.md` defines it here: the
 //! number of triangles, then nine numbers for each, the corners x y z one after the other.
 
 use crate::error::Error;

@@ -12,14 +12,14 @@ use std::path::{Path, PathBuf};
 /// What an export needs beside the problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmplExport {
-    /// How near the goal is near enough, in the distance of the space.
+    /// A state within this distance of the goal counts as the goal, in the metric of the space.
     pub goal_threshold: f64,
     /// The resolution of motion checks, as a fraction of the extent of the space.
     pub resolution_fraction: f64,
 }
 
 impl Default for OmplExport {
-    /// What OMPL.app does when nothing is said: 1e-6, and 1% of the extent.
+    /// The defaults of OMPL.app: 1e-6, and 1% of the extent.
     fn default() -> Self {
         Self { goal_threshold: 1e-6, resolution_fraction: 0.01 }
     }
@@ -67,7 +67,7 @@ struct JsonMesh {
 }
 
 /// Writes `problem` into `folder`: `NAME.json`, `NAME_robot.off` and `NAME_env.off` (all obstacles, placed in
-/// the world), NAME being `name`. Gives the path of the JSON file.
+/// the world), where NAME is `name`. Returns the path of the JSON file.
 ///
 /// # Errors
 /// [`Error`] when a file cannot be written, or there is no obstacle.
@@ -89,7 +89,7 @@ pub fn export_ompl(
     let placed: Vec<_> = problem.obstacles.iter().map(|o| o.mesh.transformed(&o.pose)).collect();
     let env = TriMesh::merged(&placed).ok_or_else(|| {
         Error::new(ErrorKind::Content, json.display(), "a problem without obstacles cannot be exported")
-            .help("add an obstacle out of the way")
+            .help("add an obstacle far from the path")
     })?;
     let dimensions = if problem.space == SpaceKind::Se2 { 2 } else { 3 };
     let state = |pose: &Isometry3<f64>| {

@@ -17,7 +17,7 @@ pub struct PlanarProblem {
     pub file: PlanarFile,
     /// The obstacles: those of the file, then that of the image or map.
     pub obstacles: Vec<PlanarObstacle>,
-    /// Lower and upper corner of where the origin of the robot may be: as the file says, else within the walls,
+    /// Lower and upper corner of the region of the robot's origin: as the file says, else within the walls,
     /// else on the image.
     pub bounds: [[f64; 2]; 2],
 }
@@ -25,13 +25,13 @@ pub struct PlanarProblem {
 impl PlanarProblem {
     /// Whether a file is a world in the plane: its name ends in `.toml`, and it has a table `world`.
     #[must_use]
-    pub fn is_one(path: &Path) -> bool {
-        Self::is_one_of(&Disk, path)
+    pub fn is_planar_world(path: &Path) -> bool {
+        Self::is_planar_world_in(&Disk, path)
     }
 
-    /// The same of files from elsewhere.
+    /// As [`is_planar_world`](Self::is_planar_world), with the file read through `files`.
     #[must_use]
-    pub fn is_one_of(files: &dyn Files, path: &Path) -> bool {
+    pub fn is_planar_world_in(files: &dyn Files, path: &Path) -> bool {
         let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let begins = |line: &str| {
             let line = line.trim_start();
@@ -52,7 +52,7 @@ impl PlanarProblem {
         Self::load_from(&Disk, path.as_ref())
     }
 
-    /// The same of files from elsewhere.
+    /// As [`load`](Self::load), with the files read through `files`.
     ///
     /// # Errors
     /// As [`load`](Self::load).

@@ -9,10 +9,10 @@ use mp_geom::{TriMesh, pose_from_six, primitives};
 use nalgebra::Isometry3;
 use std::path::{Path, PathBuf};
 
-/// Segments of a cylinder; the mesh contains it.
+/// Segments of the mesh around a cylinder; the mesh contains the cylinder.
 const SEGMENTS: u32 = 32;
 
-/// An arm, obstacles, a start and goals, with all files read but the meshes of the robot.
+/// An arm, obstacles, a start and goals; all files are read except the meshes of the robot.
 #[derive(Clone, Debug)]
 pub struct RobotProblem {
     /// The name of the file, without extension.
@@ -21,13 +21,13 @@ pub struct RobotProblem {
     pub file: RobotFile,
     /// Where the URDF is.
     pub urdf_file: PathBuf,
-    /// What is in it.
+    /// The content of the URDF.
     pub urdf: String,
-    /// What is in the SRDF.
+    /// The content of the SRDF.
     pub srdf: Option<String>,
     /// The folder that `package://` means.
     pub packages: Option<PathBuf>,
-    /// The obstacles. Round ones are meshes that contain them.
+    /// The obstacles. Spheres and cylinders are meshes that contain them.
     pub obstacles: Vec<PlacedBody>,
 }
 
@@ -44,8 +44,8 @@ impl RobotProblem {
         path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
     }
 
-    /// Reads a robot problem, its URDF and SRDF and the meshes of obstacles. File names are relative to the file
-    /// that has them.
+    /// Reads a robot problem, its URDF and SRDF and the meshes of obstacles. File names are relative to the problem
+    /// file.
     ///
     /// # Errors
     /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
@@ -53,7 +53,7 @@ impl RobotProblem {
         Self::load_from(&Disk, path.as_ref())
     }
 
-    /// The same of files from elsewhere. Meshes of the robot itself are read from the disk.
+    /// As [`load`](Self::load), with the files read through `files`. Meshes of the robot itself are read from the disk.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -89,7 +89,7 @@ impl RobotProblem {
                 }
                 ObstacleShape::Mesh(name) => {
                     let place = folder.join(name);
-                    // The same mesh often stands in many places: read it once.
+                    // Many obstacles often share a mesh: read it once.
                     match obstacles.iter().find(|o| o.file == place) {
                         Some(seen) => (place, seen.mesh.clone()),
                         None => {

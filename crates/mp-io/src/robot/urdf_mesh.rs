@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 impl RobotProblem {
     /// Reads a mesh that the URDF names: a file relative to the URDF, `file://` and an absolute name, or
-    /// `package://PACKAGE/NAME`. That is looked for in the folder of packages the problem gives, or else in the
+    /// `package://PACKAGE/NAME`. A package is searched in the folder of packages that the problem gives, or else in the
     /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
-    /// PACKAGE. `package:///NAME` names no package: it is looked for as `NAME` in the same folders.
+    /// PACKAGE. `package:///NAME` names no package: `NAME` is searched in the same folders.
     ///
     /// # Errors
-    /// A message for people: which file, sought where.
+    /// A message that says which file was searched, and where.
     pub fn mesh(&self, name: &str) -> Result<TriMesh, String> {
         let place = self.place_of(name)?;
         let mesh = read_mesh(&place).map_err(|e| match e.remedy() {
@@ -26,7 +26,7 @@ impl RobotProblem {
         }
     }
 
-    /// Where a mesh is that the URDF names, as [`mesh`](Self::mesh) finds it; `None` when it is not there.
+    /// The file of a mesh that the URDF names, as [`mesh`](Self::mesh) finds it; `None` when it is not there.
     #[must_use]
     pub fn mesh_file(&self, name: &str) -> Option<PathBuf> {
         self.place_of(name).ok()
@@ -38,13 +38,13 @@ impl RobotProblem {
             return Ok(folder.join(name.strip_prefix("file://").unwrap_or(name)));
         };
         let (package, rest) = inside.split_once('/').unwrap_or((inside, ""));
-        // Further slashes would make it a name from the root of the disk.
+        // With further slashes it would be an absolute name.
         let rest = rest.trim_start_matches('/');
         if rest.is_empty() {
             return Err(format!("{name} names no file: write package://PACKAGE/FILE"));
         }
         let start = self.packages.as_deref().unwrap_or(folder);
-        // The folder of a bare file name.
+        // A bare file name has the empty folder, which is the current one.
         let start = if start.as_os_str().is_empty() { Path::new(".") } else { start };
         let absolute = std::fs::canonicalize(start).map_err(|e| {
             let whose = if self.packages.is_some() { "`packages` of the problem" } else { "of the URDF" };
