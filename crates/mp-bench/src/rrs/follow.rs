@@ -10,7 +10,7 @@ use mp_cspace::shorten::{Effort, simplify};
 use mp_cspace::{Cancel, Path, Rn, Rng, least_clearance};
 use mp_geom::planar::PlanarWorld;
 use mp_robot::DiscRobot;
-use mp_scenes::source::courses::Course;
+use mp_scenes::source::disc_scenes::DiscScene;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 use std::f64::consts::{PI, TAU};
@@ -211,10 +211,10 @@ pub(super) fn follow(
 pub(super) const KINDS: [&str; 3] = ["rrt", "rrt smoothed", "rrs"];
 
 /// Plans a path of a kind and follows it; `None` where there is none.
-pub(super) fn planned_and_followed(course: &Course, kind: &str, trial: u64) -> Result<Option<Followed>> {
-    let place = Place::new(course.clone())?;
+pub(super) fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) -> Result<Option<Followed>> {
+    let place = Place::new(scene.clone())?;
     let robot = &place.robot;
-    let space = Rn::<2>::new([0.0; 2], course.size).into_error()?;
+    let space = Rn::<2>::new([0.0; 2], scene.size).into_error()?;
     let planner = if kind == "rrs" { "rrs-upto" } else { "rrt-upto" };
     let case = Case { world: "follow".into(), planner: planner.into(), step: 50, trial };
     let Some((_, Some(mut path))) = planned(&place, &case, &Cancel::new())? else { return Ok(None) };
@@ -228,7 +228,7 @@ pub(super) fn planned_and_followed(course: &Course, kind: &str, trial: u64) -> R
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mp_scenes::source::courses::RADIUS;
+    use mp_scenes::source::disc_scenes::RADIUS;
 
     #[test]
     fn beams_end_at_walls() {
@@ -242,9 +242,9 @@ mod tests {
     #[test]
     fn paths_are_followed() {
         let bar = vec![[1.0, 0.9], [4.0, 0.9], [4.0, 1.1], [1.0, 1.1]];
-        let course = Course { size: [5.0, 2.0], obstacles: vec![bar], start: [0.5, 0.5], goal: [4.5, 0.5] };
-        let robot = course.robot().unwrap();
-        let space = Rn::<2>::new([0.0; 2], course.size).unwrap();
+        let scene = DiscScene { size: [5.0, 2.0], obstacles: vec![bar], start: [0.5, 0.5], goal: [4.5, 0.5] };
+        let robot = scene.robot().unwrap();
+        let space = Rn::<2>::new([0.0; 2], scene.size).unwrap();
         let at = |y: f64| {
             Path::straight(
                 [(0.5, 0.5), (1.0, y), (4.0, y), (4.5, 0.5)].map(|(x, y)| Vector2::new(x, y)).to_vec(),

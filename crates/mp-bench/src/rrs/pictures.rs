@@ -6,7 +6,7 @@ use crate::experiment::Lab;
 use crate::plot::save_drawing;
 use mp_cspace::{Iterations, Outcome, Planner, Rn, Rng};
 use mp_render::{Drawing, Item};
-use mp_scenes::source::courses::course;
+use mp_scenes::source::disc_scenes::disc_scene;
 use nalgebra::{Point2, Vector2};
 
 const WORLD: &str = "high";
@@ -22,7 +22,7 @@ const HOT: [f64; 3] = [178.0, 24.0, 43.0];
 
 /// Draws both. True.
 pub(super) fn run(lab: &Lab) -> Result<bool> {
-    let place = Place::new(course(WORLD, 0).into_error()?)?;
+    let place = Place::new(disc_scene(WORLD, 0).into_error()?)?;
     for (name, drawing) in [("field", field(&place)), ("tree", tree(&place)?)] {
         save_drawing(&lab.file(&format!("rrs-{WORLD}-{name}")), &drawing, SIZE)?;
     }
@@ -30,7 +30,7 @@ pub(super) fn run(lab: &Lab) -> Result<bool> {
 }
 
 fn world(place: &Place, title: &str, subtitle: String) -> Drawing {
-    Drawing::of_world(place.robot.world(), [[0.0; 2], place.course.size].map(Point2::from), title, subtitle)
+    Drawing::of_world(place.robot.world(), [[0.0; 2], place.scene.size].map(Point2::from), title, subtitle)
 }
 
 /// The energy of repulsion `½·(1 − c/range)²` under the obstacles, in shades: one item for each, of runs of cells.
@@ -78,7 +78,7 @@ fn field(place: &Place) -> Drawing {
 
 /// The tree when the path was found: straight edges, bent ones, and the path.
 fn tree(place: &Place) -> Result<Drawing> {
-    let space = Rn::<2>::new([0.0; 2], place.course.size).into_error()?;
+    let space = Rn::<2>::new([0.0; 2], place.scene.size).into_error()?;
     let mut planner = rrs(place, &space, STEP, false).into_error()?;
     let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(ITERATIONS), &mut ());
     let tree = planner.tree();

@@ -4,7 +4,7 @@ use super::solve::{Case, Place, Run, one};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
 use crate::options::Common;
-use mp_scenes::source::courses::course;
+use mp_scenes::source::disc_scenes::disc_scene;
 
 /// The worlds, by name.
 pub(super) const WORLDS: [&str; 4] = ["maze", "low", "high", "random"];
@@ -51,7 +51,7 @@ pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Resul
         &plan.cases(),
         // A world is made once for all that is tried in it.
         |a, b| (&a.world, a.trial) == (&b.world, b.trial),
-        |case| Place::new(course(&case.world, case.trial).into_error()?),
+        |case| Place::new(disc_scene(&case.world, case.trial).into_error()?),
         |place, case| one(place, case, &lab.cancel),
     )
 }

@@ -8,7 +8,7 @@ use mp_cspace::{
 };
 use mp_plan::Error;
 use mp_robot::{DiscRobot, DiscVerifier};
-use mp_scenes::source::courses::Course;
+use mp_scenes::source::disc_scenes::DiscScene;
 use mp_snake::{Grid, SnakePlanner};
 use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
 use nalgebra::Vector2;
@@ -94,21 +94,21 @@ impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
     }
 }
 
-/// A course with what is made of it once for all that is tried in it.
+/// A scene with what is made of it once for all that is tried in it.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
-    pub(super) course: Course,
+    pub(super) scene: DiscScene,
     pub(super) robot: DiscRobot,
     /// The signed clearance of the robot; snakes are guided by it, and by nothing else.
     pub(super) map: Arc<Grid>,
 }
 
 impl Place {
-    pub(super) fn new(course: Course) -> Result<Self> {
-        let robot = course.robot().into_error()?;
-        let cells = course.size.map(|s| (s / CELL).round() as usize);
+    pub(super) fn new(scene: DiscScene) -> Result<Self> {
+        let robot = scene.robot().into_error()?;
+        let cells = scene.size.map(|s| (s / CELL).round() as usize);
         let map = Grid::from_fn([0.0; 2], CELL, cells.into(), |p| robot.signed_clearance(&p));
-        Ok(Self { course, robot, map: Arc::new(map.into_error()?) })
+        Ok(Self { scene, robot, map: Arc::new(map.into_error()?) })
     }
 }
 
@@ -122,11 +122,11 @@ type Planned = (Run, Option<Path<Point>>);
 
 /// As [`one`], with the path.
 pub(super) fn planned(place: &Place, case: &Case, cancel: &Cancel) -> Result<Option<Planned>> {
-    let Place { course, robot, .. } = place;
-    let space = Rn::<2>::new([0.0; 2], course.size).into_error()?;
+    let Place { scene, robot, .. } = place;
+    let space = Rn::<2>::new([0.0; 2], scene.size).into_error()?;
     let step = f64::from(case.step) / 100.0;
     let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
-    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
     let verifier = DiscVerifier::new(robot);
     let how = How { seed: case.trial + 1, cancel, space: &space, robot };
     let exactly = matches!(case.planner.as_str(), "rrt" | "rrs");
@@ -152,8 +152,8 @@ pub(super) fn rrs<'a>(
     step: f64,
     exactly: bool,
 ) -> std::result::Result<Rrs<'a>, BuildError> {
-    let Place { course, robot, map } = place;
-    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let Place { scene, robot, map } = place;
+    let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
     let snakes = SnakePlanner::new(space, robot.clone(), &**map, RANGE);
     let local = snakes.map_err(|e| BuildError::Unmade { reason: e.to_string() })?;
     let local = Steps { space, goal, step, exactly, local };
