@@ -1,8 +1,9 @@
 //! `assets`: writes the shipped scenes and the table of them, bit for bit, or checks them.
 
 use crate::error::{IntoError, Result};
-use crate::output::{note, write};
+use crate::output::note;
 use clap::Args;
+use mp_plan::write_file;
 use mp_scenes::source::{Files, files_rs, generate, stale};
 use std::path::{Path, PathBuf};
 
@@ -32,7 +33,7 @@ pub(crate) fn run(options: &Options) -> Result<bool> {
     for path in &stale {
         match options.check {
             true => note(&format!("{} is missing or differs", folder.join(path).display())),
-            false => write(&folder.join(path), &files[*path])?,
+            false => write_file(&folder.join(path), &files[*path])?,
         }
     }
     let done = if options.check { "differ" } else { "written" };

@@ -1,6 +1,7 @@
 //! Options that several suites have.
 
 use clap::Args;
+use mp_plan::positive_number;
 use std::path::PathBuf;
 
 /// What several suites have.
@@ -17,7 +18,7 @@ pub(crate) struct Common {
     #[arg(long = "scene", value_name = "SCENE")]
     pub(crate) scenes: Vec<String>,
     /// Seconds a run may take.
-    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive_number)]
     pub(crate) time: f64,
     /// Another program to measure beside ours, in turn; how it is called is in docs/benchmarks.md.
     #[arg(long, value_name = "PROGRAM")]
@@ -45,14 +46,5 @@ impl Common {
     /// As many runs of each case as given, else as a short or a full run has.
     pub(crate) fn runs_or(&self, quick: u32, full: u32) -> u32 {
         self.runs.unwrap_or(if self.quick { quick } else { full })
-    }
-}
-
-/// A finite number above zero.
-pub(crate) fn positive(s: &str) -> Result<f64, String> {
-    match s.trim().parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Ok(_) => Err("must be a finite number above zero".into()),
-        Err(_) => Err("not a number".into()),
     }
 }

@@ -1,8 +1,8 @@
 //! Charts of curves, as SVG and as PNG.
 
 use crate::error::{IntoError, Result};
-use crate::output::{note, write};
-use mp_plan::Error;
+use crate::output::note;
+use mp_plan::{Error, write_file};
 use mp_render::{Drawing, Series};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
@@ -206,8 +206,8 @@ where
 
 /// Writes a drawing as SVG and as PNG.
 pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize)) -> Result<()> {
-    write(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
-    write(&stem.with_extension("png"), &drawing.pixels(size).into_error()?.to_png())?;
+    write_file(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
+    write_file(&stem.with_extension("png"), &drawing.pixels(size).into_error()?.to_png())?;
     note(&format!("written: {}.svg and .png", stem.display()));
     Ok(())
 }
@@ -215,7 +215,7 @@ pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize))
 /// Writes curves over a logarithmic axis as PNG.
 pub(crate) fn save_series(file: &Path, title: &str, axes: [&str; 2], series: &[Series]) -> Result<()> {
     let picture = mp_render::plot(title, axes, series, (960, 600)).into_error()?;
-    write(file, &picture.to_png())?;
+    write_file(file, &picture.to_png())?;
     note(&format!("written: {}", file.display()));
     Ok(())
 }

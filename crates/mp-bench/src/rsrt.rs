@@ -14,10 +14,11 @@ mod tables;
 
 use crate::error::Result;
 use crate::experiment::Lab;
-use crate::options::{Common, positive};
+use crate::options::Common;
 use crate::output::note;
 use clap::Args;
 use clutter::LEVELS;
+use mp_plan::positive_number;
 use std::time::Duration;
 
 /// Seconds of processor time that stand for the paper's 60 s of 2008.
@@ -32,7 +33,7 @@ const INSTANCES: u32 = 10;
 #[command(next_help_heading = "Of the suite `rsrt`")]
 pub(crate) struct Options {
     /// Seconds of processor time a run may take, for the paper's 60 s of 2008 [default: 6; 0.25 with --quick].
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = positive_number)]
     cap: Option<f64>,
 }
 

@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, Metric, MotionValidator, PlannerInfo, Request};
+use mp_plan::{Length, Metric, MotionValidator, PlannerInfo, Request, positive_number};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -58,7 +58,7 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Stop after this many seconds.
-    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive_number)]
     pub(crate) time: f64,
     /// Stop after this many iterations.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
@@ -198,15 +198,6 @@ fn metric(name: &str) -> Metric {
 
 fn parsed<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
     text.parse().map_err(|e: mp_plan::Error| e.to_string())
-}
-
-/// A finite number above zero.
-fn positive(s: &str) -> Result<f64, String> {
-    match s.trim().parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Ok(_) => Err("must be a finite number above zero".into()),
-        Err(_) => Err("not a number".into()),
-    }
 }
 
 /// `WxH`, both from 64 to 8192.

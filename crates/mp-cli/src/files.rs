@@ -1,6 +1,7 @@
 //! Where results go.
 
-use crate::output::{self, is_standard};
+use crate::input::is_standard;
+use crate::output;
 use mp_plan::{Error, PathFileKind, Scene, is_same_file};
 use std::path::{Path, PathBuf};
 

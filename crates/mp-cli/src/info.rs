@@ -1,8 +1,7 @@
 //! `info`: what is in a file.
 
-use crate::check::json;
 use crate::cli;
-use crate::output::print;
+use crate::output::{print, print_json};
 use mp_plan::Error;
 use mp_plan::info::Info;
 
@@ -10,7 +9,7 @@ use mp_plan::info::Info;
 pub(crate) fn run(args: &cli::Info) -> Result<bool, Error> {
     let info = Info::read(&args.file)?;
     match args.json {
-        true => print(&json(&info)?)?,
+        true => print_json(&info)?,
         false => print(info.to_string().trim_end())?,
     }
     Ok(true)

@@ -7,6 +7,7 @@ mod check;
 mod cli;
 mod files;
 mod info;
+mod input;
 mod interrupt;
 mod log;
 mod output;

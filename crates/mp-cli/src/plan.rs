@@ -1,15 +1,15 @@
 //! `plan`: scenes and seeds to reports, files and an exit code.
 
-use crate::check::scene;
 use crate::cli::Plan;
 use crate::files::Files;
-use crate::output::{is_standard, note, print, standard_input, write};
+use crate::input::{is_standard, scene, standard_input};
+use crate::interrupt;
+use crate::output::{note, print, print_json, write};
 use crate::progress::Line;
 use crate::text::{caption, summary, table};
-use crate::{check, interrupt};
 use mp_plan::{
     Budget, Cancel, Control, Error, Finish, PICTURE_SIZE, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, in_parallel,
+    Scene, in_parallel, make_folder,
 };
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -173,11 +173,10 @@ fn one(
 /// is all that is there.
 fn show(args: &Plan, reports: Vec<Report>, single: bool) -> Result<(), Error> {
     if args.json {
-        let text = match reports.as_slice() {
-            [only] if single => only.to_json()?,
-            _ => check::json(&Runs::new(reports))?,
+        return match reports.as_slice() {
+            [only] if single => print(&only.to_json()?),
+            _ => print_json(&Runs::new(reports)),
         };
-        return print(&text);
     }
     let taken = args.out.as_deref().is_some_and(is_standard);
     let tell = |text: &str| match taken {
@@ -199,8 +198,7 @@ fn show(args: &Plan, reports: Vec<Report>, single: bool) -> Result<(), Error> {
 
 /// Writes every scene as one JSON and two OFF files.
 fn export(folder: &Path, scenes: &[Scene]) -> Result<(), Error> {
-    std::fs::create_dir_all(folder)
-        .map_err(|e| Error::new(format!("cannot make the folder {}: {e}", folder.display())))?;
+    make_folder(folder)?;
     for scene in scenes {
         note(&format!("exported {}", scene.export(folder)?.display()));
     }

@@ -1,14 +1,14 @@
 //! `render`: a picture of a scene, and of a path through it.
 
-use crate::check::{once, path, scene};
 use crate::cli::Render;
+use crate::input::{path, refuse_two_standard_inputs, scene};
 use crate::output::{note, writable, write};
 use mp_plan::Error;
 
 /// Draws a scene, and a path through it. A path that is not one from start to goal, free all along, is drawn and said to
 /// be none.
 pub(crate) fn run(args: &Render) -> Result<bool, Error> {
-    once(&args.scene, args.path.as_deref())?;
+    refuse_two_standard_inputs(&args.scene, args.path.as_deref())?;
     let scene = scene(&args.scene)?;
     let kind = scene.picture_kind(&args.picture)?;
     writable(&args.picture)?;

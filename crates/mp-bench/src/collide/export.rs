@@ -7,8 +7,8 @@
 
 use super::pairs::Pair;
 use super::poses::Poses;
-use crate::error::{IntoError, Result};
-use crate::output::write;
+use crate::error::Result;
+use mp_plan::{make_folder, write_file};
 use nalgebra::Isometry3;
 use std::fmt::Write;
 use std::path::Path;
@@ -21,12 +21,12 @@ pub(crate) fn export(folder: &Path, pair: &Pair, poses: &Poses) -> Result<()> {
     let (data, answers) = (folder.join("data"), folder.join("out"));
     for (side, mesh) in [("A", &pair.a), ("B", &pair.b)] {
         let text = mp_io::off_text(mesh);
-        write(&data.join(format!("{}.{side}.off", pair.name)), text.as_bytes())?;
+        write_file(&data.join(format!("{}.{side}.off", pair.name)), text.as_bytes())?;
     }
     let lines = text(poses.uniform.iter().chain(&poses.near));
-    write(&data.join(format!("{}.poses.txt", pair.name)), lines.as_bytes())?;
-    write(&data.join(format!("{}.edges.txt", pair.name)), text(&poses.edges).as_bytes())?;
-    std::fs::create_dir_all(&answers).doing(|| format!("cannot make the folder {}", answers.display()))
+    write_file(&data.join(format!("{}.poses.txt", pair.name)), lines.as_bytes())?;
+    write_file(&data.join(format!("{}.edges.txt", pair.name)), text(&poses.edges).as_bytes())?;
+    make_folder(&answers)
 }
 
 /// One pose a line.

@@ -4,9 +4,10 @@ use super::log::{Case, Log, Record};
 use super::table::Table;
 use crate::error::{IntoError, Result};
 use crate::options::Common;
-use crate::output::{note, print, write};
+use crate::output::{note, print};
 use indicatif::{ProgressBar, ProgressStyle};
 use mp_cspace::Cancel;
+use mp_plan::write_file;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -150,7 +151,7 @@ impl Lab {
 
     /// Writes a file of the folder for results.
     pub(crate) fn write(&self, name: &str, text: &str) -> Result<()> {
-        write(&self.file(name), text.as_bytes())
+        write_file(&self.file(name), text.as_bytes())
     }
 
     /// Prints `text`, what was found beside what was expected; writes it with a summary, all runs and charts.

@@ -1,7 +1,7 @@
 //! Finished runs, one line of JSON each: a measurement that was interrupted goes on where it was.
 
 use crate::error::{IntoError, Result};
-use mp_plan::Error;
+use mp_plan::{Error, write_file};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -85,7 +85,7 @@ impl<K: Case, R: Record> Log<K, R> {
                 }
             }
         }
-        crate::output::write(path, kept.as_bytes())?;
+        write_file(path, kept.as_bytes())?;
         let file = File::options().append(true).open(path).doing(failed)?;
         Ok(Self { path: path.to_owned(), cap, runs, file: Mutex::new(file) })
     }
