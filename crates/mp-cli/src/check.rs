@@ -1,4 +1,4 @@
-//! `check`: is a path free, by the checker that shares no code with the planner's?
+//! `check`: verifies a path with the checker that shares no code with that of the planners.
 
 use crate::cli::Check;
 use crate::input::{path, refuse_two_standard_inputs, scene};
@@ -6,7 +6,7 @@ use crate::output::{print, print_json};
 use mp_plan::{Error, Scene, brief};
 use std::path::Path;
 
-/// Verifies a path, or explains a configuration. True when it is free.
+/// Verifies a path, or explains a configuration. True when the path or configuration is free.
 pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     refuse_two_standard_inputs(&args.scene, args.path.as_deref())?;
     let scene = scene(&args.scene)?;
@@ -23,11 +23,12 @@ pub(crate) fn run(args: &Check) -> Result<bool, Error> {
     Ok(verdict.free)
 }
 
-/// How a scene is called in answers.
+/// The name of a scene in answers: its file.
 fn shown(scene: &Scene, given: &Path) -> String {
     scene.file().unwrap_or(given).display().to_string()
 }
 
+/// Says whether a configuration is free, and why not.
 fn explain(scene: &Scene, numbers: &str, as_json: bool) -> Result<bool, Error> {
     let words = numbers.split([' ', ',', '\t']).filter(|word| !word.is_empty());
     let row =

@@ -1,11 +1,11 @@
-//! `info`: what is in a file.
+//! `info`: describes a file.
 
 use crate::cli;
 use crate::output::{print, print_json};
 use mp_plan::Error;
 use mp_plan::info::Info;
 
-/// Says what is in the file. True: bad files are errors.
+/// Describes the file. Always true, as bad files are errors.
 pub(crate) fn run(args: &cli::Info) -> Result<bool, Error> {
     let info = Info::read(&args.file)?;
     match args.json {

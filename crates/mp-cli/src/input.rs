@@ -9,7 +9,7 @@ pub(crate) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// All of standard input, which must be text of at most 64 MiB.
+/// The whole standard input, which must be text of at most 64 MiB.
 pub(crate) fn standard_input() -> Result<String, Error> {
     const LIMIT: u64 = mp_io::MAX_TEXT_BYTES;
     let mut text = String::new();

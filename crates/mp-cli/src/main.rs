@@ -44,7 +44,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The names of the shipped scenes.
+/// Prints the names of the shipped scenes.
 fn scenes() -> Result<bool, Error> {
     output::print(&mp_plan::Scene::shipped().join("\n"))?;
     Ok(true)

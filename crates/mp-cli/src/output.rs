@@ -1,11 +1,11 @@
-//! Standard output, and files that are written whole or not at all.
+//! Standard output, standard error, and output files.
 
 use crate::input::is_standard;
 use mp_plan::{Error, folder_of, write_file};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Prints a line on standard output. A reader that went away is no error.
+/// Prints a line on standard output. A closed pipe is not an error.
 pub(crate) fn print(line: &str) -> Result<(), Error> {
     match writeln!(std::io::stdout().lock(), "{line}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
@@ -25,7 +25,7 @@ pub(crate) fn note(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
-/// Writes `bytes` to `path` whole or not at all; to standard output for `-`. Makes the folder when it is missing.
+/// Writes `bytes` to `path`, whole or not at all, or to standard output for `-`. Makes the folder when it is missing.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if is_standard(path) {
         let written = std::io::stdout().lock().write_all(bytes);
@@ -34,7 +34,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     write_file(path, bytes)
 }
 
-/// Complains early about a path that [`write()`] will not be able to write.
+/// Refuses a path that [`write()`] would not be able to write.
 pub(crate) fn writable(path: &Path) -> Result<(), Error> {
     if path.is_dir() {
         return Err(Error::new(format!("{} is a folder", path.display())).help("name a file"));

@@ -1,4 +1,4 @@
-//! `plan`: scenes and seeds to reports, files and an exit code.
+//! `plan`: plans on scenes with seeds, and writes reports and files.
 
 use crate::cli::Plan;
 use crate::files::Files;
@@ -14,7 +14,7 @@ use mp_plan::{
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// The scene planned on when none is named.
+/// The default scene.
 const SAMPLE: &str = "cubicles";
 
 /// Plans on every scene with every seed. True when all runs are solved.
@@ -72,12 +72,12 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let (missing, solved) = (jobs.len() - reports.len(), reports.iter().all(|r| r.solved));
     show(args, reports, single)?;
     if missing > 0 {
-        note(&format!("interrupted: {missing} of {} runs were not begun", jobs.len()));
+        note(&format!("interrupted: {missing} of {} runs were not started", jobs.len()));
     }
     Ok(missing == 0 && solved)
 }
 
-/// What the command line asks for.
+/// The request that the command line makes.
 fn request(args: &Plan) -> Result<Request, Error> {
     let single = args.scenes.len() <= 1 && args.runs == 1;
     let threads = if single { usize::from(args.threads) } else { 1 };
@@ -87,7 +87,7 @@ fn request(args: &Plan) -> Result<Request, Error> {
             false => String::from_utf8_lossy(&mp_io::read_text(file)?.1).into_owned(),
         };
         let read: Request = serde_json::from_str(&text).map_err(|e| {
-            Error::new(format!("{} is no request: {e}", file.display()))
+            Error::new(format!("{} is not a request: {e}", file.display()))
                 .help("docs/formats/report.md describes requests")
         })?;
         let request = Request { threads, ..read };
@@ -119,12 +119,13 @@ fn request(args: &Plan) -> Result<Request, Error> {
         }
     }
     if request.roadmap.is_some() && !single {
-        return Err(Error::new("--roadmap goes with a single run").help("name one scene, without --runs"));
+        return Err(Error::new("--roadmap needs a single run").help("name one scene, without --runs"));
     }
     request.check()?;
     Ok(request)
 }
 
+/// Refuses bad output files, and two runs with the same file.
 fn check_files(files: &Files, scenes: &[Scene], jobs: &[(usize, u64)]) -> Result<(), Error> {
     let mut taken = HashSet::new();
     for &(i, seed) in jobs {
@@ -169,8 +170,8 @@ fn one(
     Ok(report)
 }
 
-/// Prints what came of it: JSON on standard output, or a summary or table. Where the path goes to standard output, that
-/// is all that is there.
+/// Prints the results: JSON on standard output, or a summary or table, which go to standard error when the path is on
+/// standard output.
 fn show(args: &Plan, reports: Vec<Report>, single: bool) -> Result<(), Error> {
     if args.json {
         return match reports.as_slice() {

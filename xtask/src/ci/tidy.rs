@@ -1,4 +1,4 @@
-//! What the compiler does not check: that the crates depend on each other as `ARCHITECTURE.md` says, that the
+//! Checks beyond those of the compiler: that the crates depend on each other as `ARCHITECTURE.md` says, that the
 //! paths it names exist, that no folders of a crate import each other in a circle, that every file is named after
 //! what it holds, and that every algorithm has an example and a test.
 
@@ -68,7 +68,7 @@ fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// Rows of the code map, `| crate | … | what it depends on |`: crate and dependencies.
+/// The rows of the code map, `| crate | … | dependencies |`: crate and dependencies.
 fn code_map(architecture: &str) -> Vec<(String, BTreeSet<String>)> {
     let words = |cell: &str| -> BTreeSet<String> {
         let separators = |c: char| !(c.is_ascii_alphanumeric() || c == '-');
@@ -102,6 +102,7 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
     out
 }
 
+/// Differences between the dependencies in the code map and those in the manifests.
 fn arrows(root: &Path, architecture: &str) -> Result<Vec<String>> {
     let map = code_map(architecture);
     let mut findings = Vec::new();
