@@ -3,7 +3,7 @@
 use crate::error::{IntoError, Result};
 use std::io::{ErrorKind, Write};
 
-/// Prints a line on standard output. A reader that went away is no error.
+/// Prints a line on standard output. A closed pipe is not an error.
 pub(crate) fn print(line: &str) -> Result<()> {
     match writeln!(std::io::stdout().lock(), "{line}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {

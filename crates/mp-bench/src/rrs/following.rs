@@ -1,4 +1,4 @@
-//! The tables and the picture of §6.
+//! The experiment of §6: trials, tables and pictures.
 
 use super::follow::{Followed, KINDS, planned_and_followed};
 use crate::error::{IntoError, Result};
@@ -9,12 +9,12 @@ use mp_render::{Drawing, Item};
 use mp_scenes::source::disc_scenes::{DiscScene, RADIUS, follow};
 use nalgebra::Point2;
 
-/// Trials, and those of a short run.
+/// The numbers of trials in full and short runs.
 const TRIALS: u32 = 100;
 const QUICK: u32 = 10;
 const COLOURS: [u32; 3] = [0xb0598a, 0x1f77b4, 0x2c8a2c];
 
-/// Plans and follows paths of each kind. True when nobody interrupted it.
+/// Plans and follows paths of each kind. False when it was interrupted.
 pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     let trials = common.runs_or(QUICK, TRIALS);
     let scene = follow();
@@ -60,7 +60,7 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     );
     let name = lab.name("rrs-follow");
     lab.report(&name, &summary, &each)?;
-    // The first trial of which all paths were found.
+    // The first trial in which all paths were found.
     let shown = (0..trials as usize).find(|&t| (0..KINDS.len()).all(|k| of(k)[t].is_some()));
     if let Some(trial) = shown {
         for (k, kind) in KINDS.iter().enumerate() {
@@ -73,7 +73,7 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     Ok(true)
 }
 
-/// The path, dark, and where the robot went, with the robot at places.
+/// A drawing of the path, dark, and of the line the robot drove, with the robot at some of its positions.
 fn picture(scene: &DiscScene, kind: &str, followed: &Followed, colour: u32) -> Result<Drawing> {
     let robot = scene.robot().into_error()?;
     let subtitle = format!(
