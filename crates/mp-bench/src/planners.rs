@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// Open and crowded rooms, traps and narrow passages, in the plane and in space.
 const SCENES: [&str; 6] = ["maze", "planar-bugtrap", "easy", "cubicles", "twisty", "bugtrap"];
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,

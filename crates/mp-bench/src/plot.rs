@@ -190,7 +190,7 @@ where
         let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
         let points: Vec<_> = curve.points.iter().copied().filter(&shown).collect();
         chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
-        // The legend is beside the curves, where it hides none.
+        // The legend is to the right of the curves and hides none.
         let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
         area.draw(&PathElement::new([(x, y), (x + 18, y)], style))?;
         area.draw(&Text::new(curve.name.clone(), (x + 24, y - 6), ("sans-serif", 12)))?;

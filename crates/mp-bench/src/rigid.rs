@@ -6,7 +6,7 @@
 //! included. Our time includes the independent verification of candidate solutions; the other program does not verify.
 //!
 //! The other program is called as
-//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S --range D`, where D is the longest step. It reads what
+//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S --range D`, where D is the longest step. It reads the files that
 //! [`mp_io::export_ompl`] writes, and prints a line of JSON with `solved`, `time` (seconds), `checks` and
 //! `valid_at_20x_finer` (0 when its path collides at twenty times finer steps).
 
@@ -33,7 +33,7 @@ pub(crate) struct Options {
     step: Length,
 }
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
@@ -42,7 +42,7 @@ struct Case {
     seed: u64,
 }
 
-/// What came of it.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Run {
     ours: Planned,

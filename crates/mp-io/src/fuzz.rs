@@ -16,7 +16,7 @@ use std::fmt::Debug;
 pub type Target = fn(&[u8]) -> bool;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 15] = [
+pub const TARGETS: [(&str, Target); 16] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -29,6 +29,7 @@ pub const TARGETS: [(&str, Target); 15] = [
     ("robot-problem", robot_problem),
     ("joint-path", joint_path),
     ("json-joint-path", json_joint_path),
+    ("csv-path", csv_path),
     ("planar-world", planar_world),
     ("ros-map", ros_map),
     ("map-image", map_image),

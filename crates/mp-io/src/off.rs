@@ -41,7 +41,7 @@ impl OffColor {
 /// A face: a polygon, and its colour if it has one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffFace {
-    /// Its corners, as indices of vertices. One or two make a point or a segment, which is no surface.
+    /// Its corners, as indices of vertices. One or two make a point or a segment, which is not a surface.
     pub corners: Vec<u32>,
     /// Its colour.
     pub color: Option<OffColor>,

@@ -202,7 +202,7 @@ fn read<P>(path: &Path, parse_text: Parse<P>, parse_json: Parse<P>) -> Result<P,
 }
 
 /// The `count` configurations in `lines`, one on each, with nothing after them. `numbers` says what is on a line;
-/// `row` reads a line, given what errors call the configuration.
+/// `row` reads a line, given the name of the configuration in errors.
 fn configurations<'a, C>(
     text: &Text<'a>,
     lines: impl Iterator<Item = Token<'a>>,

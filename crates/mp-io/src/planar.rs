@@ -303,7 +303,7 @@ fn body(source: &TomlText<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape
     }
 }
 
-/// The polygon of these rings; errors call it `what`.
+/// The polygon of these rings; `what` is its name in errors.
 fn polygon(source: &TomlText<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) -> Result<Polygon, Error> {
     let mut points = Vec::new();
     let mut whole = 0..0;

@@ -36,7 +36,7 @@ impl fmt::Display for SpaceKind {
 /// A body: its mesh, and where that came from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// The file of its mesh.
     pub file: PathBuf,
@@ -47,7 +47,7 @@ pub struct Body {
 /// A body at a pose in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedBody {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// The file of its mesh.
     pub file: PathBuf,

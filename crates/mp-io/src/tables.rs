@@ -96,7 +96,7 @@ impl MotionPlaces {
 }
 
 impl MotionTable {
-    /// The start and the goals, each passed by `check`, which takes what errors call it.
+    /// The start and the goals, each checked by `check`, which also takes its name in errors.
     pub(crate) fn read(
         self,
         text: &TomlText<'_>,

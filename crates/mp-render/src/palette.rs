@@ -12,7 +12,7 @@ pub const GOAL: u32 = 0xcf3a3a;
 pub const INK: u32 = 0x2b3440;
 /// Obstacles in the plane.
 pub const OBSTACLE: u32 = 0x8d99a8;
-/// Obstacles in space, in turn.
+/// The colours of successive obstacles in space.
 pub const OBSTACLES: [u32; 6] = [0xb4bdc9, 0xc9bda9, 0xacbfb3, 0xc2b2bd, 0xa9bcc4, 0xcdc7ae];
 /// A path in the plane.
 pub const PATH: u32 = 0xc77d0a;

@@ -18,7 +18,7 @@ const MARGINS: [f64; 4] = [0.04, 0.1, 0.04, 0.09];
 /// The opacity of an obstacle where it hides the path.
 const GHOST: f32 = 0.09;
 
-/// What to draw: obstacles, and a robot on its way among them. z is up.
+/// A scene in space: obstacles, and a robot that moves among them. z is up.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// The title, in large letters.

@@ -79,7 +79,7 @@ fn executable(path: &Path) -> bool {
 /// Runs `program` on `pair` in `folder`.
 ///
 /// # Errors
-/// When it cannot be run, fails, or does not leave the answers it says it has.
+/// When it cannot be run, fails, or some of the answers it announces are missing.
 pub(crate) fn ask(
     program: &Path,
     folder: &Path,

@@ -79,7 +79,7 @@ fn range(world: &PlanarWorld, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
     REACH
 }
 
-/// The particle filter: weighted samples of the pose.
+/// The particle filter: samples of the pose.
 struct ParticleFilter {
     poses: Vec<Pose>,
 }

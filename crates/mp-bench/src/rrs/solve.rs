@@ -94,7 +94,7 @@ impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
     }
 }
 
-/// A scene with what is made of it once for all that is tried in it.
+/// A world prepared for all its cases: the scene, the robot and the map that guides snakes.
 #[derive(Clone, Debug)]
 pub(super) struct PreparedWorld {
     pub(super) scene: DiscScene,

@@ -14,7 +14,7 @@ use mp_tree::{Goals, Problem, Rrt, RrtInputs, Step, Tuning};
 use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-/// How the tree is extended, in units of the side. The paper does not say how its tree is.
+/// How the tree is extended, in units of the side. The paper does not say how its tree is extended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Moves {
     /// Straight toward the sample, at most this far.

@@ -98,7 +98,7 @@ impl<'a> Document<'a> {
     /// The words of the text of `node`, with their places.
     pub(super) fn words(&self, node: Node<'a, 'a>) -> impl Iterator<Item = Token<'a>> + use<'a> {
         let whole = self.text.text;
-        // From the file itself, so that places are right whatever line ends the file has.
+        // From the text of the file, not from the XML tree, so that places are right with all line ends.
         node.children().filter(|c| c.is_text()).flat_map(move |c| {
             let range = c.range();
             Token { text: &whole[range.clone()], at: range.start }.words()

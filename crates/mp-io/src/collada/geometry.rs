@@ -28,7 +28,7 @@ pub(super) struct Geometry {
 pub(super) struct Group {
     /// Which faces of the geometry they are.
     pub(super) faces: std::ops::Range<usize>,
-    /// The data of corners beside positions.
+    /// The data of corners besides positions.
     pub(super) attributes: Vec<Attribute>,
     /// Whether its polygons do without face normals: normals are among the attributes, or filled in.
     pub(super) has_normals: bool,
@@ -88,7 +88,7 @@ impl Geometry {
         let mut geometry = Self::default();
         let mut sources = Sources::new(document);
         for primitive in mesh.children().filter(Node::is_element) {
-            // Sources, vertices and extras are no primitives.
+            // Sources, vertices and extras are not primitives.
             let Some(kind) = PrimitiveKind::of(primitive) else { continue };
             // Writers leave empty groups of lines behind, some without inputs.
             if kind.is_lines() && document.count(primitive, "count")?.unwrap_or(0) == 0 {

@@ -9,7 +9,7 @@ use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
-/// What vertices have beside positions, by the keyword of the file.
+/// What vertices have besides positions, by the keyword of the file.
 #[derive(Clone, Copy, Debug, Default)]
 struct Header {
     texture: bool,

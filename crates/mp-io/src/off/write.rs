@@ -52,7 +52,7 @@ impl OffDocument {
 }
 
 fn write_color(out: &mut String, color: OffColor) {
-    // `{:?}` keeps the point in 1.0, which tells a number between 0 and 1 from one up to 255.
+    // `{:?}` keeps the point in 1.0, which distinguishes numbers from 0 to 1 from those up to 255.
     let _ = match color {
         OffColor::Map(i) => write!(out, " {i}"),
         OffColor::Rgb([r, g, b]) => write!(out, " {r} {g} {b}"),

@@ -9,7 +9,7 @@ use nalgebra::Isometry3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What an export needs beside the problem.
+/// The settings of an export.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmplExport {
     /// A state within this distance of the goal counts as the goal, in the metric of the space.

@@ -13,7 +13,7 @@ use std::path::Path;
 pub struct PlanarProblem {
     /// The name of the file, without extension.
     pub name: String,
-    /// What the file says.
+    /// The content of the file.
     pub file: PlanarFile,
     /// The obstacles: those of the file, then that of the image or map.
     pub obstacles: Vec<PlanarObstacle>,
@@ -87,7 +87,7 @@ impl PlanarProblem {
     }
 }
 
-/// What can be wrong with a map.
+/// The faults of a map.
 enum Fault {
     File(Error),
     Size(String),

@@ -17,7 +17,7 @@ const SEGMENTS: u32 = 32;
 pub struct RobotProblem {
     /// The name of the file, without extension.
     pub name: String,
-    /// What the file says.
+    /// The content of the file.
     pub file: RobotFile,
     /// Where the URDF is.
     pub urdf_file: PathBuf,

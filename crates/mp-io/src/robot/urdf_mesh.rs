@@ -1,4 +1,4 @@
-//! Finding the meshes that a URDF names: files beside it, and files of packages.
+//! Finding the meshes that a URDF names: files relative to it, and files of packages.
 
 use super::RobotProblem;
 use crate::mesh::read_mesh;

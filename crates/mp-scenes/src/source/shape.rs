@@ -55,7 +55,7 @@ pub(super) fn block(low: [f64; 3], high: [f64; 3]) -> TriMesh {
 
 /// The union of the cells of a grid of planes for which `solid(i, j, k)` is true, as one conforming surface.
 ///
-/// Solid cells should not touch along an edge or at a corner only: the surface is no manifold there.
+/// Solid cells should not touch only along an edge or at a corner: the surface is not a manifold there.
 pub(super) fn cells(
     xs: &[f64],
     ys: &[f64],
