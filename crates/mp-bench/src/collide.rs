@@ -8,6 +8,7 @@ mod edges;
 mod export;
 mod growth;
 mod ours;
+mod pair_results;
 mod pairs;
 mod parry;
 mod peers;
@@ -24,13 +25,14 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use edges::Costs;
 use ours::OURS;
+use pair_results::PairResults;
 use pairs::{PAIRS, Pair};
 use parry::Parry;
 use peers::QueryLimits;
 use poses::{Counts, QueryPoses};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tables::{PairResults, is_ours};
+use tables::is_ours;
 
 /// The options of the suite `collide` alone.
 #[derive(Clone, Debug, Default, Args)]

@@ -5,7 +5,8 @@
 
 mod flying;
 mod follow;
-mod following;
+mod follow_suite;
+mod noisy_robot;
 mod pictures;
 mod series;
 mod solve;
@@ -38,7 +39,7 @@ pub(crate) struct Options {
 pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let lab = Lab::new(common)?;
     if options.follow {
-        return following::run(&lab, common);
+        return follow_suite::run(&lab, common);
     }
     if options.flying {
         return flying::run(&lab, common);

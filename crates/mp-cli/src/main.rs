@@ -14,6 +14,7 @@ mod output;
 mod plan;
 mod progress;
 mod render;
+mod request;
 mod text;
 
 use clap::{CommandFactory, Parser};

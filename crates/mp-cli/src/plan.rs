@@ -2,14 +2,15 @@
 
 use crate::cli::Plan;
 use crate::files::Files;
-use crate::input::{is_standard, scene, standard_input};
+use crate::input::{is_standard, scene};
 use crate::interrupt;
 use crate::output::{note, print, print_json, write};
 use crate::progress::Line;
+use crate::request::request;
 use crate::text::{caption, summary, table};
 use mp_plan::{
-    Budget, Cancel, Control, Error, Finish, PICTURE_SIZE, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, in_parallel, make_folder,
+    Cancel, Control, Error, PICTURE_SIZE, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel,
+    make_folder,
 };
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -75,54 +76,6 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         note(&format!("interrupted: {missing} of {} runs were not started", jobs.len()));
     }
     Ok(missing == 0 && solved)
-}
-
-/// The request that the command line makes.
-fn request(args: &Plan) -> Result<Request, Error> {
-    let single = args.scenes.len() <= 1 && args.runs == 1;
-    let threads = if single { usize::from(args.threads) } else { 1 };
-    if let Some(file) = &args.request {
-        let text = match is_standard(file) {
-            true => standard_input()?,
-            false => String::from_utf8_lossy(&mp_io::read_text(file)?.1).into_owned(),
-        };
-        let read: Request = serde_json::from_str(&text).map_err(|e| {
-            Error::new(format!("{} is not a request: {e}", file.display()))
-                .help("docs/formats/report.md describes requests")
-        })?;
-        let request = Request { threads, ..read };
-        request.check()?;
-        return Ok(request);
-    }
-    let mut request = Request {
-        planner: args.planner.clone(),
-        metric: args.metric,
-        motion: args.motion,
-        budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
-        seed: args.seed,
-        threads,
-        finish: match (args.relax, args.no_shorten) {
-            (true, _) => Finish::Relax,
-            (false, true) => Finish::AsFound,
-            (false, false) => Finish::Shorten,
-        },
-        roadmap: args.roadmap.clone(),
-        ..Request::default()
-    };
-    if let Some(step) = args.step {
-        request = request.set("step", step);
-    }
-    for text in &args.set {
-        match text.split_once('=') {
-            Some((key, value)) if !key.trim().is_empty() => request = request.set(key.trim(), value.trim()),
-            _ => return Err(Error::new(format!("cannot read the setting `{text}`")).help("write KEY=VALUE")),
-        }
-    }
-    if request.roadmap.is_some() && !single {
-        return Err(Error::new("--roadmap needs a single run").help("name one scene, without --runs"));
-    }
-    request.check()?;
-    Ok(request)
 }
 
 /// Refuses bad output files, and two runs with the same file.

@@ -47,7 +47,7 @@ pub fn parse_collada(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
 
 impl Scene {
     pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let text = crate::source::decode(file, bytes)?;
+        let text = crate::files::decode(file, bytes)?;
         document::refuse_floods(file, text)?;
         let options = roxmltree::ParsingOptions { nodes_limit: document::MAX_NODES, ..Default::default() };
         let xml = roxmltree::Document::parse_with_options(text, options)

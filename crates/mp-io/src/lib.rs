@@ -15,6 +15,7 @@
 mod collada;
 mod csv;
 mod error;
+mod files;
 pub mod fuzz;
 mod gempa;
 mod json;
@@ -27,14 +28,14 @@ mod path;
 mod planar;
 mod problem;
 mod robot;
-mod source;
 mod stl;
-mod tables;
 mod text;
+mod toml_problem;
 
 pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
 pub use error::{Error, ErrorKind};
+pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
 pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh};
 pub use obj::parse_obj;
@@ -46,5 +47,4 @@ pub use planar::{
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
-pub use source::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use stl::{parse_stl, stl_text, write_stl};

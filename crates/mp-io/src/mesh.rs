@@ -2,10 +2,10 @@
 
 use crate::collada::parse_collada;
 use crate::error::{Error, ErrorKind};
+use crate::files::{Disk, Files, MAX_MESH_BYTES};
 use crate::gempa::parse_gempa_mesh;
 use crate::obj::parse_obj;
 use crate::off::OffDocument;
-use crate::source::{Disk, Files, MAX_MESH_BYTES};
 use crate::stl::parse_stl;
 use mp_geom::{MeshError, TriMesh};
 use nalgebra::Point3;

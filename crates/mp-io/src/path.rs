@@ -1,10 +1,10 @@
 //! Paths as text and JSON: poses of a rigid body as in GEMPA configuration files, and joint values of an arm.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::{decode, read_text, write_atomic};
 use crate::gempa::environment::six;
 use crate::json::{parse_rows, rows_text};
 use crate::number::Row;
-use crate::source::{decode, read_text, write_atomic};
 use crate::text::{Text, Token, clipped};
 use mp_geom::{pose_from_six, six_from_pose};
 use nalgebra::Isometry3;

@@ -12,8 +12,8 @@ pub use problem::PlanarProblem;
 pub use ros_map::RosMap;
 
 use crate::error::Error;
-use crate::source::decode;
-use crate::tables::{MotionPlaces, MotionTable, TomlText};
+use crate::files::decode;
+use crate::toml_problem::{MotionPlaces, MotionTable, TomlText};
 use mp_geom::planar::Polygon;
 use nalgebra::Point2;
 use serde::Deserialize;

@@ -1,10 +1,10 @@
 //! Problems for rigid bodies, read from any of their formats.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use crate::gempa::environment::{self, Environment};
 use crate::mesh::read_mesh_of;
 use crate::ompl;
-use crate::source::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use crate::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::{Isometry3, Point3};

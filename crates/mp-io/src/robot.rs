@@ -8,8 +8,8 @@ mod urdf_mesh;
 pub use problem::RobotProblem;
 
 use crate::error::Error;
-use crate::source::decode;
-use crate::tables::{MotionPlaces, MotionTable, TomlText};
+use crate::files::decode;
+use crate::toml_problem::{MotionPlaces, MotionTable, TomlText};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,9 +1,9 @@
 //! STL, text and binary: a triangle soup. See `docs/formats/meshes.md`.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::write_atomic;
 use crate::mesh::mesh_error;
 use crate::number::Row;
-use crate::source::write_atomic;
 use crate::text::{Lexer, Text, Token, clipped};
 use mp_geom::TriMesh;
 use nalgebra::Point3;

@@ -20,7 +20,7 @@ pub(crate) struct Token<'a> {
 
 impl<'a> Text<'a> {
     pub(crate) fn new(file: &'a str, bytes: &'a [u8], guide: &'static str) -> Result<Self, Error> {
-        Ok(Self { file, text: crate::source::decode(file, bytes)?, guide })
+        Ok(Self { file, text: crate::files::decode(file, bytes)?, guide })
     }
 
     /// An error at a token.

@@ -2,11 +2,11 @@
 
 use super::export::export;
 use super::ours::{self, OURS};
+use super::pair_results::PairResults;
 use super::pairs::{smooth_tori, tori};
 use super::peers::{self, QueryLimits};
 use super::poses::{Counts, Meshes, QueryPoses};
 use super::record::{QueryId, add, timed};
-use super::tables::PairResults;
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table};
 use crate::options::Common;

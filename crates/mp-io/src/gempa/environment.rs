@@ -1,9 +1,9 @@
 //! GEMPA environment files: the robot, its initial and goal configuration, and the obstacles.
 
 use crate::error::Error;
+use crate::files::{MAX_TEXT_BYTES, read_file, write_atomic};
 use crate::number::Row;
 use crate::problem::SpaceKind;
-use crate::source::{MAX_TEXT_BYTES, read_file, write_atomic};
 use crate::text::{Text, Token, clipped};
 use std::fmt::Write as _;
 use std::path::Path;

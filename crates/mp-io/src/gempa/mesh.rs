@@ -4,9 +4,9 @@
 //! number of triangles, then nine numbers for each, the corners x y z one after the other.
 
 use crate::error::Error;
+use crate::files::write_atomic;
 use crate::mesh::mesh_error;
 use crate::number::Row;
-use crate::source::write_atomic;
 use crate::text::{Lexer, Text, clipped};
 use mp_geom::TriMesh;
 use nalgebra::Point3;

@@ -2,8 +2,8 @@
 
 use super::{OffColor, OffDocument, OffFace};
 use crate::error::{Error, ErrorKind};
+use crate::files::{MAX_MESH_BYTES, read_file};
 use crate::mesh;
-use crate::source::{MAX_MESH_BYTES, read_file};
 use crate::text::{Lexer, Text, Token, clipped};
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};

@@ -2,8 +2,8 @@
 
 use super::{OffColor, OffDocument};
 use crate::error::Error;
+use crate::files::write_atomic;
 use crate::number::Row;
-use crate::source::write_atomic;
 use mp_geom::TriMesh;
 use std::fmt::Write as _;
 use std::path::Path;

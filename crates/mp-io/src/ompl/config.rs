@@ -1,8 +1,8 @@
 //! OMPL.app problem files, `.cfg`: the section `[problem]`.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::{MAX_TEXT_BYTES, read_file};
 use crate::problem::SpaceKind;
-use crate::source::{MAX_TEXT_BYTES, read_file};
 use crate::text::{Text, Token, clipped};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::HashMap;

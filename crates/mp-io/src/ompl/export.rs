@@ -1,9 +1,9 @@
 //! A problem as one JSON and two OFF files, for running other planners on the same problem.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::write_atomic;
 use crate::off::off_text;
 use crate::problem::{RigidProblem, SpaceKind};
-use crate::source::write_atomic;
 use mp_geom::TriMesh;
 use nalgebra::Isometry3;
 use serde::Serialize;

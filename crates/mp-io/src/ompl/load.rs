@@ -3,9 +3,9 @@
 use super::config;
 use crate::collada::{Scene, center::center_of_mesh};
 use crate::error::{Error, ErrorKind};
+use crate::files::{Files, MAX_MESH_BYTES, stem};
 use crate::mesh::{MeshFormat, read_mesh_of};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
-use crate::source::{Files, MAX_MESH_BYTES, stem};
 use crate::text::Text;
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};

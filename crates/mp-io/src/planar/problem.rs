@@ -2,8 +2,8 @@
 
 use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, RosMap};
 use crate::error::Error;
+use crate::files::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
 use crate::problem::MAX_COORDINATE;
-use crate::source::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 use std::path::Path;

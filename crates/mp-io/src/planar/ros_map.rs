@@ -2,8 +2,8 @@
 
 use super::{GUIDE, GridMap};
 use crate::error::{Error, ErrorKind};
+use crate::files::decode;
 use crate::problem::MAX_COORDINATE;
-use crate::source::decode;
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 

@@ -1,5 +1,5 @@
 use super::*;
-use crate::tables::tests::is_clear;
+use crate::toml_problem::tests::is_clear;
 
 const GOOD: &str = "[world]\nwalls = [[0, 0], [4, 3]]\n\n[robot]\ndisc = 0.07\n\n[motion]\nstart = [0.3, 0.3]\n\
                     goal = [3.5, 2.5]\n\n[[obstacle]]\nname = \"box\"\nrectangle = [[1, 1], [2, 1.5]]\n\n\

@@ -2,9 +2,9 @@
 
 use super::{ObstacleShape, RobotFile, RobotPart};
 use crate::error::Error;
+use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use crate::mesh::read_mesh_of;
 use crate::problem::{MAX_COORDINATE, PlacedBody, vertex_beyond};
-use crate::source::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use nalgebra::Isometry3;
 use std::path::{Path, PathBuf};

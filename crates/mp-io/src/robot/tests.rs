@@ -1,5 +1,5 @@
 use super::*;
-use crate::tables::tests::is_clear;
+use crate::toml_problem::tests::is_clear;
 
 const GOOD: &str = "[robot]\nurdf = \"arm.urdf\"\nbase = [0, 0, 0.5, 0, 0, 0]\nlimits = { elbow = [-1, 1.5] }\n\n\
                     [motion]\nstart = [0, 0.5]\ngoals = [[1, 0], [0.0, -1]]\n\n\
