@@ -226,7 +226,8 @@ fn corners(
     if low[0] < high[0] && low[1] < high[1] {
         return Ok(Some([low, high]));
     }
-    let message = format!("{what} from ({}, {}) to ({}, {}) hold nothing", low[0], low[1], high[0], high[1]);
+    let message =
+        format!("{what} from ({}, {}) to ({}, {}) enclose nothing", low[0], low[1], high[0], high[1]);
     Err(source.error(&span, message).expected("the lower left corner, then the upper right"))
 }
 

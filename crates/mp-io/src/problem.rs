@@ -125,7 +125,7 @@ impl RigidProblem {
             None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
                 .expected("a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)")
                 .help(
-                    "a mesh or a path is no problem: name the file that names the robot and the obstacles",
+                    "a mesh or a path is not a problem: give the file that names the robot and the obstacles",
                 )),
         }
     }

@@ -67,7 +67,7 @@ fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
             if !v.is_finite() {
                 return Err(bad(format!("corner {} of triangle {i} is not finite: {v}", k / 3))
                     .expected("finite coordinates")
-                    .help("mend the program that wrote the file"));
+                    .help("correct the program that wrote the file"));
             }
             triangle[k / 3][k % 3] = f64::from(v);
         }

@@ -58,7 +58,7 @@ impl<'a> Text<'a> {
                 Err(self
                     .error(token, format!("`{shown}` is not a finite number"))
                     .expected(expected)
-                    .help("coordinates must be finite: mend the program that wrote the file"))
+                    .help("coordinates must be finite: correct the program that wrote the file"))
             }
             Err(_) => {
                 let shown = clipped(token.text);

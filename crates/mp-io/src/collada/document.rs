@@ -207,7 +207,7 @@ pub(super) fn xml_error(file: &str, text: &str, error: &roxmltree::Error) -> Err
     if matches!(error, roxmltree::Error::DtdDetected) {
         return e.help("remove the <!DOCTYPE …>: document types and entities are not read");
     }
-    e.help("the file is cut short or no COLLADA: export it again")
+    e.help("the file is cut short or not COLLADA: export it again")
 }
 
 /// Refuses files on which the XML reader would spend time or memory out of proportion: thousands of attributes in one
