@@ -95,7 +95,8 @@ impl Lab {
         self.measure_in(log, what, cases, |_, _| false, |_| Ok(()), |(), case| run(case))
     }
 
-    /// As [`measure`](Self::measure), for cases that share a costly setup: cases that are `together` are run in order, with one setup.
+    /// As [`measure`](Self::measure), for cases that share a costly setup: cases that are `together` are run in order,
+    /// with one setup.
     pub(crate) fn measure_in<K: CaseKey, R: RunRecord, P>(
         &self,
         log: &mut Log<K, R>,

@@ -82,7 +82,8 @@ fn outside(n: usize) -> usize {
         k += 1;
         term *= (n - k + 1) as f64 / k as f64;
     }
-    // Fewer than k values are below the median with a probability of at most 2.5%: the k-th from each end, counted from 1, is the limit.
+    // Fewer than k values are below the median with a probability of at most 2.5%: the k-th from each end, counted
+    // from 1, is the limit.
     k.saturating_sub(1)
 }
 
