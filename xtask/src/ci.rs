@@ -1,4 +1,4 @@
-//! What continuous integration runs.
+//! The checks of continuous integration.
 
 mod circles;
 mod tidy;
@@ -7,7 +7,7 @@ use crate::{cargo, note, root};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Runs every check, to the end even when one fails.
+/// Runs all checks, even after one has failed.
 pub(crate) fn run(tests: bool) -> ExitCode {
     let clippy = ["clippy", "--quiet", "--workspace", "--all-targets", "--", "-D", "warnings"];
     let mut steps: Vec<(&str, &[&str])> = vec![
@@ -29,8 +29,8 @@ pub(crate) fn run(tests: bool) -> ExitCode {
     }
     let tidy = match tidy::check(&root()) {
         Ok(findings) => {
-            findings.iter().for_each(|finding| note(&format!("  {finding}")));
-            !findings.iter().any(|f| f.is_error)
+            findings.iter().for_each(|finding| note(&format!("  error: {finding}")));
+            findings.is_empty()
         }
         Err(e) => {
             note(&format!("  {e}"));

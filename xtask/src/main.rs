@@ -1,7 +1,7 @@
 //! The runner: `cargo xtask plan …` builds the program `mp` and starts it, `cargo xtask bench …` the program
 //! `mp-bench`; `cargo xtask ci` runs what continuous integration runs.
 //!
-//! It has no dependencies and does no work of its own, so that it is compiled in a second.
+//! It has no dependencies and does no work itself, so that it compiles in a second.
 
 mod ci;
 
@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 const HELP: &str = "\
-Builds and starts what it is asked for:
+Builds and starts the programs of the workspace:
 
   cargo xtask plan | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
-  cargo xtask assets [--check]  writes the shipped scenes again, or checks that they are as their source makes them
+  cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
 
 Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.";
@@ -54,19 +54,19 @@ fn note(line: &str) {
 
 /// The folder of the workspace.
 fn root() -> PathBuf {
-    // Cargo says where the package is now; what was compiled in may have moved since.
+    // Cargo gives the present folder of the package; the one known at compile time may have moved.
     let package = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let package = package.filter(|p| p.ends_with("xtask") && p.is_dir());
     let package = package.unwrap_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")));
     package.parent().map(Path::to_path_buf).unwrap_or(package)
 }
 
-/// Cargo, as it started this program.
+/// The cargo that started this program.
 fn cargo() -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Builds a program of the workspace, optimised, and starts it in the folder where we are.
+/// Builds a program of the workspace, optimised, and starts it in the current folder.
 fn start(package: &str, program: &str, arguments: &[OsString]) -> ExitCode {
     let manifest = root().join("Cargo.toml");
     let mut command = cargo();

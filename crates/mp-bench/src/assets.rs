@@ -1,12 +1,13 @@
-//! `assets`: writes the shipped scenes and the table of them, bit for bit, or checks them.
+//! `assets`: generates the shipped scenes and the list of their files, or checks that they are up to date.
 
 use crate::error::{IntoError, Result};
-use crate::output::{note, write};
+use crate::output::note;
 use clap::Args;
+use mp_plan::write_file;
 use mp_scenes::source::{Files, files_rs, generate, stale};
 use std::path::{Path, PathBuf};
 
-/// What only `assets` has.
+/// The options of `assets` alone.
 #[derive(Clone, Debug, Default, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of `assets`")]
@@ -14,13 +15,13 @@ pub(crate) struct Options {
     /// Write nothing; exit 0 only if every file is there and identical.
     #[arg(long)]
     check: bool,
-    /// The folder of the crate to write or check: scenes go to `assets`, their table to `src/files.rs` [default: the
+    /// The folder of the crate to write or check: scenes are in `assets`, their list is `src/files.rs` [default: the
     /// crate mp-scenes of the workspace].
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 }
 
-/// Writes all files, or checks them: true when nothing differs.
+/// Writes all files that differ, or checks them. True when files were written or none differs.
 pub(crate) fn run(options: &Options) -> Result<bool> {
     let own = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../mp-scenes");
     let folder = options.dir.clone().unwrap_or_else(own);
@@ -32,7 +33,7 @@ pub(crate) fn run(options: &Options) -> Result<bool> {
     for path in &stale {
         match options.check {
             true => note(&format!("{} is missing or differs", folder.join(path).display())),
-            false => write(&folder.join(path), &files[*path])?,
+            false => write_file(&folder.join(path), &files[*path])?,
         }
     }
     let done = if options.check { "differ" } else { "written" };

@@ -2,34 +2,34 @@
 
 use mp_cspace::{Progress, Stop, StopReason};
 
-/// Nanoseconds of processor time this thread has used; other work on the machine disturbs it less than the
-/// clock on the wall.
+/// Nanoseconds of processor time that this thread has used; other work on the machine disturbs it less than
+/// wall-clock time.
 #[cfg(unix)]
 pub(crate) fn nanoseconds() -> f64 {
     let used = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     used.tv_sec as f64 * 1e9 + used.tv_nsec as f64
 }
 
-/// Nanoseconds since this was first asked, where the system does not tell processor time.
+/// Nanoseconds of wall-clock time since the first call, on systems without processor time.
 #[cfg(not(unix))]
 pub(crate) fn nanoseconds() -> f64 {
     static BEGIN: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
     BEGIN.get_or_init(std::time::Instant::now).elapsed().as_nanos() as f64
 }
 
-/// Seconds of processor time since `began`, of [`nanoseconds`].
+/// Seconds of processor time since `began`, a value of [`nanoseconds`].
 pub(crate) fn seconds_since(began: f64) -> f64 {
     (nanoseconds() - began) * 1e-9
 }
 
-/// Stops after so much processor time of this thread.
+/// Stops at a given processor time of this thread.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Processor {
-    /// Of [`nanoseconds`].
+pub(crate) struct ProcessorTime {
+    /// The time to stop at, a value of [`nanoseconds`].
     pub(crate) until: f64,
 }
 
-impl Stop for Processor {
+impl Stop for ProcessorTime {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
         let due = progress.iterations.is_multiple_of(16) && nanoseconds() > self.until;
         due.then_some(StopReason::Deadline)

@@ -1,13 +1,14 @@
-//! Queries between two meshes, ours and those of other libraries, in turn.
+//! Queries between two meshes, with this project and with other libraries.
 //!
-//! For each pair of meshes, in rounds: build the trees, then ask all booleans, tolerances, distances and motions
-//! of the pair's poses; parry3d once, in this process; then the other programs given, one after the other. All
-//! answers are compared. Of two scenes also certified checks of a planner's edges, beside discrete ones.
+//! For each pair of meshes, in rounds: build the trees, then run all boolean, tolerance, distance and motion queries at
+//! the pair's poses; then parry3d once, in this process; then the other programs, one after the other. All
+//! answers are compared. For two scenes, certified checks of a planner's edges are compared with discrete ones.
 
 mod edges;
 mod export;
 mod growth;
 mod ours;
+mod pair_results;
 mod pairs;
 mod parry;
 mod peers;
@@ -24,15 +25,16 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use edges::Costs;
 use ours::OURS;
+use pair_results::PairResults;
 use pairs::{PAIRS, Pair};
 use parry::Parry;
-use peers::Effort;
-use poses::{Counts, Poses};
+use peers::QueryLimits;
+use poses::{Counts, QueryPoses};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use tables::{Measured, is_ours};
+use tables::is_ours;
 
-/// What only the suite `collide` has.
+/// The options of the suite `collide` alone.
 #[derive(Clone, Debug, Default, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `collide`")]
@@ -40,10 +42,10 @@ pub(crate) struct Options {
     /// Pairs of meshes to measure on (default: all).
     #[arg(long = "pair", value_name = "PAIR", value_parser = PossibleValuesParser::new(PAIRS))]
     pairs: Vec<String>,
-    /// Compare booleans with exact arithmetic instead; exit code 0 if all are right.
+    /// Instead, compare boolean answers with exact arithmetic; exit code 0 if all are right.
     #[arg(long)]
     referee: bool,
-    /// Measure the cost of a query and of a tree against the number of triangles instead.
+    /// Instead, measure the cost of queries and trees against the number of triangles.
     #[arg(long, conflicts_with = "referee")]
     growth: bool,
     /// Poses of each pair for --referee [default: a million for all pairs together].
@@ -52,15 +54,15 @@ pub(crate) struct Options {
     /// The seed of the poses.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// A folder of other programs to measure in turn with ours; how they are called is in docs/benchmarks.md.
+    /// A folder of other programs to measure as well; docs/benchmarks.md says how they are called.
     #[arg(long, value_name = "DIR")]
     peers: Option<PathBuf>,
-    /// Write meshes and poses to this folder, for other programs; without --peers, measure nothing.
+    /// Write meshes and poses to this folder, for other programs; without --peers, nothing is measured.
     #[arg(long, value_name = "DIR")]
     export: Option<PathBuf>,
 }
 
-/// Measures. True when all could be measured and all our own answers agree.
+/// Runs the suite. True when everything was measured and all our own answers agree.
 pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let lab = Lab::one_at_a_time(common)?;
     let named: Vec<&str> = match options.pairs.as_slice() {
@@ -76,14 +78,14 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     }
     let scratch = tempfile::tempdir().into_error()?;
     let folder = options.export.as_deref().unwrap_or(scratch.path());
-    // Other programs want all poses.
+    // Other programs read all poses.
     let counts =
         if common.quick && programs.is_empty() && options.export.is_none() { QUICK } else { Counts::FULL };
     let (mut all, mut costs, mut complete) = (Vec::new(), Vec::new(), true);
     for name in named {
         let pair = Pair::load(name)?;
         let (meshes, _) = ours::build(&pair);
-        let poses = Poses::new(&pair, &meshes, counts, options.seed)?;
+        let poses = QueryPoses::new(&pair, &meshes, counts, options.seed)?;
         if options.export.is_some() || !programs.is_empty() {
             export::export(folder, &pair, &poses)?;
         }
@@ -93,7 +95,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
         }
         let (measured, answered) = measure(common, &pair, &poses, &programs, folder)?;
         complete &= answered;
-        note(&told(&measured));
+        note(&progress_line(&measured));
         all.push(measured);
         if edges::CHECKED.contains(&name) {
             let (count, passes) = if common.quick { (300, 3) } else { (3_000, 7) };
@@ -107,26 +109,26 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     Ok(complete && tables::consistent(&all) && costs.iter().all(Costs::consistent))
 }
 
-/// How many poses of each kind a short run has.
+/// The numbers of poses of a short run.
 const QUICK: Counts = Counts { uniform: 1_000, near: 1_000, edges: 50 };
 
-/// A pair that took less than this for each round has more rounds, up to so many times as many: short measurements are
+/// A pair that takes less than this per round gets more rounds, up to `MANY` times as many: short measurements are
 /// the ones that other work on the machine disturbs most.
 const SHORT: Duration = Duration::from_secs(20);
 const MANY: usize = 10;
 
-/// All of one pair; whether every program answered.
+/// Measures one pair; also returns whether every program answered.
 fn measure(
     common: &Common,
     pair: &Pair,
-    poses: &Poses,
+    poses: &QueryPoses,
     programs: &[PathBuf],
     folder: &Path,
-) -> Result<(Measured, bool)> {
+) -> Result<(PairResults, bool)> {
     let (rounds, most, passes, distances, cap) =
         if common.quick { (1, 1, 3, 100, 0.2) } else { (3, MANY, 3, 1_000, 5.0) };
     let rounds = common.runs.map_or(rounds, |n| n as usize);
-    let mut measured = Measured::new(pair);
+    let mut measured = PairResults::new(pair);
     let mut complete = true;
     let begin = Instant::now();
     for round in 0..rounds * most {
@@ -143,9 +145,9 @@ fn measure(
             measured.built(build);
             measured.records.extend(parry.ask(poses, distances, cap)?);
         }
-        let effort = Effort { passes, distances, cap };
+        let limits = QueryLimits { passes, distances, cap };
         for program in programs {
-            match peers::ask(program, folder, &pair.name, effort) {
+            match peers::ask(program, folder, &pair.name, limits) {
                 Ok((builds, records)) => {
                     builds.into_iter().for_each(|b| measured.built(b));
                     records.into_iter().for_each(|r| record::add(&mut measured.records, r));
@@ -160,15 +162,15 @@ fn measure(
     Ok((measured, complete))
 }
 
-/// A line for the person watching.
-fn told(m: &Measured) -> String {
+/// The progress line of a measured pair.
+fn progress_line(m: &PairResults) -> String {
     let own = m.records.iter().filter(|r| r.what.lib == OURS);
     let figures = own.map(|r| format!("{} {} {:.0} ns", r.what.query, r.what.set, r.least));
     format!("{}: {}", m.pair, figures.collect::<Vec<_>>().join(", "))
 }
 
 /// All tables that have rows.
-fn text(all: &[Measured], costs: &[Costs]) -> String {
+fn text(all: &[PairResults], costs: &[Costs]) -> String {
     let foreign = |lib: &str| !is_ours(lib);
     let mut parts: Vec<(&str, Table)> = vec![
         ("Boolean queries, ns (how many times ours)", tables::speed(all, "collide", foreign)),

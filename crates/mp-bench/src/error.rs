@@ -1,16 +1,16 @@
-//! Errors: those of `mp-plan`, made of any other.
+//! Errors: those of `mp-plan`, into which all others are converted.
 
 use mp_plan::Error;
 use std::fmt::Display;
 
-/// What comes of a measurement.
+/// The result of a function of this crate.
 pub(crate) type Result<T> = std::result::Result<T, Error>;
 
-/// An error of any kind as one of `mp-plan`.
+/// Converts any error into one of `mp-plan`.
 pub(crate) trait IntoError<T> {
-    /// The same with its message.
+    /// The error with the same message.
     fn into_error(self) -> Result<T>;
-    /// The same, said to have happened while doing `what`: "cannot read the file".
+    /// The error with the context `what`, such as "cannot read the file".
     fn doing(self, what: impl FnOnce() -> String) -> Result<T>;
 }
 

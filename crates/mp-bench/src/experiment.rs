@@ -1,4 +1,4 @@
-//! What experiments share: cases that are run once each, the log of what came of them, summaries and tables.
+//! The base of all experiments: cases that are run once each, the log of their results, statistics and tables.
 
 mod lab;
 mod log;

@@ -1,8 +1,8 @@
-//! Measurements of the planners, beside other programs where they are given.
+//! Benchmarks of the planners, compared with other programs if these are given.
 //!
-//! A suite is a folder. Most suites are experiments: a list of cases, each of which is run once, with what came of it
-//! kept in a log, so that a measurement that was interrupted goes on where it was; then tables and charts of the log.
-//! `experiment` has what they share. Results are Markdown on standard output, and files in a folder.
+//! Each suite is a folder. Most suites are experiments: a list of cases, each of which is run once and its result
+//! kept in a log, so that an interrupted measurement can be continued; then tables and charts of the log.
+//! `experiment` is the base of them all. Results are Markdown on standard output, and files in a folder.
 
 mod assets;
 mod clock;
@@ -25,13 +25,13 @@ pub use mp_plan::Error;
 
 /// What to measure, and how: the command line.
 ///
-/// Exit code: 0 measured completely and as it should be, 1 not so, 2 bad input.
+/// Exit code: 0 measured completely and as expected, 1 otherwise, 2 bad input.
 #[derive(Clone, Debug, Parser)]
 #[command(
     name = "mp-bench",
     version,
     max_term_width = 110,
-    about = "Measure, beside other programs where they are given"
+    about = "Run benchmarks, and compare with other programs if these are given"
 )]
 pub struct Options {
     /// What to measure.
@@ -62,22 +62,22 @@ enum Suite {
     Planners,
     /// Queries between two meshes.
     Collide,
-    /// The experiment of Baizid et al.: RRT and RRS, whose blocked edges are bent by snakes, in four worlds.
+    /// The experiment of Baizid et al.: RRT, and RRS, which bends blocked edges with snakes, in four worlds.
     Rrs,
     /// Experiments of Jouandeau et al. 2008: natural expansion; RSRT and RRT in growing clutter.
     Rsrt,
-    /// Roadmaps: corridors that shrink, shipped scenes, many queries, growth, pictures.
+    /// Roadmaps: corridors of decreasing width, shipped scenes, many queries, growth, pictures.
     Roadmaps,
-    /// Growth of an RRT where nothing is in the way, against its size.
+    /// The speed of growth of an RRT without obstacles, against its size.
     Scaling,
-    /// No measurement: write the shipped scenes again, or check that they are as made.
+    /// No measurement: generate the shipped scenes, or check that they are up to date.
     Assets,
 }
 
-/// Runs a suite. True when it could be measured completely.
+/// Runs a suite. True when it was measured completely.
 ///
 /// # Errors
-/// When a scene or a file makes no sense, cannot be read or cannot be written.
+/// When a scene or a file is not valid, cannot be read or cannot be written.
 pub fn run(options: &Options) -> Result<bool, Error> {
     let common = &options.common;
     match options.suite {

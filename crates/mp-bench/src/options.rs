@@ -1,9 +1,10 @@
 //! Options that several suites have.
 
 use clap::Args;
+use mp_plan::positive_number;
 use std::path::PathBuf;
 
-/// What several suites have.
+/// The options of several suites.
 #[derive(Clone, Debug, Args)]
 #[group(skip)]
 pub(crate) struct Common {
@@ -13,28 +14,28 @@ pub(crate) struct Common {
     /// Runs (seeds) of each case.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: Option<u32>,
-    /// Scenes to measure on (default: those of the suite); of `roadmaps` these alone.
+    /// Scenes to measure on (default: those of the suite); with `roadmaps`, only these are measured.
     #[arg(long = "scene", value_name = "SCENE")]
     pub(crate) scenes: Vec<String>,
     /// Seconds a run may take.
-    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive_number)]
     pub(crate) time: f64,
-    /// Another program to measure beside ours, in turn; how it is called is in docs/benchmarks.md.
+    /// Another program to measure as well; docs/benchmarks.md says how it is called.
     #[arg(long, value_name = "PROGRAM")]
     pub(crate) peer: Option<PathBuf>,
     /// The folder for results.
     #[arg(long, value_name = "DIR", default_value = "out/bench")]
     pub(crate) out: PathBuf,
-    /// How many runs at once, where what is found does not depend on it [default: one for each core].
+    /// How many runs at once, in suites whose results do not depend on it [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
-    /// Measure anew what was measured before and is in the folder for results.
+    /// Measure again what the folder for results already has.
     #[arg(long)]
     pub(crate) fresh: bool,
 }
 
 impl Common {
-    /// The scenes given, or those of the suite.
+    /// The scenes that were given, or `own`, those of the suite.
     pub(crate) fn scenes_or(&self, own: &[&str]) -> Vec<String> {
         match self.scenes.as_slice() {
             [] => own.iter().map(|name| (*name).to_owned()).collect(),
@@ -42,17 +43,8 @@ impl Common {
         }
     }
 
-    /// As many runs of each case as given, else as a short or a full run has.
+    /// The number of runs of each case: as given, else `quick` or `full`.
     pub(crate) fn runs_or(&self, quick: u32, full: u32) -> u32 {
         self.runs.unwrap_or(if self.quick { quick } else { full })
-    }
-}
-
-/// A finite number above zero.
-pub(crate) fn positive(s: &str) -> Result<f64, String> {
-    match s.trim().parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Ok(_) => Err("must be a finite number above zero".into()),
-        Err(_) => Err("not a number".into()),
     }
 }

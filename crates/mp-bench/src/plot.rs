@@ -1,41 +1,41 @@
 //! Charts of curves, as SVG and as PNG.
 
 use crate::error::{IntoError, Result};
-use crate::output::{note, write};
-use mp_plan::Error;
+use crate::output::note;
+use mp_plan::{Error, write_file};
 use mp_render::{Drawing, Series};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 use std::ops::Range;
 use std::path::Path;
 
-/// A named curve, with a range about each point where there is one.
+/// A named curve of a chart, with ranges around some of its points.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Curve {
+pub(crate) struct ChartCurve {
     pub(crate) name: String,
-    /// Index of its colour: curves of the same kind in several charts have the same.
+    /// The index of its colour; curves of the same kind have the same one in all charts.
     pub(crate) colour: usize,
-    /// x and y of each point; points that are not positive and finite are left out.
+    /// x and y of each point; points that the axes cannot show are left out.
     pub(crate) points: Vec<(f64, f64)>,
-    /// The x of a point, and from where to where its y may reach.
+    /// The x of a point, and the lower and upper end of the range of its y.
     pub(crate) ranges: Vec<(f64, f64, f64)>,
-    /// Drawn thin, as a companion of another.
+    /// Whether it is drawn thin, as a companion of another curve.
     pub(crate) thin: bool,
 }
 
-impl Curve {
+impl ChartCurve {
     /// A curve without ranges.
     pub(crate) fn new(name: impl Into<String>, colour: usize, points: Vec<(f64, f64)>) -> Self {
         Self { name: name.into(), colour, points, ranges: Vec::new(), thin: false }
     }
 
-    /// Drawn thin.
+    /// The same curve, drawn thin.
     pub(crate) fn thin(self) -> Self {
         Self { thin: true, ..self }
     }
 }
 
-/// What a chart is called, and what its axes are.
+/// The title of a chart, and the labels of its axes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Labels<'a> {
     pub(crate) title: &'a str,
@@ -43,7 +43,7 @@ pub(crate) struct Labels<'a> {
     pub(crate) y: &'a str,
 }
 
-/// Width of a chart, and what of it is for the names of the curves, pixels.
+/// Width of a chart, and the part of it for the names of the curves, pixels.
 const WIDTH: u32 = 1100;
 const LEGEND: u32 = 250;
 
@@ -60,16 +60,16 @@ const COLOURS: [RGBColor; 10] = [
     RGBColor(0xbc, 0xbd, 0x22),
 ];
 
-/// How an axis is divided.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Axis<'a> {
-    /// Logarithmic, with marks where it suits.
+    /// Logarithmic, with automatic marks.
     Log,
-    /// Logarithmic, with a mark at each of these places if it is that of x.
+    /// Logarithmic, with marks at these values if it is the x axis.
     LogAt(&'a [f64]),
-    /// Even, as far as the curves go.
+    /// Linear, over the range of the curves.
     Even,
-    /// Even, from zero to this, or as far as the curves go.
+    /// Linear, from zero to this value, or to the greatest of the curves.
     FromZero(Option<f64>),
 }
 
@@ -78,7 +78,7 @@ impl Axis<'_> {
         v.is_finite() && (v > 0.0 || !matches!(self, Self::Log | Self::LogAt(_)))
     }
 
-    /// From where to where it goes for these values; a logarithmic one goes beyond them by these factors.
+    /// The range of the axis for these values; a logarithmic axis extends it by the factors `below` and `above`.
     fn range(&self, values: impl Iterator<Item = f64>, [below, above]: [f64; 2]) -> Range<f64> {
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |b, v| (b.0.min(v), b.1.max(v)));
         let side = if high > low { 0.02 * (high - low) } else { 1.0 };
@@ -96,10 +96,11 @@ impl Axis<'_> {
 ///
 /// # Errors
 /// When no curve has a point that the axes show.
-pub(crate) fn chart(labels: Labels<'_>, [x, y]: [Axis<'_>; 2], curves: &[Curve]) -> Result<String> {
+pub(crate) fn chart(labels: Labels<'_>, [x, y]: [Axis<'_>; 2], curves: &[ChartCurve]) -> Result<String> {
     let shown = |p: &(f64, f64)| x.shows(p.0) && y.shows(p.1);
-    let ends =
-        |c: &Curve| c.ranges.iter().flat_map(|&(x, low, high)| [(x, low), (x, high)]).collect::<Vec<_>>();
+    let ends = |c: &ChartCurve| {
+        c.ranges.iter().flat_map(|&(x, low, high)| [(x, low), (x, high)]).collect::<Vec<_>>()
+    };
     let points: Vec<(f64, f64)> =
         curves.iter().flat_map(|c| c.points.iter().copied().chain(ends(c))).filter(shown).collect();
     if points.is_empty() {
@@ -126,7 +127,7 @@ fn drawn<X, Y>(
     labels: Labels<'_>,
     height: u32,
     (xs, ys): (X, Y),
-    curves: &[Curve],
+    curves: &[ChartCurve],
     shown: impl Fn(&(f64, f64)) -> bool,
 ) -> Result<String>
 where
@@ -147,7 +148,7 @@ where
     Ok(text)
 }
 
-/// A chart with room for its labels and the names of its curves.
+/// A chart with space for its labels and the names of its curves.
 fn builder<'a, 'b, DB: DrawingBackend>(
     area: &'a DrawingArea<DB, plotters::coord::Shift>,
     labels: Labels<'_>,
@@ -162,12 +163,12 @@ fn builder<'a, 'b, DB: DrawingBackend>(
     builder
 }
 
-/// The mesh, the curves and their names.
+/// Draws the grid, the curves and their names.
 fn fill<DB, X, Y>(
     area: &DrawingArea<DB, plotters::coord::Shift>,
     chart: &mut ChartContext<'_, DB, Cartesian2d<X, Y>>,
     labels: Labels<'_>,
-    curves: &[Curve],
+    curves: &[ChartCurve],
     shown: impl Fn(&(f64, f64)) -> bool,
 ) -> std::result::Result<(), DrawingAreaErrorKind<DB::ErrorType>>
 where
@@ -189,7 +190,7 @@ where
         let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
         let points: Vec<_> = curve.points.iter().copied().filter(&shown).collect();
         chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
-        // Beside the curves, where it hides none.
+        // The legend is to the right of the curves and hides none.
         let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
         area.draw(&PathElement::new([(x, y), (x + 18, y)], style))?;
         area.draw(&Text::new(curve.name.clone(), (x + 24, y - 6), ("sans-serif", 12)))?;
@@ -206,8 +207,8 @@ where
 
 /// Writes a drawing as SVG and as PNG.
 pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize)) -> Result<()> {
-    write(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
-    write(&stem.with_extension("png"), &drawing.pixels(size).into_error()?.to_png())?;
+    write_file(&stem.with_extension("svg"), drawing.svg(size).into_error()?.as_bytes())?;
+    write_file(&stem.with_extension("png"), &drawing.pixels(size).into_error()?.to_png())?;
     note(&format!("written: {}.svg and .png", stem.display()));
     Ok(())
 }
@@ -215,12 +216,12 @@ pub(crate) fn save_drawing(stem: &Path, drawing: &Drawing, size: (usize, usize))
 /// Writes curves over a logarithmic axis as PNG.
 pub(crate) fn save_series(file: &Path, title: &str, axes: [&str; 2], series: &[Series]) -> Result<()> {
     let picture = mp_render::plot(title, axes, series, (960, 600)).into_error()?;
-    write(file, &picture.to_png())?;
+    write_file(file, &picture.to_png())?;
     note(&format!("written: {}", file.display()));
     Ok(())
 }
 
-/// Three digits, or a power of ten when it is far from one.
+/// The number with three digits, or as a power of ten when it is very large or small.
 fn number(v: f64) -> String {
     if v == 0.0 {
         return "0".into();
@@ -251,9 +252,9 @@ mod tests {
 
     #[test]
     fn charts_have_curves_and_names() {
-        let curve = Curve {
+        let curve = ChartCurve {
             ranges: vec![(2.0, 0.5, 4.0), (4.0, 0.0, 1.0)],
-            ..Curve::new("RSRT", 0, vec![(2.0, 1.0), (4.0, 8.0), (8.0, f64::INFINITY)])
+            ..ChartCurve::new("RSRT", 0, vec![(2.0, 1.0), (4.0, 8.0), (8.0, f64::INFINITY)])
         };
         let labels = Labels { title: "Time", x: "obstacles", y: "s" };
         let text = chart(labels, [Axis::LogAt(&[2.0, 4.0]), Axis::Log], &[curve]).unwrap();
@@ -262,7 +263,7 @@ mod tests {
         let text = chart(
             labels,
             [Axis::Even, Axis::FromZero(None)],
-            &[Curve::new("RRS", 1, vec![(30.0, 0.0), (60.0, 2.0)])],
+            &[ChartCurve::new("RRS", 1, vec![(30.0, 0.0), (60.0, 2.0)])],
         )
         .unwrap();
         assert!(text.contains("RRS") && text.contains("<polyline"));

@@ -1,13 +1,13 @@
-//! RRT-Connect on the shipped scenes, seed by seed in turn with another program on the same problems.
+//! RRT-Connect on the shipped scenes, alternating, seed by seed, with another program on the same problems.
 //!
-//! Both sides plan with motion checks at 1% of the extent and steps of `--step`, by default 20% of it as is theirs, in
-//! the metric ‖Δp‖ + 0.5·angle, from the same start to the same goal in the same bounds, one thread, until the first
-//! solution. Neither time includes reading files and building the trees of meshes, with us those of the verifier
-//! among them. Our time includes the independent verification of candidate solutions; theirs does not verify.
+//! Both plan with motion checks at 1% of the extent and steps of `--step`, by default 20% as in the other program, in
+//! the metric ‖Δp‖ + 0.5·angle, from the same start to the same goal in the same bounds, on one thread, until the first
+//! solution. Neither time includes reading files and building the trees of meshes, our verifier's trees
+//! included. Our time includes the independent verification of candidate solutions; the other program does not verify.
 //!
 //! The other program is called as
-//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S --range D`, D the longest step, reads what
-//! [`mp_io::export_ompl`] writes and prints a line of JSON with `solved`, `time` (seconds), `checks` and
+//! `PEER --problem FILE.json --planner rrtconnect --seeds 1 --seed0 N --time S --range D`, where D is the longest step. It
+//! reads the files that [`mp_io::export_ompl`] writes, and prints a line of JSON with `solved`, `time` (seconds), `checks` and
 //! `valid_at_20x_finer` (0 when its path collides at twenty times finer steps).
 
 use crate::error::{IntoError, Result};
@@ -23,7 +23,7 @@ use std::process::Command;
 
 const SCENES: [&str; 4] = ["easy", "cubicles", "twisty", "apartment"];
 
-/// What only the suite `rigid` has.
+/// The options of the suite `rigid` alone.
 #[derive(Clone, Copy, Debug, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `rigid`")]
@@ -33,7 +33,7 @@ pub(crate) struct Options {
     step: Length,
 }
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
@@ -42,14 +42,14 @@ struct Case {
     seed: u64,
 }
 
-/// What came of it.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Run {
     ours: Planned,
     theirs: Option<Theirs>,
 }
 
-/// What the other program says of one run.
+/// The result of the other program in one run.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Theirs {
     solved: u8,
@@ -58,8 +58,8 @@ struct Theirs {
     valid_at_20x_finer: i32,
 }
 
-/// A scene made ready for both.
-struct Place {
+/// A scene prepared for both programs.
+struct PreparedScene {
     rigid: Rigid,
     request: Request,
     /// The longest edge, in the metric.
@@ -69,7 +69,7 @@ struct Place {
     _folder: tempfile::TempDir,
 }
 
-impl Place {
+impl PreparedScene {
     fn new(scene: &str, step: Length, time: f64) -> Result<Self> {
         let rigid = Rigid::load(scene)?;
         let folder = tempfile::tempdir().into_error()?;
@@ -85,7 +85,7 @@ impl Place {
     }
 }
 
-/// Measures. True when every run of ours was solved.
+/// Runs the suite. True when every run of ours was solved.
 pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let lab = Lab::one_at_a_time(common)?;
     let mut log = lab.log("rigid", common.time)?;
@@ -101,11 +101,11 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
         "rigid",
         &cases,
         |a, b| a.scene == b.scene,
-        |case| Place::new(&case.scene, options.step, common.time),
-        |place, case| {
-            let request = place.request.clone().seed(case.seed);
-            let Some(ours) = place.rigid.plan(&request, &lab.cancel)? else { return Ok(None) };
-            let ask = |peer: &PathBuf| ask(peer, &place.file, case.seed, common.time, place.range);
+        |case| PreparedScene::new(&case.scene, options.step, common.time),
+        |prepared, case| {
+            let request = prepared.request.clone().seed(case.seed);
+            let Some(ours) = prepared.rigid.plan(&request, &lab.cancel)? else { return Ok(None) };
+            let ask = |peer: &PathBuf| ask(peer, &prepared.file, case.seed, common.time, prepared.range);
             Ok(Some(Run { ours, theirs: case.peer.as_ref().map(ask).transpose()? }))
         },
     )?;
@@ -131,7 +131,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let share = |n: usize, of: usize| if of == 0 { "–".into() } else { format!("{n}/{of}") };
     let groups = log.groups(&cases, |case| &case.scene);
     let solved = groups.iter().all(|group| group.runs.iter().all(|(_, run)| run.ours.solved));
-    // A run that was not solved counts with the time it was given.
+    // A run that was not solved counts with its time limit.
     let summary = Table::of(
         groups
             .iter()
@@ -164,7 +164,7 @@ fn solutions(theirs: &[Theirs]) -> impl Iterator<Item = &Theirs> {
     theirs.iter().filter(|run| run.solved == 1)
 }
 
-/// One run of the other program.
+/// Runs the other program once.
 fn ask(program: &Path, problem: &Path, seed: u64, time: f64, range: f64) -> Result<Theirs> {
     let mut command = Command::new(program);
     command.arg("--problem").arg(problem).args(["--planner", "rrtconnect", "--seeds", "1"]);

@@ -1,16 +1,16 @@
-//! Planners that build roadmaps, in corridors that shrink and on shipped scenes, each until it has a
-//! verified path or its budget of collision queries is spent; many queries to one roadmap beside RRT-Connect;
-//! building against the number of nodes; how few nodes cover as much; and pictures of all roadmaps. With `--scene` these
-//! scenes alone.
+//! Planners that build roadmaps, in corridors of decreasing width and on shipped scenes, each until it has a
+//! verified path or its budget of collision queries is used up; many queries to one roadmap, against RRT-Connect;
+//! building time against the number of nodes; how many nodes cover the free space; and pictures of all roadmaps. With
+//! `--scene`, only the runs on these scenes.
 
-mod cover;
-mod drawing;
+mod coverage;
 mod growth;
 mod picture;
 mod queries;
 mod runs;
+mod scenes;
+mod svg_drawing;
 mod tables;
-mod world;
 
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log, Table, sections};
@@ -19,25 +19,25 @@ use crate::output::{note, print};
 use crate::scenes::Rigid;
 use clap::Args;
 use runs::{Case, Plan, Run};
-use tables::Found;
-use world::CORRIDORS;
+use scenes::CORRIDORS;
+use tables::Results;
 
-/// Collision queries of a run.
+/// The budget of collision queries of a run.
 const BUDGET: u64 = 100_000;
 const QUICK_BUDGET: u64 = 10_000;
 const SEEDS: u32 = 20;
 
-/// What only the suite `roadmaps` has.
+/// The options of the suite `roadmaps` alone.
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `roadmaps`")]
 pub(crate) struct Options {
-    /// Collision queries a run may ask [default: 100000; 10000 with --quick].
+    /// The budget of collision queries of a run [default: 100000; 10000 with --quick].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     queries: Option<u64>,
 }
 
-/// Measures. True when it was measured completely.
+/// Runs the suite. True when it was measured completely.
 pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let lab = Lab::new(common)?;
     let plan = Plan {
@@ -45,10 +45,10 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
         seeds: common.runs_or(3, SEEDS),
     };
     let name = lab.name("roadmaps");
-    let named = common.scenes_or(&world::SCENES);
+    let named = common.scenes_or(&scenes::SCENES);
     let whole = common.scenes.is_empty();
     let suites = if whole { CORRIDORS.as_slice() } else { &[] };
-    let corridors = suites.iter().map(world::Corridors::ready).collect::<Result<Vec<_>>>()?;
+    let corridors = suites.iter().map(scenes::Corridors::ready).collect::<Result<Vec<_>>>()?;
     let load = |name: &String| Ok((name.clone(), Rigid::load(name)?));
     let problems = named.iter().map(load).collect::<Result<Vec<_>>>()?;
 
@@ -59,30 +59,30 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
             return Ok(false);
         }
     }
-    let found = Found { log: &log, plan: &plan };
-    let mut parts: Vec<(&str, Table)> = suites.iter().map(|c| (c.title, found.corridor(c))).collect();
-    parts.push(("Shipped scenes", found.summary(&named)));
+    let results = Results { log: &log, plan: &plan };
+    let mut parts: Vec<(&str, Table)> = suites.iter().map(|c| (c.title, results.corridor(c))).collect();
+    parts.push(("Shipped scenes", results.summary(&named)));
     if !whole {
         save(&lab, &format!("{name}-scenes"), &parts, &log)?;
         return Ok(true);
     }
     let widths: Vec<String> = corridors.into_iter().flatten().map(|(name, _)| name).collect();
-    parts.push(("Corridors", found.summary(&widths)));
+    parts.push(("Corridors", results.summary(&widths)));
     let many = queries::measure(common.quick)?;
     note(&many.markdown());
     parts.push(("Many queries", many));
     parts.push(("Growth", growth::measure(common.quick)?));
-    let Some(coverage) = cover::measure(&lab, common.quick)? else { return Ok(false) };
+    let Some(coverage) = coverage::measure(&lab, common.quick)? else { return Ok(false) };
     parts.push(("Coverage", coverage));
     save(&lab, &name, &parts, &log)?;
     for corridors in &CORRIDORS {
-        lab.write(&format!("{name}-{}.svg", corridors.name), &found.chart(corridors)?)?;
+        lab.write(&format!("{name}-{}.svg", corridors.name), &results.chart(corridors)?)?;
     }
     picture::draw(&lab)?;
     Ok(true)
 }
 
-/// Prints the tables, and writes them as Markdown, CSV and JSON, the last with all runs there are.
+/// Prints the tables, and writes them as Markdown, CSV and JSON, which has all runs as well.
 fn save(lab: &Lab, name: &str, parts: &[(&str, Table)], log: &Log<Case, Run>) -> Result<()> {
     for (title, table) in parts {
         lab.write(&format!("{name}-{}.csv", title.to_lowercase().replace(' ', "-")), &table.csv())?;

@@ -1,11 +1,12 @@
 //! The experiment of Baizid, Chellali, Luza, Vitezslav and Arrichiello, *RRS: rapidly-exploring random
 //! snakes, a new method for mobile robot path planning*, §4 and §5: RRT against RRS in four worlds, for steps of 30 to
-//! 150 cm, 100 trials each, by six measures. With `--follow`, §6: a robot follows the paths. With
-//! `--flying`, a body in space; with `--pictures`, a field and a tree.
+//! 150 cm, 100 trials each, by six measures. With `--follow`, §6: a simulated robot follows the paths. With
+//! `--flying`, a body in space; with `--pictures`, pictures of a field and of a tree.
 
 mod flying;
 mod follow;
-mod following;
+mod follow_suite;
+mod noisy_robot;
 mod pictures;
 mod series;
 mod solve;
@@ -16,29 +17,29 @@ use crate::experiment::Lab;
 use crate::options::Common;
 use clap::Args;
 use series::{Plan, measure};
-use tables::Found;
+use tables::Results;
 
-/// What only the suite `rrs` has.
+/// The options of the suite `rrs` alone.
 #[derive(Clone, Copy, Debug, Default, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `rrs`")]
 pub(crate) struct Options {
-    /// Let a robot with noisy wheels and a noisy laser follow the paths instead.
+    /// Instead, let a robot with noisy wheels and a noisy laser follow the paths.
     #[arg(long)]
     follow: bool,
-    /// Compare for a body that flies instead: RRT and RRS on `gempa-3` or the scenes given, with the same steps.
+    /// Instead, compare RRT and RRS for a body in space, on `gempa-3` or the given scenes, with the same steps.
     #[arg(long, conflicts_with = "follow")]
     flying: bool,
-    /// Draw what pushes snakes, and a tree whose edges bend, instead.
+    /// Instead, draw the field that pushes snakes, and a tree with bent edges.
     #[arg(long, conflicts_with_all = ["follow", "flying"])]
     pictures: bool,
 }
 
-/// Measures. True when it was measured completely.
+/// Runs the suite. True when it was measured completely.
 pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let lab = Lab::new(common)?;
     if options.follow {
-        return following::run(&lab, common);
+        return follow_suite::run(&lab, common);
     }
     if options.flying {
         return flying::run(&lab, common);
@@ -50,9 +51,9 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let name = lab.name("rrs");
     let mut log = lab.log(&name, solve::ITERATIONS as f64)?;
     let complete = measure(&plan, &lab, &mut log)?;
-    let found = Found::new(&log, &plan);
-    // Of what was interrupted there may be nothing to draw.
-    let charts = if complete { found.charts() } else { Vec::new() };
-    lab.publish(&name, &found.markdown(), [&found.summary(), &found.each()], charts)?;
+    let results = Results::new(&log, &plan);
+    // An interrupted measurement may have nothing to draw.
+    let charts = if complete { results.charts() } else { Vec::new() };
+    lab.publish(&name, &results.markdown(), [&results.summary(), &results.each()], charts)?;
     Ok(complete)
 }

@@ -1,7 +1,7 @@
-//! Tree growth beside another program, space by space in turn.
+//! The speed of tree growth, compared with another program, space by space.
 //!
 //! The other program is called as `PEER rrt SPACE gnat NODES SECONDS` and prints, at 10³, 10⁴, … nodes, a
-//! line of JSON with `nodes` and `avg_nodes_per_s` (since it began, processor time).
+//! line of JSON with `nodes` and `avg_nodes_per_s` (since its start, processor time).
 
 mod growth;
 
@@ -14,10 +14,10 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Numbers of nodes at which the clock is read; a short run leaves the last out.
+/// Numbers of nodes at which the clock is read; a short run leaves out the last one.
 const SIZES: [usize; 4] = [1_000, 10_000, 100_000, 1_000_000];
 
-/// What was run: all sizes in one space.
+/// A case: all sizes in one space.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     space: String,
@@ -26,7 +26,7 @@ struct Case {
     peer: Option<PathBuf>,
 }
 
-/// What came of it. Sizes that were not reached in time are missing.
+/// The result of a case. Sizes that were not reached in time are missing.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Run {
     ours: Vec<Row>,
@@ -39,7 +39,7 @@ struct Theirs {
     avg_nodes_per_s: f64,
 }
 
-/// Measures. True when every size was reached.
+/// Runs the suite. True when every size was reached.
 pub(crate) fn run(common: &Common) -> Result<bool> {
     let lab = Lab::one_at_a_time(common)?;
     let mut log = lab.log("scaling", common.time)?;
@@ -62,7 +62,7 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
         return Ok(false);
     }
     let reached = log.each(&cases).all(|(_, run)| run.ours.len() == sizes.len());
-    // Where the other ran out of time, its rate at the size it reached: no less than it would be here.
+    // If the other program ran out of time, its rate at the size it reached, which is an upper bound of its rate here.
     let peer =
         |run: &Run, nodes: usize| run.theirs.iter().find(|t| t.nodes >= nodes).or(run.theirs.last()).copied();
     let rows = log
@@ -89,7 +89,7 @@ pub(crate) fn run(common: &Common) -> Result<bool> {
     Ok(reached)
 }
 
-/// What the other program says of one space; sizes it does not reach in time are missing.
+/// The results of the other program in one space; sizes that it does not reach in time are missing.
 fn ask(program: &Path, space: &str, nodes: usize, seconds: f64) -> Result<Vec<Theirs>> {
     let (nodes, seconds) = (nodes.to_string(), seconds.to_string());
     let done = Command::new(program)

@@ -1,4 +1,4 @@
-//! Scenes of rigid bodies by name, and bare runs of planners in them.
+//! Scenes of rigid bodies by name, and plain runs of planners on them.
 
 use crate::error::Result;
 use crate::output::note;
@@ -20,7 +20,7 @@ pub(crate) enum Rigid {
     Plane(Box<RigidScene<Planar>>),
 }
 
-/// Does the same with a scene of either kind.
+/// Evaluates an expression with a scene of either kind.
 macro_rules! either {
     ($rigid:expr, $scene:ident => $body:expr) => {
         match $rigid {
@@ -31,18 +31,18 @@ macro_rules! either {
 }
 pub(crate) use either;
 
-/// What a bare run of a planner came to.
+/// The result of a plain run of a planner.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Planned {
     pub(crate) solved: bool,
-    /// On the wall.
+    /// Wall-clock time.
     pub(crate) seconds: f64,
     /// Collision and clearance queries.
     pub(crate) queries: u64,
     pub(crate) iterations: u64,
 }
 
-/// A request for the first path of a planner with its defaults, which stays as it is found; without a limit of time.
+/// A request for the first path of a planner with its defaults, not shortened, without a time limit.
 pub(crate) fn bare(planner: &str) -> Request {
     Request {
         first_only: true,
@@ -53,7 +53,7 @@ pub(crate) fn bare(planner: &str) -> Request {
 }
 
 impl Rigid {
-    /// The scene called `name`, with a start and a goal that are free.
+    /// The scene called `name`. Start and goal must be free.
     pub(crate) fn load(name: &str) -> Result<Self> {
         let rigid = Self::new(problem(name)?)?;
         for odd in either!(&rigid, scene => Scene::new((**scene).clone())).check_ends()? {
@@ -62,7 +62,7 @@ impl Rigid {
         Ok(rigid)
     }
 
-    /// Makes `problem` ready.
+    /// The scene of `problem`.
     pub(crate) fn new(problem: RigidProblem) -> Result<Self> {
         Ok(match problem.space {
             SpaceKind::Se3 => Self::Space(Box::new(RigidScene::new(problem)?)),
@@ -79,7 +79,7 @@ impl Rigid {
         either!(self, scene => scene.space().extent())
     }
 
-    /// A bare run; none when it was interrupted.
+    /// A plain run; `None` when it was interrupted.
     pub(crate) fn plan(&self, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
         fn on<K: RobotKind>(scene: &K, request: &Request, cancel: &Cancel) -> Result<Option<Planned>> {
             let mut control = Control { cancel: cancel.clone(), ..Control::default() };

@@ -1,14 +1,14 @@
-//! `bench`: measurements are a program of their own, so that who plans need not build it.
+//! `bench`: starts the program `mp-bench`, which is separate so that planning does not need it built.
 
 use crate::cli::Bench;
 use mp_plan::Error;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// The program that measures.
+/// The program with the benchmarks.
 const PROGRAM: &str = "mp-bench";
 
-/// Runs `mp-bench` with the arguments, from beside this program or from the path. True when it ends well.
+/// Runs `mp-bench` with the arguments, from the folder of this program or from the search path. True when it succeeds.
 pub(crate) fn run(args: &Bench) -> Result<bool, Error> {
     let name = format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX);
     let beside = std::env::current_exe().ok().and_then(|exe| Some(exe.parent()?.join(&name)));

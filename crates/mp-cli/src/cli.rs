@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, Metric, MotionValidator, PlannerInfo, Request};
+use mp_plan::{Length, Metric, MotionValidator, PlannerInfo, Request, positive_number};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -23,13 +23,13 @@ pub(crate) enum Command {
     Plan(Box<Plan>),
     /// Verify a path with the independent checker: exit 0 only if it is certified free. Or explain one configuration.
     Check(Check),
-    /// Say what is in a mesh, scene or path file.
+    /// Describe a mesh, scene or path file.
     Info(Info),
     /// Draw a scene, and a path through it, with no display.
     Render(Render),
     /// List the shipped scenes.
     Scenes,
-    /// Measure, by the program `mp-bench`.
+    /// Run benchmarks, with the program `mp-bench`.
     #[command(disable_help_flag = true)]
     Bench(Bench),
     /// Print completions for a shell.
@@ -46,19 +46,19 @@ pub(crate) struct Plan {
     /// Scene files, or names of shipped scenes (default: the shipped sample); `-` for standard input.
     #[arg(value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Which planner. With `or-` before its name independent runs of it race on all threads; with `restart-` it
-    /// begins anew when it takes too long.
+    /// Which planner. With `or-` before its name, independent runs of it race on all threads; with `restart-`, it
+    /// starts again when it takes too long.
     #[arg(long, value_name = "NAME", default_value = "rrt-connect", value_parser = PlannerName)]
     pub(crate) planner: String,
     /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
     #[arg(long, value_name = "NAME", default_value = "default",
           value_parser = PossibleValuesParser::new(metrics()).map(|name| metric(&name)))]
     pub(crate) metric: Metric,
-    /// All randomness flows from this number.
+    /// The seed of all random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// Stop after this many seconds.
-    #[arg(long, value_name = "S", default_value = "60", value_parser = positive)]
+    #[arg(long, value_name = "S", default_value = "60", value_parser = positive_number)]
     pub(crate) time: f64,
     /// Stop after this many iterations.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
@@ -68,40 +68,41 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "ε", value_parser = parsed::<Length>)]
     pub(crate) step: Option<Length>,
     /// How motions are checked: `certified` (no wall is ever missed) or `discrete:R`, at steps of R (a
-    /// distance of the metric, or a percentage of the extent). What is written is certified either way.
+    /// distance of the metric, or a percentage of the extent). The path that is written is certified in both cases.
     #[arg(long, value_name = "CHECK", default_value = "certified", value_parser = parsed::<MotionValidator>)]
     pub(crate) motion: MotionValidator,
-    /// Plan this often, with seeds N, N + 1, …, and print a table.
+    /// Plan this many times, with seeds N, N + 1, …, and print a table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,
-    /// How many runs at once; of a single run, how many threads it may use. Results do not depend on it.
+    /// How many runs at once; for a single run, how many threads it may use. Results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
     /// Set a parameter of the planner.
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// A request in JSON, as a file or `-`: planner, settings, budgets and all else; options given beside it are
-    /// ignored but for --out, --picture, --json, --runs and --threads.
+    /// A request in JSON, as a file or `-`: planner, settings, budgets and everything else. Other options are
+    /// ignored, except --out, --picture, --json, --runs and --threads.
     #[arg(long, value_name = "FILE")]
     pub(crate) request: Option<PathBuf>,
-    /// The file of a roadmap: goes on with it when it is there, and keeps what there is in the end. For the same
-    /// scene, robot and metric, and planners that build roadmaps.
+    /// The file of a roadmap: it is loaded when it exists, and the grown roadmap is saved there. For planners that
+    /// build roadmaps; scene, robot and metric must stay the same.
     #[arg(long, value_name = "FILE")]
     pub(crate) roadmap: Option<PathBuf>,
-    /// Where the path goes, by its ending: `.txt` as text, `.json`, `.csv`; `-` for text on standard output. `{scene}` and
-    /// `{seed}` stand for their names.
+    /// The file for the path, in the format of its ending: `.txt`, `.json` or `.csv`; `-` for text on standard
+    /// output. `{scene}` and `{seed}` are replaced by scene and seed.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// Where the picture goes (`.png`; of worlds in the plane `.svg` too). `{scene}` and `{seed}` stand for their names.
+    /// The file for the picture (`.png`; for worlds in the plane also `.svg`). `{scene}` and `{seed}` are replaced by
+    /// scene and seed.
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
     /// Print one JSON object on standard output, and write only the files asked for.
     #[arg(long)]
     pub(crate) json: bool,
-    /// Leave the path as the planner found it.
+    /// Keep the path as the planner found it.
     #[arg(long)]
     pub(crate) no_shorten: bool,
-    /// Instead of shortening the path, leave out what it does not need and let a snake relax it away from obstacles.
+    /// Instead of shortening the path, remove detours and let a snake relax it away from obstacles.
     #[arg(long)]
     pub(crate) relax: bool,
     /// Also write each scene to this folder as one JSON and two OFF files, for other planners.
@@ -139,7 +140,7 @@ pub(crate) struct Render {
     pub(crate) scene: PathBuf,
     /// A path: text, `.json` or `.csv`; `-` for standard input.
     pub(crate) path: Option<PathBuf>,
-    /// Where the picture goes (`.png`; of worlds in the plane `.svg` too).
+    /// The file for the picture (`.png`; for worlds in the plane also `.svg`).
     #[arg(long, visible_alias = "out", value_name = "FILE")]
     pub(crate) picture: PathBuf,
     /// Width and height in pixels.
@@ -149,12 +150,12 @@ pub(crate) struct Render {
 
 #[derive(Clone, Debug, Args)]
 pub(crate) struct Bench {
-    /// What `mp-bench` is given.
+    /// The arguments of `mp-bench`.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
     pub(crate) arguments: Vec<std::ffi::OsString>,
 }
 
-/// Takes the name of a planner, wrapped or not.
+/// Parses the name of a planner, with or without the prefix of a meta-planner.
 #[derive(Clone, Debug)]
 struct PlannerName;
 
@@ -176,7 +177,7 @@ impl TypedValueParser for PlannerName {
     }
 }
 
-/// The planners by name.
+/// The names of the planners, with summaries.
 fn planners() -> impl Iterator<Item = PossibleValue> {
     mp_plan::planners().map(|p: &PlannerInfo| {
         let also = match p.aliases {
@@ -191,22 +192,13 @@ fn metrics() -> Vec<PossibleValue> {
     Metric::ALL.iter().map(|(_, name, help)| PossibleValue::new(*name).help(*help)).collect()
 }
 
-/// A name that was checked before.
+/// The metric of a name that was checked before.
 fn metric(name: &str) -> Metric {
     name.parse().unwrap_or_default()
 }
 
 fn parsed<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
     text.parse().map_err(|e: mp_plan::Error| e.to_string())
-}
-
-/// A finite number above zero.
-fn positive(s: &str) -> Result<f64, String> {
-    match s.trim().parse::<f64>() {
-        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
-        Ok(_) => Err("must be a finite number above zero".into()),
-        Err(_) => Err("not a number".into()),
-    }
 }
 
 /// `WxH`, both from 64 to 8192.

@@ -1,10 +1,11 @@
-//! Where results go.
+//! The output files of `plan`.
 
-use crate::output::{self, is_standard};
+use crate::input::is_standard;
+use crate::output;
 use mp_plan::{Error, PathFileKind, Scene, is_same_file};
 use std::path::{Path, PathBuf};
 
-/// Where the path and the picture of each run go.
+/// The files for the path and the picture of each run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Files {
     out: Option<PathBuf>,
@@ -12,12 +13,12 @@ pub(crate) struct Files {
     roadmap: Option<PathBuf>,
 }
 
-/// The folder of files nobody named.
+/// The folder of files that the user did not name.
 const FOLDER: &str = "out";
 
 impl Files {
-    /// Files as asked for. A single run of which a person reads the summary gets both in any case, in the
-    /// folder `out`. Of several runs each must have files of its own.
+    /// The files that are asked for. A single run without JSON output always gets both, by default in the
+    /// folder `out`. With several runs, each must have its own files.
     pub(crate) fn new(
         out: Option<&Path>,
         picture: Option<&Path>,
@@ -40,7 +41,7 @@ impl Files {
             && is_standard(out)
             && (json || scenes > 1 || runs > 1)
         {
-            return Err(Error::new("--out -: standard output is taken").help("name a file"));
+            return Err(Error::new("--out -: standard output has other content").help("name a file"));
         }
         for (option, path) in [("--out", &files.out), ("--picture", &files.picture)] {
             let Some(path) = path else { continue };
@@ -56,7 +57,7 @@ impl Files {
         Ok(files)
     }
 
-    /// The files of one run.
+    /// The files of the path and the picture of one run.
     pub(crate) fn of(&self, scene: &str, seed: u64) -> (Option<PathBuf>, Option<PathBuf>) {
         let fill = |path: &PathBuf| match path.to_str() {
             Some(text) => PathBuf::from(text.replace("{scene}", scene).replace("{seed}", &seed.to_string())),
@@ -65,7 +66,7 @@ impl Files {
         (self.out.as_ref().map(fill), self.picture.as_ref().map(fill))
     }
 
-    /// Complains about files that cannot be written, are of no known kind, or are an input of the run, before any work
+    /// Refuses files that cannot be written, have no known format, or are an input of the run, before any work
     /// is done.
     pub(crate) fn check(&self, scene: &Scene, seed: u64) -> Result<(), Error> {
         let (out, picture) = self.of(scene.name(), seed);
@@ -75,7 +76,7 @@ impl Files {
             output::writable(path)?;
             if let Some(input) = scene.input_at(path) {
                 let message =
-                    format!("{option} {} would overwrite {}, which is read", path.display(), input.display());
+                    format!("{option} {} would overwrite the input {}", path.display(), input.display());
                 return Err(Error::new(message).help("name another file"));
             }
             for (other, place) in &named[..i] {

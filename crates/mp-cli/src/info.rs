@@ -1,16 +1,15 @@
-//! `info`: what is in a file.
+//! `info`: describes a file.
 
-use crate::check::json;
 use crate::cli;
-use crate::output::print;
+use crate::output::{print, print_json};
 use mp_plan::Error;
 use mp_plan::info::Info;
 
-/// Says what is in the file. True: bad files are errors.
+/// Describes the file. Always true, as bad files are errors.
 pub(crate) fn run(args: &cli::Info) -> Result<bool, Error> {
     let info = Info::read(&args.file)?;
     match args.json {
-        true => print(&json(&info)?)?,
+        true => print_json(&info)?,
         false => print(info.to_string().trim_end())?,
     }
     Ok(true)

@@ -1,8 +1,8 @@
-//! Ctrl-C: the first asks politely, the second insists.
+//! Ctrl-C: the first one cancels the run, the second one ends the program at once.
 
 use mp_plan::Cancel;
 
-/// A flag that Ctrl-C raises. The second Ctrl-C ends the program at once.
+/// A flag that is set by the first Ctrl-C. The second one ends the program at once.
 pub(crate) fn flag() -> Cancel {
     let cancel = Cancel::new();
     let raised = cancel.clone();

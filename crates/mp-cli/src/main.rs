@@ -7,12 +7,14 @@ mod check;
 mod cli;
 mod files;
 mod info;
+mod input;
 mod interrupt;
 mod log;
 mod output;
 mod plan;
 mod progress;
 mod render;
+mod request;
 mod text;
 
 use clap::{CommandFactory, Parser};
@@ -43,7 +45,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// The names of the shipped scenes.
+/// Prints the names of the shipped scenes.
 fn scenes() -> Result<bool, Error> {
     output::print(&mp_plan::Scene::shipped().join("\n"))?;
     Ok(true)

@@ -1,10 +1,11 @@
-//! Standard output, and files that are written whole or not at all.
+//! Standard output, standard error, and output files.
 
-use mp_plan::Error;
-use std::io::{ErrorKind, Read, Write};
+use crate::input::is_standard;
+use mp_plan::{Error, folder_of, write_file};
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Prints a line on standard output. A reader that went away is no error.
+/// Prints a line on standard output. A closed pipe is not an error.
 pub(crate) fn print(line: &str) -> Result<(), Error> {
     match writeln!(std::io::stdout().lock(), "{line}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
@@ -14,45 +15,26 @@ pub(crate) fn print(line: &str) -> Result<(), Error> {
     }
 }
 
+/// Prints an answer as JSON on standard output.
+pub(crate) fn print_json(answer: &impl serde::Serialize) -> Result<(), Error> {
+    print(&serde_json::to_string(answer).map_err(|e| Error::new(format!("cannot write JSON: {e}")))?)
+}
+
 /// Prints a line for the person watching, on standard error.
 pub(crate) fn note(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
-/// All of standard input, which must be text of at most 64 MiB.
-pub(crate) fn standard_input() -> Result<String, Error> {
-    const MOST: u64 = mp_io::MAX_TEXT_BYTES;
-    let mut text = String::new();
-    let read = std::io::stdin().lock().take(MOST + 1).read_to_string(&mut text);
-    read.map_err(|e| Error::new(format!("cannot read standard input: {e}")))?;
-    match text.len() as u64 > MOST {
-        true => Err(Error::new(format!("standard input has more than {MOST} bytes"))),
-        false => Ok(text),
-    }
-}
-
-/// Whether a name stands for standard input or output.
-pub(crate) fn is_standard(path: &Path) -> bool {
-    path.as_os_str() == "-"
-}
-
-/// Writes `bytes` to `path` whole or not at all; to standard output for `-`. Makes the folder when it is missing.
+/// Writes `bytes` to `path`, whole or not at all, or to standard output for `-`. Makes the folder when it is missing.
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     if is_standard(path) {
         let written = std::io::stdout().lock().write_all(bytes);
         return written.map_err(|e| Error::new(format!("cannot write to standard output: {e}")));
     }
-    let folder = folder_of(path);
-    std::fs::create_dir_all(folder)
-        .map_err(|e| Error::new(format!("cannot make the folder {}: {e}", folder.display())))?;
-    Ok(mp_io::write_atomic(path, bytes)?)
+    write_file(path, bytes)
 }
 
-fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Complains early about a path that [`write()`] will not be able to write.
+/// Refuses a path that [`write()`] would not be able to write.
 pub(crate) fn writable(path: &Path) -> Result<(), Error> {
     if path.is_dir() {
         return Err(Error::new(format!("{} is a folder", path.display())).help("name a file"));
@@ -72,16 +54,6 @@ pub(crate) fn writable(path: &Path) -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn files_are_replaced_whole_and_leave_nothing_behind() {
-        let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("a/b.txt");
-        write(&path, b"one").unwrap();
-        write(&path, b"two").unwrap();
-        assert_eq!(std::fs::read(&path).unwrap(), b"two");
-        assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
-    }
 
     #[test]
     fn what_cannot_be_written_is_known_beforehand() {

@@ -1,20 +1,21 @@
-//! `plan`: scenes and seeds to reports, files and an exit code.
+//! `plan`: plans on scenes with seeds, and writes reports and files.
 
-use crate::check::scene;
 use crate::cli::Plan;
 use crate::files::Files;
-use crate::output::{is_standard, note, print, standard_input, write};
+use crate::input::{is_standard, scene};
+use crate::interrupt;
+use crate::output::{note, print, print_json, write};
 use crate::progress::Line;
+use crate::request::request;
 use crate::text::{caption, summary, table};
-use crate::{check, interrupt};
 use mp_plan::{
-    Budget, Cancel, Control, Error, Finish, PICTURE_SIZE, PathFileKind, PathRows, Report, Request, Runs,
-    Scene, in_parallel,
+    Cancel, Control, Error, PICTURE_SIZE, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel,
+    make_folder,
 };
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// The scene planned on when none is named.
+/// The default scene.
 const SAMPLE: &str = "cubicles";
 
 /// Plans on every scene with every seed. True when all runs are solved.
@@ -72,59 +73,12 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let (missing, solved) = (jobs.len() - reports.len(), reports.iter().all(|r| r.solved));
     show(args, reports, single)?;
     if missing > 0 {
-        note(&format!("interrupted: {missing} of {} runs were not begun", jobs.len()));
+        note(&format!("interrupted: {missing} of {} runs were not started", jobs.len()));
     }
     Ok(missing == 0 && solved)
 }
 
-/// What the command line asks for.
-fn request(args: &Plan) -> Result<Request, Error> {
-    let single = args.scenes.len() <= 1 && args.runs == 1;
-    let threads = if single { usize::from(args.threads) } else { 1 };
-    if let Some(file) = &args.request {
-        let text = match is_standard(file) {
-            true => standard_input()?,
-            false => String::from_utf8_lossy(&mp_io::read_text(file)?.1).into_owned(),
-        };
-        let read: Request = serde_json::from_str(&text).map_err(|e| {
-            Error::new(format!("{} is no request: {e}", file.display()))
-                .help("docs/formats/report.md describes requests")
-        })?;
-        let request = Request { threads, ..read };
-        request.check()?;
-        return Ok(request);
-    }
-    let mut request = Request {
-        planner: args.planner.clone(),
-        metric: args.metric,
-        motion: args.motion,
-        budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
-        seed: args.seed,
-        threads,
-        finish: match (args.relax, args.no_shorten) {
-            (true, _) => Finish::Relax,
-            (false, true) => Finish::AsFound,
-            (false, false) => Finish::Shorten,
-        },
-        roadmap: args.roadmap.clone(),
-        ..Request::default()
-    };
-    if let Some(step) = args.step {
-        request = request.set("step", step);
-    }
-    for text in &args.set {
-        match text.split_once('=') {
-            Some((key, value)) if !key.trim().is_empty() => request = request.set(key.trim(), value.trim()),
-            _ => return Err(Error::new(format!("cannot read the setting `{text}`")).help("write KEY=VALUE")),
-        }
-    }
-    if request.roadmap.is_some() && !single {
-        return Err(Error::new("--roadmap goes with a single run").help("name one scene, without --runs"));
-    }
-    request.check()?;
-    Ok(request)
-}
-
+/// Refuses bad output files, and two runs with the same file.
 fn check_files(files: &Files, scenes: &[Scene], jobs: &[(usize, u64)]) -> Result<(), Error> {
     let mut taken = HashSet::new();
     for &(i, seed) in jobs {
@@ -169,15 +123,14 @@ fn one(
     Ok(report)
 }
 
-/// Prints what came of it: JSON on standard output, or a summary or table. Where the path goes to standard output, that
-/// is all that is there.
+/// Prints the results: JSON on standard output, or a summary or table, which go to standard error when the path is on
+/// standard output.
 fn show(args: &Plan, reports: Vec<Report>, single: bool) -> Result<(), Error> {
     if args.json {
-        let text = match reports.as_slice() {
-            [only] if single => only.to_json()?,
-            _ => check::json(&Runs::new(reports))?,
+        return match reports.as_slice() {
+            [only] if single => print(&only.to_json()?),
+            _ => print_json(&Runs::new(reports)),
         };
-        return print(&text);
     }
     let taken = args.out.as_deref().is_some_and(is_standard);
     let tell = |text: &str| match taken {
@@ -199,8 +152,7 @@ fn show(args: &Plan, reports: Vec<Report>, single: bool) -> Result<(), Error> {
 
 /// Writes every scene as one JSON and two OFF files.
 fn export(folder: &Path, scenes: &[Scene]) -> Result<(), Error> {
-    std::fs::create_dir_all(folder)
-        .map_err(|e| Error::new(format!("cannot make the folder {}: {e}", folder.display())))?;
+    make_folder(folder)?;
     for scene in scenes {
         note(&format!("exported {}", scene.export(folder)?.display()));
     }

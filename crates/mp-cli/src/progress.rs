@@ -1,10 +1,10 @@
-//! The live line on standard error. It is not there when nobody watches (no terminal).
+//! The progress line on standard error, shown only on a terminal.
 
 use mp_plan::{Progress, Stage, Watch};
 use std::io::{IsTerminal, Write};
 use std::time::Instant;
 
-/// A line that says what is going on.
+/// A line that shows the progress of a run.
 #[derive(Debug)]
 pub(crate) struct Line {
     name: String,
@@ -14,7 +14,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// A line for what is called `name`; hidden when `shown` is false, or standard error is no terminal.
+    /// A line that begins with `name`; hidden when `shown` is false or standard error is not a terminal.
     pub(crate) fn new(name: &str, budget: Option<f64>, shown: bool) -> Self {
         let shown = shown && std::io::stderr().is_terminal();
         Self { name: name.to_owned(), began: Instant::now(), budget, shown }
@@ -30,7 +30,7 @@ impl Line {
     }
 }
 
-/// Takes the line away.
+/// Clears the line.
 impl Drop for Line {
     fn drop(&mut self) {
         if self.shown {

@@ -1,8 +1,8 @@
-//! What is said about runs to a person.
+//! Summaries and tables of runs, for people.
 
 use mp_plan::{Report, StoppedBy, brief, medians};
 
-/// A few lines for a person.
+/// A summary of one run, a few lines.
 pub(crate) fn summary(report: &Report) -> String {
     let mut lines = Vec::new();
     let by = format!("{}, seed {}", report.planner, report.seed);
@@ -33,8 +33,8 @@ pub(crate) fn summary(report: &Report) -> String {
     );
     match report.rejected {
         0 => {}
-        1 => row("rejected", "1 candidate path that the verifier did not pass".into()),
-        n => row("rejected", format!("{} candidate paths that the verifier did not pass", grouped(n))),
+        1 => row("rejected", "1 candidate path, by the verifier".into()),
+        n => row("rejected", format!("{} candidate paths, by the verifier", grouped(n))),
     }
     if let (Some(time), Some(length)) = (report.first_s, report.first_length) {
         row("first path", format!("after {}, length {}", seconds(time), brief(length)));
@@ -57,12 +57,13 @@ pub(crate) fn summary(report: &Report) -> String {
     lines.join("\n")
 }
 
-/// One line for the picture.
+/// The caption of the picture.
 pub(crate) fn caption(report: &Report) -> String {
     let length = report.path_length.map(|l| format!(", length {}", brief(l))).unwrap_or_default();
     format!("{}, seed {}: {} nodes{length}", report.planner, report.seed, grouped(report.nodes as u64))
 }
 
+/// Why a run stopped, with the option that sets the limit.
 fn explained(reason: StoppedBy) -> String {
     let option = match reason {
         StoppedBy::Time => " (--time)",
@@ -72,7 +73,7 @@ fn explained(reason: StoppedBy) -> String {
     format!("{reason}{option}")
 }
 
-/// `0.0123 s`, `12.3 s`.
+/// A time: `12.3 ms`, `0.50 s`, `60.0 s`.
 fn seconds(s: f64) -> String {
     match s {
         s if s < 0.1 => format!("{:.1} ms", 1e3 * s),
@@ -81,7 +82,7 @@ fn seconds(s: f64) -> String {
     }
 }
 
-/// `12 345`.
+/// A number with its digits in groups of three: `12 345`.
 fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();

@@ -17,7 +17,7 @@ fn a_scene_comes_in_and_a_path_goes_out() {
     let both = fed(&dir, &["check", "-", "-"], "");
     assert!(both.code == 2 && both.stderr.contains("standard input"), "{both:?}");
     let taken = mp(&dir, &["plan", "window.env", "--out", "-", "--json"]);
-    assert!(taken.code == 2 && taken.stderr.contains("taken"), "{taken:?}");
+    assert!(taken.code == 2 && taken.stderr.contains("standard output has other content"), "{taken:?}");
 }
 
 #[test]

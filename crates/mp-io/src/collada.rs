@@ -1,11 +1,12 @@
 //! COLLADA 1.4 and 1.5: the meshes of the visual scene. See `docs/formats/meshes.md`.
 //!
-//! Read as the importer does that OMPL.app uses (assimp), so that its problem files mean the same here:
+//! Files are read as by assimp, the importer of OMPL.app, so that its problem files mean the same here:
 //! node transforms are applied, then the unit of length, then the up axis is turned to Y.
 
 pub(crate) mod center;
 mod document;
 mod geometry;
+mod primitive;
 mod scene;
 #[cfg(test)]
 mod tests;
@@ -23,7 +24,7 @@ use std::rc::Rc;
 /// The most triangles and vertices that the instances of a scene may have together.
 const MAX_INSTANCED: usize = 50_000_000;
 
-/// A geometry and where the scene puts it.
+/// A geometry and its place in the scene.
 pub(crate) struct Instance {
     geometry: Rc<Geometry>,
     /// From the frame of the geometry to the world.
@@ -39,14 +40,14 @@ pub(crate) struct Scene {
 /// metres, Y up, as one mesh.
 ///
 /// # Errors
-/// [`Error`] when it is not COLLADA or uses what is not read here, with the line and column.
+/// [`Error`] when it is not COLLADA or uses a feature that is not read here, with the line and column.
 pub fn parse_collada(file: &str, bytes: &[u8]) -> Result<TriMesh, Error> {
     Scene::parse(file, bytes)?.to_mesh(file)
 }
 
 impl Scene {
     pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let text = crate::source::decode(file, bytes)?;
+        let text = crate::files::decode(file, bytes)?;
         document::refuse_floods(file, text)?;
         let options = roxmltree::ParsingOptions { nodes_limit: document::MAX_NODES, ..Default::default() };
         let xml = roxmltree::Document::parse_with_options(text, options)
@@ -83,7 +84,7 @@ impl Scene {
     }
 }
 
-/// The affine part only, as the importer does.
+/// `p` transformed by the affine part of `m` only, as the importer does.
 fn transformed(m: &Matrix4<f64>, p: &Point3<f64>) -> Point3<f64> {
     Point3::from(m.fixed_view::<3, 3>(0, 0) * p.coords + m.fixed_view::<3, 1>(0, 3))
 }

@@ -5,7 +5,7 @@ use crate::number::Num;
 use crate::text::Text;
 use std::fmt::Write as _;
 
-/// The rows of a path in comma-separated values: a first line of names is skipped, blank lines may stand anywhere, and
+/// The rows of a path in comma-separated values: a first line of names is skipped, so are blank lines, and
 /// all rows have as many numbers as the first.
 ///
 /// # Errors

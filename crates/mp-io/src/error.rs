@@ -1,4 +1,4 @@
-//! The one error of this crate: what is wrong, where, what was expected and what to do about it.
+//! The error of this crate: what is wrong, where, what was expected and what to do about it.
 
 use std::fmt::{self, Display};
 use std::path::Path;
@@ -11,11 +11,11 @@ pub enum ErrorKind {
     Io,
     /// The text or the bytes do not follow the format.
     Format,
-    /// The format allows it, this crate does not read it.
+    /// The format allows it, but this crate does not read it.
     Unsupported,
     /// Well formed, but its content makes no sense: an empty mesh, a start outside the bounds.
     Content,
-    /// Larger than this crate is willing to read.
+    /// Larger than this crate reads.
     TooLarge,
 }
 
@@ -38,7 +38,7 @@ struct Inner {
     cited_at: Option<String>,
 }
 
-/// The line an error is in, cut to what fits a screen, so that an error never holds a whole file.
+/// The part of a line around an error, short enough for a screen, so that an error never holds a whole file.
 #[derive(Clone, Debug)]
 struct Excerpt {
     text: String,
@@ -66,7 +66,7 @@ impl Error {
         }))
     }
 
-    /// An error of the operating system on `path`; `doing` completes "cannot …".
+    /// An error of the operating system about `path`; `doing` completes "cannot …".
     pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
         let why = match error.kind() {
             std::io::ErrorKind::NotFound => "no such file".to_owned(),
@@ -110,7 +110,7 @@ impl Error {
         self
     }
 
-    /// Notes that the file in error was named at this place of another file.
+    /// Adds the place at which another file names the file in error.
     pub(crate) fn cited_at(mut self, place: String) -> Self {
         self.0.cited_at = Some(place);
         self
@@ -127,19 +127,19 @@ impl Error {
         self.0.kind
     }
 
-    /// The file in error, as it was named.
+    /// The file in error, by the name it was given.
     #[must_use]
     pub fn file(&self) -> &str {
         &self.0.file
     }
 
-    /// The line in error, counted from 1; `None` when the error is not in one place of a text.
+    /// The line of the error, counted from 1; `None` when the error is not at one place of a text.
     #[must_use]
     pub fn line(&self) -> Option<usize> {
         self.0.position.map(|p| p.0)
     }
 
-    /// The column in error, in characters, counted from 1.
+    /// The column of the error, in characters, counted from 1.
     #[must_use]
     pub fn column(&self) -> Option<usize> {
         self.0.position.map(|p| p.1)
@@ -163,7 +163,12 @@ impl Error {
         self.0.help.as_deref()
     }
 
-    /// A few lines for a person: what is wrong and where, the line of the file with a mark under what is wrong in it,
+    /// What to do about a file that another file names and that cannot be used.
+    pub(crate) fn remedy_of_named_file(&self) -> &str {
+        self.remedy().unwrap_or("check the name of the file")
+    }
+
+    /// A few lines for a person: what is wrong and where, the line of the file with the wrong part underlined,
     /// and what to do. They end without a line break.
     ///
     /// ```text
@@ -234,7 +239,7 @@ impl Excerpt {
         }
     }
 
-    /// Blanks up to what is wrong, then a mark as long as that; tabs stay, so that it stands below it.
+    /// Blanks up to the wrong part, then a mark as long as it; tabs stay tabs, so that the mark is right below.
     fn mark(&self) -> String {
         let before = self.text[..self.start].chars().map(|c| if c == '\t' { '\t' } else { ' ' });
         let wrong = self.text[self.start..self.start + self.len].chars().count().max(1);
@@ -242,7 +247,7 @@ impl Excerpt {
     }
 }
 
-/// Without control characters, which could do anything to a terminal.
+/// The text without control characters, which could disturb a terminal.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() && c != '\t' { '\u{fffd}' } else { c }).collect()
 }
@@ -259,6 +264,7 @@ pub(crate) fn line_of(text: &[u8], at: usize) -> (usize, usize) {
     (line, start)
 }
 
+/// The last boundary of a character at or before byte `at`.
 fn floor_boundary(text: &str, mut at: usize) -> usize {
     while !text.is_char_boundary(at) {
         at -= 1;

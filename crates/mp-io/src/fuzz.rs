@@ -1,6 +1,6 @@
 //! Entry points for fuzzing: one function for each format, to be called with any bytes at all.
 //!
-//! Each reads the bytes, and when they are good checks that writing and reading again gives the same. None
+//! Each reads the bytes and, when they are valid, checks that writing and reading again gives the same. None
 //! may panic, whatever the bytes. The test `fuzz` of this crate calls them with mutated files, as many as
 //! `MP_FUZZ_ITERATIONS` says; `docs/fuzzing.md` tells how to call them from a coverage-guided fuzzer.
 
@@ -10,12 +10,13 @@ use crate::{
 };
 use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
+use std::fmt::Debug;
 
-/// Reads bytes that may be anything; tells whether they were good.
+/// Reads any bytes; returns whether they were valid.
 pub type Target = fn(&[u8]) -> bool;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 15] = [
+pub const TARGETS: [(&str, Target); 16] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -28,6 +29,7 @@ pub const TARGETS: [(&str, Target); 15] = [
     ("robot-problem", robot_problem),
     ("joint-path", joint_path),
     ("json-joint-path", json_joint_path),
+    ("csv-path", csv_path),
     ("planar-world", planar_world),
     ("ros-map", ros_map),
     ("map-image", map_image),
@@ -35,108 +37,107 @@ pub const TARGETS: [(&str, Target); 15] = [
 
 /// OFF documents.
 pub fn off(bytes: &[u8]) -> bool {
-    let Some(document) = good(OffDocument::parse("f.off", bytes)) else { return false };
-    let again = good(OffDocument::parse("f.off", document.to_text().as_bytes()));
+    let Some(document) = valid(OffDocument::parse("f.off", bytes)) else { return false };
+    let again = valid(OffDocument::parse("f.off", document.to_text().as_bytes()));
     assert_eq!(again.as_ref(), Some(&document));
-    good(document.to_mesh("f.off")).is_some()
+    valid(document.to_mesh("f.off")).is_some()
 }
 
 /// GEMPA `.txt` meshes.
 pub fn gempa_mesh(bytes: &[u8]) -> bool {
-    let Some(mesh) = good(parse_gempa_mesh("f.txt", bytes)) else { return false };
-    same_triangles(&mesh, good(parse_gempa_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes())));
+    let Some(mesh) = valid(parse_gempa_mesh("f.txt", bytes)) else { return false };
+    same_triangles(&mesh, valid(parse_gempa_mesh("f.txt", gempa_mesh_text(&mesh).as_bytes())));
     true
 }
 
 /// GEMPA environments.
 pub fn gempa_environment(bytes: &[u8]) -> bool {
-    let Some(environment) = good(Environment::parse("f.env", bytes)) else { return false };
-    assert_eq!(good(Environment::parse("f.env", environment.to_text().as_bytes())), Some(environment));
-    true
+    round_trips(bytes, |b| Environment::parse("f.env", b), Environment::to_text)
 }
 
 /// GEMPA configuration files.
 pub fn gempa_path(bytes: &[u8]) -> bool {
-    let Some(path) = good(PathFile::parse("f.txt", bytes)) else { return false };
-    assert_eq!(good(PathFile::parse("f.txt", path.to_text().as_bytes())), Some(path));
-    true
+    round_trips(bytes, |b| PathFile::parse("f.txt", b), PathFile::to_text)
 }
 
 /// Paths in JSON.
 pub fn json_path(bytes: &[u8]) -> bool {
-    let Some(path) = good(PathFile::parse_json("f.json", bytes)) else { return false };
-    assert_eq!(good(PathFile::parse_json("f.json", path.to_json().as_bytes())), Some(path));
-    true
+    round_trips(bytes, |b| PathFile::parse_json("f.json", b), PathFile::to_json)
 }
 
 /// STL, text and binary.
 pub fn stl(bytes: &[u8]) -> bool {
-    let Some(mesh) = good(parse_stl("f.stl", bytes)) else { return false };
-    same_triangles(&mesh, good(parse_stl("f.stl", stl_text(&mesh).as_bytes())));
+    let Some(mesh) = valid(parse_stl("f.stl", bytes)) else { return false };
+    same_triangles(&mesh, valid(parse_stl("f.stl", stl_text(&mesh).as_bytes())));
     true
 }
 
 /// OBJ.
 pub fn obj(bytes: &[u8]) -> bool {
-    good(parse_obj("f.obj", bytes)).is_some()
+    valid(parse_obj("f.obj", bytes)).is_some()
 }
 
 /// COLLADA.
 pub fn collada(bytes: &[u8]) -> bool {
-    let Some(scene) = good(Scene::parse("f.dae", bytes)) else { return false };
+    let Some(scene) = valid(Scene::parse("f.dae", bytes)) else { return false };
     let _ = scene.center();
-    good(scene.to_mesh("f.dae")).is_some()
+    valid(scene.to_mesh("f.dae")).is_some()
 }
 
 /// OMPL.app problems.
 pub fn ompl_app(bytes: &[u8]) -> bool {
-    good(OmplProblem::parse("f.cfg", bytes)).is_some()
+    valid(OmplProblem::parse("f.cfg", bytes)).is_some()
 }
 
 /// Robot problems.
 pub fn robot_problem(bytes: &[u8]) -> bool {
-    good(RobotFile::parse("f.toml", bytes)).is_some()
+    valid(RobotFile::parse("f.toml", bytes)).is_some()
 }
 
 /// Paths of joint values.
 pub fn joint_path(bytes: &[u8]) -> bool {
-    let Some(path) = good(JointPath::parse("f.txt", bytes)) else { return false };
-    assert_eq!(good(JointPath::parse("f.txt", path.to_text().as_bytes())), Some(path));
-    true
+    round_trips(bytes, |b| JointPath::parse("f.txt", b), JointPath::to_text)
 }
 
 /// Paths of joint values in JSON.
 pub fn json_joint_path(bytes: &[u8]) -> bool {
-    let Some(path) = good(JointPath::parse_json("f.json", bytes)) else { return false };
-    assert_eq!(good(JointPath::parse_json("f.json", path.to_json().as_bytes())), Some(path));
-    true
+    round_trips(bytes, |b| JointPath::parse_json("f.json", b), JointPath::to_json)
 }
 
 /// Paths as comma-separated values.
 pub fn csv_path(bytes: &[u8]) -> bool {
-    let Some(rows) = good(parse_csv("f.csv", bytes)) else { return false };
-    assert_eq!(good(parse_csv("f.csv", csv_text(&[], &rows).as_bytes())), Some(rows));
-    true
+    round_trips(bytes, |b| parse_csv("f.csv", b), |rows| csv_text(&[], rows))
 }
 
 /// Worlds in the plane.
 pub fn planar_world(bytes: &[u8]) -> bool {
-    good(PlanarFile::parse("f.toml", bytes)).is_some()
+    valid(PlanarFile::parse("f.toml", bytes)).is_some()
 }
 
 /// Maps of ROS.
 pub fn ros_map(bytes: &[u8]) -> bool {
-    good(RosMap::parse("f.yaml", bytes)).is_some()
+    valid(RosMap::parse("f.yaml", bytes)).is_some()
 }
 
-/// Images, and what is dark in them.
+/// Images, and the outline of their dark pixels.
 pub fn map_image(bytes: &[u8]) -> bool {
-    let Some(grid) = good(GridMap::parse("f.png", bytes)) else { return false };
+    let Some(grid) = valid(GridMap::parse("f.png", bytes)) else { return false };
     grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0).is_ok()
 }
 
-/// What was read. An error must be fit to be shown: one line, a place inside the file, a remedy.
-fn good<T>(read: Result<T, Error>) -> Option<T> {
+/// Whether the bytes are valid. Checks that writing the value and reading it again gives the same.
+fn round_trips<T: PartialEq + Debug>(
+    bytes: &[u8],
+    read: impl Fn(&[u8]) -> Result<T, Error>,
+    text: impl Fn(&T) -> String,
+) -> bool {
+    let Some(value) = valid(read(bytes)) else { return false };
+    assert_eq!(valid(read(text(&value).as_bytes())), Some(value));
+    true
+}
+
+/// The value that was read. Checks of an error that it can be shown: one line, a place inside the file, a remedy.
+fn valid<T>(read: Result<T, Error>) -> Option<T> {
     let error = match read {
         Ok(value) => return Some(value),
         Err(error) => error,

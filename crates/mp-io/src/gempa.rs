@@ -3,8 +3,6 @@
 
 pub(crate) mod environment;
 pub(crate) mod mesh;
-pub(crate) mod path;
 
 pub use environment::{Environment, Obstacle};
 pub use mesh::{gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use path::PathFile;

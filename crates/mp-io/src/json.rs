@@ -1,12 +1,10 @@
-//! Paths and results of planning as JSON.
+//! Paths in JSON, alone or in a result of planning.
 
 use crate::error::{Error, ErrorKind};
-use crate::gempa::PathFile;
-use crate::source::decode;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// What is read of a result: its path. All other members may be there and are skipped.
+/// The part of a result that is read: its path. All other members are skipped.
 #[derive(Deserialize)]
 struct HasPath<R> {
     path: Option<Vec<R>>,
@@ -50,26 +48,7 @@ pub(crate) fn rows_text<R: Serialize>(path: &[R]) -> String {
     one_line.replace("[[", "[\n[").replace("],[", "],\n[").replace("]]", "]\n]") + "\n"
 }
 
-impl PathFile {
-    /// Reads `bytes`, the content of a JSON file that errors call `file`: an object with a member `path`, a
-    /// list of six-tuples; its other members are skipped.
-    ///
-    /// # Errors
-    /// [`Error`] when it is not JSON or has no path, with the line and column.
-    pub fn parse_json(file: &str, bytes: &[u8]) -> Result<Self, Error> {
-        let text = decode(file, bytes)?;
-        let configurations = parse_rows(file, text, "{\"path\": [[x, y, z, α, β, γ], …]}")?;
-        Ok(Self { configurations })
-    }
-
-    /// The path as JSON: an object with the member `path`, one six-tuple on a line.
-    #[must_use]
-    pub fn to_json(&self) -> String {
-        rows_text(&self.configurations)
-    }
-}
-
-/// The byte before which serde_json found fault; its lines count from 1, its columns are bytes read.
+/// The byte at which serde_json found the error; its lines count from 1, its columns are the bytes read.
 fn offset(text: &str, line: usize, column: usize) -> usize {
     let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     (start + column.saturating_sub(1)).min(text.len())

@@ -5,9 +5,9 @@
 //! - [`PlanarProblem::load`] reads a world in the plane.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
-//! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: mesh formats.
+//! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: single mesh formats.
 //!
-//! Every reader takes a path, or bytes with the name errors should give. Errors ([`Error`]) say file, line,
+//! Every reader takes a path, or bytes and the name that errors call them. Errors ([`Error`]) say file, line,
 //! column, what was expected and what to do; no input makes a reader panic, hang or use memory out of
 //! proportion to its size. Every writer writes to a temporary file and renames it. Lengths are metres and
 //! angles radians. The formats are documented in `docs/formats/`.
@@ -15,6 +15,7 @@
 mod collada;
 mod csv;
 mod error;
+mod files;
 pub mod fuzz;
 mod gempa;
 mod json;
@@ -23,26 +24,27 @@ mod number;
 mod obj;
 mod off;
 mod ompl;
+mod path;
 mod planar;
 mod problem;
 mod robot;
-mod source;
 mod stl;
-mod tables;
 mod text;
+mod toml_problem;
 
 pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
 pub use error::{Error, ErrorKind};
-pub use gempa::{Environment, Obstacle, PathFile, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
+pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
+pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
 pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh};
 pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
+pub use path::{JointPath, PathFile};
 pub use planar::{
     GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
-pub use robot::{JointPath, ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
-pub use source::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
+pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
 pub use stl::{parse_stl, stl_text, write_stl};

@@ -1,24 +1,24 @@
-//! Reading a mesh of any format, and making triangles of what a format gives.
+//! Reading a mesh of any format, and making triangles of polygons.
 
 use crate::collada::parse_collada;
 use crate::error::{Error, ErrorKind};
+use crate::files::{Disk, Files, MAX_MESH_BYTES};
 use crate::gempa::parse_gempa_mesh;
 use crate::obj::parse_obj;
 use crate::off::OffDocument;
-use crate::source::{Disk, Files, MAX_MESH_BYTES};
 use crate::stl::parse_stl;
 use mp_geom::{MeshError, TriMesh};
 use nalgebra::Point3;
 use std::path::Path;
 
-/// The most corners of a polygon that is cut into triangles; the time grows with their square.
+/// The most corners of a polygon that is cut into triangles; the time grows with the square of the corners.
 pub const MAX_CORNERS: usize = 4096;
-/// The largest sum of the squares of the corners of all polygons of a mesh, those up to 16 left out: about a
+/// The largest sum, over all polygons of a mesh with more than 16 corners, of the squares of their corners: about a
 /// minute.
 const MAX_CUTTING: usize = 1_000_000_000;
 
-/// Reads the mesh `path`: OFF, GEMPA `.txt`, STL, OBJ or COLLADA. The extension decides; a name that tells
-/// nothing is decided by the content.
+/// Reads the mesh `path`: OFF, GEMPA `.txt`, STL, OBJ or COLLADA. The extension of the name decides, or,
+/// when it is not known, the content.
 ///
 /// # Errors
 /// [`Error`] when it cannot be read, is of no known format, or has no triangles.
@@ -26,7 +26,7 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<TriMesh, Error> {
     read_mesh_of(&Disk, path.as_ref())
 }
 
-/// The same of files from elsewhere.
+/// As [`read_mesh`], with the file read through `files`.
 pub(crate) fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
     let bytes = files.read(path, MAX_MESH_BYTES)?;
     let file = path.display().to_string();
@@ -114,6 +114,7 @@ pub(crate) fn build<'a>(
     TriMesh::from_polygons(vertices, faces).map_err(|e| mesh_error(file, &e))
 }
 
+/// The error of a file whose triangles do not make a mesh.
 pub(crate) fn mesh_error(file: &str, e: &MeshError) -> Error {
     let error = Error::new(ErrorKind::Content, file, e.to_string());
     match e {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Shows a number with the fewest digits that read back to the same bits; very large and very small ones
+/// A number, shown with the fewest digits that read back to the same bits; very large and very small ones
 /// with an exponent.
 #[derive(Clone, Copy)]
 pub(crate) struct Num(pub(crate) f64);

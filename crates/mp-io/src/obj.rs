@@ -6,7 +6,7 @@ use crate::text::{Text, Token, clipped};
 use mp_geom::TriMesh;
 use nalgebra::Point3;
 
-/// Statements that are skipped: they carry no surface, or only its look.
+/// Statements that are skipped: they describe no surface, or only its appearance.
 const SKIPPED: [&str; 21] = [
     "vt",
     "vn",
@@ -115,7 +115,7 @@ fn vertex(text: &Text<'_>, line: Token<'_>, values: &[Token<'_>]) -> Result<Poin
     Ok(p)
 }
 
-/// The vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`: from 1, or backwards from −1, the last one so far.
+/// The index of the vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`, which counts from 1, or back from −1, the last vertex so far.
 fn corner(text: &Text<'_>, word: Token<'_>, so_far: usize, total: usize) -> Result<u32, Error> {
     let what = "v, v/vt, v//vn or v/vt/vn";
     let mut parts = word.text.split('/');

@@ -8,7 +8,7 @@ pub use write::{off_text, write_off};
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 
-/// A colour as an OFF file writes it.
+/// A colour, in the form in which an OFF file has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum OffColor {
     /// Index into a colour map.
@@ -41,13 +41,13 @@ impl OffColor {
 /// A face: a polygon, and its colour if it has one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffFace {
-    /// Its corners, as indices of vertices. One or two make a point or a segment, which is no surface.
+    /// Its corners, as indices of vertices. One or two make a point or a segment, which is not a surface.
     pub corners: Vec<u32>,
     /// Its colour.
     pub color: Option<OffColor>,
 }
 
-/// What an OFF file says, nothing added and nothing left out.
+/// The whole content of an OFF file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OffDocument {
     /// The comments, without the `#`, in the order of the file.

@@ -1,4 +1,4 @@
-//! OMPL.app: its problem files, and the way to other planners' benchmarks. See `docs/formats/ompl-app.md`.
+//! OMPL.app: its problem files, and problems exported for other planners. See `docs/formats/ompl-app.md`.
 
 mod config;
 mod export;

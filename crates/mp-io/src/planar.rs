@@ -1,18 +1,19 @@
 //! Worlds in the plane: polygons, images and maps, a robot, a start and goals, in TOML.
 
 mod grid;
-mod load;
-mod map;
 mod pnm;
+mod problem;
+mod ros_map;
 #[cfg(test)]
 mod tests;
 
 pub use grid::GridMap;
-pub use map::RosMap;
+pub use problem::PlanarProblem;
+pub use ros_map::RosMap;
 
 use crate::error::Error;
-use crate::source::decode;
-use crate::tables::Source;
+use crate::files::decode;
+use crate::toml_problem::{MotionPlaces, MotionTable, TomlText};
 use mp_geom::planar::Polygon;
 use nalgebra::Point2;
 use serde::Deserialize;
@@ -37,13 +38,13 @@ pub enum PlanarShape {
 /// An obstacle of a [`PlanarFile`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanarObstacle {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Its shape in the world, metres.
     pub polygon: Polygon,
 }
 
-/// The image of a world, as the file says it.
+/// The image or map of a world, as the file names it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PlanarMap {
     /// An image with its scale.
@@ -54,23 +55,23 @@ pub enum PlanarMap {
         scale: f64,
         /// The lower left corner, metres.
         origin: [f64; 2],
-        /// What is darker, of 0 (black) to 1 (white), is obstacle.
+        /// Pixels darker than this are obstacles; 0 is black, 1 white.
         threshold: f64,
     },
-    /// The name of a map as ROS's map_server has them.
+    /// The name of a map file of ROS's map_server.
     Ros(String),
 }
 
-/// What a file of a world in the plane says, other files not yet read.
+/// The content of a file of a world in the plane; the files that it names are not yet read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanarFile {
     /// Lower and upper corner of walls around everything.
     pub walls: Option<[[f64; 2]; 2]>,
-    /// Lower and upper corner of where the origin of the robot may be.
+    /// Lower and upper corner of the region in which the origin of the robot may be.
     pub bounds: Option<[[f64; 2]; 2]>,
     /// An image whose dark pixels are obstacles.
     pub map: Option<PlanarMap>,
-    /// Whether what a ROS map does not know is free.
+    /// Whether the unknown pixels of a ROS map are free.
     pub unknown_is_free: bool,
     /// The polygons.
     pub obstacles: Vec<PlanarObstacle>,
@@ -86,12 +87,11 @@ pub struct PlanarFile {
 }
 
 /// Where things are in the text.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Places {
     world: Range<usize>,
     map: Range<usize>,
-    start: Range<usize>,
-    goals: Vec<Range<usize>>,
+    motion: MotionPlaces,
 }
 
 /// A part of a [`PlanarFile`] that an error can point at.
@@ -141,14 +141,6 @@ struct RobotTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MotionTable {
-    start: Spanned<Vec<f64>>,
-    goal: Option<Spanned<Vec<f64>>>,
-    goals: Option<Spanned<Vec<Spanned<Vec<f64>>>>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct ObstacleTable {
     name: Option<String>,
     polygon: Option<Spanned<Vec<[f64; 2]>>>,
@@ -162,12 +154,12 @@ impl PlanarFile {
     /// Reads `bytes`, the content of a world in the plane that errors call `file`. No other file is read.
     ///
     /// # Errors
-    /// [`Error`] when it is none, with the line and column.
+    /// [`Error`] when it is not a world in the plane, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let source = Source { file, text, guide: GUIDE };
+        let source = TomlText { file, text, guide: GUIDE };
         let File { world, robot, motion, obstacle } = source.read()?;
-        let mut places = Places { world: world.span(), start: motion.start.span(), ..Places::default() };
+        let world_span = world.span();
         let world = world.into_inner();
         let walls = corners(&source, "the walls", world.walls.as_ref())?;
         let bounds = corners(&source, "the bounds", world.bounds.as_ref())?;
@@ -180,8 +172,8 @@ impl PlanarFile {
                 return Err(source.error(&span, message).expected("`unknown = \"obstacle\"` or `\"free\"`"));
             }
         };
-        places.map = world.image.as_ref().or(world.map.as_ref()).map_or(0..0, Spanned::span);
-        let map = map_of(&source, world, &places)?;
+        let map_span = world.image.as_ref().or(world.map.as_ref()).map_or(0..0, Spanned::span);
+        let map = map_of(&source, world, &map_span)?;
         let body = body(&source, robot)?;
         let numbers = if matches!(body, PlanarShape::Disc(_)) { 2 } else { 3 };
         let state = |what: &str, q: &Spanned<Vec<f64>>| {
@@ -193,26 +185,7 @@ impl PlanarFile {
             let expected = if numbers == 2 { "x and y: a disc does not turn" } else { "x, y and the angle" };
             Err(source.error(&q.span(), message).expected(expected))
         };
-        state("the start", &motion.start)?;
-        let goals = match (motion.goal, motion.goals) {
-            (Some(goal), None) => vec![goal],
-            (None, Some(goals)) if !goals.get_ref().is_empty() => goals.into_inner(),
-            (None, Some(goals)) => {
-                return Err(source.error(&goals.span(), "there are no goals").expected("at least one"));
-            }
-            (Some(_), Some(goals)) => {
-                let message = "there is a goal and a list of goals";
-                return Err(source.error(&goals.span(), message).expected("`goal` or `goals`, not both"));
-            }
-            (None, None) => {
-                let message = "the motion has no goal";
-                return Err(source.error(&places.start, message).expected("`goal = [...]` beside `start`"));
-            }
-        };
-        for goal in &goals {
-            state("the goal", goal)?;
-            places.goals.push(goal.span());
-        }
+        let motion = motion.read(&source, state)?;
         let obstacles = obstacle.into_iter().enumerate().map(|(i, o)| entry(&source, i, o));
         Ok(Self {
             walls,
@@ -221,40 +194,49 @@ impl PlanarFile {
             unknown_is_free,
             obstacles: obstacles.collect::<Result<_, _>>()?,
             robot: body,
-            start: motion.start.into_inner(),
-            goals: goals.into_iter().map(Spanned::into_inner).collect(),
-            places,
+            start: motion.start,
+            goals: motion.goals,
+            places: Places { world: world_span, map: map_span, motion: motion.places },
             text: text.to_owned(),
             file: file.to_owned(),
         })
     }
 
-    /// An error about a part of the file, for faults that show only when the world is made.
+    /// An error about a part of the file, for faults that are found only when the world is made.
     #[must_use]
     pub fn fault(&self, part: PlanarPart, message: &str, help: &str) -> Error {
         let span = match part {
             PlanarPart::World => &self.places.world,
             PlanarPart::Map => &self.places.map,
-            PlanarPart::Start => &self.places.start,
-            PlanarPart::Goal(i) => self.places.goals.get(i).unwrap_or(&self.places.start),
+            PlanarPart::Start => &self.places.motion.start,
+            PlanarPart::Goal(i) => self.places.motion.goal(i),
         };
-        Source { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
+        TomlText { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
     }
 }
 
-fn corners(source: &Source<'_>, what: &str, given: Option<&Corners>) -> Result<Option<[[f64; 2]; 2]>, Error> {
+fn corners(
+    source: &TomlText<'_>,
+    what: &str,
+    given: Option<&Corners>,
+) -> Result<Option<[[f64; 2]; 2]>, Error> {
     let Some(given) = given else { return Ok(None) };
     let ([low, high], span) = (*given.get_ref(), given.span());
     source.check(what, &[low, high].concat(), &span)?;
     if low[0] < high[0] && low[1] < high[1] {
         return Ok(Some([low, high]));
     }
-    let message = format!("{what} from ({}, {}) to ({}, {}) hold nothing", low[0], low[1], high[0], high[1]);
+    let message =
+        format!("{what} from ({}, {}) to ({}, {}) enclose nothing", low[0], low[1], high[0], high[1]);
     Err(source.error(&span, message).expected("the lower left corner, then the upper right"))
 }
 
-/// The image or map, and that nothing is said of another kind.
-fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Option<PlanarMap>, Error> {
+/// The image or map. Refuses settings of an image where there is none.
+fn map_of(
+    source: &TomlText<'_>,
+    world: WorldTable,
+    place: &Range<usize>,
+) -> Result<Option<PlanarMap>, Error> {
     let of_image = [
         ("scale", world.scale.as_ref().map(Spanned::span)),
         ("origin", world.origin.as_ref().map(Spanned::span)),
@@ -267,14 +249,14 @@ fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Opt
             Err(source.error(&map.span(), message).expected("`image` or `map`, not both"))
         }
         (None, _, Some((name, span))) => {
-            let message = format!("`{name}` is of an image, and there is none");
+            let message = format!("`{name}` belongs to an image, and there is none");
             Err(source.error(&span, message).expected("`image = \"FILE\"` beside it"))
         }
         (None, map, None) => Ok(map.map(|name| PlanarMap::Ros(name.into_inner()))),
         (Some(image), None, _) => {
             let Some(scale) = world.scale else {
                 let message = "the image has no scale";
-                return Err(source.error(&places.map, message).expected("`scale = METRES_PER_PIXEL`"));
+                return Err(source.error(place, message).expected("`scale = METRES_PER_PIXEL`"));
             };
             source.positive("the scale", &[*scale.get_ref()], &scale.span())?;
             let origin = match world.origin {
@@ -304,7 +286,8 @@ fn map_of(source: &Source<'_>, world: WorldTable, places: &Places) -> Result<Opt
     }
 }
 
-fn body(source: &Source<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape, Error> {
+/// The shape of the robot.
+fn body(source: &TomlText<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape, Error> {
     let span = robot.span();
     match robot.into_inner() {
         RobotTable { disc: Some(radius), polygon: None } => {
@@ -315,13 +298,14 @@ fn body(source: &Source<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape, 
             Ok(PlanarShape::Polygon(polygon(source, "the robot", vec![ring])?))
         }
         _ => {
-            let message = "the robot is not one of a disc and a polygon";
+            let message = "the robot is not exactly one of a disc and a polygon";
             Err(source.error(&span, message).expected("`disc = RADIUS` or `polygon = [[x, y], ...]`"))
         }
     }
 }
 
-fn polygon(source: &Source<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) -> Result<Polygon, Error> {
+/// The polygon of these rings; `what` is its name in errors.
+fn polygon(source: &TomlText<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) -> Result<Polygon, Error> {
     let mut points = Vec::new();
     let mut whole = 0..0;
     for (i, ring) in rings.into_iter().enumerate() {
@@ -339,7 +323,12 @@ fn polygon(source: &Source<'_>, what: &str, rings: Vec<Spanned<Vec<[f64; 2]>>>) 
     Polygon::new(points).map_err(|e| source.error(&whole, format!("{what}: {e}")).expected("a polygon"))
 }
 
-fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<PlanarObstacle, Error> {
+/// The obstacle of a table.
+fn entry(
+    source: &TomlText<'_>,
+    index: usize,
+    table: Spanned<ObstacleTable>,
+) -> Result<PlanarObstacle, Error> {
     let span = table.span();
     let table = table.into_inner();
     let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
@@ -365,29 +354,15 @@ fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Re
             made(&circle.span(), Polygon::around_circle([x, y], radius, CORNERS))?
         }
         _ => {
-            let message = format!("{shown} has not one shape");
+            let message = format!("{shown} needs exactly one shape");
             return Err(source.error(&span, message).expected("one of `polygon`, `rectangle`, `circle`"));
         }
     };
     match table.holes.first() {
         None => Ok(PlanarObstacle { name, polygon }),
         Some(hole) => {
-            let message = format!("{shown} has holes, but is no polygon");
+            let message = format!("{shown} has holes, but is not a polygon");
             Err(source.error(&hole.span(), message).expected("`holes` beside `polygon` only"))
         }
     }
-}
-
-/// A world in the plane, all files read.
-#[derive(Clone, Debug)]
-pub struct PlanarProblem {
-    /// The name of the file, without extension.
-    pub name: String,
-    /// What the file says.
-    pub file: PlanarFile,
-    /// The obstacles: those of the file, then that of the image or map.
-    pub obstacles: Vec<PlanarObstacle>,
-    /// Lower and upper corner of where the origin of the robot may be: as the file says, else within the walls,
-    /// else on the image.
-    pub bounds: [[f64; 2]; 2],
 }

@@ -1,10 +1,10 @@
-//! A problem to plan on, whatever file it came from.
+//! Problems for rigid bodies, read from any of their formats.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use crate::gempa::environment::{self, Environment};
 use crate::mesh::read_mesh_of;
 use crate::ompl;
-use crate::source::{Disk, Files, MAX_TEXT_BYTES, decode};
 use crate::text::{Text, Token};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::{Isometry3, Point3};
@@ -14,13 +14,13 @@ use std::path::{Path, PathBuf};
 /// The largest coordinate of a problem, metres: beyond it single precision and volumes lose their meaning.
 pub const MAX_COORDINATE: f64 = 1e9;
 
-/// In which space the robot moves.
+/// The space in which the robot moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SpaceKind {
-    /// SE(3): anywhere, turned anyhow.
+    /// SE(3): any position and any rotation.
     #[default]
     Se3,
-    /// SE(2): in the plane z = 0, turned about Z.
+    /// SE(2): a position in the plane z = 0 and a rotation about Z.
     Se2,
 }
 
@@ -36,7 +36,7 @@ impl fmt::Display for SpaceKind {
 /// A body: its mesh, and where that came from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// The file of its mesh.
     pub file: PathBuf,
@@ -44,10 +44,10 @@ pub struct Body {
     pub mesh: TriMesh,
 }
 
-/// A body that stands in the world.
+/// A body at a pose in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlacedBody {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// The file of its mesh.
     pub file: PathBuf,
@@ -62,7 +62,7 @@ pub struct PlacedBody {
 pub struct RigidProblem {
     /// The name of the file, without extension.
     pub name: String,
-    /// Where the robot moves.
+    /// The space in which the robot moves.
     pub space: SpaceKind,
     /// The robot.
     pub robot: Body,
@@ -72,7 +72,7 @@ pub struct RigidProblem {
     pub start: Isometry3<f64>,
     /// The robot's pose in the world at the goal.
     pub goal: Isometry3<f64>,
-    /// Where the origin of the robot may be, if the file says so. Contains start and goal.
+    /// The box in which the origin of the robot may be, if the file gives one. Contains start and goal.
     pub bounds: Option<Aabb>,
 }
 
@@ -108,7 +108,7 @@ impl RigidProblem {
         Self::load_from(&Disk, path.as_ref())
     }
 
-    /// The same of files from elsewhere.
+    /// As [`load`](Self::load), with the files read through `files`.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -125,12 +125,12 @@ impl RigidProblem {
             None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
                 .expected("a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)")
                 .help(
-                    "a mesh or a path is no problem: name the file that names the robot and the obstacles",
+                    "a mesh or a path is not a problem: give the file that names the robot and the obstacles",
                 )),
         }
     }
 
-    /// Where the origin of the robot may be: [`bounds`](Self::bounds), or, when the file says nothing, a box
+    /// The box in which the origin of the robot may be: [`bounds`](Self::bounds), or, when the file gives none, a box
     /// around all obstacles, start and goal, enlarged on every side by the diameter of the robot about its
     /// origin or a tenth of the diagonal of the box, whichever is more, so that it can go around everything.
     #[must_use]
@@ -175,7 +175,7 @@ impl RigidProblem {
         for (i, o) in env.obstacles.iter().enumerate() {
             let name = format!("Obstacle #{}", o.number);
             check_size(text, places.poses[i], "the pose", &o.pose[..3])?;
-            // The same mesh often stands in many places: read it once.
+            // Many obstacles often share a mesh: read it once.
             let seen = (0..i).find(|&k| env.obstacles[k].mesh == o.mesh);
             let (file, mesh) = match seen {
                 Some(k) => (obstacles[k].file.clone(), obstacles[k].mesh.clone()),
@@ -183,7 +183,7 @@ impl RigidProblem {
             };
             obstacles.push(PlacedBody { name, file, mesh, pose: pose_from_six(o.pose) });
         }
-        let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let name = stem(path);
         let (start, goal) = (pose_from_six(start), pose_from_six(goal));
         Ok(Self { name, space, robot, obstacles, start, goal, bounds })
     }
@@ -202,7 +202,7 @@ fn body_mesh(
     Ok((file, mesh))
 }
 
-/// What `read` makes of the file named at `place`; errors tell where it is named.
+/// The file named at `place` and what `read` makes of it; errors say where it is named.
 pub(crate) fn cited<T>(
     text: &Text<'_>,
     folder: &Path,
@@ -213,24 +213,23 @@ pub(crate) fn cited<T>(
     let file = folder.join(place.text);
     match read(&file) {
         Ok(mesh) => Ok((file, mesh)),
-        // What cannot be opened is the fault of this line; what is in the mesh file, of that file.
+        // A file that cannot be opened is an error of this line; bad content is an error of that file.
         Err(e) if e.kind() == ErrorKind::Io => {
             let message = format!("the mesh of {what} is not readable: {}: {}", e.file(), e.message());
-            let remedy = e.remedy().unwrap_or("check the name of the file").to_owned();
-            Err(text.error(place, message).help(remedy).with_kind(ErrorKind::Io))
+            Err(text.error(place, message).help(e.remedy_of_named_file()).with_kind(ErrorKind::Io))
         }
         Err(e) => Err(e.cited_at(text.place(place))),
     }
 }
 
-/// Refuses coordinates too large to compute with.
+/// Refuses a mesh with coordinates too large to compute with.
 pub(crate) fn check_mesh(
     text: &Text<'_>,
     place: Token<'_>,
     file: &Path,
     mesh: &TriMesh,
 ) -> Result<(), Error> {
-    match mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE)) {
+    match vertex_beyond(mesh) {
         None => Ok(()),
         Some(v) => {
             let message = format!("vertex ({:e}, {:e}, {:e}) is beyond {MAX_COORDINATE:e} m", v.x, v.y, v.z);
@@ -241,6 +240,12 @@ pub(crate) fn check_mesh(
     }
 }
 
+/// A vertex too far away to compute with, if there is one.
+pub(crate) fn vertex_beyond(mesh: &TriMesh) -> Option<&Point3<f64>> {
+    mesh.vertices().iter().find(|v| v.iter().any(|c| c.abs() > MAX_COORDINATE))
+}
+
+/// Refuses numbers beyond [`MAX_COORDINATE`]; `what` has them.
 pub(crate) fn check_size(text: &Text<'_>, place: Token<'_>, what: &str, values: &[f64]) -> Result<(), Error> {
     match values.iter().find(|v| v.abs() > MAX_COORDINATE) {
         None => Ok(()),
@@ -285,7 +290,7 @@ fn check_inside(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{PathFile, write_gempa_mesh, write_off};
+    use crate::{write_gempa_mesh, write_off};
     use mp_geom::primitives;
 
     const ENV: &str = "Robot\nrobot.txt\n0 0 0 0 0 0\n5 0 0 1 0 0\nObstacle #1\nwall.off\n2 0 0 0 0 0\n\
@@ -327,23 +332,5 @@ mod tests {
         let e = RigidProblem::load(&path).unwrap_err();
         assert_eq!((e.line(), e.column()), (Some(3), Some(7)));
         assert!(e.file().ends_with("wall.off") && e.to_string().ends_with("scene.env:6:1)"), "{e}");
-    }
-
-    #[test]
-    fn paths_round_trip_as_text_and_json() {
-        let dir = folder();
-        let path = PathFile { configurations: vec![[0.1, 2.0, -0.0, 1e-9, 0.25, 3.0], [1.0; 6]] };
-        for name in ["p.txt", "p.json"] {
-            let file = dir.path().join(name);
-            path.write(&file).unwrap();
-            assert_eq!(PathFile::read(&file).unwrap(), path);
-        }
-        assert_eq!(path.to_text(), "2\n0.1 2 -0 1e-9 0.25 3\n1 1 1 1 1 1\n");
-        assert_eq!(
-            path.to_json(),
-            "{\"path\":[\n[0.1,2.0,-0.0,1e-9,0.25,3.0],\n[1.0,1.0,1.0,1.0,1.0,1.0]\n]}\n"
-        );
-        let e = PathFile::parse_json("r.json", b"{\"solved\": true,\n \"path\": [[1,2,3]]}").unwrap_err();
-        assert_eq!(e.line(), Some(2), "{e}");
     }
 }

@@ -1,26 +1,24 @@
 //! Robot problems: an arm, obstacles, a start and goals, in TOML.
 
-mod load;
-mod path;
+mod problem;
+#[cfg(test)]
+mod tests;
+mod urdf_mesh;
 
-pub use path::JointPath;
+pub use problem::RobotProblem;
 
 use crate::error::Error;
-use crate::problem::PlacedBody;
-use crate::source::decode;
-use crate::tables::Source;
-use mp_geom::pose_from_six;
-use nalgebra::Isometry3;
+use crate::files::decode;
+use crate::toml_problem::{MotionPlaces, MotionTable, TomlText};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::PathBuf;
 use toml::Spanned;
 
 /// The page that describes the format.
 const GUIDE: &str = "the format is described in docs/formats/robot-problem.md";
 
-/// The shape of an obstacle, as the file says it: metres, about its own origin.
+/// The shape of an obstacle, as the file gives it: metres, centred on its own origin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleShape {
     /// The name of a mesh file.
@@ -36,7 +34,7 @@ pub enum ObstacleShape {
 /// An obstacle of a [`RobotFile`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObstacleEntry {
-    /// What messages call it.
+    /// Its name in messages.
     pub name: String,
     /// Its shape.
     pub shape: ObstacleShape,
@@ -46,7 +44,7 @@ pub struct ObstacleEntry {
     span: Range<usize>,
 }
 
-/// What a robot problem file says, other files not yet read.
+/// The content of a robot problem file; the files that it names are not yet read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotFile {
     /// The name of the URDF file.
@@ -57,7 +55,7 @@ pub struct RobotFile {
     pub packages: Option<String>,
     /// The pose of the root link, six numbers.
     pub base: [f64; 6],
-    /// Limits in place of those of the URDF, by joint.
+    /// Limits that replace those of the URDF, by joint.
     pub limits: Vec<(String, [f64; 2])>,
     /// The joint values at the start.
     pub start: Vec<f64>,
@@ -71,12 +69,11 @@ pub struct RobotFile {
 }
 
 /// Where things are in the text.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct Places {
     urdf: Range<usize>,
     srdf: Range<usize>,
-    start: Range<usize>,
-    goals: Vec<Range<usize>>,
+    motion: MotionPlaces,
     limits: Vec<Range<usize>>,
 }
 
@@ -117,14 +114,6 @@ struct RobotTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct MotionTable {
-    start: Spanned<Vec<f64>>,
-    goal: Option<Spanned<Vec<f64>>>,
-    goals: Option<Spanned<Vec<Spanned<Vec<f64>>>>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct ObstacleTable {
     name: Option<String>,
     mesh: Option<Spanned<String>>,
@@ -142,14 +131,10 @@ impl RobotFile {
     /// [`Error`] when it is not a robot problem, with the line and column.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let source = Source { file, text, guide: GUIDE };
-        let read: File = source.read()?;
-        let File { robot, motion, obstacle } = read;
-        let mut places = Places { urdf: robot.urdf.span(), start: motion.start.span(), ..Places::default() };
-        places.srdf = robot.srdf.as_ref().map_or(0..0, Spanned::span);
-
+        let source = TomlText { file, text, guide: GUIDE };
+        let File { robot, motion, obstacle } = source.read()?;
         let base = source.six("the base", robot.base)?;
-        let mut limits = Vec::new();
+        let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
         for (joint, range) in robot.limits {
             let (what, span) = (format!("the limits of {}", crate::text::clipped(&joint)), range.span());
             let [low, high] = *range.get_ref();
@@ -158,38 +143,26 @@ impl RobotFile {
                 let message = format!("{what} are {low} to {high}");
                 return Err(source.error(&span, message).expected("the lower one first, below the upper"));
             }
-            places.limits.push(span);
+            places_of_limits.push(span);
             limits.push((joint, [low, high]));
         }
-        source.check("the start", motion.start.get_ref(), &motion.start.span())?;
-        let goals = match (motion.goal, motion.goals) {
-            (Some(goal), None) => vec![goal],
-            (None, Some(goals)) if !goals.get_ref().is_empty() => goals.into_inner(),
-            (None, Some(goals)) => {
-                return Err(source.error(&goals.span(), "there are no goals").expected("at least one"));
-            }
-            (Some(_), Some(goals)) => {
-                let message = "there is a goal and a list of goals";
-                return Err(source.error(&goals.span(), message).expected("`goal` or `goals`, not both"));
-            }
-            (None, None) => {
-                let message = "the motion has no goal";
-                return Err(source.error(&places.start, message).expected("`goal = [...]` beside `start`"));
-            }
-        };
-        for goal in &goals {
-            source.check("the goal", goal.get_ref(), &goal.span())?;
-            places.goals.push(goal.span());
-        }
+        let state = |what: &str, q: &Spanned<Vec<f64>>| source.check(what, q.get_ref(), &q.span());
+        let motion = motion.read(&source, state)?;
         let obstacles = obstacle.into_iter().enumerate().map(|(i, o)| entry(&source, i, o));
+        let places = Places {
+            urdf: robot.urdf.span(),
+            srdf: robot.srdf.as_ref().map_or(0..0, Spanned::span),
+            motion: motion.places,
+            limits: places_of_limits,
+        };
         Ok(Self {
             urdf: robot.urdf.into_inner(),
             srdf: robot.srdf.map(Spanned::into_inner),
             packages: robot.packages,
             base,
             limits,
-            start: motion.start.into_inner(),
-            goals: goals.into_iter().map(Spanned::into_inner).collect(),
+            start: motion.start,
+            goals: motion.goals,
             obstacles: obstacles.collect::<Result<_, _>>()?,
             places,
             text: text.to_owned(),
@@ -197,21 +170,26 @@ impl RobotFile {
         })
     }
 
-    /// An error about a part of the file, for faults that show only when the robot is made.
+    /// An error about a part of the file, for faults that are found only when the robot is made.
     #[must_use]
     pub fn fault(&self, part: RobotPart, message: &str, help: &str) -> Error {
         let span = match part {
             RobotPart::Urdf => &self.places.urdf,
             RobotPart::Srdf => &self.places.srdf,
-            RobotPart::Start => &self.places.start,
-            RobotPart::Goal(i) => self.places.goals.get(i).unwrap_or(&self.places.start),
+            RobotPart::Start => &self.places.motion.start,
+            RobotPart::Goal(i) => self.places.motion.goal(i),
             RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),
         };
-        Source { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
+        self.fault_at(span, message, help)
+    }
+
+    fn fault_at(&self, span: &Range<usize>, message: &str, help: &str) -> Error {
+        TomlText { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
     }
 }
 
-fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<ObstacleEntry, Error> {
+/// The obstacle of a table.
+fn entry(source: &TomlText<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<ObstacleEntry, Error> {
     let span = table.span();
     let table = table.into_inner();
     let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
@@ -241,33 +219,3 @@ fn entry(source: &Source<'_>, index: usize, table: Spanned<ObstacleTable>) -> Re
         }
     }
 }
-
-/// An arm, obstacles, a start and goals, with all files read but the meshes of the robot.
-#[derive(Clone, Debug)]
-pub struct RobotProblem {
-    /// The name of the file, without extension.
-    pub name: String,
-    /// What the file says.
-    pub file: RobotFile,
-    /// Where the URDF is.
-    pub urdf_file: PathBuf,
-    /// What is in it.
-    pub urdf: String,
-    /// What is in the SRDF.
-    pub srdf: Option<String>,
-    /// The folder that `package://` means.
-    pub packages: Option<PathBuf>,
-    /// The obstacles. Round ones are meshes that contain them.
-    pub obstacles: Vec<PlacedBody>,
-}
-
-impl RobotProblem {
-    /// The pose of the root link in the world.
-    #[must_use]
-    pub fn base(&self) -> Isometry3<f64> {
-        pose_from_six(self.file.base)
-    }
-}
-
-#[cfg(test)]
-mod tests;

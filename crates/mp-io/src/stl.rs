@@ -1,9 +1,9 @@
 //! STL, text and binary: a triangle soup. See `docs/formats/meshes.md`.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::write_atomic;
 use crate::mesh::mesh_error;
 use crate::number::Row;
-use crate::source::write_atomic;
 use crate::text::{Lexer, Text, Token, clipped};
 use mp_geom::TriMesh;
 use nalgebra::Point3;
@@ -34,7 +34,7 @@ fn begins_with_solid(bytes: &[u8]) -> bool {
     head.get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"))
 }
 
-/// How long a binary file with this header is.
+/// The length of a binary file with this header, bytes.
 fn binary_size(bytes: &[u8]) -> Option<u64> {
     let count: [u8; 4] = bytes.get(HEAD - 4..HEAD)?.try_into().ok()?;
     Some(HEAD as u64 + TRIANGLE as u64 * u64::from(u32::from_le_bytes(count)))
@@ -42,6 +42,7 @@ fn binary_size(bytes: &[u8]) -> Option<u64> {
 
 type Soup = Vec<[Point3<f64>; 3]>;
 
+/// The triangles of a binary file.
 fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
     let bad = |message: String| Error::new(ErrorKind::Format, file, message);
     let Some(size) = binary_size(bytes) else {
@@ -66,7 +67,7 @@ fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
             if !v.is_finite() {
                 return Err(bad(format!("corner {} of triangle {i} is not finite: {v}", k / 3))
                     .expected("finite coordinates")
-                    .help("mend the program that wrote the file"));
+                    .help("correct the program that wrote the file"));
             }
             triangle[k / 3][k % 3] = f64::from(v);
         }
@@ -75,6 +76,7 @@ fn binary(file: &str, bytes: &[u8]) -> Result<Soup, Error> {
     Ok(soup)
 }
 
+/// The triangles of a text file.
 fn text(text: &Text<'_>) -> Result<Soup, Error> {
     let mut lexer = Lexer::new(text);
     let mut soup = Vec::new();
@@ -96,7 +98,7 @@ fn text(text: &Text<'_>) -> Result<Soup, Error> {
     Ok(soup)
 }
 
-/// What follows the word `facet`.
+/// Reads what follows the word `facet`.
 fn facet(text: &Text<'_>, lexer: &mut Lexer<'_>) -> Result<[Point3<f64>; 3], Error> {
     expect(text, lexer.next(), "normal")?;
     for _ in 0..3 {
@@ -150,7 +152,7 @@ pub fn stl_text(mesh: &TriMesh) -> String {
     let mut out = String::from("solid mesh\n");
     for i in 0..mesh.triangles().len() {
         let [a, b, c] = mesh.triangle(i);
-        // Largest magnitude first scaled away, so that no product overflows or vanishes.
+        // Both edges are first divided by their largest coordinate, so that no product overflows or vanishes.
         let (u, v) = (b - a, c - a);
         let scaled =
             u.unscale(u.amax().max(f64::MIN_POSITIVE)).cross(&v.unscale(v.amax().max(f64::MIN_POSITIVE)));

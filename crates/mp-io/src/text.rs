@@ -11,7 +11,7 @@ pub(crate) struct Text<'a> {
     pub(crate) guide: &'static str,
 }
 
-/// A word of the text and where it begins, in bytes.
+/// A piece of the text, such as a word or a line, and where it begins, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token<'a> {
     pub(crate) text: &'a str,
@@ -20,7 +20,7 @@ pub(crate) struct Token<'a> {
 
 impl<'a> Text<'a> {
     pub(crate) fn new(file: &'a str, bytes: &'a [u8], guide: &'static str) -> Result<Self, Error> {
-        Ok(Self { file, text: crate::source::decode(file, bytes)?, guide })
+        Ok(Self { file, text: crate::files::decode(file, bytes)?, guide })
     }
 
     /// An error at a token.
@@ -58,7 +58,7 @@ impl<'a> Text<'a> {
                 Err(self
                     .error(token, format!("`{shown}` is not a finite number"))
                     .expected(expected)
-                    .help("coordinates must be finite: mend the program that wrote the file"))
+                    .help("coordinates must be finite: correct the program that wrote the file"))
             }
             Err(_) => {
                 let shown = clipped(token.text);
@@ -132,13 +132,13 @@ impl<'a> Token<'a> {
         Token { text: start.trim_end(), at: self.at + (self.text.len() - start.len()) }
     }
 
-    /// The empty place right after it.
+    /// The empty token right after it.
     pub(crate) fn end(self) -> Token<'a> {
         Token { text: &self.text[self.text.len()..], at: self.at + self.text.len() }
     }
 }
 
-/// Words across lines, for formats where a line break means little; `#` begins a comment.
+/// Reads words across lines, for formats in which line breaks mean little; `#` begins a comment.
 #[derive(Clone, Debug)]
 pub(crate) struct Lexer<'a> {
     text: &'a str,
@@ -163,7 +163,7 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// The next word of this line; `None` at its end, which is not passed.
+    /// The next word of this line; `None` at its end, where reading stays.
     pub(crate) fn next_on_line(&mut self) -> Option<Token<'a>> {
         let bytes = self.text.as_bytes();
         while self.at < bytes.len() && is_blank(bytes[self.at]) {
@@ -176,7 +176,7 @@ impl<'a> Lexer<'a> {
         (self.at > start).then(|| Token { text: &self.text[start..self.at], at: start })
     }
 
-    /// Goes to the next line; gives the comment that ended this one.
+    /// Goes to the next line; returns the comment that ended this one.
     pub(crate) fn next_line(&mut self) -> Option<&'a str> {
         let bytes = self.text.as_bytes();
         let start = self.at;
@@ -190,13 +190,13 @@ impl<'a> Lexer<'a> {
         skipped.find('#').map(|i| &skipped[i + 1..])
     }
 
-    /// How many words this line still has.
+    /// The number of words left on this line.
     pub(crate) fn left_on_line(&self) -> usize {
-        let mut ahead = self.clone();
-        std::iter::from_fn(|| ahead.next_on_line()).count()
+        let mut lookahead = self.clone();
+        std::iter::from_fn(|| lookahead.next_on_line()).count()
     }
 
-    /// Where reading stands, in bytes.
+    /// Where the next read begins, in bytes.
     pub(crate) fn position(&self) -> usize {
         self.at
     }

@@ -70,6 +70,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "json-joint-path" => {
             &["{\"solved\": true, \"path\": [[0, 0, 0],\n[1.5, -2e-3, 3]], \"name\": \"\\u00e9\"}"]
         }
+        "csv-path" => &["x [m],y [m]\n0.1,-2\n\n0,3.5\n", " 1 , 2e-3\r\n3,4\r\n"],
         other => panic!("no seeds for {other}"),
     };
     let mut all: Vec<Vec<u8>> = texts.iter().map(|t| t.as_bytes().to_vec()).collect();

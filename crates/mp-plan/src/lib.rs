@@ -57,6 +57,7 @@ mod finish;
 pub mod info;
 mod inputs;
 mod numbers;
+mod output;
 mod parallel;
 mod path;
 #[cfg(feature = "pictures")]
@@ -79,7 +80,8 @@ pub use error::Error;
 pub use find::find_problem;
 pub use finish::shorten;
 pub use inputs::is_same_file;
-pub use numbers::{brief, count};
+pub use numbers::{brief, count, positive_number};
+pub use output::{folder_of, make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]

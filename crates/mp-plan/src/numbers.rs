@@ -21,6 +21,18 @@ pub fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
+/// The finite number above zero that an option of a command line gives.
+///
+/// # Errors
+/// A message when it is not such a number.
+pub fn positive_number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(v) if v.is_finite() && v > 0.0 => Ok(v),
+        Ok(_) => Err("must be a finite number above zero".into()),
+        Err(_) => Err("not a number".into()),
+    }
+}
+
 /// A hash of the bits of numbers (XXH3): the one that roadmaps are kept with.
 pub(crate) fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let mut hash = xxhash_rust::xxh3::Xxh3::new();

@@ -88,7 +88,7 @@ impl Scene {
         let files: &dyn Files = &recording;
         let mut named = Vec::new();
         let scene = match RobotProblem::is_named(file) {
-            true if PlanarProblem::is_one_of(files, file) => {
+            true if PlanarProblem::is_planar_world_in(files, file) => {
                 Self::from_world(PlanarProblem::load_from(files, file)?).map_err(of)?
             }
             true => {

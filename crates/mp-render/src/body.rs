@@ -1,4 +1,4 @@
-//! Bodies somewhere in the world.
+//! Bodies at poses in the world.
 
 use crate::error::{RenderError, check_range};
 use crate::model::Model;
@@ -20,19 +20,19 @@ impl Body {
         Self { model: Arc::new(Model::new(mesh)), pose_wb }
     }
 
-    /// A body that cannot be seen, a point at the origin of `pose_wb`: of a robot that has no mesh.
+    /// An invisible body, a point at the origin of `pose_wb`, for a robot without a mesh.
     #[must_use]
     pub fn point(pose_wb: Isometry3<f64>) -> Self {
         Self { model: Arc::new(Model::point()), pose_wb }
     }
 
-    /// The same body elsewhere.
+    /// The same body at another pose.
     #[must_use]
     pub fn at(&self, pose_wb: Isometry3<f64>) -> Self {
         Self { model: Arc::clone(&self.model), pose_wb }
     }
 
-    /// Where it is in the world.
+    /// Its pose in the world.
     #[must_use]
     pub fn pose(&self) -> &Isometry3<f64> {
         &self.pose_wb
@@ -44,7 +44,7 @@ impl Body {
         self.model.radius
     }
 
-    /// Refuses a pose, or a mesh at it, out of range.
+    /// Refuses a body whose pose or mesh is out of range; `what` names the body.
     pub(crate) fn check(&self, what: impl FnOnce() -> String) -> Result<(), RenderError> {
         let translation = self.pose_wb.translation.vector;
         let rotation = self.pose_wb.rotation.coords;

@@ -1,4 +1,4 @@
-//! Where the picture is taken from.
+//! Perspective and parallel cameras.
 
 use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
@@ -16,7 +16,7 @@ pub(crate) struct Projected {
     pub(crate) key: f32,
 }
 
-/// A pinhole or parallel camera. In its frame x is right, y down, z ahead.
+/// A pinhole or parallel camera. In its frame x is right, y down, z forward.
 #[derive(Clone, Debug)]
 pub(crate) struct Camera {
     /// Camera from world.
@@ -28,24 +28,24 @@ pub(crate) struct Camera {
     /// Focal length in samples (perspective), or samples per metre (parallel).
     scale: f64,
     perspective: bool,
-    /// Depth of the nearest point that the picture was made to hold, metres.
+    /// Depth of the nearest point that the picture shows, metres.
     nearest: f32,
     /// Nothing nearer than this is drawn, metres.
     pub(crate) near: f64,
 }
 
-/// Axes of a camera that looks along `ahead` with `up` upwards, as rows.
-fn basis(ahead: &Vector3<f64>, up: &Vector3<f64>) -> UnitQuaternion<f64> {
-    let ahead = ahead.normalize();
-    let right = ahead.cross(up).normalize();
-    let down = ahead.cross(&right);
-    let rows = Matrix3::from_rows(&[right.transpose(), down.transpose(), ahead.transpose()]);
+/// The rotation of a camera that looks along `forward`, with `up` upwards.
+fn basis(forward: &Vector3<f64>, up: &Vector3<f64>) -> UnitQuaternion<f64> {
+    let forward = forward.normalize();
+    let right = forward.cross(up).normalize();
+    let down = forward.cross(&right);
+    let rows = Matrix3::from_rows(&[right.transpose(), down.transpose(), forward.transpose()]);
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rows))
 }
 
 impl Camera {
-    /// A perspective camera `elevation` above the horizon at `azimuth`, as near as it can be with
-    /// all `points` within `margin` (a fraction of the picture on each side).
+    /// A perspective camera `elevation` above the horizon at `azimuth`, as near as possible with
+    /// all `points` inside `margin` (a fraction of the picture on each side).
     pub(crate) fn three_quarter(
         points: &[Point3<f64>],
         azimuth: f64,
@@ -99,7 +99,7 @@ impl Camera {
         let (fw, fh) = (w * (1.0 - left - right), h * (1.0 - top - bottom));
         let size = (hi - lo).sup(&Vector3::repeat(1e-9));
         let scale = (fw / size.x).min(fh / size.y);
-        // The centre of the points goes to the centre of what the margins leave.
+        // The centre of the points goes to the centre of the area inside the margins.
         let (ox, oy) = ((left * w + fw / 2.0 - w / 2.0) / scale, (top * h + fh / 2.0 - h / 2.0) / scale);
         let centre = (lo + hi) / 2.0;
         let shift = Translation3::new(ox - centre.x, oy - centre.y, 1.0 + size.z - lo.z);
@@ -107,19 +107,19 @@ impl Camera {
         Self { pose_cw, width, height, scale, perspective: false, nearest: 1.0, near: 0.0 }
     }
 
-    /// A point of the camera frame on the picture. Its z must be at least `near`.
+    /// The position on the picture of a point of the camera frame, whose z must be at least `near`.
     pub(crate) fn project(&self, p: &Point3<f64>) -> Projected {
         let (cx, cy) = (self.width as f64 / 2.0, self.height as f64 / 2.0);
         let (s, key) = if self.perspective { (self.scale / p.z, -1.0 / p.z) } else { (self.scale, p.z) };
         Projected { x: (cx + s * p.x) as f32, y: (cy + s * p.y) as f32, key: key as f32 }
     }
 
-    /// Depth in metres of `key`.
+    /// The depth of `key`, metres.
     pub(crate) fn depth(&self, key: f32) -> f32 {
         if self.perspective { -1.0 / key } else { key }
     }
 
-    /// The key of a depth in metres; of one at or behind the eye, the key that nothing comes before.
+    /// The key of a depth in metres; −∞ for a depth at or behind the eye of a perspective camera.
     pub(crate) fn key_of(&self, depth: f32) -> f32 {
         match (self.perspective, depth > 0.0) {
             (true, true) => -1.0 / depth,
@@ -128,12 +128,12 @@ impl Camera {
         }
     }
 
-    /// How much a translucent thing at `key` counts among others before and behind it.
+    /// The weight of a translucent surface at `key` when it is blended with others.
     pub(crate) fn prominence(&self, key: f32) -> f32 {
         if self.perspective { (6.0 - 6.0 * self.depth(key) / self.nearest).exp().max(1e-9) } else { 1.0 }
     }
 
-    /// Metres that one sample covers at `depth` metres.
+    /// The width of a sample at `depth` metres, metres.
     pub(crate) fn sample_size(&self, depth: f32) -> f32 {
         if self.perspective { depth / self.scale as f32 } else { 1.0 / self.scale as f32 }
     }

@@ -1,4 +1,4 @@
-//! Layers of samples, in linear light, and how they become pixels.
+//! Layers of samples in linear light, and their conversion to pixels.
 
 use crate::picture::Picture;
 
@@ -23,7 +23,7 @@ pub(crate) fn scaled(c: Colour, f: f32) -> Colour {
     c.map(|v| v * f)
 }
 
-/// What is seen at each sample, and how near it is.
+/// The visible colour at each sample, and its depth key.
 #[derive(Clone, Debug)]
 pub(crate) struct Layer {
     pub(crate) colour: Vec<Colour>,
@@ -35,7 +35,7 @@ impl Layer {
         Self { colour: vec![[0.0; 3]; samples], key: vec![f32::INFINITY; samples] }
     }
 
-    /// Puts `colour` at sample `i` when it is nearer than what is there.
+    /// Puts `colour` at sample `i` when it is nearer than the present one.
     #[inline]
     pub(crate) fn put(&mut self, i: usize, key: f32, colour: Colour) {
         if key < self.key[i] {
@@ -45,8 +45,8 @@ impl Layer {
     }
 }
 
-/// Translucent things in front of a [`Layer`], in any order: their colours are averaged by weight, and each
-/// takes its share of the light from behind (weighted blended transparency, McGuire and Bavoil 2013).
+/// Translucent surfaces in front of a [`Layer`], in any order: their colours are averaged by weight, and each
+/// absorbs its share of the light from behind (weighted blended transparency, McGuire and Bavoil 2013).
 #[derive(Clone, Debug)]
 pub(crate) struct Veil {
     sum: Vec<Colour>,
@@ -59,7 +59,7 @@ impl Veil {
         Self { sum: vec![[0.0; 3]; samples], weight: vec![0.0; samples], through: vec![1.0; samples] }
     }
 
-    /// Adds something of opacity `alpha` whose colour counts `weight` times.
+    /// Adds a surface of opacity `alpha` whose colour counts `weight` times.
     #[inline]
     pub(crate) fn add(&mut self, i: usize, colour: Colour, alpha: f32, weight: f32) {
         let w = alpha * weight;
@@ -70,7 +70,7 @@ impl Veil {
         self.through[i] *= 1.0 - alpha;
     }
 
-    /// Lays the veil over `behind`. No more than `most` of what is behind is hidden.
+    /// Blends the veil over `behind`, of which at most the fraction `most` is hidden.
     pub(crate) fn over(&self, behind: &mut [Colour], most: f32) {
         for (i, b) in behind.iter_mut().enumerate() {
             if self.weight[i] > 0.0 {

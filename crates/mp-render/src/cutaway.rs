@@ -1,13 +1,13 @@
-//! Opens the view onto the path: what stands in front of it is drawn as a veil.
+//! Opens the view onto the path: obstacles in front of it are drawn translucent.
 //!
 //! Around each visible point of the path a cone toward the viewer is cleared (adaptive cutaways, Burns and
 //! Finkelstein 2008): the depth of the path, less a slope times the distance on the picture.
 
 use crate::camera::Camera;
 
-/// For every sample, the key before which obstacles are opened. `path` holds the keys of the path's nearest
-/// surface, infinite where it is not; `slope` is metres of depth per metre across; what is within `slack`
-/// metres of the path is kept.
+/// For every sample, the key before which obstacles become translucent. `path` holds the keys of the path's nearest
+/// surface, infinite where there is no path; `slope` is metres of depth per metre across; obstacles within `slack`
+/// metres of the path stay opaque.
 pub(crate) fn thresholds(camera: &Camera, path: &[f32], slope: f32, slack: f32) -> Vec<f32> {
     let (w, h) = (camera.width, camera.height);
     let mut depth: Vec<f32> =

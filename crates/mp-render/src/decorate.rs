@@ -1,4 +1,4 @@
-//! Background, floor grid, outlines, shading of corners, and lettering.
+//! Everything around the bodies: background, floor grid, outlines and lettering.
 
 use crate::body::Body;
 use crate::camera::Camera;
@@ -10,11 +10,12 @@ use crate::text;
 use mp_geom::Aabb;
 use nalgebra::Point3;
 
-/// Whether a line at `key` lies on or before a surface at `surface`: lines get a little head start.
+/// Whether a line at `key` lies on or before a surface at `surface`, with some tolerance in favour of the line.
 pub(crate) fn nearer(key: f32, surface: f32) -> bool {
     key - 2e-3 * key.abs() < surface
 }
 
+/// Fills the layer with a gradient from white at the top to grey at the bottom.
 pub(crate) fn background(layer: &mut Layer, (width, height): (usize, usize)) {
     let (top, bottom) = (srgb(0xffffff), srgb(0xe9edf2));
     for (y, row) in layer.colour.chunks_mut(width).enumerate() {
@@ -22,56 +23,7 @@ pub(crate) fn background(layer: &mut Layer, (width, height): (usize, usize)) {
     }
 }
 
-/// Darkens what lies in creases: samples whose neighbours around stand nearer to the eye.
-pub(crate) fn shade_corners(layer: &mut Layer, camera: &Camera, extent: f64) {
-    const PAIRS: usize = 6;
-    let (w, h) = (camera.width as isize, camera.height as isize);
-    let reach = 0.02 * extent as f32;
-    let depth: Vec<f32> = layer.key.iter().map(|&k| camera.depth(k)).collect();
-    // Spirals by the golden angle, turned for each of 4 × 4 samples so that no pattern shows.
-    let spirals: Vec<[(f32, f32); PAIRS]> = (0..16)
-        .map(|turn| {
-            std::array::from_fn(|k| {
-                let r = (k as f32 + 0.25 + 0.5 * ((turn * 7 % 16) as f32 / 16.0)) / PAIRS as f32;
-                let angle = 2.4 * k as f32 + std::f32::consts::TAU * (turn as f32 / 16.0);
-                (r * angle.cos(), r * angle.sin())
-            })
-        })
-        .collect();
-    for y in 0..h {
-        for x in 0..w {
-            let i = (y * w + x) as usize;
-            if layer.key[i] == f32::INFINITY {
-                continue;
-            }
-            let z = depth[i];
-            // Whatever is too far away is off the picture.
-            let radius = (reach / camera.sample_size(z)).min(1e6);
-            // Opposite taps together: on a slanted plane they cancel.
-            let lift = |tx: isize, ty: isize| {
-                if tx < 0
-                    || ty < 0
-                    || tx >= w
-                    || ty >= h
-                    || layer.key[(ty * w + tx) as usize] == f32::INFINITY
-                {
-                    return 0.0;
-                }
-                let lift = (z - depth[(ty * w + tx) as usize]) / reach;
-                if lift > 2.0 { 0.3 } else { lift.clamp(-1.0, 1.0) }
-            };
-            let mut sum = 0.0;
-            for (dx, dy) in &spirals[((y & 3) * 4 + (x & 3)) as usize] {
-                let (dx, dy) = ((dx * radius) as isize, (dy * radius) as isize);
-                sum += (lift(x + dx, y + dy) + lift(x - dx, y - dy)).max(0.0);
-            }
-            let shade = 1.0 - (0.55 * sum / PAIRS as f32).clamp(0.0, 0.4);
-            layer.colour[i] = scaled(layer.colour[i], shade);
-        }
-    }
-}
-
-/// Dark lines along the edges of what is in `layer`.
+/// Draws dark lines along the edges of a body.
 pub(crate) fn outline(layer: &mut Layer, camera: &Camera, body: &Body, strength: f32) {
     let ink = srgb(INK);
     body.model.edges(camera, &body.pose_wb, 0.6, |i, key, coverage| {
@@ -81,7 +33,7 @@ pub(crate) fn outline(layer: &mut Layer, camera: &Camera, body: &Body, strength:
     });
 }
 
-/// The edges of obstacles: dark where they stand, faint where they were opened.
+/// Draws the edges of obstacles: dark where they are opaque, faint where they are translucent.
 pub(crate) fn outlines(
     layer: &mut Layer,
     ghosts: &mut Veil,
@@ -91,7 +43,7 @@ pub(crate) fn outlines(
 ) {
     let ink = srgb(INK);
     for (n, o) in obstacles.iter().enumerate() {
-        // Fine meshes have more lines than there is room for.
+        // Lines of fine meshes would cover everything: they are fainter.
         let strength = 0.5 * (4000.0 / o.model.edge_count().max(1) as f32).clamp(0.25, 1.0);
         let faint = scaled(srgb(OBSTACLES[n % OBSTACLES.len()]), 0.4);
         o.model.edges(camera, &o.pose_wb, 0.6, |i, key, coverage| {
@@ -104,17 +56,17 @@ pub(crate) fn outlines(
     }
 }
 
-/// A round number of metres, about `length`.
+/// 1, 2 or 5 times a power of ten, at most `length`.
 fn round_length(length: f64) -> f64 {
     let power = 10f64.powf(length.log10().floor());
     [5.0, 2.0, 1.0].into_iter().map(|d| d * power).find(|d| *d <= length).unwrap_or(power)
 }
 
-/// A grid under everything.
+/// Draws a grid under the scene.
 pub(crate) fn floor(layer: &mut Layer, camera: &Camera, frame: &[Point3<f64>]) {
     let (lo, hi) = corners(frame);
     let size = (hi.x - lo.x).max(hi.y - lo.y);
-    // There are no round lengths next to nothing.
+    // Powers of ten near zero underflow.
     if size < 1e-200 {
         return;
     }
@@ -136,7 +88,7 @@ pub(crate) fn floor(layer: &mut Layer, camera: &Camera, frame: &[Point3<f64>]) {
     }
 }
 
-/// The bounds of a planar scene.
+/// Draws the bounds of a planar scene.
 pub(crate) fn border(layer: &mut Layer, camera: &Camera, bounds: &Aabb) {
     let (lo, hi) = (&bounds.min, &bounds.max);
     let rim = [(lo.x, lo.y), (hi.x, lo.y), (hi.x, hi.y), (lo.x, hi.y)];
@@ -151,7 +103,7 @@ pub(crate) fn border(layer: &mut Layer, camera: &Camera, bounds: &Aabb) {
     }
 }
 
-/// Title at the top, what the colours mean at the bottom.
+/// Writes the title at the top and the legend of the colours at the bottom.
 pub(crate) fn labels(layer: &mut Layer, size: (usize, usize), scene: &Scene) {
     let (w, h) = (size.0 as f32, size.1 as f32);
     let unit = h / 960.0;

@@ -1,4 +1,4 @@
-//! Drawings in the plane: areas and lines, as SVG or as pixels.
+//! Drawings of the plane: areas and lines, as SVG or as pixels.
 
 use crate::canvas::{Colour, mix, resolve, srgb};
 use crate::error::{RenderError, check_range, check_size};
@@ -11,22 +11,22 @@ use std::fmt::Write as _;
 
 /// Samples per pixel in each direction.
 const SUPERSAMPLING: usize = 3;
-/// What the margins leave free on the left, top, right and bottom, pixels.
+/// The margins on the left, top, right and bottom, pixels.
 const MARGINS: [f64; 4] = [24.0, 72.0, 24.0, 24.0];
 
-/// Something drawn, over what was drawn before.
+/// An area or lines, drawn over earlier items.
 #[derive(Clone, Debug)]
 pub struct Item {
-    /// Lines, or rings of which what an odd number goes around is filled; metres.
+    /// Lines, or the rings of an area, filled by the even-odd rule; metres.
     points: Vec<Vec<Point2<f64>>>,
     colour: u32,
-    /// Of a line, its width in pixels; areas have none.
+    /// The width of lines, pixels; `None` for areas.
     width: Option<f64>,
     opacity: f64,
 }
 
 impl Item {
-    /// An area filled with `colour` (`0xRRGGBB`): what an odd number of `rings` goes around, metres.
+    /// An area filled with `colour` (`0xRRGGBB`): all points that an odd number of `rings` encloses, metres.
     #[must_use]
     pub fn area(rings: Vec<Vec<Point2<f64>>>, colour: u32) -> Self {
         Self { points: rings, colour, width: None, opacity: 1.0 }
@@ -38,44 +38,44 @@ impl Item {
         Self { points, colour, width: Some(width), opacity: 1.0 }
     }
 
-    /// The same, of which something is seen through; at an opacity of 1 nothing is.
+    /// The same item, translucent; at an opacity of 1 it hides everything behind it.
     #[must_use]
     pub fn faint(self, opacity: f64) -> Self {
         Self { opacity, ..self }
     }
 }
 
-/// What is drawn between two corners of the world.
+/// A drawing of a rectangle of the plane.
 #[derive(Clone, Debug)]
 pub struct Drawing {
-    /// Written large.
+    /// The title, in large letters.
     pub title: String,
-    /// Written small below it.
+    /// The subtitle, in small letters below the title.
     pub subtitle: String,
-    /// The lower left corner of what is shown, metres.
+    /// The lower left corner of the rectangle, metres.
     pub low: Point2<f64>,
-    /// The upper right corner of what is shown, metres.
+    /// The upper right corner of the rectangle, metres.
     pub high: Point2<f64>,
-    /// What is drawn, the last on top.
+    /// The items, the last on top.
     pub items: Vec<Item>,
 }
 
-/// World to pixels.
+/// The transform from the world to pixels.
 #[derive(Clone, Copy)]
-struct View {
+struct WorldToPixels {
     low: Point2<f64>,
     at: [f64; 2],
     scale: f64,
 }
 
-impl View {
-    fn put(&self, p: &Point2<f64>) -> [f64; 2] {
+impl WorldToPixels {
+    fn map(&self, p: &Point2<f64>) -> [f64; 2] {
         [self.at[0] + (p.x - self.low.x) * self.scale, self.at[1] - (p.y - self.low.y) * self.scale]
     }
 }
 
 impl Drawing {
-    /// The obstacles and walls of `world`, shown from `low` to `high` (metres) and as far as the walls.
+    /// The obstacles and walls of `world`, in a rectangle that contains `low`, `high` (metres) and the walls.
     #[must_use]
     pub fn of_world(
         world: &PlanarWorld,
@@ -94,7 +94,7 @@ impl Drawing {
         Self { title: title.into(), subtitle: subtitle.into(), low, high, items }
     }
 
-    /// Refuses what cannot be drawn.
+    /// Refuses sizes and coordinates that cannot be drawn.
     fn check(&self, size: (usize, usize)) -> Result<(), RenderError> {
         check_size(size)?;
         check_range([self.low, self.high].iter().flat_map(|p| [p.x, p.y]), || "the corners".into())?;
@@ -109,23 +109,23 @@ impl Drawing {
         Ok(())
     }
 
-    fn view(&self, (width, height): (usize, usize)) -> View {
+    fn world_to_pixels(&self, (width, height): (usize, usize)) -> WorldToPixels {
         let [left, top, right, bottom] = MARGINS;
         let (w, h) = (width as f64 - left - right, height as f64 - top - bottom);
         let extent = self.high - self.low;
         let scale = (w / extent.x).min(h / extent.y);
         let at = [left + 0.5 * (w - extent.x * scale), top + 0.5 * (h + extent.y * scale)];
-        View { low: self.low, at, scale }
+        WorldToPixels { low: self.low, at, scale }
     }
 
-    /// As SVG, `size` pixels wide and high at its natural size.
+    /// The drawing as SVG, of `size` pixels at its natural size.
     ///
     /// # Errors
-    /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, the corners have nothing between them, or a
+    /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, the rectangle is empty, or a
     /// coordinate is not finite or beyond 10⁶⁰ m.
     pub fn svg(&self, size: (usize, usize)) -> Result<String, RenderError> {
         self.check(size)?;
-        let view = self.view(size);
+        let to_pixels = self.world_to_pixels(size);
         let (w, h) = size;
         let mut out = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\">\n\
@@ -135,7 +135,7 @@ impl Drawing {
             let mut d = String::new();
             for part in &item.points {
                 for (i, p) in part.iter().enumerate() {
-                    let [x, y] = view.put(p);
+                    let [x, y] = to_pixels.map(p);
                     let _ = write!(d, "{}{x:.2} {y:.2}", if i == 0 { "M" } else { "L" });
                 }
                 if item.width.is_none() {
@@ -165,7 +165,7 @@ impl Drawing {
         Ok(out + "</svg>\n")
     }
 
-    /// As a picture of `size` pixels.
+    /// The drawing as a picture of `size` pixels.
     ///
     /// # Errors
     /// As [`svg`](Self::svg).
@@ -173,9 +173,9 @@ impl Drawing {
         self.check(size)?;
         let fine = (size.0 * SUPERSAMPLING, size.1 * SUPERSAMPLING);
         let factor = SUPERSAMPLING as f64;
-        let view = self.view(size);
+        let to_pixels = self.world_to_pixels(size);
         let mut samples = vec![[1.0; 3]; fine.0 * fine.1];
-        let put = |p: &Point2<f64>| view.put(p).map(|v| v * factor);
+        let put = |p: &Point2<f64>| to_pixels.map(p).map(|v| v * factor);
         for item in &self.items {
             let (colour, opacity) = (srgb(item.colour), item.opacity as f32);
             let Some(width) = item.width else {
@@ -184,7 +184,7 @@ impl Drawing {
                 fill(&rings, fine, |i| samples[i] = mix(samples[i], colour, opacity));
                 continue;
             };
-            // What a line covers more than once is drawn once.
+            // Samples that several segments cover are drawn once.
             let mut covered = Vec::new();
             for part in &item.points {
                 let points: Vec<[f64; 2]> = part.iter().map(put).collect();
@@ -209,7 +209,7 @@ impl Drawing {
     }
 }
 
-/// The ring around a line with round ends.
+/// The outline of a thick line with round ends.
 fn capsule(a: [f64; 2], b: [f64; 2], half: f64) -> Vec<[f64; 2]> {
     let along = (b[1] - a[1]).atan2(b[0] - a[0]);
     let end = |p: [f64; 2], from: f64| {
@@ -222,7 +222,7 @@ fn capsule(a: [f64; 2], b: [f64; 2], half: f64) -> Vec<[f64; 2]> {
     end(b, along - right).chain(end(a, along + right)).collect()
 }
 
-/// Calls `fragment` once for each sample whose centre an odd number of rings goes around.
+/// Calls `fragment` once for each sample whose centre an odd number of rings encloses.
 fn fill(rings: &[Vec<[f64; 2]>], (width, height): (usize, usize), mut fragment: impl FnMut(usize)) {
     let ys = rings.iter().flatten().map(|p| p[1]);
     let (low, high) = ys.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
@@ -269,9 +269,9 @@ mod tests {
             svg.contains("evenodd") && svg.contains("A &lt; B") && svg.contains("stroke-opacity=\"0.5\"")
         );
         let picture = drawing.pixels((400, 400)).unwrap();
-        let view = drawing.view((400, 400));
+        let to_pixels = drawing.world_to_pixels((400, 400));
         let at = |x: f64, y: f64| {
-            let [x, y] = view.put(&p(x, y));
+            let [x, y] = to_pixels.map(&p(x, y));
             picture.pixel(x as usize, y as usize).unwrap()
         };
         assert_eq!(at(0.0, 1.5), [0, 0, 255], "the frame");

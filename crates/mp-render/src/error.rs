@@ -1,4 +1,4 @@
-//! What cannot be drawn.
+//! Errors of drawing.
 
 use nalgebra::Point2;
 use thiserror::Error;
@@ -6,7 +6,7 @@ use thiserror::Error;
 /// The widest and highest picture, pixels.
 pub const MAX_SIDE: usize = 8192;
 
-/// What is farther from the origin is not drawn, metres.
+/// The largest coordinate that is drawn, metres.
 pub(crate) const MAX_COORDINATE: f64 = 1e60;
 
 /// Why a picture could not be drawn.
@@ -27,7 +27,7 @@ pub enum RenderError {
         /// What has the coordinate, such as "obstacle 3".
         what: String,
     },
-    /// The corners of a drawing have nothing between them.
+    /// The rectangle of a drawing is empty.
     #[error(
         "cannot draw between ({}, {}) and ({}, {}): expected the lower left corner, then the upper right one",
         low.x, low.y, high.x, high.y
@@ -58,12 +58,12 @@ pub(crate) fn check_size((width, height): (usize, usize)) -> Result<(), RenderEr
     if fits(width) && fits(height) { Ok(()) } else { Err(RenderError::Size { width, height }) }
 }
 
-/// Refuses coordinates out of range; `what` has them.
+/// Refuses coordinates out of range; `what` names the thing that has them.
 pub(crate) fn check_range(
     coordinates: impl IntoIterator<Item = f64>,
     what: impl FnOnce() -> String,
 ) -> Result<(), RenderError> {
-    // NaN is not within either.
+    // NaN fails this comparison.
     let fits = coordinates.into_iter().all(|c| c.abs() <= MAX_COORDINATE);
     if fits { Ok(()) } else { Err(RenderError::OutOfRange { what: what() }) }
 }

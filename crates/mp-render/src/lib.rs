@@ -1,9 +1,9 @@
-//! Pictures of scenes in space and of the plane, made on the CPU: no window, no driver, the same pixels everywhere.
+//! Pictures of scenes in space and in the plane, drawn on the CPU: no window, no driver, the same pixels everywhere.
 //!
 //! - [`Scene`]: bodies (meshes with poses), a robot at its start, at its goal and on its way; drawn as a [`Picture`].
 //! - [`Drawing`]: areas and lines in the plane, as SVG or as a [`Picture`].
 //! - [`plot()`]: curves over a logarithmic axis.
-//! - [`palette`]: the colours, for drawings that are to look like the others.
+//! - [`palette`]: the colours, for drawings in the same style.
 //!
 //! Nothing here writes files: a [`Picture`] becomes the bytes of a PNG file by [`Picture::to_png`]. Lengths are
 //! metres, colours `0xRRGGBB` in sRGB.
@@ -31,6 +31,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod ambient_occlusion;
 mod body;
 mod camera;
 mod canvas;
@@ -38,15 +39,16 @@ mod cutaway;
 mod decorate;
 mod drawing;
 mod error;
+mod lights;
 mod model;
 pub mod palette;
+mod path;
 mod picture;
 mod plot;
 mod raster;
 mod scene;
-mod sweep;
 mod text;
-mod view;
+mod viewpoint;
 
 pub use body::Body;
 pub use drawing::{Drawing, Item};

@@ -1,6 +1,7 @@
-//! A mesh made ready to be drawn: smooth normals and the edges worth a line.
+//! Meshes prepared for drawing: smooth normals and feature edges.
 
 use crate::camera::Camera;
+use crate::lights::Lights;
 use crate::raster::{Corner, line, triangle};
 use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -9,14 +10,14 @@ use std::collections::HashMap;
 /// Faces that meet at less than this angle are shaded as one smooth surface (cosine of 35°).
 const SMOOTH: f64 = 0.82;
 
-/// A mesh with what drawing it again and again needs.
+/// A mesh with the data for drawing it many times.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Model {
     points: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
     /// Per corner of each triangle.
     normals: Vec<[Vector3<f64>; 3]>,
-    /// Rims, and edges where faces meet at an angle.
+    /// Edges of one face, and edges where faces meet at an angle.
     edges: Vec<[u32; 2]>,
     /// Distance of the farthest point from the origin, metres.
     pub(crate) radius: f64,
@@ -52,7 +53,7 @@ impl Model {
         Self { points, triangles, normals, edges, radius }
     }
 
-    /// Of a point: nothing to be seen.
+    /// The model of a point, which is invisible.
     pub(crate) fn point() -> Self {
         Self { points: vec![Point3::origin()], ..Self::default() }
     }
@@ -62,7 +63,7 @@ impl Model {
         &self.points
     }
 
-    /// How many edges [`edges`](Model::edges) draws.
+    /// The number of edges that [`edges`](Model::edges) draws.
     pub(crate) fn edge_count(&self) -> usize {
         self.edges.len()
     }
@@ -83,7 +84,7 @@ impl Model {
             let at = t.map(|v| seen[v as usize]);
             let middle = self.points[t[0] as usize];
             let face = (self.points[t[1] as usize] - middle).cross(&(self.points[t[2] as usize] - middle));
-            // Both sides are lit: which way a soup's triangles turn is anybody's guess.
+            // Both sides are lit, as triangles of a soup may have any orientation.
             let toward = pose.inverse_transform_vector(&camera.toward_eye(&(pose * middle)));
             let side = if face.dot(&toward) < 0.0 { -1.0 } else { 1.0 };
             let corners: [Corner; 3] =
@@ -108,6 +109,7 @@ impl Model {
     }
 }
 
+/// For each corner of each triangle, the mean normal of the faces around it that are at less than 35° to its own.
 fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[Vector3<f64>; 3]> {
     let mut around: Vec<Vec<u32>> = vec![Vec::new(); points];
     for (f, t) in triangles.iter().enumerate() {
@@ -131,6 +133,7 @@ fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>])
         .collect()
 }
 
+/// The edges that do not join two faces at less than 35°.
 fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[u32; 2]> {
     let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(triangles.len() * 3);
     for (f, t) in triangles.iter().enumerate() {
@@ -146,7 +149,7 @@ fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[u32; 2]
         let sharp = match group {
             [x, y] => {
                 let (n, m) = (faces[x.1 as usize], faces[y.1 as usize]);
-                // The sign of the product is left out: neighbours may turn opposite ways.
+                // The absolute value, as neighbours may have opposite orientations.
                 n.dot(&m).abs() < SMOOTH * n.norm() * m.norm()
             }
             _ => true,
@@ -156,36 +159,6 @@ fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[u32; 2]
         }
     }
     edges
-}
-
-/// A key light over the viewer's shoulder, a weak one from the other side, and the sky.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lights {
-    key: Vector3<f64>,
-    fill: Vector3<f64>,
-    up: Vector3<f64>,
-}
-
-impl Lights {
-    /// Lights that go with the camera.
-    pub(crate) fn of(camera: &Camera) -> Self {
-        let from = |x: f64, y: f64, z: f64| {
-            camera.pose_cw.inverse_transform_vector(&Vector3::new(x, y, z)).normalize()
-        };
-        Self { key: from(-0.75, -0.55, -0.75), fill: from(0.9, -0.1, -0.45), up: Vector3::z() }
-    }
-
-    /// The same lights in the frame of a body at `pose`.
-    fn seen_from(&self, pose: &Isometry3<f64>) -> Self {
-        let turn = |v: &Vector3<f64>| pose.inverse_transform_vector(v);
-        Self { key: turn(&self.key), fill: turn(&self.fill), up: turn(&self.up) }
-    }
-
-    fn on(&self, normal: &Vector3<f64>) -> f32 {
-        let lambert = |l: &Vector3<f64>| normal.dot(l).max(0.0);
-        let sky = 0.5 + 0.5 * normal.dot(&self.up);
-        (0.16 + 0.62 * lambert(&self.key) + 0.14 * lambert(&self.fill) + 0.26 * sky) as f32
-    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Pixels, and how they become a file.
+//! Pictures made of pixels, and PNG files of them.
 
 /// A picture: rows of pixels from the top, each of red, green and blue, 8 bits in sRGB.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of the pixels `at(x, y)`.
+    /// The picture whose pixel in column x and row y is `at(x, y)`.
     pub(crate) fn from_fn(
         (width, height): (usize, usize),
         mut at: impl FnMut(usize, usize) -> [u8; 3],
@@ -29,7 +29,7 @@ impl Picture {
         self.width
     }
 
-    /// How many rows.
+    /// The number of rows.
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
@@ -60,7 +60,7 @@ impl Picture {
             writer.write_image_data(&self.rgb)?;
             writer.finish()
         });
-        // Pictures have a pixel at least, and as many bytes as it takes; vectors take whatever is written.
+        // This cannot fail: a picture has at least one pixel and the right number of bytes, and a vector takes all of them.
         debug_assert!(written.is_ok(), "{written:?}");
         bytes
     }

@@ -12,9 +12,9 @@ use crate::text;
 /// A named curve.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// Its points from left to right: x above 0, y not below.
+    /// Its points from left to right: x is above 0, y at least 0.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -22,8 +22,8 @@ const COLOURS: [u32; 6] = [0x1f77b4, 0xd62728, 0x2ca02c, 0x9467bd, 0xe08214, 0x5
 const GRID: u32 = 0xdde1e6;
 const GREY: u32 = 0x66717f;
 
-/// Draws `series` with x on a logarithmic and y on a linear axis from 0, so that what grows logarithmically is
-/// straight; `axes` are the names of both. Blank when there is not a point.
+/// Draws `series` with x on a logarithmic and y on a linear axis from 0, so that logarithmic growth is a
+/// straight line; `axes` are the names of both. The picture is blank when there are no points.
 ///
 /// # Errors
 /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, or a point is not on the axes.
@@ -48,7 +48,7 @@ pub fn plot(
     if low > high {
         return Ok(resolve(&sheet.colour, size, SUPERSAMPLING));
     }
-    // What is a little beyond a decade needs no other.
+    // Points slightly beyond a decade do not need another one.
     let low = (low + 0.05).floor();
     let high = (high - 0.05).ceil().max(low + 1.0);
     let step = nice(points().map(|p| p.1).fold(0.0, f64::max) / 5.0);
@@ -87,11 +87,11 @@ pub fn plot(
     Ok(resolve(&sheet.colour, size, SUPERSAMPLING))
 }
 
-/// What is drawn on.
+/// The samples of the plot.
 struct Sheet {
     size: (usize, usize),
     colour: Vec<Colour>,
-    /// A six-hundredth of the height, samples.
+    /// The unit of lengths: a six-hundredth of the height, samples.
     unit: f32,
 }
 
@@ -122,7 +122,7 @@ fn nice(step: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|v| *v >= step * (1.0 - 1e-9)).unwrap_or(power)
 }
 
-/// With k and M for thousands and millions.
+/// The number with k and M for thousands and millions.
 fn short(v: f64) -> String {
     let (v, suffix) = if v >= 1e6 {
         (v / 1e6, "M")

@@ -1,4 +1,4 @@
-//! Triangles and lines to samples.
+//! Rasterization of triangles and lines.
 
 use crate::camera::{Camera, Projected};
 use nalgebra::Point3;
@@ -20,7 +20,7 @@ pub(crate) fn triangle(camera: &Camera, corners: [Corner; 3], mut fragment: impl
         fill(camera, v, &mut fragment);
         return;
     }
-    // Cut off what is behind the eye: at most four corners remain.
+    // Clip the part behind the near plane: at most four corners remain.
     let mut kept = Vec::with_capacity(4);
     for i in 0..3 {
         let (a, b) = (corners[i], corners[(i + 1) % 3]);
@@ -48,7 +48,7 @@ fn fill(camera: &Camera, mut v: [(Projected, f32); 3], fragment: &mut impl FnMut
     if area == 0.0 || !area.is_finite() {
         return;
     }
-    // Slopes of the planes key(x, y) and light(x, y).
+    // Slopes of the linear functions key(x, y) and light(x, y).
     let plane = |fa: f32, fb: f32, fc: f32| {
         let (u, w) = (fb - fa, fc - fa);
         ((u * wy - w * uy) / area, (w * ux - u * wx) / area)
@@ -65,14 +65,14 @@ fn fill(camera: &Camera, mut v: [(Projected, f32); 3], fragment: &mut impl FnMut
         let (from, to) = (first(long.min(short), camera.width), first(long.max(short), camera.width));
         for column in from..to {
             let (dx, dy) = (column as f32 + 0.5 - a.x, y - a.y);
-            // Slivers have steep planes: keep the key within that of the corners.
+            // Slivers have steep slopes: keep the key within the range of the corners.
             let key = (a.key + kx * dx + ky * dy).clamp(lo, hi);
             fragment(row * camera.width + column, key, (la + lx * dx + ly * dy).clamp(0.0, 1.5));
         }
     }
 }
 
-/// Calls `fragment(sample, key, coverage)` for the samples of a line of half width `half` samples.
+/// Calls `fragment(sample, key, coverage)` for the samples that a line with a half width of `half` samples covers.
 pub(crate) fn line(
     camera: &Camera,
     a: &Point3<f64>,
@@ -109,11 +109,11 @@ pub(crate) fn stroke(
     let rows = clamp((a.y.min(b.y) - reach).floor(), height)..clamp((a.y.max(b.y) + reach).ceil(), height);
     for row in rows {
         let y = row as f32 + 0.5;
-        // Where along the line this row can be near it, then the columns of that part.
+        // The part of the line that this row can be near, then the columns of that part.
         let (mut t0, mut t1) = (0.0f32, 1.0f32);
         if dy.abs() > 1e-3 {
             let (p, q) = ((y - reach - a.y) / dy, (y + reach - a.y) / dy);
-            // Wide lines reach over by their half width seen along the line.
+            // A wide line extends by its half width, measured along the line.
             let slack = reach / length2.sqrt();
             (t0, t1) = ((p.min(q) - slack).max(0.0), (p.max(q) + slack).min(1.0));
         }

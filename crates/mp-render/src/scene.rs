@@ -1,43 +1,43 @@
-//! Scenes in space, and how they are drawn.
+//! Scenes in space, and their drawing.
 
 use crate::body::Body;
 use crate::camera::Camera;
 use crate::canvas::{self, Layer, Veil, scaled, srgb};
 use crate::error::{RenderError, check_range, check_size};
-use crate::model::Lights;
+use crate::lights::Lights;
 use crate::palette::{GOAL, OBSTACLES, START};
 use crate::picture::Picture;
-use crate::{cutaway, decorate, sweep, view};
+use crate::{ambient_occlusion, cutaway, decorate, path, viewpoint};
 use mp_geom::Aabb;
 use nalgebra::Point3;
 
 /// Samples per pixel in each direction.
 pub(crate) const SUPERSAMPLING: usize = 2;
-/// What the margins leave free on the left, top, right and bottom, as fractions of the picture.
+/// The margins on the left, top, right and bottom, as fractions of the picture.
 const MARGINS: [f64; 4] = [0.04, 0.1, 0.04, 0.09];
-/// How opaque an obstacle is where it has been opened.
+/// The opacity of an obstacle where it hides the path.
 const GHOST: f32 = 0.09;
 
-/// What to draw: obstacles, and a robot on its way among them. z is up.
+/// A scene in space: obstacles, and a robot that moves among them. z is up.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Written large.
+    /// The title, in large letters.
     pub title: String,
-    /// Written small below it.
+    /// The subtitle, in small letters below the title.
     pub subtitle: String,
-    /// Seen from above, as a map; otherwise from where the path is seen best, through obstacles in front of it.
+    /// Whether the view is from above, as a map; otherwise it is from where the path is seen best, through obstacles.
     pub planar: bool,
-    /// What stands in the way.
+    /// The obstacles.
     pub obstacles: Vec<Body>,
     /// The robot at the start, if there is one.
     pub start: Option<Body>,
     /// The robot at the goal, if there is one.
     pub goal: Option<Body>,
-    /// The robot on its way between, as [`Body::along`] or [`evenly`](crate::evenly) spread it; none without a path.
+    /// Copies of the robot along the path, as [`Body::along`] or [`evenly`](crate::evenly) space them; none without a path.
     pub copies: Vec<Body>,
-    /// The line that some point of the robot traces, metres.
+    /// The line along which a point of the robot moves, metres.
     pub trace: Vec<Point3<f64>>,
-    /// Bounds of the robot's position, where there are any.
+    /// Bounds of the robot's position, if there are any.
     pub bounds: Option<Aabb>,
 }
 
@@ -69,7 +69,7 @@ impl Scene {
         check_range(bounds, || "the bounds of the robot".into())
     }
 
-    /// The robot wherever it is.
+    /// The robot at its start, its goal, and along the path.
     fn robots(&self) -> impl Iterator<Item = &Body> {
         self.start.iter().chain(&self.goal).chain(&self.copies)
     }
@@ -81,15 +81,15 @@ impl Scene {
         let (camera, half_angle) = if self.planar {
             (Camera::top(&frame, size, MARGINS), 0.4)
         } else {
-            let view = view::choose(&frame, &self.obstacles, &shown);
-            // The less of the path is in sight the wider it is opened, but a level floor stays.
-            let half_angle = (view.elevation - 0.1) * (1.0 - 0.7 * view.visible);
-            (Camera::three_quarter(&frame, view.azimuth, view.elevation, size, MARGINS), half_angle)
+            let viewpoint = viewpoint::choose(&frame, &self.obstacles, &shown);
+            // The less of the path is visible, the wider the opening, but a level floor stays opaque.
+            let half_angle = (viewpoint.elevation - 0.1) * (1.0 - 0.7 * viewpoint.visible);
+            (Camera::three_quarter(&frame, viewpoint.azimuth, viewpoint.elevation, size, MARGINS), half_angle)
         };
         let lights = Lights::of(&camera);
         let samples = size.0 * size.1;
 
-        // Where the path is nearest to the eye, and what must give way to it.
+        // The depth of the path at each sample, and the depth before which obstacles become translucent.
         let mut nearest = vec![f32::INFINITY; samples];
         for robot in &shown {
             robot.model.faces(&camera, &robot.pose_wb, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
@@ -106,7 +106,7 @@ impl Scene {
         let mut ghosts = Veil::new(samples);
         for (n, o) in self.obstacles.iter().enumerate() {
             let colour = srgb(OBSTACLES[n % OBSTACLES.len()]);
-            // From above nothing but the tops is seen, all equally light.
+            // From above only the tops are visible, all equally bright.
             let colour = if self.planar { scaled(colour, 0.6) } else { colour };
             o.model.faces(&camera, &o.pose_wb, &lights, |i, key, light| {
                 if key < cut[i] {
@@ -121,7 +121,7 @@ impl Scene {
             let put = |i, key, light| layer.put(i, key, scaled(colour, light));
             robot.model.faces(&camera, &robot.pose_wb, &lights, put);
         }
-        decorate::shade_corners(&mut layer, &camera, extent(&frame));
+        ambient_occlusion::darken_creases(&mut layer, &camera, extent(&frame));
         decorate::outlines(&mut layer, &mut ghosts, &camera, &self.obstacles, &cut);
         for robot in self.start.iter().chain(&self.goal) {
             decorate::outline(&mut layer, &camera, robot, 0.55);
@@ -131,14 +131,14 @@ impl Scene {
         } else if let Some(bounds) = &self.bounds {
             decorate::border(&mut layer, &camera, bounds);
         }
-        sweep::draw(&mut layer, &camera, &lights, &self.copies);
-        sweep::trace(&mut layer, &camera, &self.trace);
+        path::draw_copies(&mut layer, &camera, &lights, &self.copies);
+        path::draw_trace(&mut layer, &camera, &self.trace);
         ghosts.over(&mut layer.colour, 0.5);
         decorate::labels(&mut layer, size, self);
         canvas::resolve(&layer.colour, size, SUPERSAMPLING)
     }
 
-    /// The points that the picture must hold.
+    /// The points that the picture must show.
     fn frame(&self) -> Vec<Point3<f64>> {
         let placed = |body: &Body| body.model.points().iter().map(|p| body.pose_wb * p).collect::<Vec<_>>();
         let mut points: Vec<Point3<f64>> = self.robots().flat_map(placed).collect();
@@ -151,7 +151,7 @@ impl Scene {
         if of_robot == 0 {
             return points;
         }
-        // Vast obstacles (a floor that never ends) are shown only near the path.
+        // Very large obstacles, such as floors, are shown only near the path.
         let (lo, hi) = corners(&points[..of_robot]);
         let reach = 3.0 * (hi - lo).norm();
         let (lo, hi) = bounds.map_or((lo, hi), |(a, b)| (lo.inf(&a), hi.sup(&b)));

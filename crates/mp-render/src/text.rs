@@ -1,4 +1,4 @@
-//! Lettering: a stroke font of our own, so that pictures need no font file.
+//! Lettering with a built-in stroke font, so that pictures need no font file.
 
 use crate::camera::Projected;
 use crate::raster::stroke;
@@ -30,7 +30,7 @@ const GLYPHS: &[(char, &str)] = &[
     ('·', "0303"),
 ];
 
-/// Drawn for a character the font lacks.
+/// Drawn for a character that is not in the font.
 const UNKNOWN: &str = "0040460600";
 
 fn glyph(c: char) -> &'static str {
@@ -60,6 +60,7 @@ fn rounded(points: Vec<[f32; 2]>) -> Vec<[f32; 2]> {
     out
 }
 
+/// The width of a character with the gap after it, in units of the grid.
 fn advance(c: char) -> f32 {
     if c == ' ' {
         return 3.5;

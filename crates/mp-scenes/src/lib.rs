@@ -1,10 +1,10 @@
-//! The shipped scenes, as files in memory: an installed program needs no folder beside it.
+//! The shipped scenes, as files in memory, so that an installed program needs no data folder.
 //!
 //! ```
 //! let scene = mp_scenes::scene("cubicles").expect("it is shipped");
 //! assert_eq!(scene.path, "scenes/cubicles.env");
 //! assert!(scene.bytes.starts_with(b"Robot"));
-//! // Meshes are named relative to the file that names them.
+//! // Mesh names are relative to the file that contains them.
 //! assert!(mp_scenes::file("scenes/../meshes/cubicles/robot.txt").is_some());
 //! ```
 
@@ -19,11 +19,11 @@ pub use files::FILES;
 pub struct File {
     /// Its path below the folder of the scenes, with `/` between the parts.
     pub path: &'static str,
-    /// What is in it.
+    /// Its content.
     pub bytes: &'static [u8],
 }
 
-/// The name of the scene to begin with.
+/// The name of a scene for first steps.
 pub const SAMPLE: &str = "cubicles";
 
 /// The names of the scenes, in alphabetical order.

@@ -1,14 +1,14 @@
-//! The code that makes the shipped files, bit for bit: every scene and mesh is made here, from constants. `mp-bench
+//! The code that generates the shipped files, bit for bit: every scene and mesh is made here, from constants. `mp-bench
 //! assets` writes them.
 //!
-//! A family of scenes is a file; `shape` has the solids they are made of, `scene` turns them into files.
+//! Each family of scenes is one file here; `shape` has the solids of which they consist, `scene` turns them into files.
 
 mod alpha;
 mod apartment;
 mod arm;
 mod bugtrap;
-pub mod courses;
 mod cubicles;
+pub mod disc_scenes;
 mod furniture;
 mod gempa;
 mod piano;
@@ -24,7 +24,7 @@ use std::fmt;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// What is wrong, in a sentence.
+/// An error that says what is wrong in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Error(String);
 
@@ -54,31 +54,30 @@ pub fn generate() -> Files {
     alpha::add(&mut files);
     planar::add(&mut files);
     arm::add(&mut files);
-    courses::add(&mut files);
+    disc_scenes::add(&mut files);
     files
 }
 
-/// The text of `src/files.rs`, which has `files` in the crate.
+/// The text of `src/files.rs`, which puts `files` into the crate.
 #[must_use]
 pub fn files_rs(files: &Files) -> String {
     const HEAD: &str = "\
-//! What is shipped. Written by `mp-bench assets`.
+//! The shipped files. Written by `mp-bench assets`.
 
 use crate::File;
 
-/// All files, in the order of their paths.
-pub const FILES: &[File] = &[
-";
-    let entry = |path: &String| {
-        let bytes = format!("include_bytes!(\"../assets/{path}\")");
-        let line = format!("    File {{ path: \"{path}\", bytes: {bytes} }},\n");
-        // As rustfmt breaks lines.
-        match line.trim_end().len() {
-            0..=110 => line,
-            _ => format!("    File {{\n        path: \"{path}\",\n        bytes: {bytes},\n    }},\n"),
-        }
+/// The files at these paths below the folder `assets`.
+macro_rules! files {
+    ($($path:literal)*) => {
+        &[$(File { path: $path, bytes: include_bytes!(concat!(\"../assets/\", $path)) }),*]
     };
-    HEAD.to_owned() + &files.keys().map(entry).collect::<String>() + "];\n"
+}
+
+/// All files, in the order of their paths.
+pub const FILES: &[File] = files! {
+";
+    let entry = |path: &String| format!("    \"{path}\"\n");
+    HEAD.to_owned() + &files.keys().map(entry).collect::<String>() + "};\n"
 }
 
 /// The paths of `files` that are missing in `folder` or differ there.

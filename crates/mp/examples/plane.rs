@@ -1,4 +1,4 @@
-//! A disc finds its way through a room in the plane, by straight edges and by edges that bend:
+//! Plans for a disc in a room in the plane, with straight edges and with edges that bend:
 //! `cargo run --release -p mp --example plane`
 #![allow(clippy::print_stdout)] // an example talks
 

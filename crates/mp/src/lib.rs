@@ -6,15 +6,15 @@
 //! | [`collide`] | exact collision and distance between meshes |
 //! | [`cspace`] | spaces, metrics, samplers, motion checks, neighbours, paths: the traits |
 //! | [`control`] | systems that move by inputs: flows, input sets, the local planner that chooses among inputs |
-//! | [`robot`] | what a configuration places where, and when it is free |
+//! | [`robot`] | robots among obstacles: the poses of their bodies, and collision checks |
 //! | [`snake`] | active contours that bend motions around obstacles |
 //! | [`tree`] | the RRT family |
 //! | [`roadmap`] | the PRM family |
 //! | [`io`] | meshes, scenes, problems and paths in files |
-//! | [`render`] | pictures of scenes and of the plane |
+//! | [`render`] | pictures of scenes in space and in the plane |
 //!
 //! # A tour
-//! A body that must pass a window, from nothing to a verified path:
+//! A body that must pass through a window, from its mesh to a verified path:
 //!
 //! ```
 //! use mp::geom::primitives::cuboid;
@@ -54,9 +54,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Scenes from files are [`io::RigidProblem`]s, those of arms [`io::RobotProblem`]s; `examples/scene.rs` and
-//! `examples/arm.rs` plan on one. With [`plan::Scene`] it is three lines, shortening, pictures and a report
-//! included; the program `mp` is made of it.
+//! Scenes in files are read as [`io::RigidProblem`] or, for arms, [`io::RobotProblem`]; `examples/scene.rs` and
+//! `examples/arm.rs` plan on one. With [`plan::Scene`] this takes three lines, with shortening, pictures and a report
+//! included; the program `mp` is built on it.
 
 pub use mp_collide as collide;
 pub use mp_control as control;
@@ -70,7 +70,7 @@ pub use mp_robot as robot;
 pub use mp_snake as snake;
 pub use mp_tree as tree;
 
-/// What most programs need.
+/// The names that most programs need.
 pub mod prelude {
     pub use mp_cspace::{
         Certified, Discrete, Goal, Iterations, LocalPlanner, MotionCheck, MotionValidity, Outcome, Path,

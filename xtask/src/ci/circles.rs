@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Which folder imports which.
+/// The folders that each folder imports.
 type Imports = BTreeMap<String, BTreeSet<String>>;
 
 /// A circle between the folders of the crate whose `sources`, with their text, are below `src`, if there is one.
@@ -33,13 +33,13 @@ fn first(path: &Path) -> String {
     path.components().next().map(|c| c.as_os_str().to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// `algo.rs` belongs to the folder `algo`.
+/// The folder to which a file at the root of the crate belongs: `algo.rs` belongs to `algo`.
 fn owner(path: &Path, folders: &BTreeSet<String>) -> Option<String> {
     let stem = path.file_stem()?.to_string_lossy().into_owned();
     folders.contains(&stem).then_some(stem)
 }
 
-/// Code without comments and without unit tests, which may use anything.
+/// The code without comments and unit tests, which may import anything.
 fn code(text: &str) -> String {
     let text = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     text.lines().map(|line| line.split("//").next().unwrap_or_default()).collect::<Vec<_>>().join("\n")
@@ -66,7 +66,7 @@ fn names(text: &str) -> Vec<String> {
     out
 }
 
-/// What the root of the crate exports of its folders.
+/// For each name that the root of the crate exports, the folder it comes from.
 fn exports(root: &str, folders: &BTreeSet<String>) -> BTreeMap<String, String> {
     let mut out = BTreeMap::new();
     for part in code(root).split("pub use ").skip(1) {
@@ -79,7 +79,7 @@ fn exports(root: &str, folders: &BTreeSet<String>) -> BTreeMap<String, String> {
     out
 }
 
-/// The way from `start` back to itself, if there is one.
+/// The chain of imports from `start` back to itself, if there is one.
 fn circle(start: &str, imports: &Imports) -> Option<Vec<String>> {
     let mut pending = vec![vec![start.to_owned()]];
     let mut seen = BTreeSet::new();

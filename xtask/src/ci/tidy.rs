@@ -1,38 +1,19 @@
-//! What the compiler does not check: that the crates depend on each other as `ARCHITECTURE.md` says, that the
-//! paths it names exist, that no folders of a crate import each other in a circle, that files stay short, and that every algorithm has an example and a test.
+//! Checks beyond those of the compiler: that the crates depend on each other as `ARCHITECTURE.md` says, that the
+//! paths it names exist, that no folders of a crate import each other in a circle, that every file is named after
+//! what it holds, and that every algorithm has an example and a test.
 
 use super::circles;
 use std::collections::BTreeSet;
-use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// What keeps a check from being made.
+/// The error is a message that says why a check could not be made.
 type Result<T> = std::result::Result<T, String>;
 
-/// A file longer than this is worth a look.
-const LONG: usize = 500;
-/// A file longer than this is an error.
-const TOO_LONG: usize = 800;
+/// Names that say nothing about what a file or folder holds.
+const VAGUE_NAMES: [&str; 8] = ["common", "helper", "helpers", "misc", "shared", "stuff", "util", "utils"];
 
-/// Something untidy.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Finding {
-    pub(crate) is_error: bool,
-    what: String,
-}
-
-impl fmt::Display for Finding {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", if self.is_error { "error" } else { "warning" }, self.what)
-    }
-}
-
-fn error(what: String) -> Finding {
-    Finding { is_error: true, what }
-}
-
-/// All findings in the workspace at `root`.
-pub(crate) fn check(root: &Path) -> Result<Vec<Finding>> {
+/// All errors found in the workspace at `root`, a line each.
+pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let architecture = read(&root.join("ARCHITECTURE.md"))?;
     let mut findings = arrows(root, &architecture)?;
     findings.extend(missing_paths(root, &architecture));
@@ -45,17 +26,16 @@ pub(crate) fn check(root: &Path) -> Result<Vec<Finding>> {
     for src in paths_of_crates(root)? {
         if let Some(circle) = circles::of(&src, &sources) {
             let (shown, circle) = (src.strip_prefix(root).unwrap_or(&src).display(), circle.join(" → "));
-            findings.push(error(format!("{shown} has a circle of imports between folders: {circle}")));
+            findings.push(format!("{shown} has a circle of imports between folders: {circle}"));
         }
     }
-    for (path, text) in &sources {
-        let shown = path.strip_prefix(root).unwrap_or(path).display();
-        let lines = text.lines().count();
-        if lines > LONG {
-            let what = format!("{shown} has {lines} lines, more than {LONG}");
-            findings.push(Finding { is_error: lines > TOO_LONG, what });
+    for (path, _) in &sources {
+        let path = path.strip_prefix(root).unwrap_or(path);
+        let shown = path.display();
+        if has_vague_name(path) {
+            findings.push(format!("{shown} has a name that does not say what it holds"));
         }
-        findings.extend(algorithm(&sources, path).map(|lack| error(format!("{shown} has no {lack}"))));
+        findings.extend(algorithm(&sources, path).map(|lack| format!("{shown} has no {lack}")));
     }
     Ok(findings)
 }
@@ -88,7 +68,7 @@ fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// Rows of the code map, `| crate | … | what it depends on |`: crate and dependencies.
+/// The rows of the code map, `| crate | … | dependencies |`: crate and dependencies.
 fn code_map(architecture: &str) -> Vec<(String, BTreeSet<String>)> {
     let words = |cell: &str| -> BTreeSet<String> {
         let separators = |c: char| !(c.is_ascii_alphanumeric() || c == '-');
@@ -122,7 +102,8 @@ fn dependencies(manifest: &str) -> BTreeSet<String> {
     out
 }
 
-fn arrows(root: &Path, architecture: &str) -> Result<Vec<Finding>> {
+/// Differences between the dependencies in the code map and those in the manifests.
+fn arrows(root: &Path, architecture: &str) -> Result<Vec<String>> {
     let map = code_map(architecture);
     let mut findings = Vec::new();
     let mut folders = vec![root.join("xtask")];
@@ -135,23 +116,21 @@ fn arrows(root: &Path, architecture: &str) -> Result<Vec<Finding>> {
         let name = folder.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
         let real = dependencies(&read(&folder.join("Cargo.toml"))?);
         match map.iter().find(|(n, _)| *n == name) {
-            None => findings.push(error(format!("{name} is missing in the code map of ARCHITECTURE.md"))),
+            None => findings.push(format!("{name} is missing in the code map of ARCHITECTURE.md")),
             Some((_, said)) if *said != real => {
-                findings.push(error(format!("{name} depends on {real:?}, but ARCHITECTURE.md says {said:?}")))
+                findings.push(format!("{name} depends on {real:?}, but ARCHITECTURE.md says {said:?}"))
             }
             Some(_) => {}
         }
     }
     let known = |name: &str| folders.iter().any(|f| f.file_name().is_some_and(|n| n == name));
     let gone = map.iter().filter(|(name, _)| !known(name));
-    findings.extend(
-        gone.map(|(name, _)| error(format!("ARCHITECTURE.md names the crate {name}: there is none"))),
-    );
+    findings.extend(gone.map(|(name, _)| format!("ARCHITECTURE.md names the crate {name}: there is none")));
     Ok(findings)
 }
 
 /// Paths in backticks that do not exist.
-fn missing_paths(root: &Path, architecture: &str) -> Vec<Finding> {
+fn missing_paths(root: &Path, architecture: &str) -> Vec<String> {
     let quoted = architecture.split('`').skip(1).step_by(2);
     let paths = quoted.filter(|q| {
         q.contains('/')
@@ -159,7 +138,15 @@ fn missing_paths(root: &Path, architecture: &str) -> Vec<Finding> {
             && !q.starts_with('/')
     });
     let missing = paths.filter(|p| !root.join(p).exists());
-    missing.map(|p| error(format!("ARCHITECTURE.md names {p}, which does not exist"))).collect()
+    missing.map(|p| format!("ARCHITECTURE.md names {p}, which does not exist")).collect()
+}
+
+/// Whether the file, or a folder of it under `src`, has one of the [`VAGUE_NAMES`].
+fn has_vague_name(path: &Path) -> bool {
+    let in_src = path.iter().skip_while(|part| *part != "src");
+    in_src
+        .filter_map(|part| Path::new(part).file_stem())
+        .any(|stem| VAGUE_NAMES.iter().any(|name| stem == *name))
 }
 
 /// What an algorithm's file (`…/algo/NAME.rs`) lacks: an example called so, or a test (in the file, in one called
@@ -197,8 +184,14 @@ mod tests {
     #[test]
     fn the_workspace_is_tidy() {
         let findings = check(&crate::root()).unwrap();
-        let errors: Vec<_> = findings.iter().filter(|f| f.is_error).map(ToString::to_string).collect();
-        assert!(errors.is_empty(), "{errors:#?}");
+        assert!(findings.is_empty(), "{findings:#?}");
+    }
+
+    #[test]
+    fn sources_are_named_after_what_they_hold() {
+        let vague = |path: &str| has_vague_name(Path::new(path));
+        assert!(vague("crates/mp-x/src/utils.rs") && vague("crates/mp-x/src/misc/mod.rs"));
+        assert!(!vague("crates/mp-x/src/boxes.rs") && !vague("crates/mp-x/tests/common/mod.rs"));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What a planner's edges cost when they are certified, beside discrete checks.
+//! The cost of certified checks of a planner's edges, against discrete checks.
 
 use super::pairs::scene;
 use crate::clock::nanoseconds;
@@ -11,23 +11,23 @@ use nalgebra::Isometry3;
 
 /// The pairs in whose scenes edges are checked.
 pub(crate) const CHECKED: [&str; 2] = ["cubicles", "piano"];
-/// The longest steps of the trees that make the edges, and the resolution of discrete checks, all parts of the extent.
+/// The longest steps of the trees that make the edges, and the resolution of discrete checks, as fractions of the extent.
 const LONGEST: [f64; 2] = [0.2, 0.05];
 const RESOLUTION: f64 = 0.01;
-/// The greedy tree takes no more steps than this toward a sample.
+/// The most steps of the greedy tree toward a sample.
 const STEPS: usize = 5;
 
-/// What the edges of a scene cost.
+/// The costs of the edges of a scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Costs {
     scene: &'static str,
-    /// The longest step, as part of the extent.
+    /// The longest step, as a fraction of the extent.
     step: f64,
     discrete: Checked,
     certified: Checked,
 }
 
-/// One kind of check of all edges.
+/// The results of one kind of check of all edges.
 #[derive(Clone, Debug)]
 struct Checked {
     /// Microseconds per edge, the fastest pass.
@@ -39,7 +39,7 @@ type Edge = (Isometry3<f64>, Isometry3<f64>);
 
 impl Costs {
     /// Checks `count` edges that a greedy RRT makes in the scene of a pair with steps of each length, `passes` times in
-    /// turn; nothing for a pair that is of no scene in space.
+    /// turn; empty for a pair without a scene in space.
     pub(crate) fn measure(pair: &str, count: usize, passes: usize) -> Result<Vec<Self>> {
         let Some(scene) = scene(pair) else { return Ok(Vec::new()) };
         let Rigid::Space(setting) = Rigid::load(scene)? else {
@@ -61,7 +61,7 @@ impl Costs {
         Ok(LONGEST.map(measure).into())
     }
 
-    /// Whether no edge was certified in which the discrete check found a collision.
+    /// Whether the discrete check found no collision in any certified edge.
     pub(crate) fn consistent(&self) -> bool {
         let mut both = self.certified.free.iter().zip(&self.discrete.free);
         both.all(|(certified, discrete)| !certified || *discrete)
@@ -81,7 +81,7 @@ impl Checked {
     }
 }
 
-/// Edges of a tree with two roots that grows toward samples, step after step until one is blocked: those too.
+/// Edges of a tree with two roots that grows toward samples, step by step until a step is blocked; blocked ones included.
 fn edges<C: Space<State = Isometry3<f64>>>(
     space: &C,
     check: &mut impl MotionValidity<Isometry3<f64>>,

@@ -1,14 +1,14 @@
 //! Pairs and poses as files, for other programs.
 //!
 //! `DIR/data/PAIR.A.off` and `PAIR.B.off` are the meshes; `PAIR.poses.txt` has a pose on each line, nine numbers
-//! of the rotation, row by row, and three of the translation, first the uniform poses, then those near
-//! contact; `PAIR.edges.txt` has the edges likewise. All numbers are written so that they read back to the
-//! same bits. `DIR/out` is for answers.
+//! of the rotation, row by row, and three of the translation; first the uniform poses, then those near
+//! contact. `PAIR.edges.txt` has the poses of edges in the same form. All numbers are written so that they read back to the
+//! same bits. `DIR/out` is for the answers of the programs.
 
 use super::pairs::Pair;
-use super::poses::Poses;
-use crate::error::{IntoError, Result};
-use crate::output::write;
+use super::poses::QueryPoses;
+use crate::error::Result;
+use mp_plan::{make_folder, write_file};
 use nalgebra::Isometry3;
 use std::fmt::Write;
 use std::path::Path;
@@ -17,19 +17,19 @@ use std::path::Path;
 ///
 /// # Errors
 /// When a file cannot be written.
-pub(crate) fn export(folder: &Path, pair: &Pair, poses: &Poses) -> Result<()> {
+pub(crate) fn export(folder: &Path, pair: &Pair, poses: &QueryPoses) -> Result<()> {
     let (data, answers) = (folder.join("data"), folder.join("out"));
     for (side, mesh) in [("A", &pair.a), ("B", &pair.b)] {
         let text = mp_io::off_text(mesh);
-        write(&data.join(format!("{}.{side}.off", pair.name)), text.as_bytes())?;
+        write_file(&data.join(format!("{}.{side}.off", pair.name)), text.as_bytes())?;
     }
     let lines = text(poses.uniform.iter().chain(&poses.near));
-    write(&data.join(format!("{}.poses.txt", pair.name)), lines.as_bytes())?;
-    write(&data.join(format!("{}.edges.txt", pair.name)), text(&poses.edges).as_bytes())?;
-    std::fs::create_dir_all(&answers).doing(|| format!("cannot make the folder {}", answers.display()))
+    write_file(&data.join(format!("{}.poses.txt", pair.name)), lines.as_bytes())?;
+    write_file(&data.join(format!("{}.edges.txt", pair.name)), text(&poses.edges).as_bytes())?;
+    make_folder(&answers)
 }
 
-/// One pose a line.
+/// The text with one pose on each line.
 fn text<'p>(poses: impl IntoIterator<Item = &'p Isometry3<f64>>) -> String {
     let mut out = String::new();
     for pose in poses {
@@ -54,7 +54,7 @@ mod tests {
     fn what_is_written_reads_back_to_the_same_bits() {
         let pair = tori("tori", 8).unwrap();
         let counts = Counts { uniform: 7, near: 8, edges: 2 };
-        let poses = Poses::new(&pair, &Meshes::new(&pair), counts, 1).unwrap();
+        let poses = QueryPoses::new(&pair, &Meshes::new(&pair), counts, 1).unwrap();
         let dir = tempfile::tempdir().unwrap();
         export(dir.path(), &pair, &poses).unwrap();
         assert!(dir.path().join("out").is_dir());

@@ -1,12 +1,12 @@
-//! What a query and a tree cost against the number of triangles.
+//! The cost of queries and trees against the number of triangles.
 
 use super::export::export;
 use super::ours::{self, OURS};
+use super::pair_results::PairResults;
 use super::pairs::{smooth_tori, tori};
-use super::peers::{self, Effort};
-use super::poses::{Counts, Meshes, Poses};
-use super::record::{What, add, timed};
-use super::tables::Measured;
+use super::peers::{self, QueryLimits};
+use super::poses::{Counts, Meshes, QueryPoses};
+use super::record::{QueryId, add, timed};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table};
 use crate::options::Common;
@@ -19,21 +19,21 @@ use std::path::PathBuf;
 
 /// The tori have 2·n² triangles each: from a thousand to a million.
 const SIDES: [usize; 7] = [22, 39, 71, 122, 224, 387, 707];
-/// As many poses as other programs read, but fewer near contact, which take long to find.
+/// As many poses as other programs read, but fewer near contact, as these take long to find.
 const COUNTS: Counts = Counts { near: 2_000, ..Counts::FULL };
-/// Distances measured.
+/// The number of distances that are measured.
 const DISTANCES: usize = 200;
-/// What is asked.
+/// The queries: set of poses, kind, name in tables.
 const ASKED: [(&str, &str, &str); 4] = [
     ("uniform", "collide", "boolean, uniform poses"),
     ("near", "collide", "boolean, near contact"),
     ("uniform", "distance", "distance, uniform poses"),
     (SMOOTH, "distance", "distance, smooth tori"),
 ];
-/// Uniform poses of tori without bumps.
+/// The set of uniform poses of tori without bumps.
 const SMOOTH: &str = "smooth";
 
-/// Measures. True when all programs answered.
+/// Runs the measurement. True when all programs answered.
 pub(super) fn run(lab: &Lab, common: &Common, seed: u64, programs: &[PathBuf]) -> Result<bool> {
     let sides = if common.quick { &SIDES[..4] } else { &SIDES[..] };
     let rounds = common.runs_or(1, 3) as usize;
@@ -53,8 +53,8 @@ pub(super) fn run(lab: &Lab, common: &Common, seed: u64, programs: &[PathBuf]) -
     Ok(complete)
 }
 
-/// How many pairs of boxes a distance query of meshes that are apart opens: as it is asked, and when it is told the
-/// distance beforehand, which leaves only those that no search by these boxes could spare. Means.
+/// The mean number of pairs of boxes that a distance query of disjoint meshes opens: in a normal query, and when it is given
+/// the distance beforehand, which leaves only the pairs that every search with these boxes must open.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Opened {
     asked: f64,
@@ -70,7 +70,7 @@ impl Opened {
             if query.intersects(a, &here, b, pose) {
                 continue;
             }
-            // Both of the others ask this first.
+            // The other two queries do this first.
             let first = query.counters.box_tests - begin;
             let begin = query.counters.box_tests + first;
             let distance = query.distance(a, &here, b, pose).distance;
@@ -84,25 +84,25 @@ impl Opened {
     }
 }
 
-/// Two tori of 2·n² triangles.
+/// Measures two tori of 2·n² triangles.
 fn measure(
     n: usize,
     seed: u64,
     rounds: usize,
     programs: &[PathBuf],
-) -> Result<(Measured, [Opened; 2], bool)> {
+) -> Result<(PairResults, [Opened; 2], bool)> {
     let pair = tori(&format!("tori-{n}"), n)?;
     let meshes = Meshes::new(&pair);
-    let poses = Poses::new(&pair, &meshes, COUNTS, seed)?;
+    let poses = QueryPoses::new(&pair, &meshes, COUNTS, seed)?;
     let smooth = Meshes::new(&smooth_tori(SMOOTH, n)?);
     let opened = [&meshes, &smooth].map(|meshes| Opened::count(meshes, &poses.uniform[..DISTANCES]));
-    let mut measured = Measured::new(&pair);
+    let mut measured = PairResults::new(&pair);
     let here = Isometry3::identity();
     let scratch = tempfile::tempdir().into_error()?;
     if !programs.is_empty() {
         // Other programs read as many poses near contact as uniform ones.
         let near = poses.near.iter().cycle().take(COUNTS.uniform).copied().collect();
-        export(scratch.path(), &pair, &Poses { near, ..poses.clone() })?;
+        export(scratch.path(), &pair, &QueryPoses { near, ..poses.clone() })?;
     }
     let mut complete = true;
     for _ in 0..rounds {
@@ -112,7 +112,7 @@ fn measure(
         for (set, kind, _) in ASKED {
             let (a, b) = if set == SMOOTH { (&smooth.a, &smooth.b) } else { (a, b) };
             let poses = if set == "near" { &poses.near } else { &poses.uniform };
-            let (what, some) = (What::new(OURS, set, kind), &poses[..DISTANCES]);
+            let (what, some) = (QueryId::new(OURS, set, kind), &poses[..DISTANCES]);
             add(
                 &mut measured.records,
                 match kind {
@@ -121,10 +121,10 @@ fn measure(
                 },
             );
         }
-        // Their trees are what is wanted: little time for anything else.
-        let effort = Effort { passes: 1, distances: 1, cap: 0.1 };
+        // Only their trees are measured: queries get little time.
+        let limits = QueryLimits { passes: 1, distances: 1, cap: 0.1 };
         for program in programs {
-            match peers::ask(program, scratch.path(), &pair.name, effort) {
+            match peers::ask(program, scratch.path(), &pair.name, limits) {
                 Ok((builds, _)) => builds.into_iter().for_each(|b| measured.built(b)),
                 Err(error) => {
                     complete = false;
@@ -137,7 +137,7 @@ fn measure(
 }
 
 /// A row for each size; all costs are of both meshes.
-fn table(all: &[Measured], opened: &[[Opened; 2]]) -> Table {
+fn table(all: &[PairResults], opened: &[[Opened; 2]]) -> Table {
     let libs: Vec<&str> =
         all.first().map_or(Vec::new(), |m| m.builds.iter().map(|b| b.lib.as_str()).collect());
     let head = ["triangles of each mesh".to_owned()].into_iter();
@@ -162,12 +162,12 @@ fn table(all: &[Measured], opened: &[[Opened; 2]]) -> Table {
 }
 
 /// Nanoseconds per query.
-fn cost(m: &Measured, set: &str, query: &str) -> Option<f64> {
+fn cost(m: &PairResults, set: &str, query: &str) -> Option<f64> {
     m.record(OURS, set, query).map(|r| r.least)
 }
 
 /// Costs relative to the smallest size: a straight line is logarithmic growth.
-fn curves(all: &[Measured]) -> Vec<Series> {
+fn curves(all: &[PairResults]) -> Vec<Series> {
     let mut curves: Vec<Series> = ASKED
         .iter()
         .map(|&(set, query, name)| {
@@ -175,7 +175,7 @@ fn curves(all: &[Measured]) -> Vec<Series> {
             relative(name, costs.collect())
         })
         .collect();
-    let per_triangle = |m: &Measured| {
+    let per_triangle = |m: &PairResults| {
         let build = m.builds.iter().find(|b| b.lib == OURS)?;
         Some((m.triangles, build.ms / m.triangles as f64))
     };
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn small_tori_are_measured() {
-        let (all, opened): (Vec<Measured>, Vec<[Opened; 2]>) = [22, 25]
+        let (all, opened): (Vec<PairResults>, Vec<[Opened; 2]>) = [22, 25]
             .map(|n| {
                 let (measured, opened, _) = measure(n, 1, 1, &[]).unwrap();
                 (measured, opened)

@@ -1,37 +1,37 @@
-//! Our own answers.
+//! The queries with `mp-collide`.
 
 use super::pairs::Pair;
-use super::poses::{EDGE, Meshes, Poses};
-use super::record::{Record, What, timed};
+use super::poses::{EDGE, Meshes, QueryPoses};
+use super::record::{QueryId, TimedAnswers, timed};
 use crate::clock::nanoseconds;
 use mp_collide::{Isa, Query};
 use nalgebra::Isometry3;
 
-/// What our own are called.
+/// The name of `mp-collide` in tables.
 pub(crate) const OURS: &str = "mp";
-/// The tolerance asked for, in radii of the robot.
+/// The tolerance of tolerance queries, in radii of the robot.
 pub(crate) const TOLERANCE: f64 = 0.02;
 
-/// A tree that was built, or two.
+/// The cost of building the trees of a pair.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Build {
+pub(crate) struct TreeBuild {
     pub(crate) lib: String,
-    /// Milliseconds, both meshes.
+    /// The time for both meshes, milliseconds.
     pub(crate) ms: f64,
-    /// Both meshes.
+    /// The memory of both trees, bytes; 0 when it is not known.
     pub(crate) bytes: usize,
 }
 
 /// Builds the trees of `pair`.
-pub(crate) fn build(pair: &Pair) -> (Meshes, Build) {
+pub(crate) fn build(pair: &Pair) -> (Meshes, TreeBuild) {
     let begin = nanoseconds();
     let meshes = Meshes::new(pair);
     let ms = (nanoseconds() - begin) * 1e-6;
     let bytes = meshes.a.memory() + meshes.b.memory();
-    (meshes, Build { lib: OURS.to_owned(), ms, bytes })
+    (meshes, TreeBuild { lib: OURS.to_owned(), ms, bytes })
 }
 
-/// What the answers on an instruction set are called.
+/// The name of `mp-collide` on an instruction set.
 pub(crate) fn name(isa: Isa) -> String {
     if isa == Isa::detect() {
         OURS.to_owned()
@@ -40,14 +40,14 @@ pub(crate) fn name(isa: Isa) -> String {
     }
 }
 
-/// Asks everything `passes` times; distances for the first `distances` poses of each set.
+/// Runs all queries `passes` times; distances only for the first `distances` poses of each set.
 pub(crate) fn ask(
     pair: &Pair,
     meshes: &Meshes,
-    poses: &Poses,
+    poses: &QueryPoses,
     distances: usize,
     passes: usize,
-) -> Vec<Record> {
+) -> Vec<TimedAnswers> {
     let here = Isometry3::identity();
     let (a, b) = (&meshes.a, &meshes.b);
     let tolerance = TOLERANCE * pair.radius();
@@ -55,22 +55,22 @@ pub(crate) fn ask(
     for (set, poses) in [("uniform", &poses.uniform), ("near", &poses.near)] {
         for isa in Isa::available() {
             let mut query = Query::with_isa(isa);
-            let what = What::new(&name(isa), set, "collide");
+            let what = QueryId::new(&name(isa), set, "collide");
             all.push(timed(what, poses, passes, |pose| f64::from(query.intersects(a, &here, b, pose))));
         }
         let mut query = Query::default();
-        let what = What::new(OURS, set, "tolerance");
+        let what = QueryId::new(OURS, set, "tolerance");
         all.push(timed(what, poses, passes, |pose| f64::from(query.within(a, &here, b, pose, tolerance))));
-        let what = What::new(OURS, set, "distance");
+        let what = QueryId::new(OURS, set, "distance");
         let some = &poses[..distances.min(poses.len())];
         all.push(timed(what, some, passes, |pose| query.distance(a, &here, b, pose).distance));
     }
     let edges: Vec<&[Isometry3<f64>]> = poses.edges.chunks(EDGE).collect();
     let mut query = Query::default();
-    let mut motion = timed(What::new(OURS, "edges", "motion"), &edges, passes, |edge| {
+    let mut motion = timed(QueryId::new(OURS, "edges", "motion"), &edges, passes, |edge| {
         query.first_collision(b, edge, a, &here).unwrap_or(EDGE) as f64
     });
-    // Per pose looked at: those before the first collision and that one.
+    // Per pose that is checked: those up to and including the first collision.
     let looked_at: f64 = motion.answers.iter().map(|first| (first + 1.0).min(EDGE as f64)).sum();
     let per_pose = edges.len() as f64 / looked_at;
     motion.least *= per_pose;
@@ -91,7 +91,7 @@ mod tests {
         let (meshes, build) = build(&pair);
         assert!(build.bytes > 0 && build.ms > 0.0);
         let counts = Counts { uniform: 50, near: 40, edges: 5 };
-        let poses = Poses::new(&pair, &meshes, counts, 2).unwrap();
+        let poses = QueryPoses::new(&pair, &meshes, counts, 2).unwrap();
         let all = ask(&pair, &meshes, &poses, 30, 2);
         assert_eq!(all.len(), 2 * (Isa::available().len() + 2) + 1);
         let of = |set: &str, query: &str| {

@@ -7,7 +7,7 @@ use mp_plan::Error;
 use nalgebra::Point3;
 use std::f64::consts::TAU;
 
-/// The pairs there are, by name.
+/// The names of the pairs.
 pub(crate) const PAIRS: [&str; 5] = ["cubicles", "twisty", "alpha", "piano", "large"];
 
 /// Bumps of the first and of the second torus: amplitude (of the minor radius), waves around the ring, waves
@@ -15,15 +15,15 @@ pub(crate) const PAIRS: [&str; 5] = ["cubicles", "twisty", "alpha", "piano", "la
 const BUMPS_A: [[f64; 3]; 3] = [[0.10, 9.0, 7.0], [0.05, 23.0, 5.0], [0.02, -17.0, 41.0]];
 const BUMPS_B: [[f64; 3]; 3] = [[0.12, 7.0, 5.0], [0.04, -19.0, 8.0], [0.02, 31.0, 29.0]];
 
-/// An obstacle that stands in the world, a robot that moves in it.
+/// An obstacle fixed in the world, and a robot.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Pair {
     pub(crate) name: String,
-    /// The obstacles, all in one, in the world frame.
+    /// All obstacles in one mesh, in the world frame.
     pub(crate) a: TriMesh,
     /// The robot, in its own frame.
     pub(crate) b: TriMesh,
-    /// Where the origin of the robot may be.
+    /// The box in which the origin of the robot may be.
     pub(crate) bounds: Aabb,
 }
 
@@ -52,7 +52,7 @@ impl Pair {
     }
 }
 
-/// The scene that the pair called `name` is of.
+/// The scene from which the pair called `name` comes.
 pub(crate) fn scene(name: &str) -> Option<&'static str> {
     match name {
         "alpha" => Some("alpha-1.0"),
@@ -68,7 +68,7 @@ pub(crate) fn tori(name: &str, n: usize) -> Result<Pair> {
     tori_with(name, n, &BUMPS_A, &BUMPS_B)
 }
 
-/// The same without bumps.
+/// As [`tori`], without bumps.
 pub(crate) fn smooth_tori(name: &str, n: usize) -> Result<Pair> {
     tori_with(name, n, &[], &[])
 }

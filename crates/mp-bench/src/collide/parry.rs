@@ -1,9 +1,9 @@
-//! The answers of parry3d in double precision, in the same process.
+//! The queries with parry3d in double precision, in the same process.
 
-use super::ours::Build;
+use super::ours::TreeBuild;
 use super::pairs::Pair;
-use super::poses::Poses;
-use super::record::{Record, What, timed_once};
+use super::poses::QueryPoses;
+use super::record::{QueryId, TimedAnswers, timed_once};
 use crate::clock::nanoseconds;
 use crate::error::{IntoError, Result};
 use mp_collide::parry::{mesh_to_parry, pose_to_parry};
@@ -13,7 +13,7 @@ use parry3d_f64::shape;
 
 const PARRY: &str = "parry";
 
-/// The meshes of a pair.
+/// The meshes of a pair in parry3d.
 #[derive(Clone, Debug)]
 pub(crate) struct Parry {
     a: shape::TriMesh,
@@ -21,17 +21,17 @@ pub(crate) struct Parry {
 }
 
 impl Parry {
-    /// Builds its trees.
-    pub(crate) fn new(pair: &Pair) -> Result<(Self, Build)> {
+    /// Builds the trees.
+    pub(crate) fn new(pair: &Pair) -> Result<(Self, TreeBuild)> {
         let begin = nanoseconds();
         let parry = Self { a: mesh_to_parry(&pair.a).into_error()?, b: mesh_to_parry(&pair.b).into_error()? };
         let ms = (nanoseconds() - begin) * 1e-6;
-        // It does not tell its memory.
-        Ok((parry, Build { lib: PARRY.to_owned(), ms, bytes: 0 }))
+        // parry3d does not report its memory.
+        Ok((parry, TreeBuild { lib: PARRY.to_owned(), ms, bytes: 0 }))
     }
 
-    /// Asks until `cap` seconds are used up, for each set and kind of query.
-    pub(crate) fn ask(&self, poses: &Poses, distances: usize, cap: f64) -> Result<Vec<Record>> {
+    /// Runs the queries, each set and kind of query until `cap` seconds are used up.
+    pub(crate) fn ask(&self, poses: &QueryPoses, distances: usize, cap: f64) -> Result<Vec<TimedAnswers>> {
         let here = Pose::identity();
         let mut all = Vec::new();
         for (set, poses) in [("uniform", &poses.uniform), ("near", &poses.near)] {
@@ -43,13 +43,13 @@ impl Parry {
                     f64::NAN
                 })
             };
-            all.push(timed_once(What::new(PARRY, set, "collide"), &poses, cap * 1e9, |pose| {
+            all.push(timed_once(QueryId::new(PARRY, set, "collide"), &poses, cap * 1e9, |pose| {
                 checked(
                     intersection_test(&here, &self.a, pose, &self.b).map(|told| f64::from(told.intersecting)),
                 )
             }));
             let some = &poses[..distances.min(poses.len())];
-            all.push(timed_once(What::new(PARRY, set, "distance"), some, cap * 1e9, |pose| {
+            all.push(timed_once(QueryId::new(PARRY, set, "distance"), some, cap * 1e9, |pose| {
                 checked(distance(&here, &self.a, pose, &self.b).map(|d| d.distance))
             }));
             failed.map_or(Ok(()), Err).into_error()?;

@@ -1,4 +1,4 @@
-//! Other programs, each with the same meshes and poses.
+//! Other programs, which get the same meshes and poses.
 //!
 //! A program is called as `PROGRAM PAIR --passes N --ndist M --cap S`, in a folder with `data/` and `out/` as
 //! `--export` writes it. It prints lines of `key=value` words: `lib= pair= build_ms= heap_bytes=`
@@ -6,19 +6,19 @@
 //! and least of its N passes) when it has answered the first `n` queries of a set. Answers are in
 //! `out/LIB.PAIR.SET.QUERY.bin`, eight bytes each, `f64`, little end first: 0 or 1 for `collide` and
 //! `tolerance`, metres for `distance` (0 or below when colliding; first M poses of each set), the number of free
-//! poses before the first collision for `motion`. It may answer what it likes. S is how many seconds it may spend on a
+//! poses before the first collision for `motion`. It may leave out queries. S is the limit in seconds for each
 //! kind of query.
 
-use super::ours::Build;
-use super::record::{Record, What};
+use super::ours::TreeBuild;
+use super::record::{QueryId, TimedAnswers};
 use crate::error::{IntoError, Result};
 use mp_plan::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// How much to ask.
+/// The limits of the queries of other programs.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Effort {
+pub(crate) struct QueryLimits {
     pub(crate) passes: usize,
     pub(crate) distances: usize,
     /// Seconds.
@@ -28,12 +28,12 @@ pub(crate) struct Effort {
 /// A line that a program printed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Line {
-    Build(Build),
-    Answered { what: What, count: usize, median: f64, least: f64 },
+    TreeBuild(TreeBuild),
+    Answered { what: QueryId, count: usize, median: f64, least: f64 },
 }
 
 impl Line {
-    /// `None` when it is neither.
+    /// Parses a line; `None` when it is neither.
     pub(crate) fn parse(line: &str) -> Option<Self> {
         let of = |key: &str| line.split_whitespace().find_map(|w| w.strip_prefix(key)?.strip_prefix('='));
         let number = |key: &str| of(key)?.parse::<f64>().ok().filter(|v| v.is_finite() && *v >= 0.0);
@@ -42,10 +42,10 @@ impl Line {
             let median = number("cpu_ns")?;
             let least = number("cpu_min").unwrap_or(median);
             let count = of("n")?.parse().ok()?;
-            return Some(Self::Answered { what: What::new(lib, set, query), count, median, least });
+            return Some(Self::Answered { what: QueryId::new(lib, set, query), count, median, least });
         }
         let bytes = of("heap_bytes").and_then(|b| b.parse().ok()).unwrap_or(0);
-        Some(Self::Build(Build { lib: lib.to_owned(), ms: number("build_ms")?, bytes }))
+        Some(Self::TreeBuild(TreeBuild { lib: lib.to_owned(), ms: number("build_ms")?, bytes }))
     }
 }
 
@@ -79,17 +79,17 @@ fn executable(path: &Path) -> bool {
 /// Runs `program` on `pair` in `folder`.
 ///
 /// # Errors
-/// When it cannot be run, fails, or does not leave the answers it says it has.
+/// When it cannot be run, fails, or some of the answers it announces are missing.
 pub(crate) fn ask(
     program: &Path,
     folder: &Path,
     pair: &str,
-    effort: Effort,
-) -> Result<(Vec<Build>, Vec<Record>)> {
-    let [passes, distances] = [effort.passes, effort.distances].map(|n| n.to_string());
+    limits: QueryLimits,
+) -> Result<(Vec<TreeBuild>, Vec<TimedAnswers>)> {
+    let [passes, distances] = [limits.passes, limits.distances].map(|n| n.to_string());
     let done = Command::new(program)
         .current_dir(folder)
-        .args([pair, "--passes", &passes, "--ndist", &distances, "--cap", &effort.cap.to_string()])
+        .args([pair, "--passes", &passes, "--ndist", &distances, "--cap", &limits.cap.to_string()])
         .output()
         .doing(|| format!("cannot run {}", program.display()))?;
     if !done.status.success() {
@@ -100,11 +100,11 @@ pub(crate) fn ask(
     let (mut builds, mut records) = (Vec::new(), Vec::new());
     for line in String::from_utf8_lossy(&done.stdout).lines().filter_map(Line::parse) {
         match line {
-            Line::Build(build) => builds.push(build),
+            Line::TreeBuild(build) => builds.push(build),
             Line::Answered { what, count, median, least } => {
                 let file = format!("{}.{pair}.{}.{}.bin", what.lib, what.set, what.query);
                 let answers = answers(&folder.join("out").join(file), count)?;
-                records.push(Record { what, medians: vec![median], least, answers });
+                records.push(TimedAnswers { what, medians: vec![median], least, answers });
             }
         }
     }
@@ -125,14 +125,14 @@ mod tests {
     #[test]
     fn lines_are_understood() {
         let line = "lib=x_OBB pair=piano set=near query=collide n=10000 hits=5 cpu_ns=12.5 cpu_min=11.0 wall_ns=9 passes=3 ";
-        let what = What::new("x_OBB", "near", "collide");
+        let what = QueryId::new("x_OBB", "near", "collide");
         let answered = Line::Answered { what: what.clone(), count: 10_000, median: 12.5, least: 11.0 };
         assert_eq!(Line::parse(line), Some(answered));
         let line = "lib=x_OBB set=near query=collide cpu_ns=2 n=3";
         assert_eq!(Line::parse(line), Some(Line::Answered { what, count: 3, median: 2.0, least: 2.0 }));
         let line = "lib=x pair=alpha build_ms=1.50 heap_bytes=1024 memusage=0";
-        let build = Build { lib: "x".into(), ms: 1.5, bytes: 1024 };
-        assert_eq!(Line::parse(line), Some(Line::Build(build)));
+        let build = TreeBuild { lib: "x".into(), ms: 1.5, bytes: 1024 };
+        assert_eq!(Line::parse(line), Some(Line::TreeBuild(build)));
         for bad in [
             "",
             "hello",
@@ -162,11 +162,11 @@ mod tests {
         std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
         let found = find(programs.path()).unwrap();
         assert_eq!(found, [program.canonicalize().unwrap()]);
-        let effort = Effort { passes: 7, distances: 1, cap: 1.0 };
-        let (builds, records) = ask(&found[0], folder.path(), "piano", effort).unwrap();
-        assert_eq!(builds, [Build { lib: "z".into(), ms: 2.0, bytes: 0 }]);
-        let what = What::new("z", "near", "collide");
-        assert_eq!(records, [Record { what, medians: vec![7.0], least: 7.0, answers: vec![1.0] }]);
-        assert!(ask(&found[0], folder.path(), "bad", effort).is_err());
+        let limits = QueryLimits { passes: 7, distances: 1, cap: 1.0 };
+        let (builds, records) = ask(&found[0], folder.path(), "piano", limits).unwrap();
+        assert_eq!(builds, [TreeBuild { lib: "z".into(), ms: 2.0, bytes: 0 }]);
+        let what = QueryId::new("z", "near", "collide");
+        assert_eq!(records, [TimedAnswers { what, medians: vec![7.0], least: 7.0, answers: vec![1.0] }]);
+        assert!(ask(&found[0], folder.path(), "bad", limits).is_err());
     }
 }

@@ -9,17 +9,17 @@ use nalgebra::Isometry3;
 
 /// Poses of one edge.
 pub(crate) const EDGE: usize = 40;
-/// How far any point of the robot moves from one pose of an edge to the next, at most, in radii of the robot.
+/// The most that a point of the robot moves from one pose of an edge to the next, in radii of the robot.
 pub(crate) const STEP: f64 = 0.02;
-/// How near the near poses are to the border between free and colliding, in radii of the robot: half each.
+/// The distances of near poses from the border between free and colliding, in radii of the robot, each for half of them.
 pub(crate) const WIDTHS: [f64; 2] = [1e-2, 1e-4];
-/// Uniform poses drawn in search of one that is free or one that collides, at most.
+/// The most uniform poses that are drawn to find one that is free or one that collides.
 const DRAWS: usize = 1_000_000;
 
-/// After so many halvings nothing is left to halve.
+/// The most bisections: after these, the interval is empty in `f64`.
 const HALVINGS: usize = 100;
 
-/// How many of each there are.
+/// The numbers of poses and edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub(crate) uniform: usize,
@@ -28,22 +28,22 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// What the other programs expect.
+    /// The counts that other programs expect.
     pub(crate) const FULL: Self = Self { uniform: 10_000, near: 10_000, edges: 500 };
 }
 
-/// Poses of the robot in the world.
+/// The poses of the robot at which a pair is measured.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Poses {
+pub(crate) struct QueryPoses {
     /// Uniform in the bounds.
     pub(crate) uniform: Vec<Isometry3<f64>>,
-    /// Nearer to the border of free and colliding than [`WIDTHS`], half on either side.
+    /// Nearer to the border between free and colliding than [`WIDTHS`], half on either side.
     pub(crate) near: Vec<Isometry3<f64>>,
     /// [`EDGE`] poses each, [`STEP`] apart, straight from a free uniform pose towards another uniform one.
     pub(crate) edges: Vec<Isometry3<f64>>,
 }
 
-impl Poses {
+impl QueryPoses {
     /// The poses of `pair` that `seed` gives.
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl Meshes {
     }
 }
 
-/// Looks for the border between free and colliding poses.
+/// Finds poses at the border between free and colliding.
 pub(crate) struct Border<'p> {
     pair: &'p Pair,
     meshes: &'p Meshes,
@@ -96,14 +96,14 @@ pub(crate) struct Border<'p> {
 }
 
 impl<'p> Border<'p> {
-    /// From `rng` on.
+    /// A search that draws from `rng`.
     pub(crate) fn new(pair: &'p Pair, meshes: &'p Meshes, rng: Rng) -> Result<Self> {
         let space = Se3::new(pair.bounds.min.coords, pair.bounds.max.coords).into_error()?;
         Ok(Self { pair, meshes, space, query: Query::default(), rng })
     }
 
-    /// Free and colliding poses on a random line, two for each of `widths` (metres, descending): between the two
-    /// no point of the robot moves by more than that, or they are as near as `f64` can tell apart.
+    /// A free and a colliding pose on a random line for each of `widths` (metres, descending): between the two
+    /// no point of the robot moves by more than that width, or they are as near as `f64` allows.
     pub(crate) fn bisected(&mut self, widths: &[f64]) -> Result<Vec<[Isometry3<f64>; 2]>> {
         let mut ends = [self.draw(false)?, self.draw(true)?];
         let (mut found, mut widths) = (Vec::with_capacity(widths.len()), widths.iter().peekable());
@@ -128,7 +128,7 @@ impl<'p> Border<'p> {
         Ok(std::array::from_fn(|k| between(&from, &towards, k as f64 * step)))
     }
 
-    /// How far any point of the robot moves from one to the other, at most.
+    /// An upper bound of how far a point of the robot moves between two poses.
     fn travel(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let straight = (to.translation.vector - from.translation.vector).norm();
         straight + from.rotation.angle_to(&to.rotation) * self.pair.radius()
@@ -147,8 +147,8 @@ impl<'p> Border<'p> {
     }
 }
 
-/// On the straight way from one to the other. The rotation is made unit again, which interpolating nearly
-/// equal ones may spoil.
+/// The pose at `t` on the straight motion between two poses. The rotation is normalized, as interpolation of nearly
+/// equal rotations may change its norm.
 fn between(from: &Isometry3<f64>, to: &Isometry3<f64>, t: f64) -> Isometry3<f64> {
     let mut pose = from.lerp_slerp(to, t);
     pose.rotation.renormalize();
@@ -166,9 +166,9 @@ mod tests {
     fn poses_are_where_they_should_be() {
         let pair = tori("tori", 16).unwrap();
         let meshes = Meshes::new(&pair);
-        let poses = Poses::new(&pair, &meshes, FEW, 3).unwrap();
-        assert_eq!(poses, Poses::new(&pair, &meshes, FEW, 3).unwrap());
-        assert_ne!(poses, Poses::new(&pair, &meshes, FEW, 4).unwrap());
+        let poses = QueryPoses::new(&pair, &meshes, FEW, 3).unwrap();
+        assert_eq!(poses, QueryPoses::new(&pair, &meshes, FEW, 3).unwrap());
+        assert_ne!(poses, QueryPoses::new(&pair, &meshes, FEW, 4).unwrap());
         let mut query = Query::default();
         let mut hits = |of: &[Isometry3<f64>]| of.iter().filter(|p| meshes.collide(&mut query, p)).count();
         assert_eq!(hits(&poses.near), FEW.near / 2);

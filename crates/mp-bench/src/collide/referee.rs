@@ -1,10 +1,10 @@
-//! Every answer of the engine against exact arithmetic.
+//! Comparison of all boolean answers with exact arithmetic.
 //!
-//! The contract of [`mp_collide`] is taken at its word: the corners of the robot are moved by the rotation matrix and the
-//! translation, rounded as it says, and what touches then collides. Triangles whose balls meet are compared one by
-//! one, in whole numbers wherever `f64` leaves a doubt. Nothing of that is shared with the engine.
+//! The contract of [`mp_collide`] is taken literally: the corners of the robot are moved by the rotation matrix and the
+//! translation, with the rounding it specifies, and touching is collision. Triangles whose bounding balls meet are compared one by
+//! one, in integers wherever `f64` is not certain. No code is shared with the engine.
 
-mod places;
+mod hard_poses;
 mod predicate;
 
 use super::Options;
@@ -20,12 +20,12 @@ use mp_collide::{Isa, Query};
 use nalgebra::{Isometry3, Matrix3, Point3, Vector3};
 use predicate::{Sides, Triangle, apart, meet_exactly};
 
-/// Poses of all pairs together, when not told otherwise.
+/// The default number of poses of all pairs together.
 const POSES: usize = 1_000_000;
-/// Wrong answers that are told in full, of each kind.
+/// The most wrong answers of each kind that are printed.
 const TOLD: usize = 5;
 
-/// Compares. True when nothing differs.
+/// Compares all answers. True when none differs.
 pub(super) fn run(lab: &Lab, common: &Common, options: &Options, pairs: &[&str]) -> Result<bool> {
     let each = options.poses.unwrap_or(if common.quick { POSES / 100 } else { POSES / pairs.len() });
     let mut table = Table::new(["pair", "poses", "count", "colliding", "decided in integers", "wrong"]);
@@ -36,19 +36,19 @@ pub(super) fn run(lab: &Lab, common: &Common, options: &Options, pairs: &[&str])
         let mut referee = Referee::new(&pair);
         let mut queries: Vec<Query> = Isa::available().into_iter().map(Query::with_isa).collect();
         let begin = nanoseconds();
-        for (kind, poses) in places::kinds(&pair, &meshes, each, options.seed)? {
+        for (kind, poses) in hard_poses::pose_groups(&pair, &meshes, each, options.seed)? {
             let (mut hits, mut close, mut wrong) = (0, 0, 0);
             for pose in &poses {
-                let verdict = referee.judge(pose);
-                hits += usize::from(verdict.meet);
-                close += usize::from(verdict.close);
-                // Every instruction set is asked.
-                if queries.iter_mut().any(|query| meshes.collide(query, pose) != verdict.meet) {
+                let exact = referee.judge(pose);
+                hits += usize::from(exact.meet);
+                close += usize::from(exact.close);
+                // The query runs on every instruction set.
+                if queries.iter_mut().any(|query| meshes.collide(query, pose) != exact.meet) {
                     wrong += 1;
                     if wrong <= TOLD {
                         note(&format!(
                             "{name} ({kind}): {} is the exact answer at {}",
-                            verdict.meet,
+                            exact.meet,
                             bits(pose)
                         ));
                     }
@@ -64,21 +64,21 @@ pub(super) fn run(lab: &Lab, common: &Common, options: &Options, pairs: &[&str])
     Ok(all_right)
 }
 
-/// A pose so that it can be had again.
+/// The exact text of a pose, with which it can be made again.
 fn bits(pose: &Isometry3<f64>) -> String {
     let (q, t) = (pose.rotation.quaternion(), pose.translation.vector);
     format!("w i j k {:?} {:?} {:?} {:?}, x y z {:?} {:?} {:?}", q.w, q.i, q.j, q.k, t.x, t.y, t.z)
 }
 
-/// What the referee says.
+/// The answer of the referee.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Verdict {
+struct ExactAnswer {
     meet: bool,
-    /// Whether `f64` left a doubt.
+    /// Whether `f64` was not certain.
     close: bool,
 }
 
-/// Judges the poses of a pair.
+/// Decides exactly whether poses of a pair collide.
 #[derive(Debug)]
 struct Referee<'p> {
     pair: &'p Pair,
@@ -93,7 +93,7 @@ impl<'p> Referee<'p> {
     }
 
     /// Whether the robot at `pose` collides.
-    fn judge(&mut self, pose: &Isometry3<f64>) -> Verdict {
+    fn judge(&mut self, pose: &Isometry3<f64>) -> ExactAnswer {
         let Self { pair, a, b, close } = self;
         let moved = Placed::new(pose);
         close.clear();
@@ -110,11 +110,11 @@ impl<'p> Referee<'p> {
             meet
         });
         let meet = clear_hit || close.iter().any(|(s, t, sides)| meet_exactly(s, t, sides));
-        Verdict { meet, close: !clear_hit && !close.is_empty() }
+        ExactAnswer { meet, close: !clear_hit && !close.is_empty() }
     }
 }
 
-/// Where the contract puts points of a robot among obstacles that stand at the origin.
+/// The transform of the robot's points, with the rounding of the contract.
 #[derive(Clone, Copy, Debug)]
 struct Placed {
     rotation: Matrix3<f64>,
@@ -166,7 +166,7 @@ mod tests {
             let off = 1.0 + f64::EPSILON;
             assert!(!at(x * off, y * off, z * off).meet, "{x} {y} {z}");
         }
-        assert_eq!(at(3.0, 0.0, 0.0), Verdict { meet: false, close: false });
+        assert_eq!(at(3.0, 0.0, 0.0), ExactAnswer { meet: false, close: false });
     }
 
     #[test]
@@ -174,7 +174,7 @@ mod tests {
         let pair = tori("tori", 16).unwrap();
         let (meshes, mut referee) = (Meshes::new(&pair), Referee::new(&pair));
         let mut query = Query::default();
-        for (kind, poses) in places::kinds(&pair, &meshes, 2_000, 1).unwrap() {
+        for (kind, poses) in hard_poses::pose_groups(&pair, &meshes, 2_000, 1).unwrap() {
             for pose in &poses {
                 let right = referee.judge(pose).meet;
                 assert_eq!(meshes.collide(&mut query, pose), right, "{kind} {}", bits(pose));

@@ -1,75 +1,12 @@
-//! What was measured, as tables.
+//! Tables of the results.
 
-use super::ours::{Build, OURS};
-use super::pairs::Pair;
-use super::record::Record;
+use super::ours::{OURS, TreeBuild};
+use super::pair_results::PairResults;
+use super::record::TimedAnswers;
 use crate::experiment::{Table, geometric_mean};
 
-/// What was measured on one pair.
-#[derive(Clone, Debug)]
-pub(crate) struct Measured {
-    pub(crate) pair: String,
-    /// Triangles of both meshes.
-    pub(crate) triangles: usize,
-    /// Of coordinates, metres.
-    pub(crate) size: f64,
-    /// The fastest of each library.
-    pub(crate) builds: Vec<Build>,
-    pub(crate) records: Vec<Record>,
-}
-
-impl Measured {
-    /// Nothing yet.
-    pub(crate) fn new(pair: &Pair) -> Self {
-        Self {
-            pair: pair.name.clone(),
-            triangles: pair.a.triangles().len() + pair.b.triangles().len(),
-            size: pair.a.aabb().diagonal() + pair.radius(),
-            builds: Vec::new(),
-            records: Vec::new(),
-        }
-    }
-
-    /// Keeps `build` when it is the first or the fastest of its library.
-    pub(crate) fn built(&mut self, build: Build) {
-        match self.builds.iter_mut().find(|b| b.lib == build.lib) {
-            Some(known) => known.ms = known.ms.min(build.ms),
-            None => self.builds.push(build),
-        }
-    }
-
-    pub(crate) fn record(&self, lib: &str, set: &str, query: &str) -> Option<&Record> {
-        self.records.iter().find(|r| r.what.lib == lib && r.what.set == set && r.what.query == query)
-    }
-
-    /// Answers that differ from ours, of how many, and the largest difference of distances, relative.
-    fn differences(&self, of: &Record) -> Option<(usize, usize, f64)> {
-        let ours = self.record(OURS, &of.what.set, &of.what.query)?;
-        let both = ours.answers.iter().zip(&of.answers);
-        let (mut count, mut differ, mut largest) = (0, 0, 0.0_f64);
-        for (&own, &other) in both {
-            count += 1;
-            if of.what.query == "distance" {
-                // Distances of triangles are right to a part of the coordinates.
-                let off = (own - other.max(0.0)).abs();
-                let tolerated = if own == 0.0 { 0.0 } else { RELATIVE * own + ROUNDING * self.size };
-                differ += usize::from(off.is_nan() || off > tolerated);
-                largest = if own > 0.0 { largest.max(off / own) } else { largest };
-            } else {
-                differ += usize::from(own != other);
-            }
-        }
-        Some((count, differ, largest))
-    }
-}
-
-/// Distances that differ by more than this part, and the rounding of coordinates, are different.
-const RELATIVE: f64 = 1e-12;
-/// The rounding of coordinates, a part of their size.
-const ROUNDING: f64 = 1e-14;
-
-/// Nanoseconds per query of each library, and how many times ours that is.
-pub(crate) fn speed(all: &[Measured], query: &str, chosen: impl Fn(&str) -> bool) -> Table {
+/// Nanoseconds per query of each library, and the ratio to ours.
+pub(crate) fn speed(all: &[PairResults], query: &str, chosen: impl Fn(&str) -> bool) -> Table {
     let records = all.iter().flat_map(|m| &m.records).filter(|r| r.what.query == query);
     let (mut libs, mut sets): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
     for what in records.map(|r| &r.what) {
@@ -110,7 +47,7 @@ fn last_row(name: &str, ratios: impl Iterator<Item = Option<f64>>) -> Vec<String
 }
 
 /// Milliseconds to build both trees.
-pub(crate) fn build_times(all: &[Measured]) -> Table {
+pub(crate) fn build_times(all: &[PairResults]) -> Table {
     builds(all, |b, own, _| {
         format!(
             "{:.2}{}",
@@ -121,15 +58,15 @@ pub(crate) fn build_times(all: &[Measured]) -> Table {
 }
 
 /// Bytes per triangle of both trees.
-pub(crate) fn memory(all: &[Measured]) -> Table {
+pub(crate) fn memory(all: &[PairResults]) -> Table {
     builds(all, |b, _, triangles| match b.bytes {
         0 => "–".into(),
         bytes => format!("{:.0}", bytes as f64 / triangles as f64),
     })
 }
 
-/// What `cell` says of each library's trees, of ours, and of the number of triangles.
-fn builds(all: &[Measured], cell: impl Fn(&Build, &Build, usize) -> String) -> Table {
+/// A table of the builds; `cell` takes the build of a library, ours, and the number of triangles.
+fn builds(all: &[PairResults], cell: impl Fn(&TreeBuild, &TreeBuild, usize) -> String) -> Table {
     let mut libs: Vec<&str> = vec![OURS];
     for build in all.iter().flat_map(|m| &m.builds) {
         if !libs.contains(&&*build.lib) {
@@ -147,8 +84,8 @@ fn builds(all: &[Measured], cell: impl Fn(&Build, &Build, usize) -> String) -> T
     table
 }
 
-/// How many answers of each library differ from ours.
-pub(crate) fn agreement(all: &[Measured]) -> Table {
+/// The numbers of answers of each library that differ from ours.
+pub(crate) fn agreement(all: &[PairResults]) -> Table {
     let mut table = Table::new([
         "library",
         "query",
@@ -182,9 +119,9 @@ pub(crate) fn agreement(all: &[Measured]) -> Table {
     table
 }
 
-/// A line for every library, pair, set and query.
-pub(crate) fn each(all: &[Measured]) -> Table {
-    let of = |m: &Measured, r: &Record| m.differences(r).unwrap_or((0, 0, 0.0));
+/// A row for every library, pair, set and query.
+pub(crate) fn each(all: &[PairResults]) -> Table {
+    let of = |m: &PairResults, r: &TimedAnswers| m.differences(r).unwrap_or((0, 0, 0.0));
     Table::of(
         all.iter().flat_map(|m| m.records.iter().map(move |r| (m, r))),
         &[
@@ -201,15 +138,15 @@ pub(crate) fn each(all: &[Measured]) -> Table {
     )
 }
 
-/// Whether each of our own instruction sets gives the same answers.
-pub(crate) fn consistent(all: &[Measured]) -> bool {
+/// Whether `mp-collide` gives the same answers on all instruction sets.
+pub(crate) fn consistent(all: &[PairResults]) -> bool {
     all.iter().all(|m| {
         let own = m.records.iter().filter(|r| is_ours(&r.what.lib));
         own.filter_map(|r| m.differences(r)).all(|(_, differ, _)| differ == 0)
     })
 }
 
-/// Whether this is ours, on any instruction set.
+/// Whether a name is that of `mp-collide`, on any instruction set.
 pub(crate) fn is_ours(lib: &str) -> bool {
     lib.strip_prefix(OURS).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
 }
@@ -220,14 +157,19 @@ fn digits(ns: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::What;
+    use super::super::record::QueryId;
     use super::*;
 
-    fn record(lib: &str, set: &str, query: &str, ns: f64, answers: &[f64]) -> Record {
-        Record { what: What::new(lib, set, query), medians: vec![ns], least: ns, answers: answers.to_vec() }
+    fn record(lib: &str, set: &str, query: &str, ns: f64, answers: &[f64]) -> TimedAnswers {
+        TimedAnswers {
+            what: QueryId::new(lib, set, query),
+            medians: vec![ns],
+            least: ns,
+            answers: answers.to_vec(),
+        }
     }
 
-    fn measured() -> Measured {
+    fn measured() -> PairResults {
         let records = vec![
             record("mp", "near", "collide", 50.0, &[1.0, 0.0, 1.0]),
             record("mp_scalar", "near", "collide", 200.0, &[1.0, 0.0, 1.0]),
@@ -238,9 +180,9 @@ mod tests {
             record("x", "near", "distance", 1.0, &[-1.0, 1.0 + 5e-13, 2.1]),
         ];
         let (pair, builds) = ("p".to_owned(), Vec::new());
-        let mut m = Measured { pair, triangles: 10, size: 1.0, builds, records };
+        let mut m = PairResults { pair, triangles: 10, size: 1.0, builds, records };
         for (lib, ms, bytes) in [("mp", 2.0, 1000), ("mp", 1.0, 1000), ("x", 3.0, 0)] {
-            m.built(Build { lib: lib.into(), ms, bytes });
+            m.built(TreeBuild { lib: lib.into(), ms, bytes });
         }
         m
     }

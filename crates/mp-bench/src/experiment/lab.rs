@@ -1,35 +1,36 @@
-//! Runs, side by side.
+//! Running the cases of experiments, and writing their results.
 
-use super::log::{Case, Log, Record};
+use super::log::{CaseKey, Log, RunRecord};
 use super::table::Table;
 use crate::error::{IntoError, Result};
 use crate::options::Common;
-use crate::output::{note, print, write};
+use crate::output::{note, print};
 use indicatif::{ProgressBar, ProgressStyle};
 use mp_cspace::Cancel;
+use mp_plan::write_file;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 use std::sync::atomic::Ordering;
 
-/// Where results go and how runs are made: what all experiments share.
+/// Runs experiments: the folder for results, the threads, and cancellation.
 #[derive(Debug)]
 pub(crate) struct Lab {
     out: PathBuf,
     quick: bool,
     fresh: bool,
     pool: rayon::ThreadPool,
-    /// Ends all runs. Those that are finished are kept.
+    /// Cancels all runs; finished ones are kept.
     pub(crate) cancel: Cancel,
 }
 
 impl Lab {
-    /// With as many runs at once as the options say. Ctrl-C ends them.
+    /// A lab with as many runs at once as the options say. Ctrl-C cancels them.
     pub(crate) fn new(options: &Common) -> Result<Self> {
         Self::with(options, options.threads.map_or(0, usize::from), interrupt())
     }
 
-    /// With one run after the other, for times that other runs would disturb.
+    /// A lab with one run at a time, for measurements of time that other runs would disturb.
     pub(crate) fn one_at_a_time(options: &Common) -> Result<Self> {
         Self::with(options, 1, interrupt())
     }
@@ -39,25 +40,25 @@ impl Lab {
         Ok(Self { out: options.out.clone(), quick: options.quick, fresh: options.fresh, pool, cancel })
     }
 
-    /// One for tests, which nobody interrupts.
+    /// A lab for tests, without Ctrl-C.
     #[cfg(test)]
     pub(crate) fn test(out: &std::path::Path, threads: usize) -> Self {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         Self { out: out.to_owned(), quick: true, fresh: false, pool, cancel: Cancel::new() }
     }
 
-    /// The name of an experiment in files: that of a short run is another.
+    /// The name of an experiment in files; a short run has its own.
     pub(crate) fn name(&self, name: &str) -> String {
         if self.quick { format!("{name}-quick") } else { name.to_owned() }
     }
 
-    /// A file of the folder for results.
+    /// The path of a file in the folder for results.
     pub(crate) fn file(&self, name: &str) -> PathBuf {
         self.out.join(name)
     }
 
-    /// The log of the experiment called `name`, of runs that could take so much.
-    pub(crate) fn log<K: Case, R: Record>(&self, name: &str, cap: f64) -> Result<Log<K, R>> {
+    /// The log of the experiment called `name`, whose runs have the limit `cap`.
+    pub(crate) fn log<K: CaseKey, R: RunRecord>(&self, name: &str, cap: f64) -> Result<Log<K, R>> {
         Log::open(&self.file(&format!("{name}-runs.jsonl")), cap, self.fresh)
     }
 
@@ -65,8 +66,8 @@ impl Lab {
         self.cancel.0.load(Ordering::Relaxed)
     }
 
-    /// Does all jobs; what comes of them is in their order. A job that is interrupted gives nothing; those that were
-    /// not begun by then are left out. `None` when there are such.
+    /// Does all jobs; returns their results in the same order. `None` when a job was interrupted or not started:
+    /// `job` returns `None` when it is interrupted.
     pub(crate) fn all<J: Sync, R: Send>(
         &self,
         what: &str,
@@ -83,8 +84,8 @@ impl Lab {
         Ok(done?.into_iter().collect())
     }
 
-    /// Runs the cases that are not in the log. False when it was interrupted: what is finished is kept.
-    pub(crate) fn measure<K: Case, R: Record>(
+    /// Runs the cases that are not in the log. False when it was interrupted; finished runs are kept.
+    pub(crate) fn measure<K: CaseKey, R: RunRecord>(
         &self,
         log: &mut Log<K, R>,
         what: &str,
@@ -94,14 +95,15 @@ impl Lab {
         self.measure_in(log, what, cases, |_, _| false, |_| Ok(()), |(), case| run(case))
     }
 
-    /// The same, where cases that are `together` are run one after the other in a place that is made once.
-    pub(crate) fn measure_in<K: Case, R: Record, P>(
+    /// As [`measure`](Self::measure), for cases that share a costly setup: cases that are `together` are run in order,
+    /// with one setup.
+    pub(crate) fn measure_in<K: CaseKey, R: RunRecord, P>(
         &self,
         log: &mut Log<K, R>,
         what: &str,
         cases: &[K],
         together: impl Fn(&K, &K) -> bool,
-        place: impl Fn(&K) -> Result<P> + Sync,
+        set_up: impl Fn(&K) -> Result<P> + Sync,
         run: impl Fn(&P, &K) -> Result<Option<R>> + Sync,
     ) -> Result<bool> {
         let open: Vec<K> = cases.iter().filter(|case| log.get(case).is_none()).cloned().collect();
@@ -116,13 +118,13 @@ impl Lab {
         let bar = bar(what, cases.len(), known);
         let shared = &*log;
         let group = |cases: &&[K]| -> Result<Option<Vec<(K, R)>>> {
-            let place = place(&cases[0])?;
+            let setup = set_up(&cases[0])?;
             let mut done = Vec::new();
             for case in *cases {
                 if self.interrupted() {
                     break;
                 }
-                let Some(run) = run(&place, case)? else { break };
+                let Some(run) = run(&setup, case)? else { break };
                 shared.write(case, &run)?;
                 done.push((case.clone(), run));
                 bar.inc(1);
@@ -138,7 +140,7 @@ impl Lab {
         Ok(!self.interrupted())
     }
 
-    /// `None` of those that were interrupted or not begun.
+    /// Does jobs in parallel; `None` for those that were interrupted or not started.
     fn parallel<J: Sync, R: Send>(
         &self,
         jobs: &[J],
@@ -148,12 +150,12 @@ impl Lab {
         self.pool.install(|| jobs.par_iter().with_max_len(1).map(one).collect())
     }
 
-    /// Writes a file of the folder for results.
+    /// Writes a file in the folder for results.
     pub(crate) fn write(&self, name: &str, text: &str) -> Result<()> {
-        write(&self.file(name), text.as_bytes())
+        write_file(&self.file(name), text.as_bytes())
     }
 
-    /// Prints `text`, what was found beside what was expected; writes it with a summary, all runs and charts.
+    /// Prints `text`, the comparison with the paper; writes it with a summary, all runs and charts.
     pub(crate) fn publish(
         &self,
         name: &str,
@@ -172,7 +174,7 @@ impl Lab {
         self.report_text(name, &(summary.markdown() + "\n"), each)
     }
 
-    /// The same of a text.
+    /// As [`report`](Self::report), with a summary that is a text.
     pub(crate) fn report_text(&self, name: &str, text: &str, each: &Table) -> Result<()> {
         print(text.trim_end())?;
         let (markdown, csv) = (format!("{name}.md"), format!("{name}.csv"));
@@ -183,7 +185,7 @@ impl Lab {
     }
 }
 
-/// A line that counts finished runs. It is not there when nobody watches (no terminal).
+/// A progress bar of finished runs, shown only on a terminal.
 fn bar(what: &str, total: usize, known: usize) -> ProgressBar {
     let bar = ProgressBar::new(total as u64).with_position(known as u64).with_message(what.to_owned());
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {elapsed} {msg}") {
@@ -192,7 +194,7 @@ fn bar(what: &str, total: usize, known: usize) -> ProgressBar {
     bar
 }
 
-/// What Ctrl-C raises: the first asks politely, the second ends the program at once.
+/// A flag that is set by the first Ctrl-C. The second one ends the program at once.
 fn interrupt() -> Cancel {
     static RAISED: OnceLock<Cancel> = OnceLock::new();
     let raised = RAISED.get_or_init(|| {

@@ -1,7 +1,7 @@
-//! Finished runs, one line of JSON each: a measurement that was interrupted goes on where it was.
+//! The log of finished runs, one line of JSON each, so that an interrupted measurement can be continued.
 
 use crate::error::{IntoError, Result};
-use mp_plan::Error;
+use mp_plan::{Error, write_file};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -13,13 +13,13 @@ use std::sync::Mutex;
 
 #[derive(Serialize, Deserialize)]
 struct Line<K, R> {
-    /// What a run might take: seconds, iterations or queries.
+    /// The limit of a run: seconds, iterations or queries.
     cap: f64,
     case: K,
     run: R,
 }
 
-/// The runs there are, and the file that grows by each new one.
+/// All finished runs, and the file to which new ones are appended.
 #[derive(Debug)]
 pub(crate) struct Log<K, R> {
     path: PathBuf,
@@ -36,28 +36,31 @@ pub(crate) struct Group<'a, G, K, R> {
 }
 
 impl<G, K, R> Group<'_, G, K, R> {
-    /// How many of the runs are such.
+    /// The number of runs for which `such` is true.
     pub(crate) fn count(&self, such: impl Fn(&R) -> bool) -> usize {
         self.runs.iter().filter(|(_, run)| such(run)).count()
     }
 
-    /// A value of each run.
+    /// The value of each run.
     pub(crate) fn values(&self, of: impl Fn(&R) -> f64) -> impl Iterator<Item = f64> {
         self.runs.iter().map(move |(_, run)| of(run))
     }
 }
 
-/// What was run.
-pub(crate) trait Case: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync {}
-impl<K: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync> Case for K {}
+/// The input of a run.
+pub(crate) trait CaseKey:
+    Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync
+{
+}
+impl<K: Clone + Eq + Hash + Ord + Serialize + DeserializeOwned + Send + Sync> CaseKey for K {}
 
-/// What came of it.
-pub(crate) trait Record: Clone + Serialize + DeserializeOwned + Send + Sync {}
-impl<R: Clone + Serialize + DeserializeOwned + Send + Sync> Record for R {}
+/// The result of a run.
+pub(crate) trait RunRecord: Clone + Serialize + DeserializeOwned + Send + Sync {}
+impl<R: Clone + Serialize + DeserializeOwned + Send + Sync> RunRecord for R {}
 
-impl<K: Case, R: Record> Log<K, R> {
-    /// Opens the log at `path`, or begins it; `fresh` forgets what is in it. Only runs of the same cap count.
-    /// A last line that was cut off is left out.
+impl<K: CaseKey, R: RunRecord> Log<K, R> {
+    /// Opens the log at `path`, or creates it; `fresh` empties it. Only runs of the same cap are used.
+    /// An incomplete last line is dropped.
     pub(crate) fn open(path: &Path, cap: f64, fresh: bool) -> Result<Self> {
         let failed = || format!("cannot use {}", path.display());
         if let Some(folder) = path.parent() {
@@ -85,17 +88,17 @@ impl<K: Case, R: Record> Log<K, R> {
                 }
             }
         }
-        crate::output::write(path, kept.as_bytes())?;
+        write_file(path, kept.as_bytes())?;
         let file = File::options().append(true).open(path).doing(failed)?;
         Ok(Self { path: path.to_owned(), cap, runs, file: Mutex::new(file) })
     }
 
-    /// What is known of `case`.
+    /// The result of `case`, if it was run.
     pub(crate) fn get(&self, case: &K) -> Option<&R> {
         self.runs.get(case)
     }
 
-    /// Appends a finished run to the file. [`learn`](Self::learn) makes it known.
+    /// Appends a finished run to the file; [`learn`](Self::learn) adds it to the runs in memory.
     pub(crate) fn write(&self, case: &K, run: &R) -> Result<()> {
         let line = Line { cap: self.cap, case: case.clone(), run: run.clone() };
         let text = serde_json::to_string(&line).into_error()? + "\n";
@@ -103,17 +106,17 @@ impl<K: Case, R: Record> Log<K, R> {
         file.write_all(text.as_bytes()).doing(|| format!("cannot write to {}", self.path.display()))
     }
 
-    /// Makes finished runs known.
+    /// Adds finished runs to those in memory.
     pub(crate) fn learn(&mut self, runs: impl IntoIterator<Item = (K, R)>) {
         self.runs.extend(runs);
     }
 
-    /// What is known of `cases`, in their order.
+    /// The results of those `cases` that were run, in the same order.
     pub(crate) fn runs(&self, cases: impl IntoIterator<Item = K>) -> Vec<&R> {
         cases.into_iter().filter_map(|case| self.get(&case)).collect()
     }
 
-    /// What is known of `cases`, in groups of neighbours of which `key` gives the same.
+    /// The results of those `cases` that were run; consecutive cases with the same `key` make a group.
     pub(crate) fn groups<'a, G: PartialEq>(
         &'a self,
         cases: &'a [K],
@@ -131,7 +134,7 @@ impl<K: Case, R: Record> Log<K, R> {
         groups
     }
 
-    /// What is known of `cases`, each with its run.
+    /// Those `cases` that were run, each with its result.
     pub(crate) fn each<'a>(&'a self, cases: &'a [K]) -> impl Iterator<Item = (&'a K, &'a R)> {
         cases.iter().filter_map(|case| Some((case, self.get(case)?)))
     }

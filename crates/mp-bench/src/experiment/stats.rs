@@ -1,9 +1,9 @@
-//! Medians of runs some of which did not end in time.
+//! Statistics of runs, some of which did not end in time.
 //!
-//! All runs of a group have the same cap, so what is known of a run that was cut short is that it takes longer
-//! than all others: the Kaplan–Meier median is the ordinary one, with such runs counted as infinite.
+//! All runs of a group have the same cap, so a run that was cut short would have taken longer
+//! than all others: the Kaplan–Meier median is the ordinary median, with such runs counted as infinite.
 
-/// A median with a confidence interval. Infinite where the cap hides it.
+/// A median with a confidence interval; each is infinite when it is beyond the cap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Median {
     pub(crate) median: f64,
@@ -14,7 +14,7 @@ pub(crate) struct Median {
 }
 
 impl Median {
-    /// Of values, infinite for those that were cut short. `None` of nothing.
+    /// The median of values, which are infinite for runs that were cut short. `None` without values.
     pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let mut sorted: Vec<f64> = values.into_iter().collect();
         sorted.sort_by(f64::total_cmp);
@@ -27,25 +27,25 @@ impl Median {
         Some(Self { median, low: sorted[k], high: sorted[n - 1 - k] })
     }
 
-    /// As a cell of a table, in units of `unit`; `cap` stands for what is beyond it.
+    /// The text of a table cell, with numbers formatted by `show` and `cap` in place of infinite ones.
     pub(crate) fn cell(&self, cap: &str, show: impl Fn(f64) -> String) -> String {
         let show = |v: f64| if v.is_finite() { show(v) } else { cap.to_owned() };
         format!("{} ({} – {})", show(self.median), show(self.low), show(self.high))
     }
 }
 
-/// The mean; `None` of nothing.
+/// The mean; `None` without values.
 pub(crate) fn mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let (sum, n) = values.into_iter().fold((0.0, 0), |(sum, n), v| (sum + v, n + 1));
     (n > 0).then(|| sum / f64::from(n))
 }
 
-/// The geometric mean; `None` of nothing.
+/// The geometric mean; `None` without values.
 pub(crate) fn geometric_mean(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     mean(values.into_iter().map(f64::ln)).map(f64::exp)
 }
 
-/// The interval that holds a share of which `k` of `n` were seen, with 95% (Wilson 1927, *Probable inference,
+/// The 95% confidence interval of a probability, after `k` successes in `n` trials (Wilson 1927, *Probable inference,
 /// the law of succession, and statistical inference*).
 pub(crate) fn wilson(k: usize, n: usize) -> (f64, f64) {
     const Z: f64 = 1.959_964;
@@ -55,7 +55,7 @@ pub(crate) fn wilson(k: usize, n: usize) -> (f64, f64) {
     ((middle - half).max(0.0), (middle + half).min(1.0))
 }
 
-/// A cell of three digits.
+/// The number with about three digits, for a table cell.
 pub(crate) fn short(v: f64) -> String {
     match v {
         v if v >= 100.0 => format!("{v:.0}"),
@@ -64,7 +64,7 @@ pub(crate) fn short(v: f64) -> String {
     }
 }
 
-/// A cell of a time, of three digits, to the microsecond.
+/// A time in seconds with three digits, at most to the microsecond, for a table cell.
 pub(crate) fn seconds(v: f64) -> String {
     let digits = (2 - v.max(1e-9).log10().floor() as i32).clamp(0, 6) as usize;
     format!("{v:.digits$}")
@@ -82,11 +82,12 @@ fn outside(n: usize) -> usize {
         k += 1;
         term *= (n - k + 1) as f64 / k as f64;
     }
-    // k values are below with at most 2.5%, so the k-th from the end, counted from 1, is the limit.
+    // Fewer than k values are below the median with a probability of at most 2.5%: the k-th from each end, counted
+    // from 1, is the limit.
     k.saturating_sub(1)
 }
 
-/// `a / b` of two medians, with what the cap leaves of it.
+/// The ratio `a / b` of two medians, or its bound when one of them is beyond the cap.
 pub(crate) fn ratio(a: &Median, b: &Median, cap: f64) -> String {
     match (a.median.is_finite(), b.median.is_finite()) {
         (true, true) => format!("{:.2}", a.median / b.median),

@@ -1,9 +1,9 @@
 //! Tables, as Markdown, as comma-separated values and as JSON.
 
-/// A heading, and what the cell below it says of an item.
+/// The heading of a column, and the function that gives its cell for an item.
 pub(crate) type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
 
-/// A table, to be printed and written.
+/// A table of text cells.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
     pub(crate) head: Vec<String>,
@@ -11,12 +11,12 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// With these headings and no rows.
+    /// A table with these headings and no rows.
     pub(crate) fn new(head: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self { head: head.into_iter().map(Into::into).collect(), rows: Vec::new() }
     }
 
-    /// With a row for each of `items`.
+    /// A table with a row for each of `items`.
     pub(crate) fn of<T>(items: impl IntoIterator<Item = T>, columns: &[Column<'_, T>]) -> Self {
         let mut table = Self::new(columns.iter().map(|(head, _)| *head));
         table.rows =
@@ -24,7 +24,7 @@ impl Table {
         table
     }
 
-    /// In Markdown.
+    /// The table in Markdown.
     pub(crate) fn markdown(&self) -> String {
         let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
         let rule: Vec<String> = self.head.iter().map(|_| "---".to_owned()).collect();
@@ -33,7 +33,7 @@ impl Table {
         lines.join("\n")
     }
 
-    /// As comma-separated values.
+    /// The table as comma-separated values.
     pub(crate) fn csv(&self) -> String {
         let quote = |cell: &str| match cell.contains([',', '"', '\n']) {
             true => format!("\"{}\"", cell.replace('"', "\"\"")),
@@ -44,7 +44,7 @@ impl Table {
         lines.collect()
     }
 
-    /// As a list of objects, one of each row; what reads as a number is one.
+    /// The table as a list of objects, one for each row; cells that are numbers become numbers.
     pub(crate) fn json(&self) -> serde_json::Value {
         let value = |cell: &String| -> serde_json::Value {
             match cell.parse::<f64>() {
@@ -59,12 +59,12 @@ impl Table {
     }
 }
 
-/// A cell that says whether: 1 or 0.
+/// A boolean as a table cell: 1 or 0.
 pub(crate) fn bit(yes: bool) -> String {
     u8::from(yes).to_string()
 }
 
-/// Tables under headings of this many `#`.
+/// The tables in Markdown, under headings of this level.
 pub(crate) fn sections(level: usize, parts: &[(&str, Table)]) -> String {
     let part =
         |(title, table): &(&str, Table)| format!("{} {title}\n\n{}\n", "#".repeat(level), table.markdown());

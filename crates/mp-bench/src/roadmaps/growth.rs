@@ -1,4 +1,4 @@
-//! How long it takes to build a roadmap of so many nodes.
+//! The time to build a roadmap, against its number of nodes.
 
 use super::queries::steer;
 use crate::clock::{nanoseconds, seconds_since};

@@ -1,9 +1,9 @@
-//! Pictures of roadmaps, as SVG: the coverage of whole scenes; what each algorithm needed to get through a corridor; and
-//! where around an obstacle the configurations of obstacle-geometry PRM and OBPRM are.
+//! Pictures of roadmaps, as SVG: the coverage of whole scenes; the roadmap with which each algorithm solved a corridor; and
+//! the configurations around an obstacle that obstacle-geometry PRM and OBPRM propose.
 
-use super::drawing::{Drawing, View};
 use super::queries::{Local, steer};
-use super::world::CORRIDORS;
+use super::scenes::CORRIDORS;
+use super::svg_drawing::{Projection, SvgDrawing};
 use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
 use crate::output::note;
@@ -23,9 +23,9 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use std::path::PathBuf;
 
 const SCENES: [&str; 3] = ["maze", "planar-bugtrap", "gempa-3"];
-/// Nodes of PRM's.
+/// The nodes of PRM's roadmap.
 const NODES: usize = 400;
-/// The corridor of the small pictures: which of the planar ones.
+/// The index of the planar corridor in the small pictures.
 const CORRIDOR: usize = 0;
 
 const OBSTACLE: &str = "#b4bdc9";
@@ -35,7 +35,7 @@ const RED: &str = "#d1495b";
 const PURPLE: &str = "#8f5bb8";
 const ORANGE: &str = "#e6892d";
 
-/// The colour of nodes; black and white of guards and connections.
+/// The colour of nodes of a kind; guards are black and connections white.
 fn colour(kind: Kind) -> &'static str {
     match kind {
         Kind::Guard | Kind::End => "#000",
@@ -48,7 +48,7 @@ fn colour(kind: Kind) -> &'static str {
     }
 }
 
-/// Draws all of them.
+/// Draws all pictures.
 pub(super) fn draw(lab: &Lab) -> Result<()> {
     for name in SCENES {
         either!(Rigid::load(name)?, scene => covered(&scene, lab)?);
@@ -60,14 +60,14 @@ pub(super) fn draw(lab: &Lab) -> Result<()> {
     around(&RigidScene::<Spatial>::new(pillar()?)?, lab)
 }
 
-fn save(drawing: Drawing, lab: &Lab, name: &str) -> Result<()> {
+fn save(drawing: SvgDrawing, lab: &Lab, name: &str) -> Result<()> {
     let name = format!("roadmap-{name}.svg");
     lab.write(&name, &drawing.finish())?;
     note(&format!("drawn: {}", lab.file(&name).display()));
     Ok(())
 }
 
-/// PRM's and Visib-PRM's roadmaps of a whole scene.
+/// Draws the roadmaps of PRM and Visib-PRM in a whole scene.
 fn covered<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let (space, name) = (scene.space(), &scene.problem().name);
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
@@ -77,7 +77,7 @@ fn covered<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let recipe = visibility_prm::recipe(space, 1_000).into_error()?;
     let visible = built(scene, recipe.generate, recipe.connect, Iterations(1_000_000))?;
     for (planner, map) in [("prm", prm), ("visibility-prm", visible)] {
-        let mut drawing = Drawing::new(&scene.problem().position_bounds(), View::Above, 900.0, &[]);
+        let mut drawing = SvgDrawing::new(&scene.problem().position_bounds(), Projection::Above, 900.0, &[]);
         obstacles(&mut drawing, scene.problem());
         roadmap::<M>(&mut drawing, &map, 3.0);
         save(drawing, lab, &format!("{name}-{planner}"))?;
@@ -101,7 +101,7 @@ where
     Ok(builder.into_map())
 }
 
-fn obstacles(drawing: &mut Drawing, problem: &RigidProblem) {
+fn obstacles(drawing: &mut SvgDrawing, problem: &RigidProblem) {
     drawing.silhouette(problem.obstacles.iter().map(|o| (&o.mesh, o.pose)), OBSTACLE, 0.6);
 }
 
@@ -109,8 +109,8 @@ fn place<M: RigidSpace>(q: &M::State) -> Point3<f64> {
     Point3::from(M::pose(q).translation.vector)
 }
 
-/// Edges, those not checked lighter; and nodes of this radius, pixels.
-fn roadmap<M: RigidSpace>(drawing: &mut Drawing, map: &Roadmap<M::State>, radius: f64) {
+/// Draws edges, the unchecked ones lighter, and nodes of this radius, pixels.
+fn roadmap<M: RigidSpace>(drawing: &mut SvgDrawing, map: &Roadmap<M::State>, radius: f64) {
     for (state, colour) in [(LinkState::Unchecked, "#d5dde8"), (LinkState::Free, "#5b7fa8")] {
         let edges = map.all_edges().filter(|(_, _, link)| link.state == state);
         let ends = edges.map(|(_, ends, _)| ends.map(|end| place::<M>(map.state(end))));
@@ -127,7 +127,7 @@ fn roadmap<M: RigidSpace>(drawing: &mut Drawing, map: &Roadmap<M::State>, radius
     }
 }
 
-/// The roadmap of a planner when it had found a path, and the path.
+/// Draws the roadmap with which a planner found a path, and the path.
 fn passed<M: RigidSpace>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Result<()> {
     let mut request = bare(planner);
     request.budget.queries = Some(1_000_000);
@@ -137,7 +137,8 @@ fn passed<M: RigidSpace>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Res
         return Err(Error::new(what));
     };
     let caption = format!("{planner}: {} nodes, {} queries", map.len(), done.queries);
-    let mut drawing = Drawing::new(&scene.problem().position_bounds(), View::Above, 480.0, &[caption]);
+    let mut drawing =
+        SvgDrawing::new(&scene.problem().position_bounds(), Projection::Above, 480.0, &[caption]);
     obstacles(&mut drawing, scene.problem());
     roadmap::<M>(&mut drawing, &map, 2.0);
     let robot = &scene.problem().robot.mesh;
@@ -147,7 +148,7 @@ fn passed<M: RigidSpace>(scene: &RigidScene<M>, planner: &str, lab: &Lab) -> Res
     save(drawing, lab, &format!("corridor-{planner}"))
 }
 
-/// One long block, and a rod about it.
+/// A rod near one long block.
 fn pillar() -> Result<RigidProblem> {
     let mesh = cuboid(1.4, 0.45, 0.45).into_error()?;
     let rod = cuboid(0.5, 0.06, 0.06).into_error()?;
@@ -168,7 +169,7 @@ fn pillar() -> Result<RigidProblem> {
     })
 }
 
-/// The configurations that obstacle-geometry PRM and OBPRM propose around one obstacle.
+/// Draws the configurations that obstacle-geometry PRM and OBPRM propose around one obstacle.
 fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let robot = scene.robot();
     let Some(block) = robot.obstacles().first().copied() else { return Err(Error::new("no obstacle")) };
@@ -222,7 +223,7 @@ fn candidates<'c, M: RigidSpace, G: NodeGenerator<M::Space, Local<'c, M>>>(
     Ok(all)
 }
 
-/// Robots in their colours around the obstacles, with the spheres around these.
+/// Draws robots in their colours, the obstacles, and the spheres around the obstacles.
 fn shown<M: RigidSpace>(
     scene: &RigidScene<M>,
     robots: [(&Vec<M::State>, &str); 3],
@@ -230,7 +231,7 @@ fn shown<M: RigidSpace>(
     (lab, name): (&Lab, &str),
 ) -> Result<()> {
     let problem = scene.problem();
-    let mut drawing = Drawing::new(&problem.position_bounds(), View::Aslant, 620.0, &captions);
+    let mut drawing = SvgDrawing::new(&problem.position_bounds(), Projection::Aslant, 620.0, &captions);
     for outline in scene.robot().obstacles() {
         drawing.sphere(&Point3::from(outline.center), outline.radius, "#8a94a3");
     }

@@ -1,6 +1,6 @@
-//! Many queries to one roadmap, and each by RRT-Connect.
+//! Many queries to one roadmap, compared with RRT-Connect for each.
 
-use crate::clock::{Processor, nanoseconds, seconds_since};
+use crate::clock::{ProcessorTime, nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Median, Table, mean, short};
 use crate::output::note;
@@ -15,7 +15,7 @@ use mp_tree::{RrtConnect, Tuning};
 /// Nodes of the roadmaps.
 const SIZES: [usize; 3] = [500, 2_000, 8_000];
 const QUERIES: usize = 1_000;
-/// Neighbours that an end is connected to.
+/// The number of neighbours to which start and goal are connected.
 const NEIGHBOURS: usize = 10;
 /// Seconds of processor time that RRT-Connect may take for one query.
 const CAP: f64 = 2.0;
@@ -23,13 +23,13 @@ const CAP: f64 = 2.0;
 pub(super) type Local<'c, M> =
     Straight<'c, <M as RigidSpace>::Space, Certified<'c, <M as RigidSpace>::Space, RigidBody<M>>>;
 
-/// Straight motions, proved.
+/// The local planner: straight motions with certified checks.
 pub(super) fn local<M: RigidSpace>(scene: &RigidScene<M>) -> Result<Local<'_, M>> {
     let check = Certified::new(scene.space(), scene.robot().clone(), scene.tolerance()).into_error()?;
     Ok(Straight::new(scene.space(), check))
 }
 
-/// How roadmaps of the setting move.
+/// The edge checker of roadmaps in a scene.
 pub(super) fn steer<'c, M: RigidSpace>(
     scene: &'c RigidScene<M>,
     verifier: Verifier<'c, M::Space, M>,
@@ -64,7 +64,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
             Err(_) => false,
             Ok(problem) => {
                 let mut planner = RrtConnect::new(problem, Tuning::default()).into_error()?;
-                let mut stop = Processor { until: began + CAP * 1e9 };
+                let mut stop = ProcessorTime { until: began + CAP * 1e9 };
                 matches!(planner.solve(&mut Rng::seed(seed), &mut stop, &mut ()), Outcome::Solved(_))
             }
         };

@@ -11,7 +11,7 @@ use mp_plan::{Control, Request, RigidScene, RigidSpace, RobotKind, Stage, Watch,
 use mp_roadmap::RoadmapQueries;
 use serde::{Deserialize, Serialize};
 
-/// How much to measure.
+/// The size of the measurement.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plan {
     /// Collision and distance queries of a run: the same on every machine.
@@ -20,14 +20,14 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// The cases of a planner in a scene.
+    /// The cases of a planner on a scene, one for each seed.
     pub(super) fn cases(&self, scene: &str, planner: &str) -> Vec<Case> {
         let case = |seed| Case { scene: scene.to_owned(), planner: planner.to_owned(), seed };
         (1..=u64::from(self.seeds)).map(case).collect()
     }
 }
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) scene: String,
@@ -35,17 +35,17 @@ pub(super) struct Case {
     pub(super) seed: u64,
 }
 
-/// What came of it.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Run {
-    /// Within the budget.
+    /// Whether a path was found within the budget.
     pub(super) solved: bool,
-    /// Processor time until there is a verified path, or nothing is left of the budget.
+    /// Processor time until there is a verified path or the budget is used up.
     pub(super) seconds: f64,
-    /// Processor time to ask the roadmap that solved it for the path once more.
+    /// Processor time of one more query for the path to the finished roadmap.
     pub(super) again: Option<f64>,
     pub(super) nodes: usize,
-    /// Of a roadmap; zero of trees.
+    /// The edges of a roadmap; zero for trees.
     pub(super) edges: usize,
     pub(super) components: usize,
     /// Collision and distance queries.
@@ -54,20 +54,20 @@ pub(super) struct Run {
 }
 
 impl Run {
-    /// Whether so many queries were enough.
+    /// Whether the run was solved with at most `budget` queries.
     pub(super) fn solved_within(&self, budget: u64) -> bool {
         self.solved && self.checks <= budget
     }
 }
 
-/// The tree that the roadmaps are seen beside.
+/// The tree planner with which the roadmaps are compared.
 pub(super) const BESIDE: &str = "rrt-connect";
 
-/// The ways in which OBPRM makes nodes.
+/// OBPRM with each of its ways to make nodes.
 const OBPRM: [&str; 4] = ["obprm prototype", "obprm contact", "obprm free", "obprm shells"];
 
-/// The planners, some with how they make nodes: those that build roadmaps, and one that does not. PRM* is after short
-/// paths, not narrow passages; and LazyPRM spends its time in searching, of which a budget of queries tells nothing.
+/// The planners, some with their way to make nodes: those that build roadmaps, and one tree planner. PRM* is left out as it
+/// aims at short paths, not at narrow passages, and LazyPRM as most of its cost is graph search, not queries.
 pub(super) fn planners() -> Vec<&'static str> {
     let roadmaps = mp_roadmap::planners().iter();
     let other = ["obprm", "prm-star", "lazy-prm"];
@@ -75,11 +75,11 @@ pub(super) fn planners() -> Vec<&'static str> {
     names.chain(OBPRM).chain([BESIDE]).collect()
 }
 
-/// Neighbours that an end is connected to, when the roadmap is asked once more.
+/// The number of neighbours to which start and goal are connected in one more query.
 const NEIGHBOURS: usize = 10;
 
-/// Runs what was not run yet, on several threads, scene by scene. Where scenes become `harder` one after the other, what
-/// solves none of the seeds is not run on those to come. True when nobody interrupted it.
+/// Runs the cases that are not in the log, on several threads, scene by scene. When the scenes become `harder` in order, a
+/// planner that solves none of the seeds of a scene is not run on later ones. False when it was interrupted.
 pub(super) fn measure(
     problems: &[(String, Rigid)],
     harder: bool,
@@ -102,7 +102,7 @@ pub(super) fn measure(
     Ok(true)
 }
 
-/// One run; none when it was interrupted.
+/// One run; `None` when it was interrupted.
 fn run(rigid: &Rigid, case: &Case, budget: u64, cancel: &Cancel) -> Result<Option<Run>> {
     let (name, nodes) = case.planner.split_once(' ').map_or((&*case.planner, None), |(a, b)| (a, Some(b)));
     let mut request = bare(name).seed(case.seed);
@@ -113,7 +113,7 @@ fn run(rigid: &Rigid, case: &Case, budget: u64, cancel: &Cancel) -> Result<Optio
     either!(rigid, scene => one(scene, &request, cancel))
 }
 
-/// Reads the clock when planning begins: what is made before is not measured.
+/// Reads the clock when planning begins, so that preparations are not measured.
 struct Began(f64);
 
 impl Watch for Began {
@@ -158,7 +158,7 @@ fn one<M: RigidSpace>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roadmaps::world::CORRIDORS;
+    use crate::roadmaps::scenes::CORRIDORS;
 
     /// What is counted depends neither on threads nor on the clock.
     #[test]

@@ -1,20 +1,20 @@
-//! What was found, as tables and a chart.
+//! The results, as tables and a chart.
 
 use super::runs::{BESIDE, Case, Plan, Run, planners};
-use super::world::Corridors;
+use super::scenes::Corridors;
 use crate::error::Result;
 use crate::experiment::{Log, Median, Table, short, wilson};
-use crate::plot::{Axis, Curve, Labels, chart};
+use crate::plot::{Axis, ChartCurve, Labels, chart};
 
-/// The runs, to be summed up.
+/// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found<'a> {
+pub(super) struct Results<'a> {
     pub(super) log: &'a Log<Case, Run>,
     pub(super) plan: &'a Plan,
 }
 
-/// Where a share falls under one half, going down from the widest: between two widths by the logarithm of the width.
-/// Infinite if it is under half at the widest already, zero if it never is.
+/// The width at which the success rate falls below one half, from the widest on: interpolated in the logarithm of the width.
+/// Infinite if the rate is below half at the widest, zero if it never is.
 fn falls(points: &[(f64, f64)]) -> f64 {
     let Some(i) = points.iter().position(|(_, share)| *share < 0.5) else { return 0.0 };
     let Some(before) = i.checked_sub(1) else { return f64::INFINITY };
@@ -23,29 +23,29 @@ fn falls(points: &[(f64, f64)]) -> f64 {
     (wide.ln() + t * (narrow.ln() - wide.ln())).exp()
 }
 
-/// In thousands.
+/// The number in thousands.
 fn thousands(v: f64) -> String {
     if v < 10_000.0 { format!("{:.1}k", 1e-3 * v) } else { format!("{:.0}k", 1e-3 * v) }
 }
 
-impl Found<'_> {
+impl Results<'_> {
     fn runs(&self, scene: &str, planner: &str) -> Vec<&Run> {
         self.log.runs(self.plan.cases(scene, planner))
     }
 
-    /// How many of how many runs were solved by so many queries.
+    /// The number of runs solved with at most `budget` queries, and the number of runs.
     fn share(&self, scene: &str, planner: &str, budget: u64) -> (usize, usize) {
         let runs = self.runs(scene, planner);
         (runs.iter().filter(|run| run.solved_within(budget)).count(), runs.len())
     }
 
-    /// The whole budget and smaller ones: a run that needed less would have been solved by them.
+    /// The whole budget and two smaller ones: a run that needed fewer queries would have been solved with them as well.
     fn budgets(&self) -> [u64; 3] {
         [self.plan.budget / 10, self.plan.budget * 3 / 10, self.plan.budget]
     }
 
-    /// A row for each scene and planner: medians over all runs, solved or not; of queries and time that is not solved
-    /// counts as beyond the budget.
+    /// A row for each scene and planner, with medians over all runs. The queries of a run that was not
+    /// solved count as beyond the budget.
     pub(super) fn summary(&self, scenes: &[String]) -> Table {
         let [few, some, all] = self.budgets();
         let [by_few, by_some] = [few, some].map(|budget| format!("by {}", thousands(budget as f64)));
@@ -94,12 +94,12 @@ impl Found<'_> {
         )
     }
 
-    /// The width at which the planner falls under half by so many queries, and from where to where it may be: where the
-    /// ends of the intervals of the shares do.
+    /// The width at which the success rate of a planner with `budget` queries falls below half, and its interval: the widths
+    /// at which the ends of the confidence intervals of the rates fall below half.
     fn width(&self, corridors: &Corridors, planner: &str, budget: u64) -> [f64; 3] {
         let seeds = self.plan.seeds as usize;
         let points = |end: fn(usize, usize) -> f64| -> Vec<(f64, f64)> {
-            // What was not run, as nothing was solved where it is wider, would not be solved.
+            // Cases that were skipped, as nothing was solved in a wider corridor, count as not solved.
             let share = |slack: f64| end(self.share(&corridors.scene(slack), planner, budget).0, seeds);
             corridors.slacks.iter().map(|&slack| (slack, share(slack))).collect()
         };
@@ -110,7 +110,7 @@ impl Found<'_> {
         ]
     }
 
-    /// Success in each corridor, and the width at which a planner falls under half.
+    /// The solved runs in each corridor, and the width at which the success rate falls below half.
     pub(super) fn corridor(&self, corridors: &Corridors) -> Table {
         let [few, _, all] = self.budgets();
         let mut head = vec!["planner".to_owned()];
@@ -140,15 +140,15 @@ impl Found<'_> {
         table
     }
 
-    /// The share of solved runs against the width of the corridor.
+    /// A chart of the success rate against the width of the corridor.
     pub(super) fn chart(&self, corridors: &Corridors) -> Result<String> {
         let curve = |(i, planner): (usize, &'static str)| {
             let share = |slack: f64| self.share(&corridors.scene(slack), planner, self.plan.budget);
             let shares = corridors.slacks.iter().map(|&slack| (slack, share(slack)));
             let points = shares.map(|(slack, (k, n))| (slack, k as f64 / n.max(1) as f64));
-            Curve::new(planner, i, points.collect())
+            ChartCurve::new(planner, i, points.collect())
         };
-        let curves: Vec<Curve> = planners().into_iter().enumerate().map(curve).collect();
+        let curves: Vec<ChartCurve> = planners().into_iter().enumerate().map(curve).collect();
         let labels = Labels {
             title: corridors.title,
             x: "width of the corridor less that of the robot, m",
@@ -161,7 +161,7 @@ impl Found<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::roadmaps::world::CORRIDORS;
+    use crate::roadmaps::scenes::CORRIDORS;
 
     #[test]
     fn success_falls_between_two_widths() {
@@ -187,8 +187,8 @@ mod tests {
             }
         }
         let plan = Plan { budget: 10_000, seeds: 2 };
-        let found = Found { log: &log, plan: &plan };
-        let table = found.corridor(&corridors);
+        let results = Results { log: &log, plan: &plan };
+        let table = results.corridor(&corridors);
         let row = &table.rows[0];
         assert_eq!((&*row[0], &*row[1], &*row[4], &*row[5]), ("prm", "2", "2", "0"));
         let between = |text: &str, [low, high]: [f64; 2]| {
@@ -198,13 +198,13 @@ mod tests {
         let slacks = corridors.slacks;
         between(&row[slacks.len() + 1], [slacks[4], slacks[3]]);
         between(&row[slacks.len() + 2], [slacks[2], slacks[1]]);
-        let summary = found.summary(&[corridors.scene(slacks[3])]);
+        let summary = results.summary(&[corridors.scene(slacks[3])]);
         assert_eq!(summary.rows.len(), 1, "only what was run");
         assert_eq!(
             summary.rows[0][2..5],
             ["0", "0", "2/2"].map(str::to_owned),
             "9,000 of 1,000, 3,000, 10,000"
         );
-        assert!(found.chart(&corridors).unwrap().contains("<polyline"));
+        assert!(results.chart(&corridors).unwrap().contains("<polyline"));
     }
 }

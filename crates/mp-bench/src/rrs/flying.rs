@@ -1,4 +1,4 @@
-//! RRT against RRS for a body that flies, with the same steps.
+//! RRT against RRS for a body in space, with the same steps.
 
 use crate::error::Result;
 use crate::experiment::{Lab, Table, bit, mean};
@@ -8,15 +8,15 @@ use mp_plan::median;
 use serde::{Deserialize, Serialize};
 
 const SCENE: &str = "gempa-3";
-/// Longest steps, of the extent of the space, and those of a short run.
+/// Longest steps, as percentages of the extent of the space.
 const STEPS: [&str; 3] = ["5%", "10%", "20%"];
 const PLANNERS: [&str; 2] = ["rrt", "rrs"];
-/// Seeds, and those of a short run; iterations a run may take.
+/// The numbers of seeds in full and short runs, and the most iterations of a run.
 const SEEDS: u32 = 10;
 const QUICK: u32 = 2;
 const ITERATIONS: u64 = 20_000;
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
@@ -25,7 +25,7 @@ struct Case {
     seed: u64,
 }
 
-/// Plans in each scene with each step, the same seeds for both planners. True when it was measured completely.
+/// Plans on each scene with each step, with the same seeds for both planners. True when it was measured completely.
 pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     let seeds = u64::from(common.runs_or(QUICK, SEEDS));
     let most = if common.quick { ITERATIONS / 10 } else { ITERATIONS };

@@ -1,149 +1,41 @@
 //! §6: a differential-drive robot with noisy wheels and a noisy laser follows paths of RRT and of RRS.
 //!
-//! The robot is a Khepera in a world of 5 × 2 m. It drives by pure pursuit toward a point of the path ahead of where it
-//! believes to be, which a particle filter tells from its wheels and from what the laser measures (Thrun, Burgard and
-//! Fox 2005, *Probabilistic robotics*, tables 5.3, 6.1 and 8.2). Where it really is counts for safety.
+//! The robot is a Khepera in a world of 5 × 2 m. It drives by pure pursuit toward a point of the path ahead of its
+//! estimated position, which comes from a particle filter with odometry and laser ranges (Thrun, Burgard and
+//! Fox 2005, *Probabilistic robotics*, tables 5.3, 6.1 and 8.2). Safety is measured at its true position.
 
-use super::solve::{Case, Place, planned};
+use super::noisy_robot::{ParticleFilter, Pose, TICK};
+use super::solve::{Case, PreparedWorld, planned};
 use crate::error::{IntoError, Result};
 use mp_cspace::shorten::{Effort, simplify};
 use mp_cspace::{Cancel, Path, Rn, Rng, least_clearance};
-use mp_geom::planar::PlanarWorld;
 use mp_robot::DiscRobot;
-use mp_scenes::source::courses::Course;
+use mp_scenes::source::disc_scenes::DiscScene;
 use nalgebra::{Point2, Vector2};
-use rand::RngExt;
 use std::f64::consts::{PI, TAU};
 
-/// Seconds between two commands, and metres per second and radians per second at most.
-const TICK: f64 = 0.1;
+/// Greatest speed (m/s) and greatest turn rate (rad/s).
 const SPEED: f64 = 0.15;
 const TURN: f64 = 2.0;
-/// How far ahead on the path the robot aims, metres.
-const AHEAD: f64 = 0.12;
-/// Arrived when believed to be this near to the end, metres.
+/// The lookahead distance on the path, metres.
+const LOOKAHEAD: f64 = 0.12;
+/// The robot has arrived when its estimated position is this near to the end, metres.
 const ARRIVED: f64 = 0.03;
-/// Standard deviations of what the wheels do: of the speed by speed and by turn, of the turn by speed and by turn.
-const WHEELS: [f64; 4] = [0.08, 0.01, 0.4, 0.08];
-/// The laser: beams over 240°, its reach (m), and its standard deviation, absolute (m) and by distance.
-const BEAMS: usize = 24;
-const REACH: f64 = 4.0;
-const LASER: [f64; 2] = [0.01, 0.01];
-const PARTICLES: usize = 80;
-/// How sharply particles are judged by a beam: the standard deviation of the laser and of the map, metres.
-const JUDGED: f64 = 0.06;
 
-/// Where the robot is and whither it looks.
-#[derive(Clone, Copy, Debug)]
-struct Pose {
-    at: Vector2<f64>,
-    angle: f64,
-}
-
-fn normal(rng: &mut Rng, deviation: f64) -> f64 {
-    let (u, v): (f64, f64) = (1.0 - rng.random::<f64>(), rng.random());
-    deviation * (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
-}
-
-impl Pose {
-    /// After a tick at a speed and a turn that the wheels get wrong.
-    fn driven(self, [speed, turn]: [f64; 2], rng: &mut Rng) -> Self {
-        let [a, b, c, d] = WHEELS;
-        let speed = speed + normal(rng, a * speed.abs() + b * turn.abs());
-        let turn = turn + normal(rng, c * speed.abs() + d * turn.abs());
-        let middle = self.angle + 0.5 * turn * TICK;
-        Self {
-            at: self.at + Vector2::new(middle.cos(), middle.sin()) * speed * TICK,
-            angle: self.angle + turn * TICK,
-        }
-    }
-
-    /// The direction of beam `i`.
-    fn beam(&self, i: usize) -> Vector2<f64> {
-        let angle = self.angle + (i as f64 / (BEAMS - 1) as f64 - 0.5) * 240.0_f64.to_radians();
-        Vector2::new(angle.cos(), angle.sin())
-    }
-}
-
-/// The distance that a beam goes until it is within a millimetre of an obstacle.
-fn range(world: &PlanarWorld, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
-    let mut gone = 0.0;
-    while gone < REACH {
-        let free = world.signed_distance(&Point2::from(from + along * gone));
-        if free < 1e-3 {
-            return gone;
-        }
-        gone += free;
-    }
-    REACH
-}
-
-/// Where the robot believes to be: a cloud of poses.
-struct Belief {
-    poses: Vec<Pose>,
-}
-
-impl Belief {
-    /// Of a start that is known to a centimetre and a degree or so.
-    fn about(pose: Pose, rng: &mut Rng) -> Self {
-        let near = |rng: &mut Rng| Pose {
-            at: pose.at + Vector2::new(normal(rng, 0.01), normal(rng, 0.01)),
-            angle: pose.angle + normal(rng, 0.02),
-        };
-        Self { poses: (0..PARTICLES).map(|_| near(rng)).collect() }
-    }
-
-    fn mean(&self) -> Pose {
-        let n = self.poses.len() as f64;
-        let at = self.poses.iter().map(|p| p.at).sum::<Vector2<f64>>() / n;
-        let toward =
-            self.poses.iter().map(|p| Vector2::new(p.angle.cos(), p.angle.sin())).sum::<Vector2<f64>>();
-        Pose { at, angle: toward.y.atan2(toward.x) }
-    }
-
-    /// Moves all poses as the wheels may have, and keeps those that explain what the laser saw.
-    fn update(&mut self, command: [f64; 2], seen: &[f64], world: &PlanarWorld, rng: &mut Rng) {
-        let mut weights = Vec::with_capacity(self.poses.len());
-        for pose in &mut self.poses {
-            *pose = pose.driven(command, rng);
-            let off =
-                |(i, d): (usize, &f64)| (range(world, pose.at, pose.beam(i)) - d).abs().min(0.5) / JUDGED;
-            let misfit: f64 = seen.iter().enumerate().map(off).map(|v| 0.5 * v * v).sum();
-            // Beams err together where the map does: they count as fewer.
-            weights.push((-0.3 * misfit).exp() + 1e-300);
-        }
-        // Low-variance resampling.
-        let total: f64 = weights.iter().sum();
-        let step = total / PARTICLES as f64;
-        let mut mark = rng.random::<f64>() * step;
-        let (mut i, mut sum) = (0, weights[0]);
-        let mut kept = Vec::with_capacity(PARTICLES);
-        for _ in 0..PARTICLES {
-            while mark > sum && i + 1 < weights.len() {
-                i += 1;
-                sum += weights[i];
-            }
-            kept.push(self.poses[i]);
-            mark += step;
-        }
-        self.poses = kept;
-    }
-}
-
-/// What came of following one path.
+/// The result of following one path.
 #[derive(Clone, Debug)]
 pub(super) struct Followed {
     pub(super) path: Vec<Point2<f64>>,
     pub(super) driven: Vec<Point2<f64>>,
-    /// Least distances of the path and of the robot that followed it from obstacles, metres; negative in collision.
+    /// The least clearances of the path, and of the robot that followed it, metres; negative in collision.
     pub(super) planned: f64,
     pub(super) executed: f64,
-    /// Of the path, metres.
+    /// The length of the path, metres.
     pub(super) length: f64,
     pub(super) arrived: bool,
 }
 
-/// The place `gone` metres along the path.
+/// The point `gone` metres along the path.
 fn along(path: &[Vector2<f64>], mut gone: f64) -> Vector2<f64> {
     for w in path.windows(2) {
         let length = (w[1] - w[0]).norm();
@@ -155,7 +47,7 @@ fn along(path: &[Vector2<f64>], mut gone: f64) -> Vector2<f64> {
     path[path.len() - 1]
 }
 
-/// Follows `path`, the noise being that of `seed`.
+/// Follows `path`, with the noise of `seed`.
 pub(super) fn follow(
     robot: &DiscRobot,
     space: &Rn<2>,
@@ -169,14 +61,14 @@ pub(super) fn follow(
     let planned = least_clearance(space, &mut robot.clone(), path, 1e-4)?.found;
     let mut rng = Rng::stream(seed, 6);
     let mut pose = Pose { at: points[0], angle: first.y.atan2(first.x) };
-    let mut belief = Belief::about(pose, &mut rng);
+    let mut filter = ParticleFilter::about(pose, &mut rng);
     let (mut driven, mut executed, mut gone, mut arrived) =
         (vec![Point2::from(pose.at)], f64::INFINITY, 0.0, false);
-    // Twice the time it should take.
+    // Twice the nominal time.
     let ticks = (2.0 * length / SPEED / TICK) as usize + 100;
     for _ in 0..ticks {
-        let here = belief.mean();
-        // The nearest place of the path a little ahead of the last.
+        let here = filter.mean();
+        // The nearest point of the path at or shortly after the last one.
         let tried = (0..=20).map(|i| gone + 0.01 * f64::from(i));
         let off = |s: f64| (along(points, s) - here.at).norm();
         gone = tried.fold(gone, |best, s| if off(s) < off(best) { s } else { best }).min(length);
@@ -184,9 +76,9 @@ pub(super) fn follow(
             arrived = true;
             break;
         }
-        let aim = along(points, gone + AHEAD) - here.at;
+        let aim = along(points, gone + LOOKAHEAD) - here.at;
         let error = (aim.y.atan2(aim.x) - here.angle + PI).rem_euclid(TAU) - PI;
-        // Turning in place where the path turns sharply.
+        // The robot turns in place where the path turns sharply.
         let speed = if error.abs() > 0.6 { 0.0 } else { SPEED * (1.0 - error.abs() / 0.9) };
         let command = [speed, (3.0 * error).clamp(-TURN, TURN)];
         pose = pose.driven(command, &mut rng);
@@ -195,13 +87,8 @@ pub(super) fn follow(
         if executed <= 0.0 {
             break;
         }
-        let seen: Vec<f64> = (0..BEAMS)
-            .map(|i| {
-                let d = range(world, pose.at, pose.beam(i));
-                d + normal(&mut rng, LASER[0] + LASER[1] * d)
-            })
-            .collect();
-        belief.update(command, &seen, world, &mut rng);
+        let seen = pose.scan(world, &mut rng);
+        filter.update(command, &seen, world, &mut rng);
     }
     let path = points.iter().map(|p| Point2::from(*p)).collect();
     Some(Followed { path, driven, planned, executed, length, arrived })
@@ -210,14 +97,14 @@ pub(super) fn follow(
 /// The kinds of path that are followed.
 pub(super) const KINDS: [&str; 3] = ["rrt", "rrt smoothed", "rrs"];
 
-/// Plans a path of a kind and follows it; `None` where there is none.
-pub(super) fn planned_and_followed(course: &Course, kind: &str, trial: u64) -> Result<Option<Followed>> {
-    let place = Place::new(course.clone())?;
-    let robot = &place.robot;
-    let space = Rn::<2>::new([0.0; 2], course.size).into_error()?;
+/// Plans a path of a kind and follows it; `None` when no path was found.
+pub(super) fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) -> Result<Option<Followed>> {
+    let prepared = PreparedWorld::new(scene.clone())?;
+    let robot = &prepared.robot;
+    let space = Rn::<2>::new([0.0; 2], scene.size).into_error()?;
     let planner = if kind == "rrs" { "rrs-upto" } else { "rrt-upto" };
     let case = Case { world: "follow".into(), planner: planner.into(), step: 50, trial };
-    let Some((_, Some(mut path))) = planned(&place, &case, &Cancel::new())? else { return Ok(None) };
+    let Some((_, Some(mut path))) = planned(&prepared, &case, &Cancel::new())? else { return Ok(None) };
     if kind == "rrt smoothed" {
         let mut rng = Rng::stream(trial, 7);
         path = simplify(&space, &mut robot.clone(), &path, Effort::default(), &mut rng);
@@ -228,23 +115,15 @@ pub(super) fn planned_and_followed(course: &Course, kind: &str, trial: u64) -> R
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mp_scenes::source::courses::RADIUS;
-
-    #[test]
-    fn beams_end_at_walls() {
-        let world = PlanarWorld::new(vec![], Some([[0.0, 0.0], [3.0, 2.0]])).unwrap();
-        let from = Vector2::new(1.0, 1.0);
-        assert!((range(&world, from, Vector2::new(1.0, 0.0)) - 2.0).abs() < 2e-3);
-        assert!((range(&world, from, Vector2::new(0.6, 0.8)) - 1.25).abs() < 2e-3);
-    }
+    use mp_scenes::source::disc_scenes::RADIUS;
 
     /// A wide way is followed to its end, near to it, and the same way again; a way along a wall is not safe.
     #[test]
     fn paths_are_followed() {
         let bar = vec![[1.0, 0.9], [4.0, 0.9], [4.0, 1.1], [1.0, 1.1]];
-        let course = Course { size: [5.0, 2.0], obstacles: vec![bar], start: [0.5, 0.5], goal: [4.5, 0.5] };
-        let robot = course.robot().unwrap();
-        let space = Rn::<2>::new([0.0; 2], course.size).unwrap();
+        let scene = DiscScene { size: [5.0, 2.0], obstacles: vec![bar], start: [0.5, 0.5], goal: [4.5, 0.5] };
+        let robot = scene.robot().unwrap();
+        let space = Rn::<2>::new([0.0; 2], scene.size).unwrap();
         let at = |y: f64| {
             Path::straight(
                 [(0.5, 0.5), (1.0, y), (4.0, y), (4.5, 0.5)].map(|(x, y)| Vector2::new(x, y)).to_vec(),

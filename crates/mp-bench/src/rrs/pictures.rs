@@ -1,12 +1,12 @@
-//! What pushes the snakes in a world, and a tree whose edges bend.
+//! Pictures of the field that pushes snakes in a world, and of a tree with bent edges.
 
-use super::solve::{ITERATIONS, Place, RANGE, rrs};
+use super::solve::{ITERATIONS, PreparedWorld, RANGE, rrs};
 use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
 use crate::plot::save_drawing;
 use mp_cspace::{Iterations, Outcome, Planner, Rn, Rng};
 use mp_render::{Drawing, Item};
-use mp_scenes::source::courses::course;
+use mp_scenes::source::disc_scenes::disc_scene;
 use nalgebra::{Point2, Vector2};
 
 const WORLD: &str = "high";
@@ -16,30 +16,35 @@ const SIZE: (usize, usize) = (1100, 720);
 const STRAIGHT: u32 = 0x9aa5b1;
 const BENT: u32 = 0x1f77b4;
 const PATH: u32 = 0xc77d0a;
-/// Shades of the field, and the colour of the darkest.
+/// The number of shades of the field, and the colour of the strongest.
 const SHADES: u32 = 24;
 const HOT: [f64; 3] = [178.0, 24.0, 43.0];
 
-/// Draws both. True.
+/// Draws both pictures. Always true.
 pub(super) fn run(lab: &Lab) -> Result<bool> {
-    let place = Place::new(course(WORLD, 0).into_error()?)?;
-    for (name, drawing) in [("field", field(&place)), ("tree", tree(&place)?)] {
+    let prepared = PreparedWorld::new(disc_scene(WORLD, 0).into_error()?)?;
+    for (name, drawing) in [("field", field(&prepared)), ("tree", tree(&prepared)?)] {
         save_drawing(&lab.file(&format!("rrs-{WORLD}-{name}")), &drawing, SIZE)?;
     }
     Ok(true)
 }
 
-fn world(place: &Place, title: &str, subtitle: String) -> Drawing {
-    Drawing::of_world(place.robot.world(), [[0.0; 2], place.course.size].map(Point2::from), title, subtitle)
+fn world(prepared: &PreparedWorld, title: &str, subtitle: String) -> Drawing {
+    Drawing::of_world(
+        prepared.robot.world(),
+        [[0.0; 2], prepared.scene.size].map(Point2::from),
+        title,
+        subtitle,
+    )
 }
 
-/// The energy of repulsion `½·(1 − c/range)²` under the obstacles, in shades: one item for each, of runs of cells.
-fn field(place: &Place) -> Drawing {
+/// The energy of repulsion `½·(1 − c/range)²` below the obstacles: one item for each shade, made of runs of cells.
+fn field(prepared: &PreparedWorld) -> Drawing {
     let subtitle =
         format!("energy of a snake where the robot is less than {:.0} cm from an obstacle", 100.0 * RANGE);
-    let mut drawing = world(place, "What pushes snakes", subtitle);
-    let (map, (width, height)) = (&place.map, place.map.size());
-    // The robot touches an obstacle at a clearance of zero: 1.
+    let mut drawing = world(prepared, "What pushes snakes", subtitle);
+    let (map, (width, height)) = (&prepared.map, prepared.map.size());
+    // 1 at a clearance of zero, where the robot touches an obstacle.
     let shade = |i: usize| {
         let near = (1.0 - map.values()[i] / RANGE).clamp(0.0, 1.0);
         (near * near * f64::from(SHADES)).round() as u32
@@ -77,9 +82,9 @@ fn field(place: &Place) -> Drawing {
 }
 
 /// The tree when the path was found: straight edges, bent ones, and the path.
-fn tree(place: &Place) -> Result<Drawing> {
-    let space = Rn::<2>::new([0.0; 2], place.course.size).into_error()?;
-    let mut planner = rrs(place, &space, STEP, false).into_error()?;
+fn tree(prepared: &PreparedWorld) -> Result<Drawing> {
+    let space = Rn::<2>::new([0.0; 2], prepared.scene.size).into_error()?;
+    let mut planner = rrs(prepared, &space, STEP, false).into_error()?;
     let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(ITERATIONS), &mut ());
     let tree = planner.tree();
     let (mut straight, mut bent) = (Vec::new(), Vec::new());
@@ -95,7 +100,7 @@ fn tree(place: &Place) -> Result<Drawing> {
         bent.len(),
         planner.progress().iterations
     );
-    let mut drawing = world(place, "A tree of RRS", subtitle);
+    let mut drawing = world(prepared, "A tree of RRS", subtitle);
     drawing.items.push(Item::lines(straight, STRAIGHT, 1.5));
     drawing.items.push(Item::lines(bent, BENT, 1.5));
     if let Outcome::Solved(path) = outcome {

@@ -1,10 +1,10 @@
-//! All trials, side by side.
+//! The series of all trials.
 
-use super::solve::{Case, Place, Run, one};
+use super::solve::{Case, PreparedWorld, Run, one};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
 use crate::options::Common;
-use mp_scenes::source::courses::course;
+use mp_scenes::source::disc_scenes::disc_scene;
 
 /// The worlds, by name.
 pub(super) const WORLDS: [&str; 4] = ["maze", "low", "high", "random"];
@@ -13,7 +13,7 @@ pub(super) const WORLDS: [&str; 4] = ["maze", "low", "high", "random"];
 /// at most Δq, as is customary, and RRT-Connect too.
 pub(super) const PLANNERS: [&str; 5] = ["rrt", "rrs", "rrt-upto", "rrs-upto", "rrt-connect"];
 
-/// What to measure.
+/// The size of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) trials: u64,
@@ -27,7 +27,7 @@ impl Plan {
         Self { trials: u64::from(common.runs_or(8, 100)), steps: (30..=150).step_by(apart).collect() }
     }
 
-    /// Every trial, those of one world together.
+    /// All cases; those of one world are consecutive.
     pub(super) fn cases(&self) -> Vec<Case> {
         let mut cases = Vec::new();
         for world in WORLDS {
@@ -43,16 +43,16 @@ impl Plan {
     }
 }
 
-/// Measures what is not known yet. False when it was interrupted.
+/// Runs the cases that are not in the log. False when it was interrupted.
 pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Result<bool> {
     lab.measure_in(
         log,
         "rrs",
         &plan.cases(),
-        // A world is made once for all that is tried in it.
+        // A world is prepared once for all its cases.
         |a, b| (&a.world, a.trial) == (&b.world, b.trial),
-        |case| Place::new(course(&case.world, case.trial).into_error()?),
-        |place, case| one(place, case, &lab.cancel),
+        |case| PreparedWorld::new(disc_scene(&case.world, case.trial).into_error()?),
+        |prepared, case| one(prepared, case, &lab.cancel),
     )
 }
 

@@ -8,25 +8,25 @@ use mp_cspace::{
 };
 use mp_plan::Error;
 use mp_robot::{DiscRobot, DiscVerifier};
-use mp_scenes::source::courses::Course;
+use mp_scenes::source::disc_scenes::DiscScene;
 use mp_snake::{Grid, SnakePlanner};
 use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Iterations a trial may take (§4).
+/// The most iterations of a trial (§4).
 pub(super) const ITERATIONS: u64 = 5000;
 /// How far obstacles push snakes, metres.
 pub(super) const RANGE: f64 = 0.15;
 /// The size of a cell of the clearance map, metres.
 const CELL: f64 = 0.06;
-/// How well the safety of a path is known, metres.
+/// The accuracy of the safety of a path, metres.
 const ACCURACY: f64 = 1e-4;
 
 type Point = Vector2<f64>;
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) world: String,
@@ -36,23 +36,23 @@ pub(super) struct Case {
     pub(super) trial: u64,
 }
 
-/// What came of it.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Run {
     pub(super) solved: bool,
-    /// Processor time, with the verification of candidate paths.
+    /// Processor time, including the verification of candidate paths.
     pub(super) seconds: f64,
     pub(super) iterations: u64,
     pub(super) nodes: usize,
-    /// Of the path, metres; zero when there is none.
+    /// The length of the path, metres; zero when there is none.
     pub(super) length: f64,
     /// Its least distance from an obstacle, metres.
     pub(super) safety: f64,
 }
 
-/// Steps of Δq, as NEW_CONF of the paper takes them: exactly that long, whether the sample is nearer or farther, but for
-/// those toward the goal, which end at it; or at most that long, as is customary. None is longer: a planner that tries
-/// the whole way from start to goal first would have a snake solve the problem.
+/// Steps of Δq, as in NEW_CONF of the paper: exactly that long, whether the sample is nearer or farther, except
+/// those toward the goal, which end at it; or at most that long, as is customary. No step is longer: if a planner tried
+/// the whole motion from start to goal first, a single snake would solve the problem.
 #[derive(Clone, Debug)]
 pub(super) struct Steps<'c, L> {
     space: &'c Rn<2>,
@@ -94,41 +94,41 @@ impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
     }
 }
 
-/// A course with what is made of it once for all that is tried in it.
+/// A world prepared for all its cases: the scene, the robot and the map that guides snakes.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
-    pub(super) course: Course,
+pub(super) struct PreparedWorld {
+    pub(super) scene: DiscScene,
     pub(super) robot: DiscRobot,
-    /// The signed clearance of the robot; snakes are guided by it, and by nothing else.
+    /// The signed clearance of the robot, on a grid; it alone guides the snakes.
     pub(super) map: Arc<Grid>,
 }
 
-impl Place {
-    pub(super) fn new(course: Course) -> Result<Self> {
-        let robot = course.robot().into_error()?;
-        let cells = course.size.map(|s| (s / CELL).round() as usize);
+impl PreparedWorld {
+    pub(super) fn new(scene: DiscScene) -> Result<Self> {
+        let robot = scene.robot().into_error()?;
+        let cells = scene.size.map(|s| (s / CELL).round() as usize);
         let map = Grid::from_fn([0.0; 2], CELL, cells.into(), |p| robot.signed_clearance(&p));
-        Ok(Self { course, robot, map: Arc::new(map.into_error()?) })
+        Ok(Self { scene, robot, map: Arc::new(map.into_error()?) })
     }
 }
 
 /// Runs `case` in its world. `None` when it was cancelled.
-pub(super) fn one(place: &Place, case: &Case, cancel: &Cancel) -> Result<Option<Run>> {
-    Ok(planned(place, case, cancel)?.map(|(run, _)| run))
+pub(super) fn one(world: &PreparedWorld, case: &Case, cancel: &Cancel) -> Result<Option<Run>> {
+    Ok(planned(world, case, cancel)?.map(|(run, _)| run))
 }
 
-/// What came of a trial, and the path it found.
+/// The result of a case, and the path that was found.
 type Planned = (Run, Option<Path<Point>>);
 
-/// As [`one`], with the path.
-pub(super) fn planned(place: &Place, case: &Case, cancel: &Cancel) -> Result<Option<Planned>> {
-    let Place { course, robot, .. } = place;
-    let space = Rn::<2>::new([0.0; 2], course.size).into_error()?;
+/// As [`one`], and returns the path too.
+pub(super) fn planned(world: &PreparedWorld, case: &Case, cancel: &Cancel) -> Result<Option<Planned>> {
+    let PreparedWorld { scene, robot, .. } = world;
+    let space = Rn::<2>::new([0.0; 2], scene.size).into_error()?;
     let step = f64::from(case.step) / 100.0;
     let tuning = Tuning { step: Step::Length(step), ..Tuning::default() };
-    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
     let verifier = DiscVerifier::new(robot);
-    let how = How { seed: case.trial + 1, cancel, space: &space, robot };
+    let settings = TrialSettings { seed: case.trial + 1, cancel, space: &space, robot };
     let exactly = matches!(case.planner.as_str(), "rrt" | "rrs");
     match case.planner.as_str() {
         "rrt" | "rrt-upto" | "rrt-connect" => {
@@ -136,24 +136,24 @@ pub(super) fn planned(place: &Place, case: &Case, cancel: &Cancel) -> Result<Opt
             let local = Steps { space: &space, goal, step, exactly, local };
             let problem = Problem::new(&space, local, verifier, start, goal).into_error()?;
             match case.planner.as_str() {
-                "rrt-connect" => how.run(RrtConnect::new(problem, tuning), |path| path),
-                _ => how.run(Rrt::new(problem, tuning), |path| path),
+                "rrt-connect" => settings.run(RrtConnect::new(problem, tuning), |path| path),
+                _ => settings.run(Rrt::new(problem, tuning), |path| path),
             }
         }
-        "rrs" | "rrs-upto" => how.run(rrs(place, &space, step, exactly), |path| path.flattened()),
+        "rrs" | "rrs-upto" => settings.run(rrs(world, &space, step, exactly), |path| path.flattened()),
         other => Err(Error::new(format!("there is no planner `{other}` here"))),
     }
 }
 
-/// RRS as it is measured.
+/// The RRS planner that is measured.
 pub(super) fn rrs<'a>(
-    place: &'a Place,
+    world: &'a PreparedWorld,
     space: &'a Rn<2>,
     step: f64,
     exactly: bool,
 ) -> std::result::Result<Rrs<'a>, BuildError> {
-    let Place { course, robot, map } = place;
-    let (start, goal) = (Point::from(course.start), Point::from(course.goal));
+    let PreparedWorld { scene, robot, map } = world;
+    let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
     let snakes = SnakePlanner::new(space, robot.clone(), &**map, RANGE);
     let local = snakes.map_err(|e| BuildError::Unmade { reason: e.to_string() })?;
     let local = Steps { space, goal, step, exactly, local };
@@ -164,14 +164,14 @@ pub(super) fn rrs<'a>(
 pub(super) type Rrs<'a> =
     Rrt<'a, Rn<2>, Steps<'a, SnakePlanner<'a, Rn<2>, DiscRobot, &'a Grid>>, <Rn<2> as DefaultNn>::Nn>;
 
-struct How<'a> {
+struct TrialSettings<'a> {
     seed: u64,
     cancel: &'a Cancel,
     space: &'a Rn<2>,
     robot: &'a DiscRobot,
 }
 
-impl How<'_> {
+impl TrialSettings<'_> {
     fn run<E: Clone>(
         &self,
         planner: std::result::Result<impl Planner<Point, Edge = E>, BuildError>,

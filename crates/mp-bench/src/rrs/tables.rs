@@ -1,24 +1,24 @@
-//! The six measures of §4, tables and charts of them, and what the paper says beside.
+//! The six measures of §4: tables and charts, compared with the values in the paper.
 
 use super::series::{PLANNERS, Plan, WORLDS};
 use super::solve::{Case, ITERATIONS, Run};
 use crate::error::Result;
 use crate::experiment::{Log, Table, mean};
-use crate::plot::{Axis, Curve, Labels, chart};
+use crate::plot::{Axis, ChartCurve, Labels, chart};
 
-/// All runs, to be summed up.
+/// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found<'a> {
+pub(super) struct Results<'a> {
     log: &'a Log<Case, Run>,
     plan: &'a Plan,
 }
 
-/// The measures of one planner in one world at one step; those of paths over the solved trials.
+/// The measures of one planner in one world at one step; those of paths are over the solved trials.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Six {
+struct Measures {
     /// Nodes added per sample, percent, over all trials.
     accepted: f64,
-    /// Iterations as percent of the most there may be; trials not solved took all.
+    /// Iterations as a percentage of the limit; trials that were not solved used all of them.
     iterations: f64,
     /// Trials solved, percent.
     converged: f64,
@@ -34,8 +34,8 @@ struct Six {
     all_iterations: f64,
 }
 
-/// Name in files, title, axis and value of each measure.
-type Measure = (&'static str, &'static str, &'static str, fn(&Six) -> f64);
+/// The name in files, title, axis label and value of a measure.
+type Measure = (&'static str, &'static str, &'static str, fn(&Measures) -> f64);
 const MEASURES: [Measure; 6] = [
     ("accepted", "accepted samples", "% of samples", |s| s.accepted),
     ("iterations", "iterations", "% of 5,000", |s| s.iterations),
@@ -45,17 +45,17 @@ const MEASURES: [Measure; 6] = [
     ("safety", "safety", "cm from the nearest obstacle", |s| s.safety),
 ];
 
-/// The mean of the finite ones; NaN where there are none.
+/// The mean of the finite values; NaN when there are none.
 fn finite_mean(values: impl Iterator<Item = f64>) -> f64 {
     mean(values.filter(|v| v.is_finite())).unwrap_or(f64::NAN)
 }
 
-impl<'a> Found<'a> {
+impl<'a> Results<'a> {
     pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
         Self { log, plan }
     }
 
-    fn six(&self, world: &str, planner: &str, step: u32) -> Option<Six> {
+    fn measures(&self, world: &str, planner: &str, step: u32) -> Option<Measures> {
         let case = |trial| Case { world: world.into(), planner: planner.into(), step, trial };
         let runs = self.log.runs((0..self.plan.trials).map(case));
         if runs.is_empty() {
@@ -64,9 +64,9 @@ impl<'a> Found<'a> {
         let solved = || runs.iter().filter(|r| r.solved);
         let total = |value: &dyn Fn(&Run) -> f64| runs.iter().map(|r| value(r)).sum::<f64>();
         let iterations = total(&|r| r.iterations as f64);
-        // The start is a node that was no sample; RRT-Connect has two of them, and may add many for one sample.
+        // The root is a node that is not a sample; RRT-Connect has two of them, and may add many nodes for one sample.
         let roots = if planner == "rrt-connect" { 2.0 } else { 1.0 };
-        Some(Six {
+        Some(Measures {
             accepted: 100.0 * total(&|r| r.nodes as f64 - roots) / iterations.max(1.0),
             iterations: 100.0
                 * finite_mean(
@@ -82,19 +82,19 @@ impl<'a> Found<'a> {
         })
     }
 
-    /// A measure over all steps in some worlds.
-    fn over(&self, worlds: &[&str], planner: &str, of: impl Fn(&Six) -> f64) -> Vec<f64> {
+    /// A measure at all steps in some worlds.
+    fn over(&self, worlds: &[&str], planner: &str, of: impl Fn(&Measures) -> f64) -> Vec<f64> {
         let at = worlds.iter().flat_map(|world| self.plan.steps.iter().map(move |step| (world, *step)));
-        at.filter_map(|(world, step)| self.six(world, planner, step).map(|s| of(&s))).collect()
+        at.filter_map(|(world, step)| self.measures(world, planner, step).map(|s| of(&s))).collect()
     }
 
-    /// Microseconds of all trials at all steps in these worlds together, by all their iterations.
+    /// Microseconds per iteration, over all trials at all steps in these worlds together.
     fn per_iteration(&self, worlds: &[&str], planner: &str) -> f64 {
-        let sum = |of: fn(&Six) -> f64| self.over(worlds, planner, of).iter().sum::<f64>();
+        let sum = |of: fn(&Measures) -> f64| self.over(worlds, planner, of).iter().sum::<f64>();
         sum(|s| s.per_iteration * s.all_iterations) / sum(|s| s.all_iterations)
     }
 
-    /// A row for each world and planner: means over all steps, with the least and greatest.
+    /// A row for each world and planner: means over all steps, with the least and greatest values.
     pub(super) fn summary(&self) -> Table {
         let heads = MEASURES.iter().map(|m| format!("{}, {}", m.1, m.2));
         let mut table = Table::new(
@@ -118,10 +118,10 @@ impl<'a> Found<'a> {
         for world in WORLDS {
             for planner in PLANNERS {
                 for &step in &self.plan.steps {
-                    let Some(six) = self.six(world, planner, step) else { continue };
+                    let Some(measures) = self.measures(world, planner, step) else { continue };
                     let mut row = vec![world.to_owned(), planner.to_owned(), step.to_string()];
-                    row.extend(MEASURES.iter().map(|m| format!("{:.4}", (m.3)(&six))));
-                    row.push(format!("{:.4}", six.per_iteration));
+                    row.extend(MEASURES.iter().map(|m| format!("{:.4}", (m.3)(&measures))));
+                    row.push(format!("{:.4}", measures.per_iteration));
                     table.rows.push(row);
                 }
             }
@@ -129,7 +129,7 @@ impl<'a> Found<'a> {
         table
     }
 
-    /// What the paper says, and what was measured.
+    /// The values in the paper, and those measured.
     pub(super) fn markdown(&self) -> String {
         let heads =
             ["world", "measure", "paper: RRS", "RRS", "RRS up to Δq", "paper: RRT", "RRT", "RRT up to Δq"];
@@ -155,7 +155,7 @@ impl<'a> Found<'a> {
         let each = WORLDS.iter().map(|world| (*world, std::slice::from_ref(world)));
         for (name, worlds) in each.chain([("all together", &WORLDS[..])]) {
             let mean_of =
-                |of: fn(&Six) -> f64| move |p: &str| finite_mean(self.over(worlds, p, of).into_iter());
+                |of: fn(&Measures) -> f64| move |p: &str| finite_mean(self.over(worlds, p, of).into_iter());
             let pairs = [("rrs", "rrt"), ("rrs-upto", "rrt-upto")];
             let mut row = vec![name.to_owned()];
             let mut put = |of: &dyn Fn(&str) -> f64| {
@@ -175,13 +175,13 @@ impl<'a> Found<'a> {
         for world in WORLDS {
             for (file, title, y, of) in MEASURES {
                 let curve = |(i, planner): (usize, &&str)| {
-                    let at = |&step: &u32| Some((f64::from(step), of(&self.six(world, planner, step)?)));
-                    Curve::new(name(planner), i, self.plan.steps.iter().filter_map(at).collect())
+                    let at = |&step: &u32| Some((f64::from(step), of(&self.measures(world, planner, step)?)));
+                    ChartCurve::new(name(planner), i, self.plan.steps.iter().filter_map(at).collect())
                 };
                 // A sample of RRT-Connect may add many nodes.
                 let shown =
                     PLANNERS.iter().enumerate().filter(|(_, p)| file != "accepted" || **p != "rrt-connect");
-                let curves: Vec<Curve> = shown.map(curve).collect();
+                let curves: Vec<ChartCurve> = shown.map(curve).collect();
                 let title = format!("{world}: {title}");
                 charts.push((
                     format!("{world}-{file}"),
@@ -197,7 +197,7 @@ impl<'a> Found<'a> {
     }
 }
 
-/// What a planner is called in charts.
+/// The name of a planner in charts.
 fn name(planner: &str) -> &'static str {
     match planner {
         "rrt" => "RRT",
@@ -208,7 +208,7 @@ fn name(planner: &str) -> &'static str {
     }
 }
 
-/// The mean, with the least and the greatest.
+/// The mean, with the least and the greatest value.
 fn spread(values: &[f64]) -> String {
     let known: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     if known.is_empty() {
@@ -231,7 +231,7 @@ fn spread(values: &[f64]) -> String {
     format!("{} ({} – {})", show(finite_mean(known.into_iter())), show(low), show(high))
 }
 
-/// What §5 says of RRS and of RRT.
+/// The values of RRS and RRT in §5 of the paper.
 const PAPER: &[(&str, &str, &str, &str)] = &[
     ("maze", "accepted", "65 at 30 cm", "below 50 at 30 cm"),
     ("maze", "iterations", "about 8 up to 100 cm", "double, more beyond"),
@@ -275,21 +275,24 @@ mod tests {
             let run = Run { solved, seconds, iterations, nodes: 501, length: 5.0, safety: 0.02 };
             log.learn([(case, run)]);
         }
-        let found = Found::new(&log, &plan);
-        let six = found.six("low", "rrs", 30).unwrap();
-        assert_eq!((six.accepted, six.iterations, six.converged), (50.0, 20.0, 100.0));
-        assert_eq!((six.length, six.safety, six.time, six.per_iteration), (500.0, 2.0, 2.0, 2.0));
-        let six = found.six("low", "rrt", 30).unwrap();
-        assert_eq!((six.iterations, six.converged), (60.0, 50.0));
-        assert!((six.accepted - 100.0 / 6.0).abs() < 1e-9);
-        assert_eq!(found.summary().rows.len(), 4 * 5);
-        assert_eq!(found.each().rows.len(), 4 * 5 * 2);
-        let text = found.markdown();
+        let results = Results::new(&log, &plan);
+        let measures = results.measures("low", "rrs", 30).unwrap();
+        assert_eq!((measures.accepted, measures.iterations, measures.converged), (50.0, 20.0, 100.0));
+        assert_eq!(
+            (measures.length, measures.safety, measures.time, measures.per_iteration),
+            (500.0, 2.0, 2.0, 2.0)
+        );
+        let measures = results.measures("low", "rrt", 30).unwrap();
+        assert_eq!((measures.iterations, measures.converged), (60.0, 50.0));
+        assert!((measures.accepted - 100.0 / 6.0).abs() < 1e-9);
+        assert_eq!(results.summary().rows.len(), 4 * 5);
+        assert_eq!(results.each().rows.len(), 4 * 5 * 2);
+        let text = results.markdown();
         // 2 µs by 4 ms in 3,000 iterations.
-        assert!((found.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);
+        assert!((results.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);
         assert!(text.contains("| low | 1.50 | 1.00 |"), "{text}");
         assert!(text.contains("mean 67.1") && text.contains("50.0 (50.0 – 50.0)"), "{text}");
-        assert_eq!(found.charts().len(), 24);
-        assert!(found.charts().iter().all(|(_, chart)| chart.is_ok()));
+        assert_eq!(results.charts().len(), 24);
+        assert!(results.charts().iter().all(|(_, chart)| chart.is_ok()));
     }
 }

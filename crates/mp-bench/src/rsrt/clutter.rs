@@ -1,4 +1,4 @@
-//! Worlds of ever more boxes: the first n obstacles of an instance are those of its problem with n obstacles.
+//! Worlds of random boxes: the first n obstacles of an instance are those of its problem with n obstacles.
 
 use crate::error::{IntoError, Result};
 use mp_cspace::{Rng, So3, Space};
@@ -12,18 +12,18 @@ pub(super) type Obstacle = (String, TriMesh, Isometry3<f64>);
 /// Numbers of obstacles (§4).
 pub(super) const LEVELS: [usize; 9] = [2, 4, 8, 16, 32, 64, 128, 256, 512];
 
-/// Where the boxes are, and how large.
+/// The region and the sizes of the boxes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Region {
-    /// Corners of the room for their centres, metres.
+    /// Corners of the region of their centres, metres.
     pub(super) low: [f64; 3],
     pub(super) high: [f64; 3],
     /// Least and greatest length of a side, metres.
     pub(super) sides: (f64, f64),
 }
 
-/// `count` boxes, each turned anyhow, of uniform place and sides; those that `allowed` refuses, such as on top
-/// of the start, are drawn again.
+/// `count` boxes, each of uniform rotation, position and sides; those that `allowed` refuses, such as boxes at
+/// the start, are drawn again.
 pub(super) fn boxes(
     region: &Region,
     count: usize,

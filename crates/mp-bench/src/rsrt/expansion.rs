@@ -2,24 +2,24 @@
 //! that grows in a free square, and of its corners.
 //!
 //! With the root alone there are four triangles of a quarter of the square each; n nodes make 2n + 2
-//! triangles, so the mean area is known and what is measured is how far the largest, the smallest and the
-//! spread are from it.
+//! triangles, so the mean area is known; the measurement is how far the largest, the smallest and the
+//! deviation are from it.
 
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, mean};
-use crate::plot::{Axis, Curve, Labels, chart};
+use crate::plot::{Axis, ChartCurve, Labels, chart};
 use mp_control::{Between, InputPlanner, InputSet, Kinematic};
 use mp_cspace::{KnownFree, MotionCheck, MotionValidity, Planner, Rn, Rng, Straight};
 use mp_tree::{Goals, Problem, Rrt, RrtInputs, Step, Tuning};
 use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-/// How the tree moves, as parts of the side. The paper does not give its own.
+/// How the tree is extended, in units of the side. The paper does not say how its tree is extended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Moves {
-    /// Straight toward the sample, at most so far.
+    /// Straight toward the sample, at most this far.
     Straight(f64),
-    /// By one of four inputs (ALG. 4): so far along an axis. The nodes are those of a lattice, which fills up.
+    /// By one of four inputs (ALG. 4): this far along an axis. The nodes are on a lattice, which fills up.
     Axes(f64),
 }
 
@@ -40,12 +40,12 @@ const MOVES: [Moves; 6] = [
     Moves::Axes(1.0 / 16.0),
     Moves::Axes(1.0 / 32.0),
 ];
-/// Where the paper sees the largest triangle fall from 8.15 times the mean.
+/// The number of nodes from which on, in the paper, the largest triangle falls from 8.15 times the mean.
 const THRESHOLD: usize = 353;
-/// The paper's figures end below this.
+/// The most nodes; the paper's figures end below this.
 const NODES: usize = 3_000;
 
-/// Areas of the triangles at one number of nodes, as parts of the square.
+/// Areas of the triangles at one number of nodes, as fractions of the square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Areas {
     nodes: usize,
@@ -55,7 +55,7 @@ struct Areas {
     deviation: f64,
 }
 
-/// Every motion is free.
+/// A motion check for which every motion is free.
 #[derive(Clone, Copy, Debug)]
 struct Free;
 
@@ -68,7 +68,7 @@ impl MotionValidity<Vector2<f64>> for Free {
     }
 }
 
-/// Measures one growth, at every number of nodes up to `nodes`, or as many as there is room for.
+/// Grows one tree and measures it at every number of nodes up to `nodes`, or until it is full.
 fn grow(moves: Moves, nodes: usize, seed: u64) -> Result<Vec<Areas>> {
     let space = Rn::<2>::new([0.0; 2], [1.0; 2]).into_error()?;
     let start = Vector2::new(0.5, 0.5);
@@ -98,10 +98,10 @@ fn grow(moves: Moves, nodes: usize, seed: u64) -> Result<Vec<Areas>> {
     }
 }
 
-/// Iterations without a new node after which a tree counts as grown.
+/// Iterations without a new node after which a tree counts as full.
 const PATIENCE: usize = 5_000;
 
-/// Triangulates the nodes that come with each `step`, which is told how many are known.
+/// Triangulates the new nodes that each `step` returns; `step` takes the number of nodes so far.
 fn follow(
     nodes: usize,
     seed: u64,
@@ -127,7 +127,7 @@ fn follow(
     Ok(all)
 }
 
-/// The areas of the triangles there are.
+/// The areas of the present triangles.
 fn areas(nodes: usize, triangles: &DelaunayTriangulation<Point2<f64>>) -> Areas {
     let (mut sum, mut squares, mut least, mut most) = (0.0, 0.0, f64::INFINITY, 0.0_f64);
     for face in triangles.inner_faces() {
@@ -142,12 +142,12 @@ fn areas(nodes: usize, triangles: &DelaunayTriangulation<Point2<f64>>) -> Areas 
     Areas { nodes, mean, least, most, deviation: (squares / count - mean * mean).max(0.0).sqrt() }
 }
 
-/// The mean of all runs at a number of nodes. A tree that is full stays as it is.
+/// The mean over all runs at a number of nodes. A full tree stays as it is.
 fn over(runs: &[Vec<Areas>], nodes: usize, of: &dyn Fn(&Areas) -> f64) -> f64 {
     mean(runs.iter().map(|run| of(&run[nodes.min(run.len()) - 1]))).unwrap_or(f64::NAN)
 }
 
-/// Measures and reports. The same seed gives the same numbers. False when it was interrupted.
+/// Measures and reports. False when it was interrupted. The same seed gives the same numbers.
 pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
     let seeds = if quick { 5 } else { 20 };
     let nodes = if quick { 1_000 } else { NODES };
@@ -193,7 +193,7 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
         let full = runs.iter().map(Vec::len).max().unwrap_or(1);
         let curve = |name: String, of: &dyn Fn(&Areas) -> f64| {
             let points = (1..=full).filter(|n| *n < 40 || n.is_multiple_of(10) || *n == full);
-            Curve::new(name, i, points.map(|n| (n as f64, over(runs, n, of))).collect())
+            ChartCurve::new(name, i, points.map(|n| (n as f64, over(runs, n, of))).collect())
         };
         size.push(curve(format!("largest, {moves}"), &|a| 100.0 * a.most));
         size.push(curve(format!("smallest, {moves}"), &|a| 100.0 * a.least).thin());
@@ -201,7 +201,7 @@ pub(super) fn run(lab: &Lab, quick: bool, seed: u64) -> Result<bool> {
     }
     let points = (1..=nodes).filter(|n| *n < 40 || n.is_multiple_of(10));
     let means = points.map(|n| (n as f64, 100.0 / (2 * n + 2) as f64)).collect();
-    size.push(Curve::new("mean", 6, means));
+    size.push(ChartCurve::new("mean", 6, means));
     let marks = [1.0, 10.0, 25.0, 100.0, 353.0, 1_000.0, 3_000.0];
     let labels = Labels {
         title: "Delaunay triangles of an RRT in a free square: areas",

@@ -1,15 +1,15 @@
-//! All series of problems, level by level.
+//! All series of problems, by increasing number of obstacles.
 
 use super::clutter::Obstacle;
-use super::movers::{Flyer, Mover, SixAxes};
-use super::solve::{How, Kind, Run, positions, velocities};
+use super::robots::{Flyer, SixAxes, TestRobot};
+use super::solve::{ComparedPlanner, Run, RunSettings, positions, velocities};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
 use mp_cspace::{Cancel, Euclidean, Manhattan, Product, ScaledEuclidean};
 use mp_plan::Error;
 use serde::{Deserialize, Serialize};
 
-/// What to measure.
+/// The size of the measurement.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) cap: f64,
@@ -18,7 +18,7 @@ pub(super) struct Plan {
     pub(super) levels: Vec<usize>,
 }
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Case {
     pub(super) mover: String,
@@ -34,7 +34,7 @@ pub(super) const MODELS: [&str; 2] = ["positions", "velocities"];
 pub(super) const METRICS: [&str; 3] = ["euclidean", "scaled", "manhattan"];
 pub(super) const PLANNERS: [&str; 3] = ["rrt", "rsrt", "rrt-connect"];
 
-/// A mover, a model, a metric and a planner, measured over levels.
+/// A robot, a model, a metric and a planner, measured over numbers of obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Series {
     pub(super) mover: &'static str,
@@ -44,7 +44,7 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// All there are. RRT-Connect cannot do with velocities: trees of inputs do not meet.
+    /// All series. RRT-Connect is not run with velocities: two trees grown by inputs do not meet.
     pub(super) fn all() -> Vec<Self> {
         let mut all = Vec::new();
         for mover in MOVERS {
@@ -71,7 +71,7 @@ impl Series {
     }
 }
 
-/// Measures what is not known yet. False when it was interrupted.
+/// Runs the cases that are not in the log. False when it was interrupted.
 pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Result<bool> {
     let (flyer, arm) = (Flyer::new()?, SixAxes::new()?);
     let most = plan.levels.last().copied().unwrap_or(0);
@@ -92,47 +92,47 @@ pub(super) fn measure(plan: &Plan, lab: &Lab, log: &mut Log<Case, Run>) -> Resul
         if !lab.measure(log, &format!("rsrt, {level} obstacles"), &cases, run)? {
             return Ok(false);
         }
-        // A series goes on where some instance was solved.
+        // A series continues if some instance was solved.
         going.retain(|series| log.runs(series.cases(plan, level)).iter().any(|run| run.solved));
     }
     Ok(true)
 }
 
 /// One run.
-fn one<M: Mover>(
-    mover: &M,
+fn one<M: TestRobot>(
+    test_robot: &M,
     obstacles: &[Obstacle],
     case: &Case,
     cap: f64,
     cancel: &Cancel,
 ) -> Result<Option<Run>> {
-    let kind = match case.planner.as_str() {
-        "rrt" => Kind::Rrt,
-        "rsrt" => Kind::Rsrt,
-        "rrt-connect" => Kind::Connect,
+    let planner = match case.planner.as_str() {
+        "rrt" => ComparedPlanner::Rrt,
+        "rsrt" => ComparedPlanner::Rsrt,
+        "rrt-connect" => ComparedPlanner::Connect,
         other => return Err(Error::new(format!("there is no planner `{other}` here"))),
     };
-    let how = How { kind, seed: case.instance + 1, cap, cancel: cancel.clone() };
-    let robot = mover.among(obstacles)?;
-    let weights = mover.weights();
+    let settings = RunSettings { planner, seed: case.instance + 1, cap, cancel: cancel.clone() };
+    let robot = test_robot.among(obstacles)?;
+    let weights = test_robot.weights();
     match (case.model.as_str(), case.metric.as_str()) {
-        ("positions", "euclidean") => positions(mover, robot, Euclidean, &how),
-        ("positions", "manhattan") => positions(mover, robot, Manhattan, &how),
+        ("positions", "euclidean") => positions(test_robot, robot, Euclidean, &settings),
+        ("positions", "manhattan") => positions(test_robot, robot, Manhattan, &settings),
         ("positions", _) => {
-            let scaled = ScaledEuclidean::new(mover.space(), weights).into_error()?;
-            positions(mover, robot, scaled, &how)
+            let scaled = ScaledEuclidean::new(test_robot.space(), weights).into_error()?;
+            positions(test_robot, robot, scaled, &settings)
         }
-        (_, "euclidean") => velocities(mover, robot, Euclidean, &how),
-        (_, "manhattan") => velocities(mover, robot, Manhattan, &how),
+        (_, "euclidean") => velocities(test_robot, robot, Euclidean, &settings),
+        (_, "manhattan") => velocities(test_robot, robot, Manhattan, &settings),
         _ => {
-            let (most, _) = mover.limits();
-            let space = Product::with_velocity(mover.space().clone(), most).into_error()?;
-            // A radian per second moves as far in a second as a radian does; a body turns about three axes.
+            let (most, _) = test_robot.limits();
+            let space = Product::with_velocity(test_robot.space().clone(), most).into_error()?;
+            // A radian per second gets the weight of a radian; the rotation of a body has three velocities.
             let last = weights.last().copied().unwrap_or(1.0);
             let six = weights.iter().copied().chain(std::iter::repeat(last)).take(6);
             let moving: Vec<f64> = weights.iter().copied().chain(six).collect();
             let scaled = ScaledEuclidean::new(&space, moving).into_error()?;
-            velocities(mover, robot, scaled, &how)
+            velocities(test_robot, robot, scaled, &settings)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! One run of one planner on one problem.
 
-use super::movers::{Mover, Six};
-use crate::clock::{Processor, nanoseconds, seconds_since};
+use super::robots::{Six, TestRobot};
+use crate::clock::{ProcessorTime, nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use mp_control::{
     Between, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, OnPosition, ReplayFinely,
@@ -15,17 +15,17 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// What came of it.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Run {
     pub(super) solved: bool,
-    /// Processor time, with the verification of candidate paths.
+    /// Processor time, including the verification of candidate paths.
     pub(super) seconds: f64,
     pub(super) iterations: u64,
     pub(super) nodes: usize,
-    /// Configurations asked of the collision checker.
+    /// Configurations tested by the collision checker.
     pub(super) checks: u64,
-    /// Times a node was expanded: motions asked of the local planner.
+    /// Expansions of nodes: motions asked of the local planner.
     pub(super) expansions: u64,
     /// Candidate paths that failed verification.
     pub(super) rejected: u64,
@@ -35,51 +35,51 @@ pub(super) struct Run {
 
 /// The planners compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum ComparedPlanner {
     /// ALG. 4.
     Rrt,
     Rsrt,
-    /// With motions of any kind, beside them.
+    /// RRT-Connect with straight motions, for comparison.
     Connect,
 }
 
-/// How to run.
+/// The settings of a run.
 #[derive(Clone, Debug)]
-pub(super) struct How {
-    pub(super) kind: Kind,
+pub(super) struct RunSettings {
+    pub(super) planner: ComparedPlanner,
     pub(super) seed: u64,
-    /// Seconds of processor time.
+    /// The limit of processor time, seconds.
     pub(super) cap: f64,
     pub(super) cancel: Cancel,
 }
 
-type State<M> = <<M as Mover>::Space as Space>::State;
+type State<M> = <<M as TestRobot>::Space as Space>::State;
 /// A configuration and its velocity.
 type Moving<M> = (State<M>, Six);
 
 /// Counts the states tested.
 #[derive(Clone, Debug)]
-struct Counted<V> {
+struct CountingValidity<V> {
     valid: V,
     count: Arc<AtomicU64>,
 }
 
-impl<S, V: Validity<S>> Validity<S> for Counted<V> {
+impl<S, V: Validity<S>> Validity<S> for CountingValidity<V> {
     fn is_valid(&mut self, q: &S) -> bool {
         self.count.fetch_add(1, Ordering::Relaxed);
         self.valid.is_valid(q)
     }
 }
 
-/// Steps of a path that runs out of time are no path: what was found until then.
+/// Runs a planner until it has a path, its time is up, or it is cancelled (`None`).
 fn run<S, E: Clone>(
     planner: std::result::Result<impl Planner<S, Edge = E>, BuildError>,
-    how: &How,
+    settings: &RunSettings,
     began: f64,
 ) -> Result<Option<Run>> {
     let mut planner = planner.into_error()?;
-    let mut stop = Processor { until: began + how.cap * 1e9 }.or(how.cancel.clone());
-    let outcome = planner.solve(&mut Rng::seed(how.seed), &mut stop, &mut ());
+    let mut stop = ProcessorTime { until: began + settings.cap * 1e9 }.or(settings.cancel.clone());
+    let outcome = planner.solve(&mut Rng::seed(settings.seed), &mut stop, &mut ());
     let seconds = seconds_since(began);
     let progress = planner.progress();
     let (solved, edges) = match outcome {
@@ -99,78 +99,88 @@ fn run<S, E: Clone>(
     }))
 }
 
-/// The trajectory as a list of positions, under `metric`. `None` when it was cancelled.
-pub(super) fn positions<M, D>(mover: &M, robot: M::Robot, metric: D, how: &How) -> Result<Option<Run>>
+/// Plans with states that are positions, under `metric`. `None` when it was cancelled.
+pub(super) fn positions<M, D>(
+    test_robot: &M,
+    robot: M::Robot,
+    metric: D,
+    settings: &RunSettings,
+) -> Result<Option<Run>>
 where
-    M: Mover,
+    M: TestRobot,
     D: Metric<M::Space>,
 {
-    let space = WithMetric::new(mover.space().clone(), metric);
-    let verifier = mover.verifier(&robot)?;
+    let space = WithMetric::new(test_robot.space().clone(), metric);
+    let verifier = test_robot.verifier(&robot)?;
     let count = Arc::new(AtomicU64::new(0));
     let began = nanoseconds();
-    let valid = Counted { valid: robot, count: count.clone() };
-    let resolution = Resolution::Length(mover.resolution());
-    let check = Discrete::new(mover.space(), valid, resolution).into_error()?;
+    let valid = CountingValidity { valid: robot, count: count.clone() };
+    let resolution = Resolution::Length(test_robot.resolution());
+    let check = Discrete::new(test_robot.space(), valid, resolution).into_error()?;
     let straight = Straight::new(&space, check);
-    let (start, goal, tuning) = (mover.start().clone(), mover.goal().clone(), tuning());
-    let done = if how.kind == Kind::Connect {
+    let (start, goal, tuning) = (test_robot.start().clone(), test_robot.goal().clone(), tuning());
+    let done = if settings.planner == ComparedPlanner::Connect {
         let problem = Problem::new(&space, straight, verifier, start, goal).into_error()?;
-        run(RrtConnect::new(problem, tuning), how, began)
+        run(RrtConnect::new(problem, tuning), settings, began)
     } else {
         let flow = Kinematic::new(&space).into_error()?;
-        let inputs = InputSet::axes(mover.speeds()).into_error()?;
+        let inputs = InputSet::axes(test_robot.speeds()).into_error()?;
         let local = InputPlanner::new(&space, flow, inputs, 1.0, Between(straight)).into_error()?;
-        let near = |q: &State<M>| mover.arrived(q);
+        let near = |q: &State<M>| test_robot.arrived(q);
         let goals = Goals::region(near).with_sampler(Exactly(goal));
         let problem = Problem::new(&space, local, verifier, start, goals).into_error()?;
-        match how.kind {
-            Kind::Rrt => run(RrtInputs::new(problem, tuning), how, began),
-            _ => run(Rsrt::new(problem, tuning), how, began),
+        match settings.planner {
+            ComparedPlanner::Rrt => run(RrtInputs::new(problem, tuning), settings, began),
+            _ => run(Rsrt::new(problem, tuning), settings, began),
         }
     }?;
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
 }
 
-/// Inputs connect to a goal within a fifth of the extent, and RRT-Connect's edges are no longer than that.
+/// The longest step is a fifth of the extent: for connections of inputs to a goal, and for RRT-Connect's edges.
 fn tuning() -> Tuning {
     Tuning { step: Step::Fraction(0.2), ..Tuning::default() }
 }
 
-/// The trajectory as a list of positions with a velocity for each degree of freedom, under `metric`; the
-/// goal is a place, at any velocity.
-pub(super) fn velocities<M, D>(mover: &M, robot: M::Robot, metric: D, how: &How) -> Result<Option<Run>>
+/// Plans with states that are positions and velocities, under `metric`; the
+/// goal is a position, at any velocity. `None` when it was cancelled.
+pub(super) fn velocities<M, D>(
+    test_robot: &M,
+    robot: M::Robot,
+    metric: D,
+    settings: &RunSettings,
+) -> Result<Option<Run>>
 where
-    M: Mover,
+    M: TestRobot,
     D: Metric<Product<M::Space, Rn<6>>>,
 {
-    let (most, accelerations) = mover.limits();
-    let moving = Product::with_velocity(mover.space().clone(), most).into_error()?;
-    // Motions are measured by where they lead, not by how velocities change.
+    let (most, accelerations) = test_robot.limits();
+    let moving = Product::with_velocity(test_robot.space().clone(), most).into_error()?;
+    // The length of a motion is measured by positions, not by velocities.
     let speeds = Rn::new(-most, most).into_error()?;
-    let places = Product::new(mover.space().clone(), 1.0, speeds, 1e-6).into_error()?;
-    let flow = DoubleIntegrator::new(mover.space()).into_error()?;
+    let places = Product::new(test_robot.space().clone(), 1.0, speeds, 1e-6).into_error()?;
+    let flow = DoubleIntegrator::new(test_robot.space()).into_error()?;
     let space = WithMetric::new(moving.clone(), metric);
-    let mut proof = mover.verifier(&robot)?;
+    let mut proof = test_robot.verifier(&robot)?;
     let proved = OnPosition(move |q: &State<M>| proof.check_motion(q, q).is_free());
-    let fine = Resolution::Length(0.1 * mover.resolution());
+    let fine = Resolution::Length(0.1 * test_robot.resolution());
     let verifier = ReplayFinely::new(&places, flow, proved, fine).into_error()?;
     let count = Arc::new(AtomicU64::new(0));
     let began = nanoseconds();
-    let valid = OnPosition(Counted { valid: robot, count: count.clone() });
-    let resolution = Resolution::Length(mover.resolution());
+    let valid = OnPosition(CountingValidity { valid: robot, count: count.clone() });
+    let resolution = Resolution::Length(test_robot.resolution());
     let check = DiscreteFlowCheck::new(&places, valid, resolution).into_error()?;
     let inputs = InputSet::axes(accelerations).into_error()?;
     let local = InputPlanner::new(&space, flow, inputs, 1.0, check).into_error()?;
     let rest = Six::zeros();
-    let goals = Goals::region(|q: &Moving<M>| mover.arrived(&q.0))
-        .with_sampler(Exactly((mover.goal().clone(), rest)));
-    let start = (mover.start().clone(), rest);
+    let goals = Goals::region(|q: &Moving<M>| test_robot.arrived(&q.0))
+        .with_sampler(Exactly((test_robot.goal().clone(), rest)));
+    let start = (test_robot.start().clone(), rest);
     let problem = Problem::new(&space, local, verifier, start, goals).into_error()?;
     let tuning = tuning();
-    let done = match how.kind {
-        Kind::Rrt => run(RrtInputs::new(problem, tuning), how, began),
-        _ => run(Rsrt::new(problem, tuning), how, began),
+    let done = match settings.planner {
+        ComparedPlanner::Rrt => run(RrtInputs::new(problem, tuning), settings, began),
+        _ => run(Rsrt::new(problem, tuning), settings, began),
     }?;
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
 }

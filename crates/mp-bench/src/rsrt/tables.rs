@@ -1,31 +1,31 @@
-//! What was found, as tables and charts.
+//! The results, as tables and charts.
 
 use super::series::{Case, METRICS, MODELS, MOVERS, PLANNERS, Plan, Series};
 use super::solve::Run;
 use crate::error::Result;
 use crate::experiment::{Log, Median, Table, bit, geometric_mean, ratio, seconds};
-use crate::plot::{Axis, Curve, Labels, chart};
+use crate::plot::{Axis, ChartCurve, Labels, chart};
 
-/// The runs, to be summed up.
+/// The runs, for summaries.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Found<'a> {
+pub(super) struct Results<'a> {
     log: &'a Log<Case, Run>,
     plan: &'a Plan,
 }
 
 /// The runs of one series at one level.
 #[derive(Clone, Debug)]
-struct Group {
+struct SeriesAtLevel {
     solved: usize,
     of: usize,
-    /// Infinite where not solved.
+    /// Times of solved runs; infinite for others.
     seconds: Median,
     checks: Median,
     /// Configurations tested per expansion, over all runs, solved or not.
     per_expansion: f64,
 }
 
-impl<'a> Found<'a> {
+impl<'a> Results<'a> {
     pub(super) fn new(log: &'a Log<Case, Run>, plan: &'a Plan) -> Self {
         Self { log, plan }
     }
@@ -34,13 +34,13 @@ impl<'a> Found<'a> {
         self.log.runs(series.cases(self.plan, level))
     }
 
-    fn group(&self, series: &Series, level: usize) -> Option<Group> {
+    fn group(&self, series: &Series, level: usize) -> Option<SeriesAtLevel> {
         let runs = self.runs(series, level);
         let of = |value: &dyn Fn(&Run) -> f64| {
             Median::of(runs.iter().map(|r| if r.solved { value(r) } else { f64::INFINITY }))
         };
         let (checks, expansions) = runs.iter().fold((0, 0), |(c, e), r| (c + r.checks, e + r.expansions));
-        Some(Group {
+        Some(SeriesAtLevel {
             solved: runs.iter().filter(|r| r.solved).count(),
             of: runs.len(),
             seconds: of(&|r| r.seconds)?,
@@ -55,11 +55,11 @@ impl<'a> Found<'a> {
         model: &'static str,
         metric: &'static str,
         level: usize,
-    ) -> [Option<Group>; 3] {
+    ) -> [Option<SeriesAtLevel>; 3] {
         PLANNERS.map(|planner| self.group(&Series { mover, model, metric, planner }, level))
     }
 
-    /// A row for each mover, model, number of obstacles and metric.
+    /// A row for each robot, model, number of obstacles and metric.
     pub(super) fn summary(&self) -> Table {
         let mut rows = Vec::new();
         for (mover, model) in MOVERS.into_iter().flat_map(|mover| MODELS.map(|model| (mover, model))) {
@@ -69,10 +69,11 @@ impl<'a> Found<'a> {
         }
         let cap = format!("> {}", self.plan.cap);
         let said = |cell: Option<String>| cell.unwrap_or_else(|| "–".to_owned());
-        let solved = |g: &Option<Group>| said(g.as_ref().map(|g| format!("{}/{}", g.solved, g.of)));
-        let time = |g: &Option<Group>| said(g.as_ref().map(|g| g.seconds.cell(&cap, seconds)));
-        let checks = |g: &Option<Group>| said(g.as_ref().map(|g| format!("{:.1}", g.per_expansion)));
-        let both = |[a, b, _]: &[Option<Group>; 3], cell: &dyn Fn(&Group, &Group) -> String| {
+        let solved = |g: &Option<SeriesAtLevel>| said(g.as_ref().map(|g| format!("{}/{}", g.solved, g.of)));
+        let time = |g: &Option<SeriesAtLevel>| said(g.as_ref().map(|g| g.seconds.cell(&cap, seconds)));
+        let checks = |g: &Option<SeriesAtLevel>| said(g.as_ref().map(|g| format!("{:.1}", g.per_expansion)));
+        let both = |[a, b, _]: &[Option<SeriesAtLevel>; 3],
+                    cell: &dyn Fn(&SeriesAtLevel, &SeriesAtLevel) -> String| {
             said(a.as_ref().zip(b.as_ref()).map(|(a, b)| cell(a, b)))
         };
         Table::of(
@@ -119,7 +120,7 @@ impl<'a> Found<'a> {
         )
     }
 
-    /// What the paper says, and what was measured.
+    /// The statements of the paper, and the measured values.
     pub(super) fn markdown(&self) -> String {
         type Measure<'a> = (&'a str, &'a dyn Fn(&'static str, &'static str) -> String);
         let says: [Measure<'_>; 6] = [
@@ -162,8 +163,8 @@ impl<'a> Found<'a> {
         table.markdown() + "\n"
     }
 
-    /// Time ratios over metrics: of the hardest level that both solve in the median, or the geometric mean
-    /// of the levels up to 64.
+    /// Time ratios for each metric: at the hardest level that both solve in the median, or the geometric mean
+    /// over the levels up to 64.
     fn over_metrics(&self, mover: &'static str, model: &'static str, hardest: bool) -> String {
         let each = METRICS.iter().map(|metric| {
             let known = self.plan.levels.iter().filter_map(|&level| {
@@ -172,13 +173,13 @@ impl<'a> Found<'a> {
                 (a.is_finite() && b.is_finite()).then_some((level, a / b))
             });
             let known: Vec<(usize, f64)> = known.collect();
-            let found = match hardest {
+            let ratio = match hardest {
                 true => known.last().map(|(level, r)| format!("{r:.2} at {level}")),
                 false => {
                     geometric_mean(known.iter().filter(|k| k.0 <= 64).map(|k| k.1)).map(|r| format!("{r:.2}"))
                 }
             };
-            format!("{metric} {}", found.unwrap_or_else(|| "–".into()))
+            format!("{metric} {}", ratio.unwrap_or_else(|| "–".into()))
         });
         each.collect::<Vec<_>>().join(", ")
     }
@@ -247,7 +248,7 @@ impl<'a> Found<'a> {
         }
     }
 
-    /// Figure 5, one for each mover and model: time against obstacles.
+    /// Figure 5 for each robot and model: time against the number of obstacles.
     pub(super) fn charts(&self) -> Vec<(String, Result<String>)> {
         let mut charts = Vec::new();
         for mover in MOVERS {
@@ -265,7 +266,7 @@ impl<'a> Found<'a> {
                         if groups.is_empty() {
                             continue;
                         }
-                        let mut curve = Curve::new(
+                        let mut curve = ChartCurve::new(
                             format!("{planner}, {metric}"),
                             p,
                             groups.iter().map(|(l, m)| (*l, m.median)).collect(),
@@ -319,8 +320,8 @@ mod tests {
                 log.learn([(series.case(level, instance), run)]);
             }
         }
-        let found = Found::new(&log, &plan);
-        let summary = found.summary();
+        let results = Results::new(&log, &plan);
+        let summary = results.summary();
         assert_eq!(summary.rows.len(), 2 * 2 * 2 * 3);
         assert_eq!(
             summary.rows[0][7..11],
@@ -329,10 +330,10 @@ mod tests {
         assert_eq!(summary.rows[3][4..8], ["1/4", "4/4", "4/4", "> 6 (2.00 – > 6)"]);
         assert_eq!(summary.rows[3][10], "> 2.40");
         assert_eq!(summary.rows[0][11..], ["3.00", "12.0", "4.0"]);
-        assert_eq!(found.each().rows.len(), log.all().len());
-        let text = found.markdown();
+        assert_eq!(results.each().rows.len(), log.all().len());
+        let text = results.markdown();
         assert!(text.contains("euclidean 2.00 at 2") && text.contains("1/4 at 4 / 4/4 at 4"), "{text}");
-        let charts = found.charts();
+        let charts = results.charts();
         assert_eq!(charts.len(), 4);
         assert!(charts.iter().all(|(_, chart)| chart.as_ref().is_ok_and(|c| c.contains("rsrt, scaled"))));
     }

@@ -1,8 +1,8 @@
 //! Tree growth: nodes per second of RRT in an empty unit cube, against the number of nodes.
 //!
-//! Every iteration is one uniform sample, one nearest-neighbour query, one motion check (that
-//! always passes) and one insertion. Beside each planner runs the bare loop of the same work
-//! without a planner, so that what the engine adds can be read off.
+//! Every iteration is one uniform sample, one nearest-neighbour query, one motion check (which
+//! always passes) and one insertion. For comparison, a bare loop does the same work
+//! without a planner, which shows the overhead of the engine.
 
 use crate::error::Result;
 use mp_cspace::{
@@ -15,18 +15,18 @@ use nalgebra::{Isometry3, SVector};
 use serde::{Deserialize, Serialize};
 use std::time::{Duration, Instant};
 
-/// How to grow.
+/// The settings of a measurement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Growing<'a> {
-    /// At how many nodes to read the clock, ascending.
+    /// The numbers of nodes at which the clock is read, ascending.
     pub(crate) sizes: &'a [usize],
     /// Longest step, a fraction of the extent.
     pub(crate) step: f64,
     /// Resolution of the motion check, a fraction of the extent.
     pub(crate) resolution: f64,
-    /// Seconds after which one growth is cut short.
+    /// Seconds after which the growth of one tree is stopped.
     pub(crate) cap: f64,
-    /// How often to repeat; the fastest counts.
+    /// The number of repetitions, of which the fastest counts.
     pub(crate) repeats: usize,
     /// The seed.
     pub(crate) seed: u64,
@@ -38,10 +38,10 @@ impl Default for Growing<'_> {
     }
 }
 
-/// Trees of this size and below are grown ten times as often.
+/// Trees up to this size are grown ten times as often.
 const SMALL: usize = 10_000;
 
-/// The spaces there are.
+/// The names of the spaces.
 pub(crate) const SPACES: [&str; 4] = ["r2", "r3", "r6", "se3"];
 
 /// Growth to one size.
@@ -49,24 +49,24 @@ pub(crate) const SPACES: [&str; 4] = ["r2", "r3", "r6", "se3"];
 pub(crate) struct Row {
     /// Nodes of the tree.
     pub(crate) nodes: usize,
-    /// Processor seconds of RRT, from nothing.
+    /// Processor seconds of RRT, from the empty tree.
     pub(crate) planner: f64,
-    /// Processor seconds of the bare loop, from nothing.
+    /// Processor seconds of the bare loop, from the empty tree.
     pub(crate) bare: f64,
 }
 
 impl Row {
-    /// Nodes per second of RRT, from nothing.
+    /// Nodes per second of RRT, from the empty tree.
     pub(crate) fn rate(&self) -> f64 {
         self.nodes as f64 / self.planner
     }
 }
 
 impl Growing<'_> {
-    /// Measures in one of [`SPACES`]. Sizes not reached under the cap are left out.
+    /// Measures in one of [`SPACES`]. Sizes that are not reached within the cap are left out.
     ///
     /// # Errors
-    /// When the space is not known, or something is out of range.
+    /// When there is no such space, or a setting is out of range.
     pub(crate) fn measure(&self, space: &str) -> Result<Vec<Row>> {
         match space {
             "r2" => self.in_cube::<2>(),
@@ -92,7 +92,7 @@ impl Growing<'_> {
         let resolution = Resolution::Fraction(self.resolution);
         let local = || -> Result<_> { Ok(Straight::new(space, Discrete::new(space, free, resolution)?)) };
         let (mut planner, mut bare) = (Vec::new(), Vec::new());
-        // Small trees grow in no time: many short growths first, so that the fastest is undisturbed.
+        // Small trees grow very quickly: they are grown many times, so that the fastest time is undisturbed.
         let small = self.sizes.iter().filter(|&&size| size <= SMALL).count();
         let rounds = std::iter::repeat_n(&self.sizes[..small], 10 * self.repeats);
         for sizes in rounds.chain(std::iter::repeat_n(self.sizes, self.repeats)) {
@@ -109,7 +109,7 @@ impl Growing<'_> {
             best(&mut planner, &times);
             drop(rrt);
 
-            let mut plain = Bare::new(space, start.clone(), local()?, self.step * space.extent());
+            let mut plain = BareLoop::new(space, start.clone(), local()?, self.step * space.extent());
             let mut rng = Rng::seed(self.seed);
             let times = clocked(sizes, self.cap, || plain.step(&mut rng));
             best(&mut bare, &times);
@@ -124,8 +124,8 @@ impl Growing<'_> {
     }
 }
 
-/// The same work as RRT's without a planner.
-struct Bare<'c, C: DefaultNn, L> {
+/// The work of RRT without a planner.
+struct BareLoop<'c, C: DefaultNn, L> {
     space: &'c C,
     local: L,
     step: f64,
@@ -134,7 +134,7 @@ struct Bare<'c, C: DefaultNn, L> {
     index: C::Nn,
 }
 
-impl<'c, C: DefaultNn, L: LocalPlanner<C::State>> Bare<'c, C, L> {
+impl<'c, C: DefaultNn, L: LocalPlanner<C::State>> BareLoop<'c, C, L> {
     fn new(space: &'c C, start: C::State, local: L, step: f64) -> Self {
         let (points, mut index) = (vec![start], C::Nn::default());
         index.inserted(space, &points, 0);
@@ -158,7 +158,7 @@ impl<'c, C: DefaultNn, L: LocalPlanner<C::State>> Bare<'c, C, L> {
     }
 }
 
-/// Runs `step`, which tells the number of nodes, until the last size or the cap (s); the time at
+/// Runs `step`, which returns the number of nodes, until the last size or the cap (s); returns the time at
 /// which each size was reached.
 fn clocked(sizes: &[usize], cap: f64, mut step: impl FnMut() -> usize) -> Vec<f64> {
     let (begun, cap) = (Instant::now(), Duration::try_from_secs_f64(cap).unwrap_or(Duration::MAX));
@@ -173,21 +173,22 @@ fn clocked(sizes: &[usize], cap: f64, mut step: impl FnMut() -> usize) -> Vec<f6
             }
         }
         let clock = begun.elapsed().as_secs_f64();
-        // The system counts processor time in ticks of some milliseconds: too coarse below.
+        // The system counts processor time in ticks of some milliseconds, which is too coarse for short times.
         let fine = used.filter(|_| clock > 0.5).zip(processor_seconds()).map(|(a, b)| b - a);
         times.push(fine.unwrap_or(clock).max(1e-9));
     }
     times
 }
 
-/// Processor time of this thread, which a busy machine disturbs less than the clock, where the
-/// system tells it.
+/// Processor time of this thread, which a busy machine disturbs less than wall-clock time, if the
+/// system reports it.
 fn processor_seconds() -> Option<f64> {
     let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     let nanoseconds: u64 = told.split(' ').next()?.parse().ok()?;
     Some(nanoseconds as f64 * 1e-9)
 }
 
+/// Keeps the least time of each size.
 fn best(least: &mut Vec<f64>, times: &[f64]) {
     for (i, &time) in times.iter().enumerate() {
         match least.get_mut(i) {

@@ -1,17 +1,17 @@
-//! The mean of the vertices, which OMPL.app takes for the origin of a robot.
+//! The mean of the vertices, which OMPL.app uses as the origin of a robot.
 //!
-//! Its importer works in single precision, gives polygons without normals their face normals, and then joins
-//! the corners of a group that agree in position, normal, texture coordinates and colour. What is left are the
-//! vertices, those of lines among them, all instances counted.
+//! Its importer works in single precision, gives polygons without normals their face normals, and then merges
+//! the corners of a group that agree in position, normal, texture coordinates and colour. The mean is over the
+//! vertices that are left, those of lines included, in all instances.
 
 use super::geometry::{Geometry, Group};
 use super::{Instance, Scene};
 use nalgebra::{Matrix4, Vector3};
 use std::collections::HashMap;
 
-/// Attributes count as equal at this distance and below.
+/// Attributes at most this far apart count as equal.
 const SAME: f32 = 1e-5;
-/// How many vertices of one position are compared; beyond it, a vertex counts anew.
+/// The most vertices of one position that are compared; further ones always count as new.
 const MAX_COMPARED: usize = 64;
 
 impl Scene {
@@ -30,7 +30,7 @@ impl Scene {
     }
 }
 
-/// The mean of the vertices of a mesh that comes without normals: the corners are joined where position and
+/// The mean of the vertices of a mesh without normals: corners are merged when position and
 /// face normal agree.
 pub(crate) fn center_of_mesh(mesh: &mp_geom::TriMesh) -> Vector3<f64> {
     let geometry = Geometry::of_mesh(mesh);
@@ -84,7 +84,7 @@ fn join(geometry: &Geometry, group: &Group) -> Vec<[f32; 3]> {
             }
             corner += 1;
             let position: [f32; 3] = geometry.position(c).coords.map(|v| v as f32).into();
-            // Adding 0 makes one zero of two.
+            // Adding 0 turns −0 into 0.
             let candidates = by_position.entry(position.map(|v| (v + 0.0).to_bits())).or_default();
             let same = |i: &usize| {
                 let (mut theirs, mut own) = (&attributes[i * width..], own.as_slice());

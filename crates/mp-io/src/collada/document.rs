@@ -19,13 +19,13 @@ pub(super) struct Document<'a> {
     ids: HashMap<&'a str, Node<'a, 'a>>,
 }
 
-/// Rows of numbers: what a `<source>` with its accessor gives.
+/// Rows of numbers: a `<source>` seen through its accessor.
 #[derive(Debug)]
 pub(super) struct Source {
     values: Vec<f64>,
     offset: usize,
     stride: usize,
-    /// Where in a row x, y and z are.
+    /// The columns of x, y and z.
     xyz: [usize; 3],
     pub(super) count: usize,
 }
@@ -98,7 +98,7 @@ impl<'a> Document<'a> {
     /// The words of the text of `node`, with their places.
     pub(super) fn words(&self, node: Node<'a, 'a>) -> impl Iterator<Item = Token<'a>> + use<'a> {
         let whole = self.text.text;
-        // From the file itself, so that places are right whatever line ends the file has.
+        // From the text of the file, not from the XML tree, so that places are right with all line ends.
         node.children().filter(|c| c.is_text()).flat_map(move |c| {
             let range = c.range();
             Token { text: &whole[range.clone()], at: range.start }.words()
@@ -167,7 +167,7 @@ impl<'a> Document<'a> {
             if let (Some(x), Some(y), Some(z)) = (named("X"), named("Y"), named("Z")) {
                 xyz = [x, y, z];
             }
-            // The default of the format is 1; with several columns writers mean them all.
+            // The default of the format is 1; a file with several named columns means them all.
             stride = stride.or((!params.is_empty()).then_some(params.len()));
         }
         let stride = stride.unwrap_or(3);
@@ -207,11 +207,11 @@ pub(super) fn xml_error(file: &str, text: &str, error: &roxmltree::Error) -> Err
     if matches!(error, roxmltree::Error::DtdDetected) {
         return e.help("remove the <!DOCTYPE …>: document types and entities are not read");
     }
-    e.help("the file is cut short or no COLLADA: export it again")
+    e.help("the file is cut short or not COLLADA: export it again")
 }
 
-/// Refuses what would take the XML reader time or memory out of proportion: thousands of attributes in one
-/// element, and name spaces declared over and over.
+/// Refuses files on which the XML reader would spend time or memory out of proportion: thousands of attributes in one
+/// element, or many declarations of name spaces.
 pub(super) fn refuse_floods(file: &str, text: &str) -> Result<(), Error> {
     let mut rest = text;
     let mut namespaces = 0;

@@ -1,4 +1,4 @@
-//! `<visual_scene>`: the tree of nodes and where it puts geometries.
+//! `<visual_scene>`: the tree of nodes, which gives geometries their places.
 
 use super::document::{Document, child};
 use super::geometry::Geometry;
@@ -10,7 +10,7 @@ use roxmltree::{Node, NodeId};
 use std::collections::HashMap;
 use std::rc::Rc;
 
-/// How deep nodes may be nested, instances included; deeper ones refer to themselves.
+/// The deepest nesting of nodes, instances included; deeper nodes are taken to contain themselves.
 const MAX_DEPTH: usize = 128;
 /// The most nodes and instances of a scene.
 const MAX_VISITED: usize = 1_000_000;
@@ -38,7 +38,7 @@ fn visual_scene<'a>(document: &Document<'a>) -> Result<Node<'a, 'a>, Error> {
     }
 }
 
-/// Unit and up axis: from the file's frame to metres with Y up.
+/// The transform from the file's unit and up axis to metres with Y up.
 fn asset(document: &Document<'_>) -> Result<Matrix4<f64>, Error> {
     let Some(asset) = child(document.root, "asset") else { return Ok(Matrix4::identity()) };
     let mut scale = 1.0;

@@ -1,9 +1,9 @@
 //! GEMPA environment files: the robot, its initial and goal configuration, and the obstacles.
 
 use crate::error::Error;
+use crate::files::{MAX_TEXT_BYTES, read_file, write_atomic};
 use crate::number::Row;
 use crate::problem::SpaceKind;
-use crate::source::{MAX_TEXT_BYTES, read_file, write_atomic};
 use crate::text::{Text, Token, clipped};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -13,17 +13,17 @@ use std::path::Path;
 pub struct Obstacle {
     /// Its number, as in `Obstacle #1`.
     pub number: u64,
-    /// Its mesh file, as written; relative to the folder of the environment.
+    /// Its mesh file as the environment names it, relative to the folder of the environment.
     pub mesh: String,
-    /// Where it stands: x, y, z in metres, α, β, γ in radians.
+    /// Its pose: x, y, z in metres, α, β, γ in radians.
     pub pose: [f64; 6],
 }
 
-/// What a GEMPA environment file says. Six-tuples are x, y, z (metres), α yaw about Z, β pitch about Y and
+/// The content of a GEMPA environment file. Six-tuples are x, y, z (metres), α yaw about Z, β pitch about Y and
 /// γ roll about X (radians).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
-    /// The mesh file of the robot, as written; relative to the folder of the environment.
+    /// The mesh file of the robot as the environment names it, relative to the folder of the environment.
     pub robot: String,
     /// The initial configuration.
     pub start: [f64; 6],
@@ -224,7 +224,7 @@ fn obstacle_number(line: &str) -> Option<u64> {
     digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse().ok())?
 }
 
-/// A mesh name that is a keyword or numbers is a line left out.
+/// Refuses a mesh name that is a keyword or numbers: the line of the name was left out.
 fn mesh_name(text: &Text<'_>, line: Token<'_>) -> Result<(), Error> {
     let keyword = line.text.eq_ignore_ascii_case("End")
         || line.text.eq_ignore_ascii_case("Robot")

@@ -1,12 +1,12 @@
 //! GEMPA `.txt` meshes: a triangle soup in text.
 //!
-//! The papers name the format and print none of it; `docs/formats/gempa-mesh.md` defines it here: the
+//! The papers name the format but do not show it; `docs/formats/gempa-mesh.md` defines it here: the
 //! number of triangles, then nine numbers for each, the corners x y z one after the other.
 
 use crate::error::Error;
+use crate::files::write_atomic;
 use crate::mesh::mesh_error;
 use crate::number::Row;
-use crate::source::write_atomic;
 use crate::text::{Lexer, Text, clipped};
 use mp_geom::TriMesh;
 use nalgebra::Point3;

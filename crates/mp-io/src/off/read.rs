@@ -2,13 +2,14 @@
 
 use super::{OffColor, OffDocument, OffFace};
 use crate::error::{Error, ErrorKind};
+use crate::files::{MAX_MESH_BYTES, read_file};
 use crate::mesh;
-use crate::source::{MAX_MESH_BYTES, read_file};
 use crate::text::{Lexer, Text, Token, clipped};
 use mp_geom::TriMesh;
 use nalgebra::{Point3, Vector3};
 use std::path::Path;
 
+/// What vertices have besides positions, by the keyword of the file.
 #[derive(Clone, Copy, Debug, Default)]
 struct Header {
     texture: bool,
@@ -36,7 +37,7 @@ impl OffDocument {
         Reader { text, lexer: Lexer::new(&text) }.document()
     }
 
-    /// The triangle mesh: faces cut into triangles, points and segments left out.
+    /// The triangle mesh: faces are cut into triangles, points and segments are left out.
     ///
     /// # Errors
     /// [`Error`] naming `file` when no face is left, or one cannot be cut into triangles.
@@ -86,8 +87,8 @@ impl<'a> Reader<'a> {
 
     fn header(&mut self) -> Result<Header, Error> {
         let what = "the keyword OFF, COFF, NOFF or STOFF";
-        let mut ahead = self.lexer.clone();
-        let Some(word) = ahead.next() else {
+        let mut lookahead = self.lexer.clone();
+        let Some(word) = lookahead.next() else {
             return Err(self.text.error_at_end(what));
         };
         let Some(prefix) = word.text.strip_suffix("OFF") else {
@@ -107,7 +108,7 @@ impl<'a> Reader<'a> {
         };
         let header = Header { texture: take("ST"), colors: take("C"), normals: take("N") };
         if rest.is_empty() {
-            self.lexer = ahead;
+            self.lexer = lookahead;
             return Ok(header);
         }
         let dimensions = matches!(rest, "4" | "n" | "4n");
@@ -119,32 +120,32 @@ impl<'a> Reader<'a> {
         Err(e.with_kind(if dimensions { ErrorKind::Unsupported } else { ErrorKind::Format }))
     }
 
-    /// The number of edges may be missing. It is there if it is on the line of the counts, or alone on the
+    /// The number of edges, which may be missing. It is there if it is on the line of the counts, or alone on the
     /// next one.
     fn edges(&mut self, what: &str) -> Result<Option<u64>, Error> {
-        let mut ahead = self.lexer.clone();
-        let token = match ahead.next_on_line() {
+        let mut lookahead = self.lexer.clone();
+        let token = match lookahead.next_on_line() {
             Some(t) => t,
-            None => match ahead.next() {
-                Some(t) if ahead.left_on_line() == 0 && t.text.parse::<u64>().is_ok() => t,
+            None => match lookahead.next() {
+                Some(t) if lookahead.left_on_line() == 0 && t.text.parse::<u64>().is_ok() => t,
                 _ => return Ok(None),
             },
         };
-        self.lexer = ahead;
+        self.lexer = lookahead;
         self.text.count(token, what).map(|n| Some(n as u64))
     }
 
-    /// Columns that the keyword does not announce would be read as coordinates of the next vertex: said
-    /// here, where it can be said clearly.
+    /// Refuses columns that the keyword does not announce: they would be read as coordinates of the next
+    /// vertex, and the error would be hard to understand.
     fn check_columns(&self, nv: usize, nf: usize, header: Header) -> Result<(), Error> {
-        let mut ahead = self.lexer.clone();
-        let Some(first) = ahead.next() else { return Ok(()) };
-        let columns = 1 + ahead.left_on_line();
+        let mut lookahead = self.lexer.clone();
+        let Some(first) = lookahead.next() else { return Ok(()) };
+        let columns = 1 + lookahead.left_on_line();
         if header.colors || header.normals || header.texture || nv < 2 || !matches!(columns, 6 | 7 | 9 | 10) {
             return Ok(());
         }
-        // Several vertices on a line are allowed: breaks mean nothing. But not so if all lines have the same
-        // number of words and there is one for each vertex and face.
+        // Several vertices on a line are allowed: line breaks mean nothing. But there is a fault if all lines have the same
+        // number of words and there is one line for each vertex and face.
         let mut count = self.lexer.clone();
         for line in 0..nv.saturating_add(nf) {
             if count.next().is_none() || (line < nv && count.left_on_line() + 1 != columns) {
@@ -152,7 +153,7 @@ impl<'a> Reader<'a> {
             }
             while count.next_on_line().is_some() {}
         }
-        let line = Token { text: &self.text.text[first.at..ahead.position()], at: first.at };
+        let line = Token { text: &self.text.text[first.at..lookahead.position()], at: first.at };
         let message = format!("the vertices have {columns} numbers each");
         Err(self
             .text
@@ -181,7 +182,7 @@ impl<'a> Reader<'a> {
         Ok(())
     }
 
-    /// Three numbers or four; which is told by the line when it holds one vertex, and is four otherwise.
+    /// The colour of a vertex: three numbers when the rest of the line has just as many as that needs, else four.
     fn vertex_color(&mut self, vertex: usize, texture: bool) -> Result<OffColor, Error> {
         let what = || format!("the colour of vertex {vertex}, three or four numbers");
         let left = self.lexer.left_on_line();

@@ -2,8 +2,8 @@
 
 use super::{OffColor, OffDocument};
 use crate::error::Error;
+use crate::files::write_atomic;
 use crate::number::Row;
-use crate::source::write_atomic;
 use mp_geom::TriMesh;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -52,7 +52,7 @@ impl OffDocument {
 }
 
 fn write_color(out: &mut String, color: OffColor) {
-    // `{:?}` keeps the point in 1.0, which tells a number between 0 and 1 from one up to 255.
+    // `{:?}` keeps the point in 1.0, which distinguishes numbers from 0 to 1 from those up to 255.
     let _ = match color {
         OffColor::Map(i) => write!(out, " {i}"),
         OffColor::Rgb([r, g, b]) => write!(out, " {r} {g} {b}"),

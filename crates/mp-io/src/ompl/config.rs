@@ -1,14 +1,14 @@
 //! OMPL.app problem files, `.cfg`: the section `[problem]`.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::{MAX_TEXT_BYTES, read_file};
 use crate::problem::SpaceKind;
-use crate::source::{MAX_TEXT_BYTES, read_file};
 use crate::text::{Text, Token, clipped};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// A start or a goal, as an OMPL.app problem writes it.
+/// A start or a goal, as an OMPL.app problem gives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmplState {
     /// x, y, z, metres; z is 0 in the plane.
@@ -31,7 +31,7 @@ impl OmplState {
     }
 }
 
-/// What the section `[problem]` of an OMPL.app problem says.
+/// The content of the section `[problem]` of an OMPL.app problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OmplProblem {
     /// `name`.
@@ -40,7 +40,7 @@ pub struct OmplProblem {
     pub robot: String,
     /// `world`: the mesh file of the obstacles.
     pub world: Option<String>,
-    /// In the plane when neither z nor an axis is given.
+    /// The plane when neither z nor an axis is given, else space.
     pub space: SpaceKind,
     /// `start.*`.
     pub start: OmplState,
@@ -49,7 +49,7 @@ pub struct OmplProblem {
     /// `volume.min.*` and `volume.max.*`, when all of them are given: lowest x, y, z, highest x, y, z of the
     /// position; z is 0 in the plane.
     pub volume: Option<[f64; 6]>,
-    /// `threshold`: how near the goal is near enough.
+    /// `threshold`: a state within this distance of the goal counts as the goal.
     pub threshold: Option<f64>,
     /// `control`: the kind of a kinodynamic problem.
     pub control: Option<String>,
@@ -181,7 +181,9 @@ impl<'t, 'a> Section<'t, 'a> {
     }
 
     fn state(&self, which: &str, space: SpaceKind) -> Result<OmplState, Error> {
-        let number = |key: &str| self.number(&format!("{which}.{key}")).map_err(|e| self.both(e, space));
+        let number = |key: &str| {
+            self.number(&format!("{which}.{key}")).map_err(|e| self.explain_missing_key(e, space))
+        };
         let (x, y, theta) = (number("x")?, number("y")?, number("theta")?);
         Ok(match space {
             SpaceKind::Se2 => OmplState { position: Point3::new(x, y, 0.0), theta, axis: Vector3::z() },
@@ -193,8 +195,8 @@ impl<'t, 'a> Section<'t, 'a> {
         })
     }
 
-    /// A missing key may be due to a mixture of the two kinds of problems.
-    fn both(&self, e: Error, space: SpaceKind) -> Error {
+    /// Adds which keys belong together: a missing key may be due to a mixture of the two kinds of problems.
+    fn explain_missing_key(&self, e: Error, space: SpaceKind) -> Error {
         match space {
             SpaceKind::Se2 => e,
             SpaceKind::Se3 => e.help(
@@ -203,7 +205,7 @@ impl<'t, 'a> Section<'t, 'a> {
         }
     }
 
-    /// The volume counts only when it is complete.
+    /// The volume; `None` when it is not complete.
     fn volume(&self, space: SpaceKind) -> Result<Option<[f64; 6]>, Error> {
         let axes: &[&str] = if space == SpaceKind::Se2 { &["x", "y"] } else { &["x", "y", "z"] };
         let complete = axes

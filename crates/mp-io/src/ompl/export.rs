@@ -1,54 +1,54 @@
 //! A problem as one JSON and two OFF files, for running other planners on the same problem.
 
 use crate::error::{Error, ErrorKind};
+use crate::files::write_atomic;
 use crate::off::off_text;
 use crate::problem::{RigidProblem, SpaceKind};
-use crate::source::write_atomic;
 use mp_geom::TriMesh;
 use nalgebra::Isometry3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What an export needs beside the problem.
+/// The settings of an export.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OmplExport {
-    /// How near the goal is near enough, in the distance of the space.
+    /// A state within this distance of the goal counts as the goal, in the metric of the space.
     pub goal_threshold: f64,
     /// The resolution of motion checks, as a fraction of the extent of the space.
     pub resolution_fraction: f64,
 }
 
 impl Default for OmplExport {
-    /// What OMPL.app does when nothing is said: 1e-6, and 1% of the extent.
+    /// The defaults of OMPL.app: 1e-6, and 1% of the extent.
     fn default() -> Self {
         Self { goal_threshold: 1e-6, resolution_fraction: 0.01 }
     }
 }
 
 #[derive(Serialize)]
-struct Exported<'a> {
+struct JsonProblem<'a> {
     name: &'a str,
     space: String,
-    start: State,
-    goal: State,
-    bounds: Bounds,
+    start: JsonState,
+    goal: JsonState,
+    bounds: JsonBounds,
     goal_threshold: f64,
     resolution_fraction: f64,
-    robot: Mesh,
-    env: Mesh,
+    robot: JsonMesh,
+    env: JsonMesh,
 }
 
 #[derive(Serialize)]
-struct State {
+struct JsonState {
     position: Vec<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    quaternion: Option<Quaternion>,
+    quaternion: Option<JsonQuaternion>,
     #[serde(skip_serializing_if = "Option::is_none")]
     yaw: Option<f64>,
 }
 
 #[derive(Serialize)]
-struct Quaternion {
+struct JsonQuaternion {
     x: f64,
     y: f64,
     z: f64,
@@ -56,18 +56,18 @@ struct Quaternion {
 }
 
 #[derive(Serialize)]
-struct Bounds {
+struct JsonBounds {
     low: Vec<f64>,
     high: Vec<f64>,
 }
 
 #[derive(Serialize)]
-struct Mesh {
+struct JsonMesh {
     mesh: String,
 }
 
 /// Writes `problem` into `folder`: `NAME.json`, `NAME_robot.off` and `NAME_env.off` (all obstacles, placed in
-/// the world), NAME being `name`. Gives the path of the JSON file.
+/// the world), where NAME is `name`. Returns the path of the JSON file.
 ///
 /// # Errors
 /// [`Error`] when a file cannot be written, or there is no obstacle.
@@ -89,7 +89,7 @@ pub fn export_ompl(
     let placed: Vec<_> = problem.obstacles.iter().map(|o| o.mesh.transformed(&o.pose)).collect();
     let env = TriMesh::merged(&placed).ok_or_else(|| {
         Error::new(ErrorKind::Content, json.display(), "a problem without obstacles cannot be exported")
-            .help("add an obstacle out of the way")
+            .help("add an obstacle far from the path")
     })?;
     let dimensions = if problem.space == SpaceKind::Se2 { 2 } else { 3 };
     let state = |pose: &Isometry3<f64>| {
@@ -97,30 +97,30 @@ pub fn export_ompl(
         match problem.space {
             SpaceKind::Se3 => {
                 let q = pose.rotation;
-                let quaternion = Quaternion { x: q.i, y: q.j, z: q.k, w: q.w };
-                State { position, quaternion: Some(quaternion), yaw: None }
+                let quaternion = JsonQuaternion { x: q.i, y: q.j, z: q.k, w: q.w };
+                JsonState { position, quaternion: Some(quaternion), yaw: None }
             }
             SpaceKind::Se2 => {
                 let yaw = mp_geom::six_from_pose(pose)[3];
-                State { position, quaternion: None, yaw: Some(yaw) }
+                JsonState { position, quaternion: None, yaw: Some(yaw) }
             }
         }
     };
     let bounds = problem.position_bounds();
     let meshes = ["robot", "env"].map(|part| format!("{name}_{part}.off"));
-    let exported = Exported {
+    let exported = JsonProblem {
         name: &problem.name,
         space: problem.space.to_string(),
         start: state(&problem.start),
         goal: state(&problem.goal),
-        bounds: Bounds {
+        bounds: JsonBounds {
             low: bounds.min.coords.as_slice()[..dimensions].to_vec(),
             high: bounds.max.coords.as_slice()[..dimensions].to_vec(),
         },
         goal_threshold: options.goal_threshold,
         resolution_fraction: options.resolution_fraction,
-        robot: Mesh { mesh: meshes[0].clone() },
-        env: Mesh { mesh: meshes[1].clone() },
+        robot: JsonMesh { mesh: meshes[0].clone() },
+        env: JsonMesh { mesh: meshes[1].clone() },
     };
     let text = serde_json::to_string_pretty(&exported).map_err(|e| {
         Error::new(ErrorKind::Content, json.display(), format!("cannot write the problem: {e}"))

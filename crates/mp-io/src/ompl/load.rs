@@ -1,11 +1,11 @@
-//! Problems of OMPL.app with their meshes.
+//! OMPL.app problems and the meshes they name.
 
 use super::config;
 use crate::collada::{Scene, center::center_of_mesh};
 use crate::error::{Error, ErrorKind};
+use crate::files::{Files, MAX_MESH_BYTES, stem};
 use crate::mesh::{MeshFormat, read_mesh_of};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind, check_mesh, check_size, cited};
-use crate::source::{Files, MAX_MESH_BYTES};
 use crate::text::Text;
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
@@ -13,13 +13,13 @@ use std::path::Path;
 
 /// The problem in `text`, the content of the file `path`.
 ///
-/// As OMPL.app does: the origin of the robot is the mean of its vertices (in the plane, z stays); the bounds
-/// are the volume, or the box around the world without one, enlarged to contain start and goal.
+/// As in OMPL.app, the origin of the robot is the mean of its vertices (in the plane, z stays), and the bounds
+/// are the volume, or without one the box around the world, enlarged to contain start and goal.
 pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<RigidProblem, Error> {
     let (read, places) = config::parse(text)?;
     if let (Some(kind), Some(place)) = (&read.control, places.control) {
         return Err(text
-            .error(place, format!("a problem of control, `{kind}`"))
+            .error(place, format!("this is a problem with dynamics, `{kind}`"))
             .expected("a problem without `control`")
             .help(
                 "only rigid bodies that move freely are planned for; remove the line to ignore the dynamics",
@@ -48,7 +48,7 @@ pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Ri
         obstacles.push(PlacedBody { name: "world".to_owned(), file, mesh, pose: Isometry3::identity() });
     }
 
-    // A volume without extent counts as none, as it does in OMPL.app.
+    // As in OMPL.app, a volume without extent is ignored.
     let sides = if read.space == SpaceKind::Se2 { 2 } else { 3 };
     let volume = read.volume.filter(|v| (0..sides).map(|i| v[i + 3] - v[i]).product::<f64>() >= f64::EPSILON);
     let mut bounds = match volume {
@@ -62,9 +62,8 @@ pub(crate) fn load(files: &dyn Files, path: &Path, text: &Text<'_>) -> Result<Ri
     check_size(text, places.robot, "the volume", bounds.min.coords.as_slice())?;
     check_size(text, places.robot, "the volume", bounds.max.coords.as_slice())?;
 
-    let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     Ok(RigidProblem {
-        name: read.name.unwrap_or(stem),
+        name: read.name.unwrap_or_else(|| stem(path)),
         space: read.space,
         robot,
         obstacles,

@@ -1,4 +1,4 @@
-//! Images as worlds.
+//! Images, whose dark pixels are obstacles.
 
 use super::pnm;
 use crate::error::{Error, ErrorKind};
@@ -23,7 +23,7 @@ impl GridMap {
     /// Colours of 16 bits are rounded to 8. Transparency does not count.
     ///
     /// # Errors
-    /// [`Error`] when it is none, or larger than 8192 × 8192 pixels.
+    /// [`Error`] when it is not such an image, or larger than 8192 × 8192 pixels.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         match bytes {
             [0x89, b'P', b'N', b'G', ..] => read_png(file, bytes),
@@ -68,7 +68,7 @@ pub(super) fn check_size(file: &str, [width, height]: [usize; 2]) -> Result<(), 
         .help("scale the image"))
 }
 
-/// The brightness of a pixel: the mean of its grey, or its red, green and blue.
+/// The brightness of a pixel: its grey, or the mean of its red, green and blue.
 pub(super) fn mean(channels: &[u8]) -> f32 {
     channels.iter().map(|v| f32::from(*v)).sum::<f32>() / channels.len() as f32
 }
@@ -89,7 +89,7 @@ fn read_png(file: &str, bytes: &[u8]) -> Result<GridMap, Error> {
         fault(file, format!("the image cannot be read: {why}"))
     };
     let mut options = png::DecodeOptions::default();
-    // Nobody asks for these.
+    // Not needed here.
     options.set_ignore_text_chunk(true);
     options.set_ignore_iccp_chunk(true);
     let mut decoder = png::Decoder::new_with_options(Cursor::new(bytes), options);

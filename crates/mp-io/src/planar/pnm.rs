@@ -19,14 +19,14 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<GridMap, Error> {
     };
     let size = [reader.number("the width")? as usize, reader.number("the height")? as usize];
     check_size(file, size)?;
-    // Of bits 1 is black.
+    // In an image of bits, 1 is black.
     let levels = if bits { vec![255, 0] } else { levels(reader.largest()?) };
     let pixels = size[0] * size[1];
     if !text {
         reader.space()?;
         return Ok(GridMap { size, brightness: reader.bytes(size, channels, bits, &levels)? });
     }
-    // A digit for each sample; where they are numbers, something between them.
+    // One digit at least for each sample, and between two numbers one separator.
     reader.enough(if bits { pixels } else { 2 * channels * pixels - 1 })?;
     let mut brightness = Vec::with_capacity(pixels);
     for _ in 0..pixels {
@@ -39,15 +39,15 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<GridMap, Error> {
     Ok(GridMap { size, brightness })
 }
 
-/// What 8 bits the samples become, of which `most` is white.
-fn levels(most: u32) -> Vec<u8> {
-    let white: u16 = if most < 256 { 255 } else { u16::MAX };
-    let factor = f32::from(white) / most as f32;
+/// For each value of a sample from 0 to `white_value`, the 8 bits it becomes.
+fn levels(white_value: u32) -> Vec<u8> {
+    let white: u16 = if white_value < 256 { 255 } else { u16::MAX };
+    let factor = f32::from(white) / white_value as f32;
     let level = |v: u32| match (v as f32 * factor).round() {
         v if white == 255 => v as u8,
         v => rounded(v as u16),
     };
-    (0..=most).map(level).collect()
+    (0..=white_value).map(level).collect()
 }
 
 /// The bytes of an image, and how far they have been read.
@@ -76,7 +76,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The next whole number; those too large are [`u32::MAX`].
+    /// The next whole number; one that is too large becomes [`u32::MAX`].
     fn number(&mut self, what: &str) -> Result<u32, Error> {
         self.skip();
         let start = self.at;
@@ -99,15 +99,15 @@ impl Reader<'_> {
     fn largest(&mut self) -> Result<u32, Error> {
         self.skip();
         let start = self.at;
-        let most = self.number("the largest value of a pixel")?;
-        if (1..=MAX_VALUE).contains(&most) {
-            return Ok(most);
+        let largest = self.number("the largest value of a pixel")?;
+        if (1..=MAX_VALUE).contains(&largest) {
+            return Ok(largest);
         }
-        let message = format!("the largest value of a pixel is {most}");
+        let message = format!("the largest value of a pixel is {largest}");
         Err(self.fault(start, message).expected(format!("1 to {MAX_VALUE}")))
     }
 
-    /// A number of the pixels, 8 bits.
+    /// The next sample that is a number, as 8 bits.
     fn sample(&mut self, levels: &[u8]) -> Result<u8, Error> {
         self.skip();
         let start = self.at;
@@ -118,7 +118,7 @@ impl Reader<'_> {
         })
     }
 
-    /// A digit of the pixels, 8 bits. They may touch.
+    /// The next sample that is a single digit, as 8 bits. Digits may follow each other without a separator.
     fn bit(&mut self) -> Result<u8, Error> {
         self.skip();
         self.at += 1;
@@ -133,7 +133,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The single white space before pixels that are bytes; a comment with the end of its line counts as one.
+    /// Skips the single white space before binary pixels; a comment with the end of its line counts as one.
     fn space(&mut self) -> Result<(), Error> {
         match self.bytes.get(self.at) {
             Some(b'#') => {
@@ -149,7 +149,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Refuses what has fewer than `count` bytes left.
+    /// Refuses an image with fewer than `count` bytes left.
     fn enough(&self, count: usize) -> Result<(), Error> {
         let left = self.bytes.len() - self.at;
         if left >= count {
@@ -159,7 +159,7 @@ impl Reader<'_> {
         Err(fault(self.file, message).expected(format!("at least {count}")))
     }
 
-    /// The brightness of pixels that are bytes, or bits in rows of whole bytes.
+    /// The brightness of binary pixels: bytes, or bits in rows of whole bytes.
     fn bytes(
         &self,
         [width, height]: [usize; 2],

@@ -10,14 +10,14 @@ fn collada() {
             "m.dae",
             "",
             "m.dae:1:1: the document does not have a root node; expected COLLADA, an XML file",
-            "the file is cut short or no COLLADA: export it again",
+            "the file is cut short or not COLLADA: export it again",
         ),
         case(
             Mesh,
             "m.dae",
             "<COLLADA>\n<node",
             "m.dae:1:1: the root node was opened but never closed; expected COLLADA, an XML file",
-            "the file is cut short or no COLLADA: export it again",
+            "the file is cut short or not COLLADA: export it again",
         ),
         case(
             Mesh,
@@ -44,7 +44,7 @@ fn collada() {
             "</mesh>",
             "</mash>",
             "m.dae:7:1: expected 'mesh' tag, not 'mash'; expected COLLADA, an XML file",
-            "the file is cut short or no COLLADA: export it again",
+            "the file is cut short or not COLLADA: export it again",
         ),
         dae(
             "0 1 0</float",
@@ -122,7 +122,7 @@ fn collada() {
             "<node><instance",
             "<node><scale>1 1 inf</scale><instance",
             "m.dae:9:18: `inf` is not a finite number; expected 3 numbers in <scale>",
-            "coordinates must be finite: mend the program that wrote the file",
+            "coordinates must be finite: correct the program that wrote the file",
         ),
         dae(
             "<node><instance",

@@ -68,7 +68,7 @@ fn off_files() {
         off(
             "OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n",
             "m.off:4:5: `inf` is not a finite number; expected x y z of vertex 1 of 3",
-            "coordinates must be finite: mend the program that wrote the file",
+            "coordinates must be finite: correct the program that wrote the file",
         ),
         off(
             "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
@@ -236,7 +236,7 @@ fn other_meshes() {
             "m.stl",
             infinite,
             "m.stl: corner 0 of triangle 0 is not finite: inf; expected finite coordinates",
-            "mend the program that wrote the file",
+            "correct the program that wrote the file",
         ),
         case(Mesh, "m.obj", "", "m.obj: the mesh has no triangles", "a body needs at least one triangle"),
         case(

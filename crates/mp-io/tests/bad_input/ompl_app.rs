@@ -76,7 +76,7 @@ fn ompl_app_problems() {
         cfg(
             "robot=",
             "control=blimp\nrobot=",
-            "s.cfg:2:9: a problem of control, `blimp`; expected a problem without `control`",
+            "s.cfg:2:9: this is a problem with dynamics, `blimp`; expected a problem without `control`",
             "only rigid bodies that move freely are planned for; remove the line to ignore the dynamics",
         ),
         cfg(

@@ -13,8 +13,8 @@ fn environments() {
         env("0 0 0 0 0 0", "0 0 0 0 0 0 0", "s.env:3:1: the initial configuration has 7 numbers; expected six numbers: x y z α β γ", "the format is described in docs/formats/gempa-environment.md"),
         env("0 0 0 0 0 0", "0 0 zero 0 0 0", "s.env:3:5: `zero` is not a number; expected six numbers: x y z α β γ", "the format is described in docs/formats/gempa-environment.md"),
         env("0 0 0 0 0 0", "0,0 0 0 0 0 0", "s.env:3:1: `0,0` is not a number; expected six numbers: x y z α β γ", "write numbers with a decimal point, separated by blanks, without commas"),
-        env("0 0 0 0 0 0", "0 nan 0 0 0 0", "s.env:3:3: `nan` is not a finite number; expected six numbers: x y z α β γ", "coordinates must be finite: mend the program that wrote the file"),
-        env("5 0 0 0 0 0", "5 0 0 0 0 1e999", "s.env:4:11: `1e999` is not a finite number; expected six numbers: x y z α β γ", "coordinates must be finite: mend the program that wrote the file"),
+        env("0 0 0 0 0 0", "0 nan 0 0 0 0", "s.env:3:3: `nan` is not a finite number; expected six numbers: x y z α β γ", "coordinates must be finite: correct the program that wrote the file"),
+        env("5 0 0 0 0 0", "5 0 0 0 0 1e999", "s.env:4:11: `1e999` is not a finite number; expected six numbers: x y z α β γ", "coordinates must be finite: correct the program that wrote the file"),
         env("5 0 0 0 0 0", "5e9 0 0 0 0 0", "s.env:4:1: the goal configuration has 5e9, more than 1e9 m", "coordinates are metres"),
         env("Obstacle #1", "Obstacle 1", "s.env:6:1: `Obstacle 1` is out of place; expected `Obstacle #k` or `End`", "the format is described in docs/formats/gempa-environment.md"),
         env("Obstacle #1", "Obstacle #one", "s.env:6:1: `Obstacle #one` is out of place; expected `Obstacle #k` or `End`", "the format is described in docs/formats/gempa-environment.md"),
@@ -45,7 +45,7 @@ fn environments() {
             .with("w.off", TRIANGLE),
         case(Scene, "s.env", b"Robot\nr\xf6bot.off\n", "s.env:2:2: byte 0xf6 is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
         case(Scene, "s.env", b"R\0o\0b\0o\0t\0", "s.env:1:2: a zero byte: this is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
-        case(Scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)", "a mesh or a path is no problem: name the file that names the robot and the obstacles"),
-        case(Scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)", "a mesh or a path is no problem: name the file that names the robot and the obstacles"),
+        case(Scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
+        case(Scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
     ]);
 }

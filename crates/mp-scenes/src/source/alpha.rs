@@ -1,6 +1,6 @@
-//! `alpha-1.0` … `alpha-1.5`: two tubes bent like the letter α, hooked into each other.
+//! `alpha-1.0` … `alpha-1.5`: two tubes bent like the letter α, interlocked.
 //!
-//! The arms of an α cross at a distance from each other; the tubes come apart when one slips through the
+//! The two arms of an α pass each other at a distance; the tubes come apart when one slips through the
 //! crossing of the other. At scale s the crossing of the obstacle is 1.05 s times as wide as a tube is thick;
 //! that of the robot is always as narrow as at scale 1.
 
@@ -16,7 +16,7 @@ const THICK: f64 = 0.5;
 const LOOP: f64 = 1.8;
 /// Length of an arm from the crossing to its end.
 const ARM: f64 = 5.0;
-/// From the crossing to the middle of the length of an α, along x: where the robot has its origin.
+/// The x of the middle of an α, seen from the crossing: the origin of the robot.
 const MIDDLE: f64 = -0.4;
 /// Segments of the loop, and corners of the tube.
 const STEPS: u32 = 36;
@@ -48,8 +48,8 @@ fn level(scale: f64) -> f64 {
     THICK * (2.05 + 0.7 * (scale - 1.0))
 }
 
-/// An α along the plane z = 0 with its crossing about the origin and its loop towards -x: along the lower
-/// arm, about the loop, along the upper arm.
+/// An α along the plane z = 0 with its crossing at the origin and its loop towards -x: along the lower
+/// arm, around the loop, along the upper arm.
 fn alpha(scale: f64) -> TriMesh {
     let (end, z) = (ARM * FRAC_1_SQRT_2, level(scale));
     let mut line = vec![Point3::new(end, -end, -z)];
@@ -66,7 +66,7 @@ fn on_loop(angle: f64, scale: f64) -> Point3<f64> {
     Point3::new(LOOP * (c - SQRT_2), LOOP * s, 0.5 * level(scale) * t * (3.0 - t * t))
 }
 
-/// A path that takes the two apart, the same at every scale: like a ring along a wire, the loop of the
+/// A path that separates the two, the same at every scale: like a ring along a wire, the loop of the
 /// robot follows the loop of the obstacle, then the upper arm to its end and beyond.
 fn separation() -> Vec<Six> {
     let mut path = Vec::new();
@@ -90,8 +90,8 @@ fn separation() -> Vec<Six> {
 /// `angle` + π/2. The far end of the robot's loop is at `distance` from there, on the side of the loop's
 /// centre for `tilt` 0 and below for π/2; the robot's crossing is on the other side.
 fn ring(wire: Point3<f64>, distance: f64, angle: f64, tilt: f64) -> Six {
-    let ((s, c), (up, flat)) = (angle.sin_cos(), tilt.sin_cos());
-    let out = Vector3::new(c * flat, s * flat, up);
+    let ((s, c), (up, horizontal)) = (angle.sin_cos(), tilt.sin_cos());
+    let out = Vector3::new(c * horizontal, s * horizontal, up);
     let origin = wire + out * (LOOP * (SQRT_2 + 1.0) + MIDDLE - distance);
     [origin.x, origin.y, origin.z, angle - 2.0 * PI, -tilt, -0.5 * PI].map(on_grid)
 }

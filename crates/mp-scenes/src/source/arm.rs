@@ -4,22 +4,22 @@
 use super::scene::Files;
 use std::fmt::Write as _;
 
-/// A collision shape: its geometry as URDF has it, and its place in the frame of the link.
-type Shape = (&'static str, [f64; 3]);
+/// A collision shape: its geometry in URDF, and its position in the frame of the link.
+type CollisionShape = (&'static str, [f64; 3]);
 
-/// A link, the height of its joint above the one below, the axis, and the limits (none: turns without end).
-struct Segment {
+/// A link, the height of its joint above the previous one, the axis, and the limits (none for a continuous joint).
+struct LinkEntry {
     link: &'static str,
     height: f64,
     axis: &'static str,
     limits: Option<[f64; 2]>,
-    shapes: &'static [Shape],
+    shapes: &'static [CollisionShape],
 }
 
-const BASE: Shape = (r#"<cylinder radius="0.1" length="0.12"/>"#, [0.0, 0.0, 0.06]);
+const BASE: CollisionShape = (r#"<cylinder radius="0.1" length="0.12"/>"#, [0.0, 0.0, 0.06]);
 
-const SEGMENTS: [Segment; 6] = [
-    Segment {
+const LINKS: [LinkEntry; 6] = [
+    LinkEntry {
         link: "turret",
         height: 0.13,
         axis: "0 0 1",
@@ -29,35 +29,35 @@ const SEGMENTS: [Segment; 6] = [
             (r#"<box size="0.1 0.14 0.1"/>"#, [0.0, 0.0, 0.18]),
         ],
     },
-    Segment {
+    LinkEntry {
         link: "upper",
         height: 0.2,
         axis: "0 1 0",
         limits: Some([-1.9, 1.9]),
         shapes: &[(r#"<box size="0.08 0.08 0.42"/>"#, [0.0, 0.0, 0.2])],
     },
-    Segment {
+    LinkEntry {
         link: "elbow",
         height: 0.42,
         axis: "0 1 0",
         limits: Some([-2.5, 2.5]),
         shapes: &[(r#"<box size="0.08 0.1 0.12"/>"#, [0.0, 0.0, 0.04])],
     },
-    Segment {
+    LinkEntry {
         link: "fore",
         height: 0.12,
         axis: "0 0 1",
         limits: Some([-3.0, 3.0]),
         shapes: &[(r#"<cylinder radius="0.035" length="0.24"/>"#, [0.0, 0.0, 0.12])],
     },
-    Segment {
+    LinkEntry {
         link: "wrist",
         height: 0.28,
         axis: "0 1 0",
         limits: Some([-2.0, 2.0]),
         shapes: &[(r#"<box size="0.05 0.06 0.08"/>"#, [0.0, 0.0, 0.03])],
     },
-    Segment {
+    LinkEntry {
         link: "hand",
         height: 0.09,
         axis: "0 0 1",
@@ -80,7 +80,7 @@ fn urdf() -> String {
     let mut out = String::from(
         "<?xml version=\"1.0\"?>\n<!-- Six joints, boxes and cylinders. -->\n<robot name=\"six\">\n",
     );
-    let link = |out: &mut String, name: &str, shapes: &[Shape]| {
+    let link = |out: &mut String, name: &str, shapes: &[CollisionShape]| {
         let _ = writeln!(out, "  <link name=\"{name}\">");
         for (geometry, [x, y, z]) in shapes {
             let _ = writeln!(
@@ -92,8 +92,8 @@ fn urdf() -> String {
     };
     link(&mut out, "base", &[BASE]);
     let mut parent = "base";
-    for (i, segment) in SEGMENTS.iter().enumerate() {
-        let Segment { link: child, height, axis, limits, shapes } = segment;
+    for (i, entry) in LINKS.iter().enumerate() {
+        let LinkEntry { link: child, height, axis, limits, shapes } = entry;
         link(&mut out, child, shapes);
         let kind = if limits.is_some() { "revolute" } else { "continuous" };
         let _ = writeln!(out, "  <joint name=\"joint{}\" type=\"{kind}\">", i + 1);

@@ -1,4 +1,4 @@
-//! `bugtrap`: a rod inside a hollow whose only exit is a neck that reaches inwards.
+//! `bugtrap`: a rod in a hollow body; the only exit is a neck that points inwards.
 
 use super::scene::{Files, HOME, QUARTER, Scene};
 use super::shape::{cylinder, lathe, shifted};

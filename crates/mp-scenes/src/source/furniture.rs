@@ -1,4 +1,4 @@
-//! Furniture of the apartment. Each piece stands on z = 0 about the z axis and faces -y.
+//! Furniture of the apartment. Each piece stands on z = 0 at the z axis and faces -y.
 
 use super::shape::{block, cells, cushion, cylinder, lathe, mapped, shifted, tube, turned, union};
 use mp_geom::TriMesh;
@@ -95,7 +95,7 @@ pub(super) fn round_table() -> TriMesh {
     )
 }
 
-/// A standing lamp with a shade of thin wall.
+/// A standing lamp with a thin shade.
 pub(super) fn lamp() -> TriMesh {
     let stand = lathe(
         &[

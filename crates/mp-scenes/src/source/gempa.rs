@@ -59,7 +59,7 @@ fn tetrahedron(files: &mut Files) {
     .finish(files);
 }
 
-/// A cube finds the openings of three walls, each too small to be crossed askew.
+/// A cube passes the openings of three walls, each too small to pass when turned.
 fn cube(files: &mut Files) {
     let h = 0.5;
     let window = |y: f64, z: f64, w: f64| {

@@ -1,20 +1,20 @@
-//! A scene under construction, and the files it becomes.
+//! A builder of scenes, which turns them into files.
 
 use super::shape::{mapped, on_grid};
 use mp_geom::TriMesh;
 use mp_io::{Environment, Obstacle, PathFile, SpaceKind, gempa_mesh_text, off_text};
 use std::collections::BTreeMap;
 
-/// Files to be, by path relative to the assets folder.
+/// Files to write, by path relative to the assets folder.
 pub type Files = BTreeMap<String, Vec<u8>>;
 
-/// Position and angles as GEMPA files give them: x, y, z, then yaw α, pitch β, roll γ in radians.
+/// Position and angles as in GEMPA files: x, y, z, then yaw α, pitch β, roll γ in radians.
 pub(super) type Six = [f64; 6];
 
 /// A right angle.
 pub(super) const QUARTER: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Nowhere else but at the origin.
+/// The pose at the origin.
 pub(super) const HOME: Six = [0.0; 6];
 
 /// A pose in the plane.
@@ -35,7 +35,7 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    /// A scene in SE(3) for a robot whose mesh goes to `file`; `bounds` hold the origin of the robot.
+    /// A scene in SE(3) for a robot whose mesh is written to `file`; the origin of the robot stays in `bounds`.
     pub(super) fn new(name: &'static str, bounds: [[f64; 3]; 2], file: &str, robot: &TriMesh) -> Self {
         let mut scene = Self {
             name,
@@ -70,7 +70,7 @@ impl Scene {
         self
     }
 
-    /// Keeps a mesh as `meshes/FILE`; gives its path seen from a scene file. The ending of `file` chooses
+    /// Adds a mesh as `meshes/FILE`; returns its path relative to a scene file. The extension of `file` chooses
     /// the format.
     fn mesh(&mut self, file: &str, mesh: &TriMesh) -> String {
         let mesh = mapped(mesh, |p| [on_grid(p.x), on_grid(p.y), on_grid(p.z)]);
@@ -80,7 +80,7 @@ impl Scene {
         format!("../{path}")
     }
 
-    /// Writes the scene into `files`.
+    /// Adds the scene and its meshes to `files`.
     pub(super) fn finish(mut self, files: &mut Files) {
         let [low, high] = self.bounds;
         let obstacles = self.obstacles.into_iter().zip(1..);
@@ -101,7 +101,7 @@ impl Scene {
     }
 }
 
-/// A configuration file.
+/// The content of a configuration file.
 pub(super) fn configurations(path: &[Six]) -> Vec<u8> {
     PathFile { configurations: path.to_vec() }.to_text().into_bytes()
 }

@@ -1,4 +1,4 @@
-//! The solids the scenes are made of, beyond the primitives of `mp-geom`. All are closed, oriented
+//! The solids of which the scenes consist, beyond the primitives of `mp-geom`. All are closed, oriented
 //! manifolds with outward normals.
 
 use mp_geom::TriMesh;
@@ -10,13 +10,13 @@ const GRID: f64 = 1e4;
 
 /// `x` rounded to the grid on which assets are written.
 ///
-/// Sines differ in the last bits between machines. The offset moves the borders of rounding away from the
-/// round numbers on which design coordinates fall, so that files come out the same everywhere.
+/// Sines differ in the last bits between machines. The offset moves the rounding boundaries away from the
+/// round numbers that most coordinates are, so that the files are the same everywhere.
 pub(super) fn on_grid(x: f64) -> f64 {
     (x * GRID + 0.5 + 1e-3).floor() / GRID
 }
 
-/// A mesh whose parameters are constants of this module, hence always valid.
+/// A mesh made of constants, which are always valid.
 pub(super) fn mesh(vertices: Vec<Point3<f64>>, triangles: Vec<[u32; 3]>) -> TriMesh {
     TriMesh::new(vertices, triangles).expect("assets are built from valid constants")
 }
@@ -53,9 +53,9 @@ pub(super) fn block(low: [f64; 3], high: [f64; 3]) -> TriMesh {
     cells(&[low[0], high[0]], &[low[1], high[1]], &[low[2], high[2]], |_, _, _| true)
 }
 
-/// The union of those cells of a grid of planes for which `solid(i, j, k)` holds, as one conforming surface.
+/// The union of the cells of a grid of planes for which `solid(i, j, k)` is true, as one conforming surface.
 ///
-/// Solid cells should not touch along an edge or at a corner only: the surface is no manifold there.
+/// Solid cells should not touch only along an edge or at a corner: the surface is not a manifold there.
 pub(super) fn cells(
     xs: &[f64],
     ys: &[f64],
@@ -109,7 +109,7 @@ pub(super) fn cells(
     mesh(vertices, triangles)
 }
 
-/// The solid between `low` and `high` whose plan is drawn in rows of characters, first row at the largest y;
+/// The solid from z = `low` to `high` whose floor plan is drawn in rows of characters, first row at the largest y;
 /// `#` is solid. The widths of columns and the heights of rows (bottom row first) are given by grid lines.
 pub(super) fn plan(rows: &[&str], xs: &[f64], ys: &[f64], low: f64, high: f64) -> TriMesh {
     let n = rows.len();
@@ -171,7 +171,7 @@ pub(super) fn ball(radius: f64, sides: u32, rows: u32) -> TriMesh {
     lathe(&profile, sides)
 }
 
-/// A tube of the given radii along a polyline, with flat ends. Frames are carried along by the least
+/// A tube of the given radii along a polyline, with flat ends. Each cross section follows from the previous one by the least
 /// rotation; `up` is a hint for the first one.
 pub(super) fn tube(
     line: &[Point3<f64>],
@@ -215,7 +215,7 @@ pub(super) fn cushion(half: [f64; 3], radius: f64, m: u32) -> TriMesh {
     let ring = 4 * (m + 1);
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     let corner = |q: u32| [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]][q as usize];
-    // Latitudes from below the south rim to above the north rim, the poles left out.
+    // Latitudes from south to north, without the poles.
     let rows: Vec<(f64, f64)> = (1..=m)
         .map(|i| (FRAC_PI_2 * (f64::from(i) / f64::from(m) - 1.0), -1.0))
         .chain((0..m).map(|i| (FRAC_PI_2 * f64::from(i) / f64::from(m), 1.0)))

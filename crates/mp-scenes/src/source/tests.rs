@@ -1,4 +1,4 @@
-//! What is shipped is what is made here, and every scene is a sound problem.
+//! The shipped files are the generated ones, and every scene is a sound problem.
 
 use super::{files_rs, generate, stale};
 use mp_cspace::{Clearance, MotionValidity, Se2, Se2State, Se3, Space, Validity};

@@ -1,4 +1,4 @@
-//! `easy` and `twisty`: a robot of three arms along three axes threads a window in a wall; wide and narrow.
+//! `easy` and `twisty`: a robot with three arms along three axes passes a window in a wall, wide or narrow.
 
 use super::scene::{Files, HOME, Scene, Six};
 use super::shape::cells;

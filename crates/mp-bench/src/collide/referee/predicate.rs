@@ -1,4 +1,4 @@
-//! Whether two triangles meet: certified in `f64` where they clearly do or do not, else in integers of any size.
+//! Whether two triangles meet: certified in `f64` where possible, else with integers of any size.
 
 use mp_collide::reference::exact::triangles_meet;
 use nalgebra::{Point3, Vector3};
@@ -7,15 +7,15 @@ use std::cmp::Ordering;
 
 pub(crate) type Triangle = [Point3<f64>; 3];
 
-/// Some multiple of the rounding errors of a sum of three products, relative to the sum of their magnitudes.
+/// A bound of the rounding error of a sum of three products, relative to the sum of their magnitudes.
 const DOT: f64 = 1e-15;
-/// The same of a determinant of differences.
+/// A bound of the rounding error of a determinant of differences, relative to the sum of its magnitudes.
 const VOLUME: f64 = 1e-14;
-/// More than any error by underflow, for coordinates up to 1e9.
+/// A bound of errors by underflow, for coordinates up to 1e9.
 const UNDERFLOW: f64 = 1e-280;
 
-/// Whether some plane is certainly between them: the slabs of their corners along the normals of both, of their
-/// edges in their planes, and along the common normals of edges.
+/// Whether a separating axis is certain, among the normals of both triangles, the normals of their edges in
+/// their planes, and the cross products of edges.
 pub(crate) fn apart(a: &Triangle, b: &Triangle) -> bool {
     let edges = |t: &Triangle| [t[1] - t[0], t[2] - t[1], t[0] - t[2]];
     let (ea, eb) = (edges(a), edges(b));
@@ -26,7 +26,7 @@ pub(crate) fn apart(a: &Triangle, b: &Triangle) -> bool {
         || eb.iter().any(|v| separates(&nb.cross(v), a, b))
 }
 
-/// Whether `b` is certainly beyond `a` along `axis`, or before: that holds whatever the axis was meant to be.
+/// Whether the intervals of `a` and `b` along `axis` are certainly disjoint; this is valid for any axis, rounded or not.
 fn separates(axis: &Vector3<f64>, a: &Triangle, b: &Triangle) -> bool {
     let slab = |t: &Triangle| {
         t.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
@@ -39,7 +39,7 @@ fn separates(axis: &Vector3<f64>, a: &Triangle, b: &Triangle) -> bool {
     low_a > high_b || low_b > high_a
 }
 
-/// What is certain of the volumes of the differences of corners.
+/// The certain signs of the volumes of three differences of corners; `None` where `f64` is not certain.
 #[derive(Clone, Debug)]
 pub(crate) struct Sides([[[Option<Ordering>; 9]; 9]; 9]);
 
@@ -57,7 +57,7 @@ impl Sides {
         Self(sides)
     }
 
-    /// Whether the origin is certainly in a tetrahedron of the differences: the triangles meet.
+    /// Whether the origin is certainly in a tetrahedron of the differences, so that the triangles meet.
     pub(crate) fn meet(&self) -> bool {
         let s = &self.0;
         (0..9).any(|i| {
@@ -75,7 +75,7 @@ impl Sides {
     }
 }
 
-/// How the volume of three differences, each rounded, compares to zero; `None` when that is too close to call.
+/// The sign of the volume of three rounded differences; `None` when it is too close to zero.
 fn side(p: &Vector3<f64>, q: &Vector3<f64>, r: &Vector3<f64>) -> Option<Ordering> {
     let (x1, x2) = (q.y * r.z, q.z * r.y);
     let (y1, y2) = (q.z * r.x, q.x * r.z);
@@ -87,13 +87,13 @@ fn side(p: &Vector3<f64>, q: &Vector3<f64>, r: &Vector3<f64>) -> Option<Ordering
     (volume.abs() > VOLUME * size + UNDERFLOW).then(|| volume.total_cmp(&0.0))
 }
 
-/// Whether they meet, exactly.
+/// Whether the triangles meet, exactly.
 pub(crate) fn meet_exactly(a: &Triangle, b: &Triangle, sides: &Sides) -> bool {
     let [a, b] = integers(a, b);
     triangles_meet(&a, &b, |i, j, k| sides.0[i][j][k])
 }
 
-/// The corners, all times the same power of two, which makes them whole numbers.
+/// The corners as integers: all multiplied by the same power of two.
 fn integers(a: &Triangle, b: &Triangle) -> [[[BigInt; 3]; 3]; 2] {
     let all = a.iter().chain(b).flat_map(|p| p.iter());
     let least = all.filter(|&&v| v != 0.0).map(|&v| parts(v).1).min().unwrap_or(0);

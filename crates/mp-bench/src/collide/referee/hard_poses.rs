@@ -9,14 +9,14 @@ use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use rand::RngExt;
 
-/// How near poses are bisected to the border, in radii of the robot.
+/// The distances from the border to which poses are bisected, in radii of the robot.
 const WIDTHS: [f64; 5] = [1e-2, 1e-4, 1e-6, 1e-9, 1e-12];
 
-/// What the poses of a kind are called, and the poses.
-pub(crate) type Kind = (String, Vec<Isometry3<f64>>);
+/// Poses of one kind: the name of the kind, and the poses.
+pub(crate) type PoseGroup = (String, Vec<Isometry3<f64>>);
 
 /// About `count` poses: two fifths uniform, half bisected, a tenth touching.
-pub(crate) fn kinds(pair: &Pair, meshes: &Meshes, count: usize, seed: u64) -> Result<Vec<Kind>> {
+pub(crate) fn pose_groups(pair: &Pair, meshes: &Meshes, count: usize, seed: u64) -> Result<Vec<PoseGroup>> {
     let space = Se3::new(pair.bounds.min.coords, pair.bounds.max.coords).into_error()?;
     let mut rng = Rng::stream(seed, 0);
     let uniform = (0..count * 2 / 5).map(|_| space.sample_uniform(&mut rng)).collect();
@@ -35,9 +35,9 @@ pub(crate) fn kinds(pair: &Pair, meshes: &Meshes, count: usize, seed: u64) -> Re
     Ok(all)
 }
 
-/// Puts the robot so that it touches the obstacles, up to rounding: a corner, or the middle of an edge, on a corner, the
-/// middle of an edge, or a point within a triangle. Every other robot is turned as cubes can be turned onto
-/// themselves, which makes faces and edges of boxes coplanar; some are moved by very little then.
+/// A pose at which the robot touches the obstacles, up to rounding: a corner, or the middle of an edge, on a corner, the
+/// middle of an edge, or a point within a triangle. Half of the rotations are symmetries of the
+/// cube, which makes faces and edges of boxes coplanar; a third of the poses are then moved by a tiny distance.
 fn touching(pair: &Pair, space: &Se3, rng: &mut Rng) -> Isometry3<f64> {
     let turns = cube_turns();
     let rotation = match rng.random::<bool>() {
@@ -49,9 +49,9 @@ fn touching(pair: &Pair, space: &Se3, rng: &mut Rng) -> Isometry3<f64> {
     let (on_a, normal) =
         (any_point(&triangle, rng), (triangle[1] - triangle[0]).cross(&(triangle[2] - triangle[0])));
     let on_b = match rng.random_range(0..4) {
-        // An edge on whatever it is.
+        // Any point of the robot.
         0 => turned.point(&any_point(&any_triangle(&pair.b, rng), rng)),
-        // The corner farthest to one side of the triangle: the robot stays on the other.
+        // The corner farthest to one side of the triangle, so that the robot is on the other side.
         side => {
             let outward = if side == 1 { normal } else { -normal };
             let corners = pair.b.vertices().iter().map(|v| turned.point(v));
@@ -70,7 +70,7 @@ fn any_triangle(mesh: &TriMesh, rng: &mut Rng) -> [Point3<f64>; 3] {
     mesh.triangle(rng.random_range(0..mesh.triangles().len()))
 }
 
-/// A corner, the middle of an edge, or a point within.
+/// A corner, the middle of an edge, or an inner point.
 fn any_point(t: &[Point3<f64>; 3], rng: &mut Rng) -> Point3<f64> {
     match rng.random_range(0..3) {
         0 => t[0],
@@ -79,7 +79,7 @@ fn any_point(t: &[Point3<f64>; 3], rng: &mut Rng) -> Point3<f64> {
     }
 }
 
-/// The 24 rotations that take a cube to itself.
+/// The 24 rotations that map a cube to itself.
 fn cube_turns() -> Vec<UnitQuaternion<f64>> {
     let mut turns = Vec::new();
     for code in 0..81 {
@@ -114,12 +114,12 @@ mod tests {
     fn poses_of_every_kind() {
         let pair = tori("tori", 12).unwrap();
         let meshes = Meshes::new(&pair);
-        let kinds = kinds(&pair, &meshes, 200, 9).unwrap();
-        let counts: Vec<usize> = kinds.iter().map(|(_, poses)| poses.len()).collect();
+        let groups = pose_groups(&pair, &meshes, 200, 9).unwrap();
+        let counts: Vec<usize> = groups.iter().map(|(_, poses)| poses.len()).collect();
         assert_eq!(counts, [80, 20, 20, 20, 20, 20, 20]);
         let mut query = mp_collide::Query::default();
         let here = Isometry3::identity();
-        for pose in &kinds[6].1 {
+        for pose in &groups[6].1 {
             let distance = query.distance(&meshes.a, &here, &meshes.b, pose).distance;
             assert!(distance < 1e-14, "{distance}");
         }

@@ -1,23 +1,37 @@
 //! Worlds in the plane and the files they name.
 
-use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, RosMap};
+use super::{GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, RosMap};
 use crate::error::Error;
+use crate::files::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES, stem};
 use crate::problem::MAX_COORDINATE;
-use crate::source::{Disk, Files, MAX_MESH_BYTES, MAX_TEXT_BYTES};
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 use std::path::Path;
 
+/// A world in the plane, all files read.
+#[derive(Clone, Debug)]
+pub struct PlanarProblem {
+    /// The name of the file, without extension.
+    pub name: String,
+    /// The content of the file.
+    pub file: PlanarFile,
+    /// The obstacles: those of the file, then that of the image or map.
+    pub obstacles: Vec<PlanarObstacle>,
+    /// Lower and upper corner of the region of the robot's origin: as the file says, else within the walls,
+    /// else on the image.
+    pub bounds: [[f64; 2]; 2],
+}
+
 impl PlanarProblem {
     /// Whether a file is a world in the plane: its name ends in `.toml`, and it has a table `world`.
     #[must_use]
-    pub fn is_one(path: &Path) -> bool {
-        Self::is_one_of(&Disk, path)
+    pub fn is_planar_world(path: &Path) -> bool {
+        Self::is_planar_world_in(&Disk, path)
     }
 
-    /// The same of files from elsewhere.
+    /// As [`is_planar_world`](Self::is_planar_world), with the file read through `files`.
     #[must_use]
-    pub fn is_one_of(files: &dyn Files, path: &Path) -> bool {
+    pub fn is_planar_world_in(files: &dyn Files, path: &Path) -> bool {
         let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
         let begins = |line: &str| {
             let line = line.trim_start();
@@ -38,7 +52,7 @@ impl PlanarProblem {
         Self::load_from(&Disk, path.as_ref())
     }
 
-    /// The same of files from elsewhere.
+    /// As [`load`](Self::load), with the files read through `files`.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -51,9 +65,8 @@ impl PlanarProblem {
             let (polygon, corners) =
                 read_map(files, map, file.unknown_is_free, folder).map_err(|e| match e {
                     Fault::File(e) => {
-                        let help = e.remedy().unwrap_or("check the name of the file").to_owned();
-                        file.fault(PlanarPart::Map, &format!("this file is not usable: {e}"), &help)
-                            .with_kind(e.kind())
+                        let message = format!("this file is not usable: {e}");
+                        file.fault(PlanarPart::Map, &message, e.remedy_of_named_file()).with_kind(e.kind())
                     }
                     Fault::Size(message) => {
                         file.fault(PlanarPart::Map, &message, "coordinates are metres: check the scale")
@@ -70,12 +83,11 @@ impl PlanarProblem {
                 "say `walls = [[x, y], [x, y]]`, or `bounds`",
             ));
         };
-        let name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        Ok(Self { name, file, obstacles, bounds })
+        Ok(Self { name: stem(path), file, obstacles, bounds })
     }
 }
 
-/// What can be wrong with a map.
+/// The faults of a map.
 enum Fault {
     File(Error),
     Size(String),

@@ -1,23 +1,23 @@
-//! From where a scene shows its path best.
+//! The choice of a viewpoint that shows the path of a scene best.
 
 use crate::body::Body;
 use crate::camera::Camera;
-use crate::model::Lights;
+use crate::lights::Lights;
 use nalgebra::Point3;
 
-/// A coarse picture is enough to judge a view.
+/// The size of the coarse pictures by which viewpoints are judged.
 const COARSE: (usize, usize) = (160, 120);
 
-/// The view chosen and how much of the path it shows, 0 to 1.
-pub(crate) struct View {
+/// A viewpoint, and how much of the path is visible from it, 0 to 1.
+pub(crate) struct Viewpoint {
     pub(crate) azimuth: f64,
     pub(crate) elevation: f64,
     pub(crate) visible: f64,
 }
 
-/// Tries views all around and takes the one with the most of `path` in sight and the widest on the picture;
-/// the customary one, from the front right, when others are hardly better.
-pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) -> View {
+/// Tries viewpoints all around and takes the one from which most of `path` is visible and spread widest on the picture;
+/// the usual one, from the front right, is taken unless another is clearly better.
+pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) -> Viewpoint {
     let marks: Vec<Point3<f64>> = path
         .iter()
         .flat_map(|robot| {
@@ -25,8 +25,8 @@ pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) 
             points.iter().step_by(points.len().div_ceil(12).max(1)).map(|p| robot.pose_wb * p)
         })
         .collect();
-    let mut best: Option<(f64, View)> = None;
-    // Never along an axis: walls would be seen edge on.
+    let mut best: Option<(f64, Viewpoint)> = None;
+    // Not along an axis, where walls would be seen edge on.
     let azimuths = [-60.0f64, -30.0, 30.0, 60.0, 120.0, 150.0, 210.0, 240.0];
     for (e, elevation) in [32.0f64, 50.0].map(f64::to_radians).into_iter().enumerate() {
         for (a, azimuth) in azimuths.map(f64::to_radians).into_iter().enumerate() {
@@ -35,14 +35,14 @@ pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) 
             let habit = if a == 0 { 0.06 } else { 0.0 } + if e == 0 { 0.03 } else { 0.0 };
             let score = visible + 0.6 * spread + habit;
             if best.as_ref().is_none_or(|(s, _)| score > *s + 1e-9) {
-                best = Some((score, View { azimuth, elevation, visible }));
+                best = Some((score, Viewpoint { azimuth, elevation, visible }));
             }
         }
     }
-    best.map_or(View { azimuth: -1.0, elevation: 0.55, visible: 1.0 }, |(_, view)| view)
+    best.map_or(Viewpoint { azimuth: -1.0, elevation: 0.55, visible: 1.0 }, |(_, view)| view)
 }
 
-/// The share of `marks` in sight, and the share of the picture's diagonal that they span.
+/// The fraction of `marks` that is visible, and how far they spread on the picture, as a fraction of its width.
 fn judge(camera: &Camera, obstacles: &[Body], marks: &[Point3<f64>]) -> (f64, f64) {
     let mut nearest = vec![f32::INFINITY; camera.width * camera.height];
     let lights = Lights::of(camera);

@@ -1,16 +1,13 @@
-//! Maps of ROS's map_server.
+//! Maps of ROS's map_server: a YAML file and an image.
 
-use super::GridMap;
+use super::{GUIDE, GridMap};
 use crate::error::{Error, ErrorKind};
+use crate::files::decode;
 use crate::problem::MAX_COORDINATE;
-use crate::source::decode;
 use mp_geom::planar::Polygon;
 use nalgebra::Isometry2;
 
-/// The page that describes the format.
-const GUIDE: &str = "the format is described in docs/formats/planar-world.md";
-
-/// What the YAML file of a map says.
+/// The content of the YAML file of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RosMap {
     /// The name of the image.
@@ -19,18 +16,18 @@ pub struct RosMap {
     pub resolution: f64,
     /// x, y (m) and yaw (rad) of the lower left corner.
     pub origin: [f64; 3],
-    /// White is occupied, not black.
+    /// Whether white pixels are occupied, instead of black ones.
     pub negate: bool,
-    /// Occupied is what is more likely so than this.
+    /// A pixel is occupied when it is more likely occupied than this.
     pub occupied_thresh: f64,
-    /// Free is what is less likely occupied than this.
+    /// A pixel is free when it is less likely occupied than this.
     pub free_thresh: f64,
 }
 
 impl RosMap {
     /// Reads `bytes`, the content of a YAML file of map_server that errors call `file`: `image`, `resolution` and
-    /// `origin`, and where they differ from the customary `negate` (0), `occupied_thresh` (0.65), `free_thresh`
-    /// (0.196) and `mode` (`trinary`, the only one read). Other keys are passed over.
+    /// `origin`, and, with defaults, `negate` (0), `occupied_thresh` (0.65), `free_thresh`
+    /// (0.196) and `mode` (`trinary`, the only one read). Other keys are skipped.
     ///
     /// # Errors
     /// [`Error`] with the line and column.
@@ -134,7 +131,7 @@ impl RosMap {
         Ok(map)
     }
 
-    /// The obstacles of the map on `grid`, and what is unknown if that counts as one; `None` when there are none.
+    /// The obstacles of the map whose image is `grid`, unknown pixels included unless they are free; `None` when there are none.
     ///
     /// # Errors
     /// When coordinates are not finite or beyond 10⁶⁰.
@@ -149,7 +146,7 @@ impl RosMap {
             if unknown_is_free {
                 probability > self.occupied_thresh
             } else {
-                // Not free is all else, the unknown included.
+                // All that is not free is an obstacle, unknown pixels included.
                 probability >= self.free_thresh
             }
         };
@@ -170,7 +167,7 @@ fn unquoted(value: &str) -> &str {
     value.split(" #").next().unwrap_or(value).trim()
 }
 
-/// Lines with where they begin; comments of whole lines are empty.
+/// Lines and where they begin; a line that is a comment is empty.
 struct Lines<'a> {
     text: &'a str,
     at: usize,

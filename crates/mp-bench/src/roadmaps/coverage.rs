@@ -1,4 +1,4 @@
-//! How many nodes it takes to see as much of the free space: Visib-PRM against PRM.
+//! How many nodes cover the same part of the free space: Visib-PRM against PRM.
 
 use super::queries::{local, steer};
 use crate::clock::{nanoseconds, seconds_since};
@@ -16,20 +16,20 @@ use std::collections::{HashMap, HashSet};
 
 const SCENES: [&str; 5] = ["maze", "planar-bugtrap", "easy", "gempa-1", "gempa-3"];
 const FAILURES: u64 = 1_000;
-/// Free samples of which as many as can be connected to a node are seen.
+/// Free samples; a sample is seen when it can be connected to a node.
 const SAMPLES: usize = 500;
-/// PRM has at most so many nodes.
+/// The most nodes of PRM.
 const MOST: usize = 20_000;
 const SEEDS: u64 = 10;
 
-/// What was run.
+/// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 struct Case {
     scene: String,
     seed: u64,
 }
 
-/// Measures. None when it was interrupted.
+/// Measures the coverage. `None` when it was interrupted.
 pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<Table>> {
     let (scenes, seeds) = if quick { (&SCENES[..1], 2) } else { (&SCENES[..], SEEDS) };
     let case = |scene: &str, seed| Case { scene: scene.to_owned(), seed };
@@ -45,14 +45,14 @@ pub(super) fn measure(lab: &Lab, quick: bool) -> Result<Option<Table>> {
     Ok(complete.then(|| table(groups)))
 }
 
-/// Parts of the free samples: with a motion from a node, and from one of the largest component.
+/// The fractions of the free samples that are seen: from any node, and from a node of the largest component.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Seen {
     any: f64,
     largest: f64,
 }
 
-/// A sample, and what is known of the nodes of a roadmap that grows: of none twice whether there is a motion.
+/// A sample, and the nodes of a growing roadmap that were tried, so that no motion is checked twice.
 struct Sample<S> {
     q: S,
     seen_by: Vec<NodeId>,
@@ -64,7 +64,7 @@ fn fresh<S: Clone>(samples: &[S]) -> Vec<Sample<S>> {
     samples.iter().map(one).collect()
 }
 
-/// What is seen, by nodes tried in order of distance.
+/// The fractions that are seen; nodes are tried in order of distance.
 fn seen<M: RigidSpace>(
     scene: &RigidScene<M>,
     map: &mut Roadmap<M::State>,
@@ -74,7 +74,7 @@ fn seen<M: RigidSpace>(
     let parts: Vec<NodeId> = (0..map.len() as NodeId).map(|id| map.component(id)).collect();
     let mut sizes = HashMap::new();
     parts.iter().for_each(|part| *sizes.entry(*part).or_insert(0) += 1);
-    // Of equal ones that which is named first.
+    // Of components of equal size, the one with the smallest id.
     let largest =
         sizes.iter().max_by_key(|(part, size)| (**size, std::cmp::Reverse(**part))).map(|(part, _)| *part);
     let counts = |id: &NodeId| Some(parts[*id as usize]) == largest;
@@ -90,7 +90,7 @@ fn seen<M: RigidSpace>(
             order.sort_by(|a, b| a.0.total_cmp(&b.0));
         }
         for (_, id) in &order {
-            // Of the others one is enough.
+            // One node outside of the largest component is enough.
             if !sample.seen_by.is_empty() && !counts(id) {
                 continue;
             }
@@ -112,7 +112,7 @@ fn seen<M: RigidSpace>(
     Ok(Seen { any, largest })
 }
 
-/// How large PRM's roadmap had to be.
+/// The size that PRM's roadmap needed.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Needed {
     nodes: f64,
@@ -120,14 +120,14 @@ struct Needed {
     seconds: f64,
 }
 
-/// What came of a seed.
+/// The result of a case.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Measured {
     few: Needed,
     guards: f64,
     estimate: f64,
     seen: Seen,
-    /// To see as much, and to see as much from the largest component; none when no size was enough.
+    /// The sizes to see as much, and to see as much from the largest component; `None` when no size was enough.
     many: [Option<Needed>; 2],
 }
 

@@ -1,4 +1,4 @@
-//! What moves: a free-flyer, and an arm with six joints.
+//! The robots of the experiment: a free-flyer, and an arm with six joints.
 
 use super::clutter::{Obstacle, Region, boxes};
 use crate::error::{IntoError, Result};
@@ -7,41 +7,41 @@ use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmModel, ArmVerifier, FreeFlyer, Joint, JointKind, Link, Spatial, Verifier};
 use nalgebra::{Isometry3, SVector, UnitQuaternion, Vector3};
 
-/// As many numbers as both movers have degrees of freedom.
+/// A number for each degree of freedom, of which both robots have six.
 pub(super) type Six = SVector<f64, 6>;
 
-/// A mover with a world of its own for each problem, and how it is told to move.
-pub(super) trait Mover: Sync {
-    /// Its configurations.
+/// A robot of the experiment, with its problems and inputs.
+pub(super) trait TestRobot: Sync {
+    /// The configuration space.
     type Space: Factored + Clone + Sync;
-    /// Among obstacles.
+    /// The robot among obstacles.
     type Robot: Validity<<Self::Space as Space>::State> + Clone + Send;
 
     fn space(&self) -> &Self::Space;
     fn start(&self) -> &<Self::Space as Space>::State;
     fn goal(&self) -> &<Self::Space as Space>::State;
-    /// Whether a configuration is near enough to the goal: whatever the metric, the same.
+    /// Whether a configuration counts as the goal; the same for all metrics.
     fn arrived(&self, q: &<Self::Space as Space>::State) -> bool;
     fn among(&self, obstacles: &[Obstacle]) -> Result<Self::Robot>;
-    /// Proves motions, by other code than the robot's.
+    /// A verifier of motions, with other code than the robot's check.
     fn verifier<'a>(
         &'a self,
         robot: &Self::Robot,
     ) -> Result<impl MotionValidity<<Self::Space as Space>::State> + Send + use<'a, Self>>;
-    /// The room for obstacles.
+    /// The region and sizes of the obstacles.
     fn region(&self) -> Region;
-    /// Whether an obstacle leaves start and goal free, with room to spare.
+    /// Whether an obstacle keeps some clearance from start and goal.
     fn spares(&self, obstacle: &Obstacle) -> Result<bool>;
-    /// The velocity that moves each degree of freedom by one step in a second.
+    /// The velocity of each degree of freedom that makes one step in a second.
     fn speeds(&self) -> Six;
-    /// Greatest velocities of the model that has them, and its accelerations: per second and per second².
+    /// The greatest velocities, per second, and the accelerations, per second², of the model with velocities.
     fn limits(&self) -> (Six, Six);
-    /// Weights of the factors of the space for the scaled metric: about how far they move points.
+    /// Weights of the factors of the space for the scaled metric: about how far each factor moves points.
     fn weights(&self) -> Vec<f64>;
-    /// States farther apart than this, in the space's own metric, are not tested side by side.
+    /// The resolution of discrete motion checks, in the space's own metric.
     fn resolution(&self) -> f64;
 
-    /// The obstacles of an instance, as many as there may be; the first n are those of its problem of n.
+    /// `count` obstacles of an instance; the first n are those of its problem with n obstacles.
     fn obstacles(&self, count: usize, instance: u64) -> Result<Vec<Obstacle>> {
         boxes(&self.region(), count, instance, |o| self.spares(o))
     }
@@ -71,7 +71,7 @@ impl Flyer {
     }
 }
 
-impl Mover for Flyer {
+impl TestRobot for Flyer {
     type Space = Se3;
     type Robot = FreeFlyer;
 
@@ -120,7 +120,7 @@ impl Mover for Flyer {
     }
 }
 
-/// An arm with six revolute joints and links of boxes, on a table among boxes in the air.
+/// An arm with six revolute joints and links of boxes, among boxes in the air.
 #[derive(Clone, Debug)]
 pub(super) struct SixAxes {
     arm: Arm,
@@ -129,9 +129,9 @@ pub(super) struct SixAxes {
     goal: Six,
 }
 
-/// How far each joint turns, radians either way.
+/// The limit of each joint in both directions, radians.
 const TURN: f64 = 2.6;
-/// Distances from the axis of each joint to the tip of the straight arm, metres; about so for the roll joints.
+/// Distances from the axis of each joint to the tip of the straight arm, metres; rough values for the roll joints.
 const ARMS: [f64; 6] = [1.5, 1.5, 1.0, 0.3, 0.5, 0.15];
 
 impl SixAxes {
@@ -143,7 +143,7 @@ impl SixAxes {
     }
 }
 
-/// Base, shoulder, elbow and a wrist of three axes: 0.35 m up, 0.5 m, 0.5 m and 0.5 m out.
+/// Base, shoulder, elbow and a wrist of three axes: 0.35 m high, then links of 0.5 m, 0.5 m and 0.5 m.
 fn model() -> Result<ArmModel> {
     let turn = JointKind::Revolute { low: -TURN, high: TURN };
     let up = |z: f64| Isometry3::translation(0.0, 0.0, z);
@@ -176,7 +176,7 @@ fn model() -> Result<ArmModel> {
     })
 }
 
-impl Mover for SixAxes {
+impl TestRobot for SixAxes {
     type Space = Rn<6>;
     type Robot = Arm;
 
@@ -205,7 +205,7 @@ impl Mover for SixAxes {
         let mut robot = self.among(std::slice::from_ref(obstacle))?;
         let ends = [&self.start, &self.goal];
         let clear = |robot: &mut Arm, q: &Six| robot.clearance(q, 0.04) >= 0.04;
-        // Nothing in the base and what turns on it, or no problem could be solved.
+        // No obstacle in the base and the turret, or no problem could be solved.
         let o = obstacle.2.translation.vector;
         Ok(!(o.xy().norm() < 0.35 && o.z < 0.5) && ends.into_iter().all(|q| clear(&mut robot, q)))
     }

@@ -1,6 +1,6 @@
-//! Courses for a small round robot: the four worlds of Baizid et al., *RRS: rapidly-exploring random snakes*, figure 4,
-//! rebuilt. The paper gives their sizes, the numbers of obstacles and pictures that are too small to measure; what is
-//! in them here was chosen to fit what it says about them.
+//! Scenes for a small round robot: the four worlds of Baizid et al., *RRS: rapidly-exploring random snakes*, figure 4,
+//! rebuilt. The paper gives their sizes, the numbers of obstacles and pictures that are too small to measure; all
+//! else was chosen to fit its descriptions.
 
 use super::Error;
 use super::scene::Files;
@@ -16,24 +16,24 @@ use std::sync::Arc;
 /// The radius of the robot, metres: that of a Khepera III.
 pub const RADIUS: f64 = 0.065;
 
-/// A walled world, a start and a goal; numbers to a tenth of a millimetre.
+/// A walled room with obstacles, a start and a goal; coordinates are multiples of a tenth of a millimetre.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
-    /// Width and height of the walled room, metres; a corner is the origin.
+pub struct DiscScene {
+    /// Width and height of the walled room, metres; the origin is a corner.
     pub size: [f64; 2],
     /// The corners of each obstacle.
     pub obstacles: Vec<Vec<[f64; 2]>>,
     /// Where the robot starts.
     pub start: [f64; 2],
-    /// Where it is to go.
+    /// Where the robot is to go.
     pub goal: [f64; 2],
 }
 
-impl Course {
+impl DiscScene {
     /// The robot in its world.
     ///
     /// # Errors
-    /// When an obstacle is no polygon, or the room has no size.
+    /// When an obstacle is not a polygon, or the room has no area.
     pub fn robot(&self) -> Result<DiscRobot, Error> {
         let polygons = self.obstacles.iter().map(|ring| Polygon::outlined(ring.iter().copied()));
         let polygons = polygons.collect::<Result<Vec<_>, _>>().map_err(Error::new)?;
@@ -41,7 +41,7 @@ impl Course {
         DiscRobot::new(Arc::new(world), RADIUS).map_err(Error::new)
     }
 
-    /// As a file; `about` is its first line.
+    /// The text of the scene file; `about` is the comment on its first line.
     fn text(&self, about: &str) -> String {
         let point = |p: &[f64; 2]| format!("[{}, {}]", p[0], p[1]);
         let mut out = format!(
@@ -58,54 +58,55 @@ impl Course {
     }
 }
 
-/// Adds the four worlds, and the one for following paths.
+/// Adds the four worlds of the paper, and the one in which a robot follows paths.
 pub(super) fn add(files: &mut Files) {
-    for (name, course, about) in [
+    for (name, scene, about) in [
         ("rrs-maze", maze(), "A maze with one way through; 3 × 3 m."),
         ("rrs-low", low(), "17 obstacles; 4 × 3 m."),
         ("rrs-high", high(), "48 obstacles; 7 × 4 m."),
         ("rrs-random", random(0), "A random world of 50 to 80 obstacles; 7 × 4 m."),
         ("rrs-follow", follow(), "For following paths; 5 × 2 m."),
     ] {
-        files.insert(format!("scenes/{name}.toml"), course.text(about).into_bytes());
+        files.insert(format!("scenes/{name}.toml"), scene.text(about).into_bytes());
     }
 }
 
+/// The corners of a rectangle.
 fn bar(low: [f64; 2], high: [f64; 2]) -> Vec<[f64; 2]> {
     vec![low, [high[0], low[1]], high, [low[0], high[1]]]
 }
 
-/// Three walls with a gap at alternate ends, and a spur.
-fn maze() -> Course {
+/// Three walls, each with a gap at alternating ends, and a spur.
+fn maze() -> DiscScene {
     let obstacles = vec![
         bar([0.0, 0.72], [2.4, 0.78]),
         bar([0.6, 1.47], [3.0, 1.53]),
         bar([0.0, 2.22], [2.4, 2.28]),
         bar([1.47, 2.28], [1.53, 2.6]),
     ];
-    Course { size: [3.0, 3.0], obstacles, start: [0.35, 0.35], goal: [0.4, 2.65] }
+    DiscScene { size: [3.0, 3.0], obstacles, start: [0.35, 0.35], goal: [0.4, 2.65] }
 }
 
 /// Scattered bars and blocks with room to pass between any two.
-fn low() -> Course {
-    let course = Course { size: [4.0, 3.0], obstacles: vec![], start: [0.25, 0.25], goal: [3.75, 2.75] };
-    scattered(course, 17, [0.18, 0.42], 2.6 * RADIUS, 11)
+fn low() -> DiscScene {
+    let scene = DiscScene { size: [4.0, 3.0], obstacles: vec![], start: [0.25, 0.25], goal: [3.75, 2.75] };
+    scattered(scene, 17, [0.18, 0.42], 2.6 * RADIUS, 11)
 }
 
-/// The same, more of them.
-fn high() -> Course {
-    let course = Course { size: [7.0, 4.0], obstacles: vec![], start: [0.25, 0.25], goal: [6.75, 3.75] };
-    scattered(course, 48, [0.15, 0.4], 2.4 * RADIUS, 12)
+/// More of the same.
+fn high() -> DiscScene {
+    let scene = DiscScene { size: [7.0, 4.0], obstacles: vec![], start: [0.25, 0.25], goal: [6.75, 3.75] };
+    scattered(scene, 48, [0.15, 0.4], 2.4 * RADIUS, 12)
 }
 
-/// 5 × 2 m with a few obstacles.
-pub fn follow() -> Course {
-    let course = Course { size: [5.0, 2.0], obstacles: vec![], start: [0.3, 1.0], goal: [4.7, 1.0] };
-    scattered(course, 9, [0.15, 0.35], 4.0 * RADIUS, 13)
+/// A room of 5 × 2 m with a few obstacles.
+pub fn follow() -> DiscScene {
+    let scene = DiscScene { size: [5.0, 2.0], obstacles: vec![], start: [0.3, 1.0], goal: [4.7, 1.0] };
+    scattered(scene, 9, [0.15, 0.35], 4.0 * RADIUS, 13)
 }
 
-/// 50 to 80 obstacles that may touch each other, start and goal free and surely connected, and at least 3 m apart.
-fn random(trial: u64) -> Course {
+/// 50 to 80 obstacles, which may touch each other; start and goal are free, connected, and at least 3 m apart.
+fn random(trial: u64) -> DiscScene {
     let mut attempt = 0;
     loop {
         attempt += 1;
@@ -113,18 +114,18 @@ fn random(trial: u64) -> Course {
         let count = rng.random_range(50..=80);
         let size = [7.0, 4.0];
         let obstacles = (0..count).map(|_| block(&mut rng, size, [0.1, 0.3])).collect();
-        let mut course = Course { size, obstacles, start: [0.0; 2], goal: [0.0; 2] };
-        let Ok(mut robot) = course.robot() else { continue };
+        let mut scene = DiscScene { size, obstacles, start: [0.0; 2], goal: [0.0; 2] };
+        let Ok(mut robot) = scene.robot() else { continue };
         let mut free = || {
             let q = [0, 1].map(|k| rounded(rng.random_range(0.0..size[k])));
             (robot.clearance(&q.into(), 1.0) > 0.01).then_some(q)
         };
         let mut found = (0..200).filter_map(|_| free());
         let (Some(start), Some(goal)) = (found.next(), found.next()) else { continue };
-        (course.start, course.goal) = (start, goal);
+        (scene.start, scene.goal) = (start, goal);
         let apart = (Vector2::from(goal) - Vector2::from(start)).norm();
-        if apart >= 3.0 && connected(&course) {
-            return course;
+        if apart >= 3.0 && connected(&scene) {
+            return scene;
         }
     }
 }
@@ -133,7 +134,7 @@ fn rounded(v: f64) -> f64 {
     (v * 1e4).round() / 1e4
 }
 
-/// A convex block of four to six corners somewhere in the world: its corners are on an ellipse, between `radii`.
+/// A convex block of four to six corners at a random place; its corners lie on an ellipse with a longer radius from `radii`.
 fn block(rng: &mut Rng, size: [f64; 2], [small, large]: [f64; 2]) -> Vec<[f64; 2]> {
     let center = Vector2::new(rng.random_range(0.0..size[0]), rng.random_range(0.0..size[1]));
     let corners = rng.random_range(4..=6);
@@ -149,40 +150,40 @@ fn block(rng: &mut Rng, size: [f64; 2], [small, large]: [f64; 2]) -> Vec<[f64; 2
     (0..corners as usize).map(corner).collect()
 }
 
-/// `course` with `count` blocks at least `gap` metres from each other and from the walls, or touching the walls, start
-/// and goal left free.
-fn scattered(mut course: Course, count: usize, radii: [f64; 2], gap: f64, seed: u64) -> Course {
+/// `scene` with `count` random blocks inside the room, at least `gap` metres from each other, and away from start
+/// and goal.
+fn scattered(mut scene: DiscScene, count: usize, radii: [f64; 2], gap: f64, seed: u64) -> DiscScene {
     let mut rng = Rng::seed(seed);
-    while course.obstacles.len() < count {
-        let ring = block(&mut rng, course.size, radii);
+    while scene.obstacles.len() < count {
+        let ring = block(&mut rng, scene.size, radii);
         let inside = ring.iter().all(|p| {
-            p[0] > 0.05 && p[1] > 0.05 && p[0] < course.size[0] - 0.05 && p[1] < course.size[1] - 0.05
+            p[0] > 0.05 && p[1] > 0.05 && p[0] < scene.size[0] - 0.05 && p[1] < scene.size[1] - 0.05
         });
-        let ends = [course.start, course.goal].map(Point2::from);
+        let ends = [scene.start, scene.goal].map(Point2::from);
         let Ok(polygon) = Polygon::outlined(ring.iter().copied()) else { continue };
         let Ok(own) = PlanarWorld::new(vec![polygon], None) else { continue };
-        let others = course.obstacles.iter().filter_map(|r| Polygon::outlined(r.iter().copied()).ok());
+        let others = scene.obstacles.iter().filter_map(|r| Polygon::outlined(r.iter().copied()).ok());
         let Ok(others) = PlanarWorld::new(others.collect(), None) else { continue };
         let sides = ring.iter().zip(ring.iter().skip(1).chain(ring.first()));
         let mut sides = sides.map(|(a, b)| (Point2::from(*a), Point2::from(*b)));
         let apart =
             sides.all(|(a, b)| others.nearest_to_segment(&a, &b, gap).is_none() && !others.contains(&a));
         if inside && apart && ends.iter().all(|p| own.signed_distance(p) > 2.5 * RADIUS) {
-            course.obstacles.push(ring);
+            scene.obstacles.push(ring);
         }
     }
-    course
+    scene
 }
 
 /// Whether a grid of free motions leads from start to goal.
-fn connected(course: &Course) -> bool {
+fn connected(scene: &DiscScene) -> bool {
     const CELL: f64 = 0.04;
-    let Ok(mut robot) = course.robot() else { return false };
-    let counts = course.size.map(|s| (s / CELL) as usize);
+    let Ok(mut robot) = scene.robot() else { return false };
+    let counts = scene.size.map(|s| (s / CELL) as usize);
     let at = |i: usize, j: usize| Vector2::new((i as f64 + 0.5) * CELL, (j as f64 + 0.5) * CELL);
     let cell = |q: [f64; 2]| [0, 1].map(|k| ((q[k] / CELL) as usize).min(counts[k] - 1));
-    let (from, to) = (cell(course.start), cell(course.goal));
-    for (q, [i, j]) in [(course.start, from), (course.goal, to)] {
+    let (from, to) = (cell(scene.start), cell(scene.goal));
+    for (q, [i, j]) in [(scene.start, from), (scene.goal, to)] {
         if !robot.check_motion(&q.into(), &at(i, j)).is_free() {
             return false;
         }
@@ -208,22 +209,22 @@ fn connected(course: &Course) -> bool {
     false
 }
 
-/// A course by name: `maze`, `low`, `high`, or `random`, of which `trial` tells one from another.
+/// A scene by name: `maze`, `low`, `high`, or `random`, which is another one for each `trial`.
 ///
 /// # Errors
-/// When there is no such course.
-pub fn course(name: &str, trial: u64) -> Result<Course, Error> {
-    let course = match name {
+/// When there is no such scene.
+pub fn disc_scene(name: &str, trial: u64) -> Result<DiscScene, Error> {
+    let scene = match name {
         "maze" => maze(),
         "low" => low(),
         "high" => high(),
         "random" => random(trial),
-        _ => return Err(Error::new(format!("there is no course `{name}`"))),
+        _ => return Err(Error::new(format!("there is no scene `{name}`"))),
     };
-    let mut robot = course.robot()?;
-    match [course.start, course.goal].iter().all(|q| robot.is_valid(&(*q).into())) {
-        true => Ok(course),
-        false => Err(Error::new(format!("start or goal of the course `{name}` is not free"))),
+    let mut robot = scene.robot()?;
+    match [scene.start, scene.goal].iter().all(|q| robot.is_valid(&(*q).into())) {
+        true => Ok(scene),
+        false => Err(Error::new(format!("start or goal of the scene `{name}` is not free"))),
     }
 }
 
@@ -232,30 +233,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn courses_are_as_the_paper_says_and_can_be_done() {
-        for (course, count, size) in
+    fn scenes_are_as_in_the_paper_and_can_be_solved() {
+        for (scene, count, size) in
             [(maze(), 4, [3.0, 3.0]), (low(), 17, [4.0, 3.0]), (high(), 48, [7.0, 4.0])]
         {
-            assert_eq!((course.obstacles.len(), course.size), (count, size));
-            assert!(connected(&course));
+            assert_eq!((scene.obstacles.len(), scene.size), (count, size));
+            assert!(connected(&scene));
         }
         assert!(connected(&follow()));
         for trial in 0..3 {
-            let course = random(trial);
-            assert!((50..=80).contains(&course.obstacles.len()) && connected(&course));
-            assert_eq!(course, random(trial));
+            let scene = random(trial);
+            assert!((50..=80).contains(&scene.obstacles.len()) && connected(&scene));
+            assert_eq!(scene, random(trial));
         }
-        let blocked = Course { obstacles: vec![bar([0.0, 1.0], [3.0, 1.1])], ..maze() };
+        let blocked = DiscScene { obstacles: vec![bar([0.0, 1.0], [3.0, 1.1])], ..maze() };
         assert!(!connected(&blocked));
     }
 
-    /// The files say what the courses are.
+    /// The files contain the scenes exactly.
     #[test]
     fn files_read_back() {
-        let course = high();
-        let file = mp_io::PlanarFile::parse("high.toml", course.text("48").as_bytes()).unwrap();
+        let scene = high();
+        let file = mp_io::PlanarFile::parse("high.toml", scene.text("48").as_bytes()).unwrap();
         let rings = |p: &Polygon| p.rings()[0].iter().map(|p| [p.x, p.y]).collect::<Vec<_>>();
-        assert_eq!(file.obstacles.iter().map(|o| rings(&o.polygon)).collect::<Vec<_>>(), course.obstacles);
-        assert_eq!((file.walls, file.start), (Some([[0.0; 2], course.size]), course.start.to_vec()));
+        assert_eq!(file.obstacles.iter().map(|o| rings(&o.polygon)).collect::<Vec<_>>(), scene.obstacles);
+        assert_eq!((file.walls, file.start), (Some([[0.0; 2], scene.size]), scene.start.to_vec()));
     }
 }

@@ -1,4 +1,4 @@
-//! The tables and the picture of §6.
+//! The experiment of §6: trials, tables and pictures.
 
 use super::follow::{Followed, KINDS, planned_and_followed};
 use crate::error::{IntoError, Result};
@@ -6,22 +6,22 @@ use crate::experiment::{Lab, Table, bit, mean};
 use crate::options::Common;
 use crate::plot::save_drawing;
 use mp_render::{Drawing, Item};
-use mp_scenes::source::courses::{Course, RADIUS, follow};
+use mp_scenes::source::disc_scenes::{DiscScene, RADIUS, follow};
 use nalgebra::Point2;
 
-/// Trials, and those of a short run.
+/// The numbers of trials in full and short runs.
 const TRIALS: u32 = 100;
 const QUICK: u32 = 10;
 const COLOURS: [u32; 3] = [0xb0598a, 0x1f77b4, 0x2c8a2c];
 
-/// Plans and follows paths of each kind. True when nobody interrupted it.
+/// Plans and follows paths of each kind. False when it was interrupted.
 pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     let trials = common.runs_or(QUICK, TRIALS);
-    let course = follow();
+    let scene = follow();
     let jobs: Vec<(&str, u64)> =
         KINDS.iter().flat_map(|kind| (0..u64::from(trials)).map(move |trial| (*kind, trial))).collect();
     let done = lab.all("rrs, following", &jobs, |&(kind, trial)| {
-        Ok(Some(planned_and_followed(&course, kind, trial)?))
+        Ok(Some(planned_and_followed(&scene, kind, trial)?))
     })?;
     let Some(done) = done else { return Ok(false) };
     let of = |kind: usize| &done[kind * trials as usize..(kind + 1) * trials as usize];
@@ -60,12 +60,12 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     );
     let name = lab.name("rrs-follow");
     lab.report(&name, &summary, &each)?;
-    // The first trial of which all paths were found.
+    // The first trial in which all paths were found.
     let shown = (0..trials as usize).find(|&t| (0..KINDS.len()).all(|k| of(k)[t].is_some()));
     if let Some(trial) = shown {
         for (k, kind) in KINDS.iter().enumerate() {
             let Some(followed) = &of(k)[trial] else { continue };
-            let drawing = picture(&course, kind, followed, COLOURS[k])?;
+            let drawing = picture(&scene, kind, followed, COLOURS[k])?;
             let stem = lab.file(&format!("{name}-{}", kind.replace(' ', "-")));
             save_drawing(&stem, &drawing, (1100, 520))?;
         }
@@ -73,16 +73,16 @@ pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
     Ok(true)
 }
 
-/// The path, dark, and where the robot went, with the robot at places.
-fn picture(course: &Course, kind: &str, followed: &Followed, colour: u32) -> Result<Drawing> {
-    let robot = course.robot().into_error()?;
+/// A drawing of the path, dark, and of the line the robot drove, with the robot at some of its positions.
+fn picture(scene: &DiscScene, kind: &str, followed: &Followed, colour: u32) -> Result<Drawing> {
+    let robot = scene.robot().into_error()?;
     let subtitle = format!(
         "least distance from an obstacle: {:.1} cm planned, {:.1} cm driven",
         100.0 * followed.planned,
         100.0 * followed.executed.max(0.0)
     );
     let title = format!("A robot follows a path of {}", kind.to_uppercase());
-    let corners = [[0.0; 2], course.size].map(Point2::from);
+    let corners = [[0.0; 2], scene.size].map(Point2::from);
     let mut drawing = Drawing::of_world(robot.world(), corners, title, subtitle);
     for place in followed.driven.iter().step_by(15) {
         let corner = |i: u32| {

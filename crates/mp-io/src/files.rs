@@ -1,4 +1,4 @@
-//! Files in and out: bounded reading, decoding, atomic writing.
+//! Files: bounded reading, decoding, atomic writing.
 
 use crate::error::{Error, ErrorKind};
 use std::fmt::{self, Debug};
@@ -11,12 +11,12 @@ pub const MAX_MESH_BYTES: u64 = 512 << 20;
 /// The largest scene, problem or path file that is read, bytes (64 MiB).
 pub const MAX_TEXT_BYTES: u64 = 64 << 20;
 
-/// Where files come from: the [`Disk`], or files in memory.
+/// A place to read files from: the [`Disk`], or memory.
 pub trait Files: Debug + Send + Sync {
-    /// The content of the file at `path`, which has at most `limit` bytes.
+    /// The content of the file at `path`, at most `limit` bytes.
     ///
     /// # Errors
-    /// [`Error`] of kind [`ErrorKind::Io`] when there is none, of kind [`ErrorKind::TooLarge`] when it is larger.
+    /// [`Error`] of kind [`ErrorKind::Io`] when there is no such file, of kind [`ErrorKind::TooLarge`] when it is larger.
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error>;
 }
 
@@ -30,7 +30,7 @@ impl Files for Disk {
     }
 }
 
-/// Files in memory: what `find` returns for a path whose parts are separated by `/`; `..` has to be resolved there.
+/// Files in memory: the function gives the content at a path whose parts are separated by `/`, and resolves `..`.
 #[derive(Clone, Copy)]
 pub struct InMemory<F>(pub F);
 
@@ -100,14 +100,20 @@ pub(crate) fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// Reads a text file of at most [`MAX_TEXT_BYTES`]: what errors call it, and its bytes.
+/// Reads a text file of at most [`MAX_TEXT_BYTES`]; returns the name that errors call it, and its bytes.
 ///
 /// # Errors
-/// [`Error`] when it cannot be read, or is no regular file.
+/// [`Error`] when it cannot be read or is not a regular file.
 pub fn read_text(path: &Path) -> Result<(String, Vec<u8>), Error> {
     Ok((path.display().to_string(), read_file(path, MAX_TEXT_BYTES)?))
 }
 
+/// The name of a file, without folders and extension.
+pub(crate) fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+}
+
+/// What to do when there is no file at `path`.
 fn missing_help(path: &Path) -> String {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
@@ -140,7 +146,7 @@ pub(crate) fn decode<'a>(file: &str, bytes: &'a [u8]) -> Result<&'a str, Error> 
     }
 }
 
-/// Writes `content` to `path` in one step: to a temporary file in the same folder, then renamed, so that a
+/// Writes `content` to `path` in one step: into a temporary file in the same folder, which is then renamed, so that a
 /// reader sees the old file or the whole new one, and a failure leaves nothing behind.
 ///
 /// # Errors
@@ -169,7 +175,7 @@ pub fn write_atomic(path: &Path, content: &[u8]) -> Result<(), Error> {
         }
         _ => {}
     }
-    // Through a link, not in place of it.
+    // A link stays a link: its target is replaced.
     let target = if path.is_symlink() {
         std::fs::canonicalize(path).map_err(|e| fail("write the file", &e))?
     } else {
@@ -180,7 +186,7 @@ pub fn write_atomic(path: &Path, content: &[u8]) -> Result<(), Error> {
     builder.prefix(".mp-").suffix(".tmp");
     #[cfg(unix)]
     {
-        // What `File::create` gives; the process' umask still applies.
+        // The permissions that `File::create` gives; the umask of the process still applies.
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }

@@ -1,4 +1,4 @@
-//! What pictures of roadmaps are drawn with: SVG, seen from above or aslant.
+//! SVG drawings of scenes in space, seen from above or from the side.
 
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -10,33 +10,33 @@ const LINE: f64 = 26.0;
 /// Longest edge of a face, metres.
 const SMALL: f64 = 0.15;
 
-/// Where one looks from.
+/// The direction of projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum View {
+pub(super) enum Projection {
     Above,
     Aslant,
 }
 
-/// A picture in the making.
+/// An SVG drawing of a scene.
 #[derive(Clone, Debug)]
-pub(super) struct Drawing {
-    /// To the right, up, and toward the eye.
+pub(super) struct SvgDrawing {
+    /// The directions to the right, up, and toward the eye.
     axes: [Vector3<f64>; 3],
-    /// What is left and top of all, metres along the axes, and pixels per metre.
+    /// The upper left corner, metres along the axes, and pixels per metre.
     corner: [f64; 2],
     scale: f64,
-    /// Pixels, without the captions.
+    /// The height without the captions, pixels.
     height: f64,
     captions: Vec<String>,
     text: String,
 }
 
-impl Drawing {
-    /// Of what is within `bounds`, the longer side as many pixels, below it lines of text.
-    pub(super) fn new(bounds: &Aabb, view: View, side: f64, captions: &[String]) -> Self {
-        let axes = match view {
-            View::Above => [Vector3::x(), Vector3::y(), Vector3::z()],
-            View::Aslant => {
+impl SvgDrawing {
+    /// A drawing of the box `bounds`, whose longer side has `side` pixels, with captions below.
+    pub(super) fn new(bounds: &Aabb, projection: Projection, side: f64, captions: &[String]) -> Self {
+        let axes = match projection {
+            Projection::Above => [Vector3::x(), Vector3::y(), Vector3::z()],
+            Projection::Aslant => {
                 let eye = Vector3::new(-0.45, -0.7, 0.55).normalize();
                 let right = Vector3::z().cross(&eye).normalize();
                 [right, eye.cross(&right), eye]
@@ -64,13 +64,13 @@ impl Drawing {
         Self { axes, corner: [low[0], high[1]], scale, height, captions: captions.to_vec(), text }
     }
 
-    /// A point on the picture, pixels from the left and the top.
+    /// The position of a point in the drawing, pixels from the left and the top.
     pub(super) fn at(&self, p: &Point3<f64>) -> [f64; 2] {
         let [x, y] = [0, 1].map(|k| p.coords.dot(&self.axes[k]));
         [(x - self.corner[0]) * self.scale, (self.corner[1] - y) * self.scale]
     }
 
-    /// The silhouette of bodies in one colour.
+    /// Draws the silhouette of bodies in one colour.
     pub(super) fn silhouette<'a>(
         &mut self,
         bodies: impl IntoIterator<Item = (&'a TriMesh, Isometry3<f64>)>,
@@ -81,7 +81,7 @@ impl Drawing {
         for (mesh, pose) in bodies {
             for i in 0..mesh.triangles().len() {
                 let [a, b, c] = mesh.triangle(i).map(|p| self.at(&(pose * p)));
-                // All one way round, so that triangles above each other do not cancel.
+                // All with the same orientation, so that overlapping triangles do not cancel.
                 let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
                 let [b, c] = if turn > 0.0 { [b, c] } else { [c, b] };
                 if turn.abs() > 0.05 {
@@ -99,7 +99,7 @@ impl Drawing {
         self.text.push('Z');
     }
 
-    /// Closed bodies, each in a colour, shaded, those in front over those behind.
+    /// Draws closed bodies, each in a colour, shaded, from back to front.
     pub(super) fn solids<'a>(
         &mut self,
         bodies: impl IntoIterator<Item = (&'a TriMesh, Isometry3<f64>, &'a str)>,
@@ -136,7 +136,7 @@ impl Drawing {
         }
     }
 
-    /// Lines from place to place, of a colour and a width in pixels.
+    /// Draws line segments, of a colour and a width in pixels.
     pub(super) fn lines(
         &mut self,
         lines: impl IntoIterator<Item = [Point3<f64>; 2]>,
@@ -145,7 +145,7 @@ impl Drawing {
     ) {
         let mut drawn = false;
         for (i, line) in lines.into_iter().enumerate() {
-            // Long paths are slow to show.
+            // Viewers are slow with long paths.
             if i.is_multiple_of(100) {
                 let end = if i > 0 { "\"/>\n" } else { "" };
                 let _ = write!(
@@ -162,12 +162,12 @@ impl Drawing {
         }
     }
 
-    /// Dots, of a colour and a radius in pixels.
+    /// Draws dots, of a colour and a radius in pixels.
     pub(super) fn dots(&mut self, places: impl IntoIterator<Item = Point3<f64>>, colour: &str, radius: f64) {
         self.lines(places.into_iter().map(|p| [p, p]), colour, 2.0 * radius);
     }
 
-    /// The outline of a sphere.
+    /// Draws the outline of a sphere.
     pub(super) fn sphere(&mut self, center: &Point3<f64>, radius: f64, colour: &str) {
         let [x, y] = self.at(center);
         let _ = writeln!(
@@ -177,7 +177,7 @@ impl Drawing {
         );
     }
 
-    /// The picture. The captions come last, over what reaches beyond the bounds.
+    /// The text of the drawing. The captions come last, over anything that reaches beyond the bounds.
     pub(super) fn finish(mut self) -> String {
         let below = LINE * self.captions.len() as f64;
         let _ = writeln!(
@@ -196,7 +196,7 @@ impl Drawing {
     }
 }
 
-/// Parts of a triangle with no edge longer than `most`, into `out`: what is before and behind can be told of small ones.
+/// Appends to `out` parts of a triangle with no edge longer than `most`: small triangles can be sorted by depth.
 fn parts(corners: [Point3<f64>; 3], most: f64, out: &mut Vec<[Point3<f64>; 3]>) {
     let longest = (0..3).max_by(|&i, &j| {
         let length = |i: usize| (corners[(i + 1) % 3] - corners[i]).norm();
@@ -224,12 +224,12 @@ mod tests {
         let near = Isometry3::translation(-0.4, -0.7, 0.5);
         for order in [[("#111", near), ("#222", near.inverse())], [("#222", near.inverse()), ("#111", near)]]
         {
-            let mut drawing = Drawing::new(&bounds, View::Aslant, 100.0, &["cubes".to_owned()]);
+            let mut drawing = SvgDrawing::new(&bounds, Projection::Aslant, 100.0, &["cubes".to_owned()]);
             drawing.solids(order.map(|(colour, pose)| (&cube, pose, colour)));
             let text = drawing.finish();
             assert!(text.rfind("#111") > text.rfind("#222") && text.find("#111") > text.rfind("#222"));
         }
-        let drawing = Drawing::new(&bounds, View::Above, 100.0, &[]);
+        let drawing = SvgDrawing::new(&bounds, Projection::Above, 100.0, &[]);
         assert_eq!(drawing.at(&Point3::new(1.0, -1.0, 0.3)), [100.0, 100.0]);
     }
 }

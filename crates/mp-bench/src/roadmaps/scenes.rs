@@ -1,4 +1,4 @@
-//! Where it is measured.
+//! The scenes of the measurement: shipped ones, and corridors.
 
 use crate::error::{IntoError, Result};
 use crate::scenes::Rigid;
@@ -12,12 +12,12 @@ use std::path::PathBuf;
 pub(super) const SCENES: [&str; 8] =
     ["gempa-1", "gempa-2", "gempa-3", "gempa-4", "twisty", "cubicles", "bugtrap", "alpha-1.5"];
 
-/// Corridors of one kind, which differ in how much wider they are than the robot.
+/// Corridors of one kind, of different widths.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corridors {
     pub(super) name: &'static str,
     pub(super) title: &'static str,
-    /// By how much they are wider than the robot, metres: halves first, then nearer to each other, where planners fail.
+    /// How much wider each is than the robot, metres: halved at first, then in finer steps, where planners fail.
     pub(super) slacks: [f64; 11],
     make: fn(&str, f64) -> Result<RigidProblem>,
 }
@@ -39,12 +39,12 @@ pub(super) const CORRIDORS: [Corridors; 2] = [
 ];
 
 impl Corridors {
-    /// The name of the one with this slack.
+    /// The name of the corridor with this slack.
     pub(super) fn scene(&self, slack: f64) -> String {
         format!("{} {slack}", self.name)
     }
 
-    /// All of them, the widest first.
+    /// All corridors, the widest first.
     pub(super) fn ready(&self) -> Result<Vec<(String, Rigid)>> {
         let one = |&slack: &f64| {
             let name = self.scene(slack);
@@ -55,7 +55,7 @@ impl Corridors {
     }
 }
 
-/// A block of these sides about a place.
+/// A block with these sides, centred at a point.
 fn block(name: &str, sides: [f64; 3], at: [f64; 3]) -> Result<PlacedBody> {
     let mesh = cuboid(sides[0], sides[1], sides[2]).into_error()?;
     let pose = Isometry3::translation(at[0], at[1], at[2]);

@@ -1,10 +1,11 @@
-//! The path: copies of the robot along it, and the line its origin traces.
+//! The path: copies of the robot along it, and the line along which a point of the robot moves.
 
 use crate::body::Body;
 use crate::camera::Camera;
 use crate::canvas::{Layer, Veil, mix, scaled, srgb};
 use crate::decorate::nearer;
-use crate::model::{Lights, Model};
+use crate::lights::Lights;
+use crate::model::Model;
 use crate::palette::{INK, gradient};
 use crate::raster::line;
 use mp_geom::evenly;
@@ -13,14 +14,14 @@ use nalgebra::{Isometry3, Point3};
 /// Opacity of one copy.
 const COPY: f32 = 0.42;
 
-/// How far a point of the robot may move between two poses, metres.
+/// An upper bound of how far a point of the robot moves between two poses, metres.
 fn travel(robot: &Model, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     (a.translation.vector - b.translation.vector).norm() + robot.radius * a.rotation.angle_to(&b.rotation)
 }
 
 impl Body {
-    /// The body on its way along `path`, poses in the world, spread evenly by how far it moves; its own pose does not
-    /// matter. None on a path that stays put.
+    /// Copies of the body along `path`, poses in the world, evenly spaced by how far the body moves; its own pose does not
+    /// matter. There are none on a path that does not move.
     #[must_use]
     pub fn along(&self, path: &[Isometry3<f64>]) -> Vec<Body> {
         let lengths: Vec<f64> = path.windows(2).map(|w| travel(&self.model, &w[0], &w[1])).collect();
@@ -34,11 +35,11 @@ impl Body {
     }
 }
 
-/// Draws the copies as a veil over `layer`.
-pub(crate) fn draw(layer: &mut Layer, camera: &Camera, lights: &Lights, copies: &[Body]) {
+/// Draws translucent copies over `layer`.
+pub(crate) fn draw_copies(layer: &mut Layer, camera: &Camera, lights: &Lights, copies: &[Body]) {
     let samples = layer.key.len();
     let mut veil = Veil::new(samples);
-    // One copy at a time, so that of each only the surface seen counts.
+    // One copy at a time, so that only the visible surface of each counts.
     let mut one = Layer::new(samples);
     let mut touched: Vec<u32> = Vec::new();
     for (n, Body { model: robot, pose_wb }) in copies.iter().enumerate() {
@@ -65,8 +66,8 @@ pub(crate) fn draw(layer: &mut Layer, camera: &Camera, lights: &Lights, copies: 
     veil.over(&mut layer.colour, 0.88);
 }
 
-/// Draws the way of a point of the robot; faint where something hides it.
-pub(crate) fn trace(layer: &mut Layer, camera: &Camera, path: &[Point3<f64>]) {
+/// Draws the line of a point of the robot; faint where something hides it.
+pub(crate) fn draw_trace(layer: &mut Layer, camera: &Camera, path: &[Point3<f64>]) {
     let mut strength = vec![0.0f32; layer.key.len()];
     for w in path.windows(2) {
         let [a, b] = [&w[0], &w[1]].map(|p| camera.pose_cw * p);

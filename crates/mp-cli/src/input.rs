@@ -1,0 +1,52 @@
+//! Scenes and paths from files and from standard input.
+
+use mp_plan::{Error, PathFileKind, PathRows, Scene};
+use std::io::Read;
+use std::path::Path;
+
+/// Whether a name stands for standard input or output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// The whole standard input, which must be text of at most 64 MiB.
+pub(crate) fn standard_input() -> Result<String, Error> {
+    const LIMIT: u64 = mp_io::MAX_TEXT_BYTES;
+    let mut text = String::new();
+    let read = std::io::stdin().lock().take(LIMIT + 1).read_to_string(&mut text);
+    read.map_err(|e| Error::new(format!("cannot read standard input: {e}")))?;
+    match text.len() as u64 > LIMIT {
+        true => Err(Error::new(format!("standard input has more than {LIMIT} bytes"))),
+        false => Ok(text),
+    }
+}
+
+/// Refuses a scene and a path that both come from standard input.
+pub(crate) fn refuse_two_standard_inputs(scene: &Path, path: Option<&Path>) -> Result<(), Error> {
+    match is_standard(scene) && path.is_some_and(is_standard) {
+        true => Err(Error::new("scene and path cannot both come from standard input").help("name a file")),
+        false => Ok(()),
+    }
+}
+
+/// The scene that an argument names; `-` is standard input.
+pub(crate) fn scene(given: &Path) -> Result<Scene, Error> {
+    if is_standard(given) {
+        return Scene::parse("stdin", &standard_input()?, Path::new(""));
+    }
+    Scene::find(given)
+}
+
+/// The path that an argument names; `-` is standard input, in any format.
+pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
+    if !is_standard(given) {
+        return PathRows::read(given, scene.path_format());
+    }
+    let text = standard_input()?;
+    let kind = match text.trim_start() {
+        t if t.starts_with('{') => PathFileKind::Json,
+        t if t.lines().any(|line| line.contains(',')) => PathFileKind::Csv,
+        _ => PathFileKind::Text,
+    };
+    PathRows::parse("standard input", text.as_bytes(), kind, scene.path_format())
+}

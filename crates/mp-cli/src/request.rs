@@ -1,0 +1,53 @@
+//! The request that the options of `plan` make.
+
+use crate::cli::Plan;
+use crate::input::{is_standard, standard_input};
+use mp_plan::{Budget, Error, Finish, Request};
+
+/// The request that the command line makes.
+pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
+    let single = args.scenes.len() <= 1 && args.runs == 1;
+    let threads = if single { usize::from(args.threads) } else { 1 };
+    if let Some(file) = &args.request {
+        let text = match is_standard(file) {
+            true => standard_input()?,
+            false => String::from_utf8_lossy(&mp_io::read_text(file)?.1).into_owned(),
+        };
+        let read: Request = serde_json::from_str(&text).map_err(|e| {
+            Error::new(format!("{} is not a request: {e}", file.display()))
+                .help("docs/formats/report.md describes requests")
+        })?;
+        let request = Request { threads, ..read };
+        request.check()?;
+        return Ok(request);
+    }
+    let mut request = Request {
+        planner: args.planner.clone(),
+        metric: args.metric,
+        motion: args.motion,
+        budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
+        seed: args.seed,
+        threads,
+        finish: match (args.relax, args.no_shorten) {
+            (true, _) => Finish::Relax,
+            (false, true) => Finish::AsFound,
+            (false, false) => Finish::Shorten,
+        },
+        roadmap: args.roadmap.clone(),
+        ..Request::default()
+    };
+    if let Some(step) = args.step {
+        request = request.set("step", step);
+    }
+    for text in &args.set {
+        match text.split_once('=') {
+            Some((key, value)) if !key.trim().is_empty() => request = request.set(key.trim(), value.trim()),
+            _ => return Err(Error::new(format!("cannot read the setting `{text}`")).help("write KEY=VALUE")),
+        }
+    }
+    if request.roadmap.is_some() && !single {
+        return Err(Error::new("--roadmap needs a single run").help("name one scene, without --runs"));
+    }
+    request.check()?;
+    Ok(request)
+}

@@ -1,0 +1,130 @@
+//! Robot problems and the files they name.
+
+use super::{ObstacleShape, RobotFile, RobotPart};
+use crate::error::Error;
+use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
+use crate::mesh::read_mesh_of;
+use crate::problem::{MAX_COORDINATE, PlacedBody, vertex_beyond};
+use mp_geom::{TriMesh, pose_from_six, primitives};
+use nalgebra::Isometry3;
+use std::path::{Path, PathBuf};
+
+/// Segments of the mesh around a cylinder; the mesh contains the cylinder.
+const SEGMENTS: u32 = 32;
+
+/// An arm, obstacles, a start and goals; all files are read except the meshes of the robot.
+#[derive(Clone, Debug)]
+pub struct RobotProblem {
+    /// The name of the file, without extension.
+    pub name: String,
+    /// The content of the file.
+    pub file: RobotFile,
+    /// Where the URDF is.
+    pub urdf_file: PathBuf,
+    /// The content of the URDF.
+    pub urdf: String,
+    /// The content of the SRDF.
+    pub srdf: Option<String>,
+    /// The folder that `package://` means.
+    pub packages: Option<PathBuf>,
+    /// The obstacles. Spheres and cylinders are meshes that contain them.
+    pub obstacles: Vec<PlacedBody>,
+}
+
+impl RobotProblem {
+    /// The pose of the root link in the world.
+    #[must_use]
+    pub fn base(&self) -> Isometry3<f64> {
+        pose_from_six(self.file.base)
+    }
+
+    /// Whether the name of a file is that of a robot problem: it ends in `.toml`.
+    #[must_use]
+    pub fn is_named(path: &Path) -> bool {
+        path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+    }
+
+    /// Reads a robot problem, its URDF and SRDF and the meshes of obstacles. File names are relative to the problem
+    /// file.
+    ///
+    /// # Errors
+    /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
+    pub fn load(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::load_from(&Disk, path.as_ref())
+    }
+
+    /// As [`load`](Self::load), with the files read through `files`. Meshes of the robot itself are read from the disk.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
+        let shown = path.display().to_string();
+        let file = RobotFile::parse(&shown, &files.read(path, MAX_TEXT_BYTES)?)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let text = |part: RobotPart, name: &str| {
+            let place = folder.join(name);
+            let read =
+                || Ok(decode(&place.display().to_string(), &files.read(&place, MAX_TEXT_BYTES)?)?.to_owned());
+            let read: Result<String, Error> = read();
+            read.map(|text| (place.clone(), text)).map_err(|e| unusable(&file, part, &e))
+        };
+        let (urdf_file, urdf) = text(RobotPart::Urdf, &file.urdf)?;
+        let srdf = match &file.srdf {
+            Some(name) => Some(text(RobotPart::Srdf, name)?.1),
+            None => None,
+        };
+        let mut obstacles: Vec<PlacedBody> = Vec::new();
+        for entry in &file.obstacles {
+            let fault = |message: &str, help: &str| file.fault_at(&entry.span, message, help);
+            let primitive = |made: Result<TriMesh, primitives::PrimitiveError>| {
+                made.map(|mesh| (path.to_owned(), mesh))
+                    .map_err(|e| fault(&e.to_string(), "give sizes in metres, not too small"))
+            };
+            let (from, mesh) = match &entry.shape {
+                ObstacleShape::Box([x, y, z]) => primitive(primitives::cuboid(*x, *y, *z))?,
+                ObstacleShape::Sphere(radius) => primitive(ball(*radius))?,
+                ObstacleShape::Cylinder([radius, height]) => {
+                    let around = radius / (std::f64::consts::PI / f64::from(SEGMENTS)).cos();
+                    primitive(primitives::cylinder(around, *height, SEGMENTS))?
+                }
+                ObstacleShape::Mesh(name) => {
+                    let place = folder.join(name);
+                    // Many obstacles often share a mesh: read it once.
+                    match obstacles.iter().find(|o| o.file == place) {
+                        Some(seen) => (place, seen.mesh.clone()),
+                        None => {
+                            let mesh = read_mesh_of(files, &place).map_err(|e| {
+                                let message = format!("the mesh of {} is not usable: {e}", entry.name);
+                                fault(&message, e.remedy_of_named_file()).with_kind(e.kind())
+                            })?;
+                            (place, mesh)
+                        }
+                    }
+                }
+            };
+            if vertex_beyond(&mesh).is_some() {
+                let message = format!("{} has a vertex beyond {MAX_COORDINATE:e} m", entry.name);
+                return Err(fault(&message, "coordinates are metres: scale the mesh"));
+            }
+            let (name, pose) = (entry.name.clone(), pose_from_six(entry.pose));
+            obstacles.push(PlacedBody { name, file: from, mesh, pose });
+        }
+        let packages = file.packages.as_ref().map(|name| folder.join(name));
+        Ok(Self { name: stem(path), file, urdf_file, urdf, srdf, packages, obstacles })
+    }
+}
+
+/// The error of a file that cannot be used, at the place that names it.
+fn unusable(file: &RobotFile, part: RobotPart, e: &Error) -> Error {
+    file.fault(part, &format!("this file is not usable: {e}"), e.remedy_of_named_file()).with_kind(e.kind())
+}
+
+/// A mesh around a ball.
+fn ball(radius: f64) -> Result<TriMesh, primitives::PrimitiveError> {
+    let unit = primitives::sphere(1.0, 3)?;
+    let inner = (0..unit.triangles().len()).map(|i| {
+        let [a, b, c] = unit.triangle(i);
+        (b - a).cross(&(c - a)).normalize().dot(&a.coords)
+    });
+    primitives::sphere(radius / inner.fold(1.0, f64::min), 3)
+}

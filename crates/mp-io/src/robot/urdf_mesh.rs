@@ -1,0 +1,87 @@
+//! Finding the meshes that a URDF names: files relative to it, and files of packages.
+
+use super::RobotProblem;
+use crate::mesh::read_mesh;
+use crate::problem::{MAX_COORDINATE, vertex_beyond};
+use mp_geom::TriMesh;
+use std::path::{Path, PathBuf};
+
+impl RobotProblem {
+    /// Reads a mesh that the URDF names: a file relative to the URDF, `file://` and an absolute name, or
+    /// `package://PACKAGE/NAME`. A package is searched in the folder of packages that the problem gives, or else in the
+    /// folders above the URDF, as `PACKAGE/NAME` and `share/PACKAGE/NAME`, and as `NAME` where the folder is called
+    /// PACKAGE. `package:///NAME` names no package: `NAME` is searched in the same folders.
+    ///
+    /// # Errors
+    /// A message that says which file was searched, and where.
+    pub fn mesh(&self, name: &str) -> Result<TriMesh, String> {
+        let place = self.place_of(name)?;
+        let mesh = read_mesh(&place).map_err(|e| match e.remedy() {
+            Some(remedy) => format!("{e} ({remedy})"),
+            None => e.to_string(),
+        })?;
+        match vertex_beyond(&mesh) {
+            Some(_) => Err(format!("{} has a vertex beyond {MAX_COORDINATE:e} m", place.display())),
+            None => Ok(mesh),
+        }
+    }
+
+    /// The file of a mesh that the URDF names, as [`mesh`](Self::mesh) finds it; `None` when it is not there.
+    #[must_use]
+    pub fn mesh_file(&self, name: &str) -> Option<PathBuf> {
+        self.place_of(name).ok()
+    }
+
+    fn place_of(&self, name: &str) -> Result<PathBuf, String> {
+        let folder = self.urdf_file.parent().unwrap_or(Path::new(""));
+        let Some(inside) = name.strip_prefix("package://") else {
+            return Ok(folder.join(name.strip_prefix("file://").unwrap_or(name)));
+        };
+        let (package, rest) = inside.split_once('/').unwrap_or((inside, ""));
+        // With further slashes it would be an absolute name.
+        let rest = rest.trim_start_matches('/');
+        if rest.is_empty() {
+            return Err(format!("{name} names no file: write package://PACKAGE/FILE"));
+        }
+        let start = self.packages.as_deref().unwrap_or(folder);
+        // A bare file name has the empty folder, which is the current one.
+        let start = if start.as_os_str().is_empty() { Path::new(".") } else { start };
+        let absolute = std::fs::canonicalize(start).map_err(|e| {
+            let whose = if self.packages.is_some() { "`packages` of the problem" } else { "of the URDF" };
+            format!("{name} cannot be sought in the folder {whose}, {}: {e}", start.display())
+        })?;
+        let above = if self.packages.is_some() { 1 } else { usize::MAX };
+        for folder in absolute.ancestors().take(above) {
+            if let Some(found) = in_folder(folder, package, rest) {
+                return Ok(found);
+            }
+        }
+        let (file, holds) = match package {
+            "" => (rest.to_owned(), rest.split('/').next().unwrap_or(rest)),
+            _ => (format!("{package}/{rest}"), package),
+        };
+        let start = absolute.display();
+        Err(match self.packages {
+            Some(_) => format!(
+                "{name} is not there: {file} and share/{file} were sought in {start}, the folder `packages` of the \
+                 problem; it must be the folder that holds {holds}"
+            ),
+            None => format!(
+                "{name} is not there: {file} and share/{file} were sought in {start} and every folder above; say \
+                 `packages = \"FOLDER\"` in the problem, the folder that holds {holds}"
+            ),
+        })
+    }
+}
+
+/// The file `rest` of a package in or below `folder`, if it is there.
+fn in_folder(folder: &Path, package: &str, rest: &str) -> Option<PathBuf> {
+    let in_package = |folder: PathBuf| folder.join(package).join(rest);
+    let own = package.is_empty() || folder.file_name().is_some_and(|name| name == package);
+    let places = [
+        Some(in_package(folder.to_owned())),
+        Some(in_package(folder.join("share"))),
+        own.then(|| folder.join(rest)),
+    ];
+    places.into_iter().flatten().find(|place| place.is_file())
+}

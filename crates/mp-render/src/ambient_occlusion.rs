@@ -1,0 +1,53 @@
+//! Screen-space ambient occlusion: creases and corners are darker.
+
+use crate::camera::Camera;
+use crate::canvas::{Layer, scaled};
+
+/// Darkens samples whose neighbours are nearer to the eye; `extent` is the size of the scene, metres.
+pub(crate) fn darken_creases(layer: &mut Layer, camera: &Camera, extent: f64) {
+    const PAIRS: usize = 6;
+    let (w, h) = (camera.width as isize, camera.height as isize);
+    let reach = 0.02 * extent as f32;
+    let depth: Vec<f32> = layer.key.iter().map(|&k| camera.depth(k)).collect();
+    // Spirals by the golden angle, turned differently for each of 4 × 4 samples to avoid visible patterns.
+    let spirals: Vec<[(f32, f32); PAIRS]> = (0..16)
+        .map(|turn| {
+            std::array::from_fn(|k| {
+                let r = (k as f32 + 0.25 + 0.5 * ((turn * 7 % 16) as f32 / 16.0)) / PAIRS as f32;
+                let angle = 2.4 * k as f32 + std::f32::consts::TAU * (turn as f32 / 16.0);
+                (r * angle.cos(), r * angle.sin())
+            })
+        })
+        .collect();
+    for y in 0..h {
+        for x in 0..w {
+            let i = (y * w + x) as usize;
+            if layer.key[i] == f32::INFINITY {
+                continue;
+            }
+            let z = depth[i];
+            // Larger radii are off the picture.
+            let radius = (reach / camera.sample_size(z)).min(1e6);
+            // Opposite samples are added: on a slanted plane they cancel.
+            let lift = |tx: isize, ty: isize| {
+                if tx < 0
+                    || ty < 0
+                    || tx >= w
+                    || ty >= h
+                    || layer.key[(ty * w + tx) as usize] == f32::INFINITY
+                {
+                    return 0.0;
+                }
+                let lift = (z - depth[(ty * w + tx) as usize]) / reach;
+                if lift > 2.0 { 0.3 } else { lift.clamp(-1.0, 1.0) }
+            };
+            let mut sum = 0.0;
+            for (dx, dy) in &spirals[((y & 3) * 4 + (x & 3)) as usize] {
+                let (dx, dy) = ((dx * radius) as isize, (dy * radius) as isize);
+                sum += (lift(x + dx, y + dy) + lift(x - dx, y - dy)).max(0.0);
+            }
+            let shade = 1.0 - (0.55 * sum / PAIRS as f32).clamp(0.0, 0.4);
+            layer.colour[i] = scaled(layer.colour[i], shade);
+        }
+    }
+}
