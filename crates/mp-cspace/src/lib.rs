@@ -19,6 +19,7 @@
 //! | planners compiled once for many spaces | [`erased`] |
 //! | whether your own implementation is right | [`testkit`] |
 
+mod edge_checker;
 pub mod erased;
 mod error;
 mod goal;
@@ -45,6 +46,7 @@ mod tell;
 pub mod testkit;
 mod validity;
 
+pub use edge_checker::EdgeChecker;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use gradient::ClearanceGradient;

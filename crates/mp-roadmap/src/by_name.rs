@@ -1,7 +1,6 @@
 //! What planners by name are made from.
 
-use crate::engine::taken_apart;
-use crate::{Connector, EdgeChecker, HasRoadmap, NodeGenerator, Query, Recipe, RoadmapPlanner};
+use crate::{Connector, EdgeChecker, HasRoadmap, NodeGenerator, PATIENCE, Query, Recipe, RoadmapPlanner};
 use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
 use mp_cspace::{BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible, Settings, Space, Workers};
 
@@ -39,7 +38,9 @@ where
         problem: impl Fn() -> Result<Problem<'c, C, L>, BuildError>,
     ) -> Result<Self, BuildError> {
         let more = if hands > 1 { hands } else { 0 };
-        let hands = (0..more).map(|_| Ok(taken_apart(problem()?).0)).collect::<Result<_, BuildError>>()?;
+        let hands = (0..more)
+            .map(|_| Ok(EdgeChecker::of(problem()?, PATIENCE).0))
+            .collect::<Result<_, BuildError>>()?;
         Ok(Self { problem: problem()?, workers, hands })
     }
 

@@ -96,9 +96,9 @@
 //!             return core.path(branch, root, observer, |_| ());
 //!         }
 //!         let goal = core.aim(rng);
-//!         let target = goal.clone().unwrap_or_else(|| core.steer.space().sample_uniform(rng));
+//!         let target = goal.clone().unwrap_or_else(|| core.checker.space().sample_uniform(rng));
 //!         let from = rng.random_range(0..branch.tree().len()) as NodeId;
-//!         let grown = branch.grow_from(from, &target, &mut core.steer, &mut Extend, rng, observer);
+//!         let grown = branch.grow_from(from, &target, &mut core.checker, &mut Extend, rng, observer);
 //!         match grown {
 //!             Grown::Reached(id) if goal.is_some() => core.path(branch, id, observer, |_| ()),
 //!             _ => None,
@@ -150,14 +150,14 @@ pub use by_name::{AnyPlanner, INPUTS, LEVELS};
 pub use engine::{
     Acceptable, Append, AppendApart, AppendDistinct, Connect, Core, Extend, Extender, GOAL_BIAS, Growing,
     Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Recipe,
-    Rewire, STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, TreeEdgeChecker, Tuning,
-    TwoTrees, Untried, improve,
+    Rewire, STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, Tuning, TwoTrees, Untried,
+    improve,
 };
 pub use mp_cspace::AnyProblem;
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{
-    BuildError, Demand, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step, Verify, Workers,
-    closest,
+    BuildError, Demand, EdgeChecker, Endpoint, Goals, Parameter, PlannerInfo, Problem, Settings, Step,
+    Verify, Workers, closest,
 };
 pub use registry::{
     MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, planner, planners,

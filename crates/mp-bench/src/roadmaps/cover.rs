@@ -1,6 +1,6 @@
 //! How many nodes it takes to see as much of the free space: Visib-PRM against PRM.
 
-use super::queries::{local, steer};
+use super::queries::{checker, local};
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Group, Lab, Median, Table, short};
@@ -146,7 +146,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     }
     let index = <M::Space as DefaultNn>::Nn::default();
     let recipe = visibility_prm::recipe(space, FAILURES).into_error()?;
-    let mut few = Builder::new(steer(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
+    let mut few = Builder::new(checker(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
     let began = nanoseconds();
     few.build(&mut Rng::seed(seed), &mut Iterations(10_000_000), &mut ());
     let seconds = seconds_since(began);
@@ -159,7 +159,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
     let learning = Learning { expand: 0.0, ..Learning::default() };
     let recipe = prm::recipe(space, reach, learning).into_error()?;
     let index = <M::Space as DefaultNn>::Nn::default();
-    let mut many = Builder::new(steer(scene, verifier)?, recipe.generate, recipe.connect, index);
+    let mut many = Builder::new(checker(scene, verifier)?, recipe.generate, recipe.connect, index);
     let (mut size, mut spent, mut rng) = (4, 0.0, Rng::seed(seed));
     let mut needed: [Option<Needed>; 2] = [None; 2];
     let mut samples = fresh(&samples);

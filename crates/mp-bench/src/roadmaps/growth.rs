@@ -1,6 +1,6 @@
 //! How long it takes to build a roadmap of so many nodes.
 
-use super::queries::steer;
+use super::queries::checker;
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Table, short};
@@ -23,8 +23,8 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     let learning = Learning { expand: 0.0, ..Learning::default() };
     let recipe = prm::recipe(scene.space(), reach, learning).into_error()?;
     let index = <M::Space as DefaultNn>::Nn::default();
-    let steer = steer(scene, scene.verifier()?)?;
-    let mut builder = Builder::new(steer, recipe.generate, recipe.connect, index);
+    let checker = checker(scene, scene.verifier()?)?;
+    let mut builder = Builder::new(checker, recipe.generate, recipe.connect, index);
     let mut table = Table::new([
         "nodes",
         "build s",

@@ -2,7 +2,7 @@
 //! where around an obstacle the configurations of obstacle-geometry PRM and OBPRM are.
 
 use super::drawing::{Drawing, View};
-use super::queries::{Local, steer};
+use super::queries::{Local, checker};
 use super::world::CORRIDORS;
 use crate::error::{IntoError, Result};
 use crate::experiment::Lab;
@@ -96,7 +96,7 @@ where
     K: Connector<M::Space, Local<'c, M>>,
 {
     let index = <M::Space as DefaultNn>::Nn::default();
-    let mut builder = Builder::new(steer(scene, scene.verifier()?)?, generate, connect, index);
+    let mut builder = Builder::new(checker(scene, scene.verifier()?)?, generate, connect, index);
     builder.build(&mut Rng::seed(1), &mut stop, &mut ());
     Ok(builder.into_map())
 }
@@ -213,10 +213,10 @@ fn candidates<'c, M: RigidSpace, G: NodeGenerator<M::Space, Local<'c, M>>>(
     mut generate: G,
     attempts: std::ops::Range<u64>,
 ) -> Result<Vec<Candidate<M::State, ()>>> {
-    let mut steer = steer(scene, scene.verifier()?)?;
+    let mut checker = checker(scene, scene.verifier()?)?;
     let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
     for attempt in attempts {
-        generate.generate(attempt, &map, &mut steer, &mut Rng::stream(1, attempt), &mut out);
+        generate.generate(attempt, &map, &mut checker, &mut Rng::stream(1, attempt), &mut out);
         all.append(&mut out);
     }
     Ok(all)

@@ -30,7 +30,7 @@ pub(super) fn local<M: RigidSpace>(scene: &RigidScene<M>) -> Result<Local<'_, M>
 }
 
 /// How roadmaps of the setting move.
-pub(super) fn steer<'c, M: RigidSpace>(
+pub(super) fn checker<'c, M: RigidSpace>(
     scene: &'c RigidScene<M>,
     verifier: Verifier<'c, M::Space, M>,
 ) -> Result<EdgeChecker<'c, M::Space, Local<'c, M>>> {
@@ -110,7 +110,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         let recipe = prm::recipe(space, reach, Learning::default()).into_error()?;
         let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
         let mut builder =
-            Builder::new(steer(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
+            Builder::new(checker(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
         let began = nanoseconds();
         builder.build(&mut Rng::seed(1), &mut Nodes(size), &mut ());
         let build = seconds_since(began);
@@ -129,7 +129,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         ask("roadmap", build, &mut builder.into_answers(NEIGHBOURS));
         let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
         let mut answers =
-            RoadmapQueries::new(steer(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
+            RoadmapQueries::new(checker(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
         let began = nanoseconds();
         answers.verify();
         let verified = seconds_since(began);

@@ -108,11 +108,11 @@ where
         &mut self,
         _: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
-        let space = steer.space();
+        let space = checker.space();
         let mut q = space.sample_uniform(rng);
         let edges = map.all_edges().len();
         if map.len() >= self.first && edges > 0 && rng.random::<bool>() {

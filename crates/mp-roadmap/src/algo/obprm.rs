@@ -270,7 +270,7 @@ impl<H> OnObstacles<H> {
     fn inside<C, L>(
         &self,
         obstacle: usize,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
     ) -> Option<C::State>
     where
@@ -278,7 +278,7 @@ impl<H> OnObstacles<H> {
         L: LocalPlanner<C::State, Edge: Reversible>,
         H: ObstacleGeometry<C::State>,
     {
-        let space = steer.space();
+        let space = checker.space();
         let asked =
             if self.with.strategy == Strategy::Prototype { PointOf::Center } else { self.with.points };
         (0..TRIES).find_map(|i| {
@@ -288,7 +288,7 @@ impl<H> OnObstacles<H> {
             let point = self.hints.robot_point(of, rng);
             let place = self.hints.obstacle_point(obstacle, of, rng)?;
             let q = self.hints.brought(&turned, &point, &place);
-            (space.contains(&q) && !steer.admits(&q)).then_some(q)
+            (space.contains(&q) && !checker.admits(&q)).then_some(q)
         })
     }
 
@@ -298,18 +298,18 @@ impl<H> OnObstacles<H> {
         &self,
         obstacle: usize,
         [inside, toward]: [&C::State; 2],
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
     ) -> Option<f64>
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
         H: ObstacleGeometry<C::State>,
     {
-        let (space, robot) = (steer.space(), self.hints.robot());
+        let (space, robot) = (checker.space(), self.hints.robot());
         let places = [inside, toward].map(|q| self.hints.place_of(q, &robot.center));
         let reach = 2.0 * (self.hints.obstacles().get(obstacle)?.radius + robot.radius);
         let most = (reach / (places[1] - places[0]).norm()).min(1.0);
-        let mut admits = |at: f64| steer.admits(&space.interpolate(inside, toward, at));
+        let mut admits = |at: f64| checker.admits(&space.interpolate(inside, toward, at));
         let step = most / f64::from(LOOKS);
         let (mut free, mut low) = (0.0, 0.0);
         for i in 1..=LOOKS {
@@ -341,36 +341,36 @@ where
         &mut self,
         attempt: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
         let obstacles = self.hints.obstacles().len() as u64;
         let OnSurfaces { strategy, directions, shells, uniform, .. } = self.with;
-        if drew_uniform(if obstacles == 0 { 1.0 } else { uniform }, steer, rng, out) {
+        if drew_uniform(if obstacles == 0 { 1.0 } else { uniform }, checker, rng, out) {
             return;
         }
         let obstacle = (attempt % obstacles) as usize;
-        let Some(inside) = self.inside(obstacle, steer, rng) else { return };
-        let space = steer.space();
+        let Some(inside) = self.inside(obstacle, checker, rng) else { return };
+        let space = checker.space();
         for _ in 0..if strategy == Strategy::Prototype { directions } else { 1 } {
             let toward = space.sample_uniform(rng);
-            let Some(contact) = self.contact(obstacle, [&inside, &toward], steer) else { continue };
+            let Some(contact) = self.contact(obstacle, [&inside, &toward], checker) else { continue };
             let gap = self.gap / space.distance(&inside, &toward);
-            let mut take = |at: f64, kind: Kind, steer: &mut EdgeChecker<'_, C, L>| {
+            let mut take = |at: f64, kind: Kind, checker: &mut EdgeChecker<'_, C, L>| {
                 let q = space.interpolate(&inside, &toward, at);
                 // In contact it was found free already.
-                if at <= 1.0 && (kind == Kind::Contact || steer.admits(&q)) {
+                if at <= 1.0 && (kind == Kind::Contact || checker.admits(&q)) {
                     out.push(Candidate::new(q, kind).of(obstacle as u32));
                 }
             };
             match strategy {
-                Strategy::Prototype | Strategy::Contact => take(contact, Kind::Contact, steer),
-                Strategy::Free => take(contact + gap * rng.random::<f64>(), Kind::Near, steer),
+                Strategy::Prototype | Strategy::Contact => take(contact, Kind::Contact, checker),
+                Strategy::Free => take(contact + gap * rng.random::<f64>(), Kind::Near, checker),
                 Strategy::Shells => {
-                    take(contact, Kind::Contact, steer);
+                    take(contact, Kind::Contact, checker);
                     for shell in 1..=shells {
-                        take(contact + gap * shell as f64, Kind::Near, steer);
+                        take(contact + gap * shell as f64, Kind::Near, checker);
                     }
                 }
             }

@@ -168,7 +168,7 @@ impl<H> AroundObstacles<H> {
         &self,
         obstacle: usize,
         (q, kind): (&C::State, Kind),
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) where
@@ -188,7 +188,7 @@ impl<H> AroundObstacles<H> {
                 let scalar = min + (max - min) * (k as f64 / self.with.bands as f64);
                 let place = body.center + away * scalar;
                 let q = self.hints.aligned(&place, &direction, first + GOLDEN * k as f64);
-                steer.admits(&q).then_some(q)
+                checker.admits(&q).then_some(q)
             });
             out.extend(found.map(|q| Candidate::new(q, kind).of(obstacle as u32)));
         }
@@ -205,11 +205,11 @@ where
         &mut self,
         attempt: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
-        let q = steer.space().sample_uniform(rng);
+        let q = checker.space().sample_uniform(rng);
         let obstacles = self.hints.obstacles().len() as u64;
         if attempt < self.with.far {
             if self.hints.is_far(&q) {
@@ -217,12 +217,12 @@ where
             }
         } else if obstacles > 0 && attempt.is_multiple_of(2) {
             let obstacle = (attempt / 2 % obstacles) as usize;
-            self.band(obstacle, (&q, Kind::Near), steer, rng, out);
-        } else if steer.admits(&q) {
+            self.band(obstacle, (&q, Kind::Near), checker, rng, out);
+        } else if checker.admits(&q) {
             let kind = if self.hints.is_far(&q) { Kind::Far } else { Kind::Plain };
             out.push(Candidate::new(q, kind));
         } else if let Some(obstacle) = self.hints.touched(&q) {
-            self.band(obstacle, (&q, Kind::Salvaged), steer, rng, out);
+            self.band(obstacle, (&q, Kind::Salvaged), checker, rng, out);
         }
     }
 

@@ -68,8 +68,8 @@ use crate::{
     Reachable, Recipe, Roadmap, RoadmapPlanner,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo,
-    Problem, Reach, Reversible, Rng, Settings, Space, Step, Uniform,
+    BuildError, DefaultNn, Direction, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter,
+    PlannerInfo, Problem, Reach, Reversible, Rng, Settings, Space, Step, Uniform,
 };
 use rand::RngExt;
 
@@ -212,7 +212,7 @@ where
         &mut self,
         attempt: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
@@ -220,16 +220,16 @@ where
         // Where no connection failed nowhere is difficult.
         let Some(sums) = self.weights.as_ref().filter(|sums| sums.last().is_some_and(|sum| *sum > 0.0))
         else {
-            return self.free.generate(attempt, map, steer, rng, out);
+            return self.free.generate(attempt, map, checker, rng, out);
         };
         let at = rng.random::<f64>() * sums.last().copied().unwrap_or_default();
         let first = sums.partition_point(|sum| *sum <= at).min(sums.len() - 1) as NodeId;
-        let (space, mut here) = (steer.space(), map.state(first).clone());
+        let (space, mut here) = (checker.space(), map.state(first).clone());
         for bounce in 0..self.learning.bounces {
             let toward = space.sample_uniform(rng);
             let mut length = self.walk * rng.random::<f64>();
             for _ in 0..=4 {
-                let step = steer.extend(&here, &toward, Reach::Step(length));
+                let step = checker.extend(&here, &toward, Direction::Forward, Reach::Step(length));
                 let (Extension::Advanced(motion) | Extension::Reached(motion)) = step else {
                     length /= 2.0;
                     continue;

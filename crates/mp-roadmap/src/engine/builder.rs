@@ -39,7 +39,7 @@ pub struct Pace {
 /// the first step.
 #[derive(Debug)]
 pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
-    pub(crate) steer: EdgeChecker<'c, C, L>,
+    pub(crate) checker: EdgeChecker<'c, C, L>,
     pub(crate) map: Roadmap<C::State, L::Edge>,
     pub(crate) index: N,
     generate: G,
@@ -59,10 +59,10 @@ where
     N: NearestNeighbors<C>,
 {
     /// With no nodes yet; `index` is empty.
-    pub fn new(steer: EdgeChecker<'c, C, L>, generate: G, connect: K, index: N) -> Self {
+    pub fn new(checker: EdgeChecker<'c, C, L>, generate: G, connect: K, index: N) -> Self {
         let map = Roadmap::new();
         Self {
-            steer,
+            checker,
             map,
             index,
             generate,
@@ -84,7 +84,7 @@ where
     }
 
     pub(crate) fn replace(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
-        map.fill(self.steer.space(), &mut self.index)?;
+        map.fill(self.checker.space(), &mut self.index)?;
         self.map = map;
         self.connect.resumed(&self.map);
         self.ahead.ready.clear();
@@ -103,18 +103,18 @@ where
         neighbours: usize,
         observer: &mut dyn Observer<C::State>,
     ) -> Result<(), BuildError> {
-        other.check_within(self.steer.space())?;
+        other.check_within(self.checker.space())?;
         let before = self.map.len() as NodeId;
         self.map.append(other);
         for id in before..self.map.len() as NodeId {
-            self.index.inserted(self.steer.space(), self.map.states(), id);
+            self.index.inserted(self.checker.space(), self.map.states(), id);
             observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
         }
         let mut near = Vec::new();
         let mut growing = Growing {
             map: &mut self.map,
             index: &mut self.index,
-            steer: &mut self.steer,
+            checker: &mut self.checker,
             observer,
             answers: Vec::new(),
         };
@@ -171,7 +171,7 @@ where
         }
         let mut candidates = std::mem::take(&mut self.candidates);
         let mut stream = Rng::stream(seed, self.attempts);
-        self.generate.generate(self.attempts, &self.map, &mut self.steer, &mut stream, &mut candidates);
+        self.generate.generate(self.attempts, &self.map, &mut self.checker, &mut stream, &mut candidates);
         self.attempts += 1;
         let mut last = None;
         for candidate in candidates.drain(..) {
@@ -207,8 +207,13 @@ where
         if let Some(came) = &mut candidate.came {
             came.from = Some(came.from.or(last)?);
         }
-        let mut growing =
-            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer, answers };
+        let mut growing = Growing {
+            map: &mut self.map,
+            index: &mut self.index,
+            checker: &mut self.checker,
+            observer,
+            answers,
+        };
         self.connect.connect(candidate, &mut growing)
     }
 
@@ -221,7 +226,7 @@ where
         let mut growing = Growing {
             map: &mut self.map,
             index: &mut self.index,
-            steer: &mut self.steer,
+            checker: &mut self.checker,
             observer,
             answers: Vec::new(),
         };
@@ -250,8 +255,8 @@ where
     /// What has been done so far.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        let mut progress = Progress::new(self.attempts, self.map.len(), self.steer.motions);
-        (progress.rejected, progress.exhausted) = (self.steer.rejected, self.connect.exhausted());
+        let mut progress = Progress::new(self.attempts, self.map.len(), self.checker.motions());
+        (progress.rejected, progress.exhausted) = (self.checker.rejected(), self.connect.exhausted());
         progress
     }
 }

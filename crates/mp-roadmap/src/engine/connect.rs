@@ -3,7 +3,8 @@
 use super::prefetch::{Prefetched, Prefetching};
 use super::{Candidate, EdgeChecker, ParentMotion, Roadmap, Tag};
 use mp_cspace::{
-    BuildError, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible, Space,
+    BuildError, Direction, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible,
+    Space,
 };
 
 /// What a connector works with: the roadmap, the neighbours of a configuration, the local planner.
@@ -11,7 +12,7 @@ use mp_cspace::{
 pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     pub(crate) map: &'a mut Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a mut N,
-    pub(crate) steer: &'a mut EdgeChecker<'c, C, L>,
+    pub(crate) checker: &'a mut EdgeChecker<'c, C, L>,
     pub(crate) observer: &'a mut dyn Observer<C::State>,
     /// Motions to the candidate that were asked for ahead.
     pub(crate) answers: Prefetched<C::State, L::Edge>,
@@ -26,7 +27,7 @@ where
     /// The space.
     #[must_use]
     pub fn space(&self) -> &'c C {
-        self.steer.space()
+        self.checker.space()
     }
 
     /// The roadmap.
@@ -35,13 +36,13 @@ where
     }
 
     /// How it moves.
-    pub fn steer(&mut self) -> &mut EdgeChecker<'c, C, L> {
-        self.steer
+    pub fn checker(&mut self) -> &mut EdgeChecker<'c, C, L> {
+        self.checker
     }
 
     /// The `k` nodes nearest to `q` in order of distance, none farther than `radius`, into `out`.
     pub fn near(&self, q: &C::State, k: usize, radius: f64, out: &mut Vec<Hit>) {
-        let (space, states) = (self.steer.space(), self.map.states());
+        let (space, states) = (self.checker.space(), self.map.states());
         self.index.k_nearest(space, states, q, k, out);
         out.retain(|hit| hit.distance <= radius);
     }
@@ -58,9 +59,9 @@ where
         match self.answers.iter_mut().find(|(node, _)| *node == from) {
             Some((_, answer)) => {
                 let motion = answer.take();
-                self.steer.answered(self.map.state(from), motion, q)
+                self.checker.replay(self.map.state(from), motion, q)
             }
-            None => self.steer.reach(self.map.state(from), q),
+            None => self.checker.reach(self.map.state(from), q, Direction::Forward),
         }
     }
 
@@ -68,7 +69,7 @@ where
     pub fn add(&mut self, candidate: Candidate<C::State, L::Edge>) -> NodeId {
         let tag = Tag { kind: candidate.kind, obstacle: candidate.obstacle, ..Tag::default() };
         let id = self.map.add(candidate.state, tag);
-        self.index.inserted(self.steer.space(), self.map.states(), id);
+        self.index.inserted(self.checker.space(), self.map.states(), id);
         self.observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
         if let Some(ParentMotion { from: Some(from), motion }) = candidate.came {
             self.link(from, id, motion);

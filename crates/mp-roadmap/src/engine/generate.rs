@@ -48,7 +48,7 @@ pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
         &mut self,
         attempt: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     );
@@ -92,12 +92,12 @@ where
         &mut self,
         _: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
         let state = self.sampler.sample(rng);
-        if steer.admits(&state) {
+        if checker.admits(&state) {
             out.push(Candidate::new(state, Kind::Plain));
         }
     }

@@ -130,15 +130,15 @@ where
         &mut self,
         _: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
-        if drew_uniform(self.uniform, steer, rng, out) {
+        if drew_uniform(self.uniform, checker, rng, out) {
             return;
         }
-        let space = steer.space();
-        let found = R::attempt(space, |q: &C::State| steer.admits(q), self.sigma, rng);
+        let space = checker.space();
+        let found = R::attempt(space, |q: &C::State| checker.admits(q), self.sigma, rng);
         out.extend(found.map(|q| Candidate::new(q, Kind::Near)));
     }
 
@@ -184,7 +184,7 @@ where
 /// Whether this attempt is to be a uniform sample; if so, and it is free, it goes into `out`.
 pub(crate) fn drew_uniform<C, L>(
     probability: f64,
-    steer: &mut EdgeChecker<'_, C, L>,
+    checker: &mut EdgeChecker<'_, C, L>,
     rng: &mut Rng,
     out: &mut Vec<Candidate<C::State, L::Edge>>,
 ) -> bool
@@ -194,8 +194,8 @@ where
 {
     let draw = rng.random::<f64>() < probability;
     if draw {
-        let q = steer.space().sample_uniform(rng);
-        if steer.admits(&q) {
+        let q = checker.space().sample_uniform(rng);
+        if checker.admits(&q) {
             out.push(Candidate::new(q, Kind::Plain));
         }
     }

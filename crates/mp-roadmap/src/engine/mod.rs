@@ -3,7 +3,6 @@
 
 mod builder;
 mod connect;
-mod edge_checker;
 mod export;
 mod file;
 mod forest;
@@ -17,14 +16,12 @@ mod search;
 pub(crate) mod settings;
 mod staged;
 
-pub(crate) use planner::taken_apart;
-
 pub use builder::{Builder, Pace, Recipe};
 pub use connect::{Connector, Growing, NearestConnector, Reachable};
-pub use edge_checker::EdgeChecker;
 pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Candidate, Free, NodeGenerator, ParentMotion};
 pub use mixed::{Mixing, PairRule, Pairs};
+pub use mp_cspace::EdgeChecker;
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
 pub use prefetch::Prefetching;
 pub use queries::{IndexedRoadmap, Listed, RoadmapQueries, Unanswered};

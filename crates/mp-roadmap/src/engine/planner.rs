@@ -4,8 +4,8 @@ use super::{
     Builder, Candidate, Connector, EdgeChecker, GraphPath, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap,
 };
 use mp_cspace::{
-    BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
-    ProblemParts, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
+    BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Problem, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
 };
 
 /// Rejected paths after which each new motion is verified.
@@ -45,9 +45,9 @@ where
 {
     /// The planner made by a recipe, with an empty index.
     pub fn assemble(problem: Problem<'c, C, L>, index: N, recipe: Recipe<G, K, Q>) -> Self {
-        let (steer, start, goals) = taken_apart(problem);
+        let (checker, start, goals) = EdgeChecker::of(problem, PATIENCE);
         Self {
-            builder: Builder::new(steer, recipe.generate, recipe.connect, index),
+            builder: Builder::new(checker, recipe.generate, recipe.connect, index),
             query: recipe.query,
             pace: recipe.pace,
             improves: recipe.improves,
@@ -112,7 +112,7 @@ where
     /// Draws a goal and takes it in, if it may be one.
     fn draw_goal(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
         let Some(goal) = self.goals.sample(rng) else { return };
-        if !self.builder.steer.accepts(&goal) {
+        if !self.builder.checker.accepts(&goal) {
             return;
         }
         let id = self.builder.adopt(Candidate::new(goal, Kind::End), observer);
@@ -131,17 +131,17 @@ where
         let (start, goals) = (*start, goals.clone());
         self.looked = self.builder.map.len();
         loop {
-            let Builder { map, steer, .. } = &mut self.builder;
+            let Builder { map, checker, .. } = &mut self.builder;
             let near: Vec<_> =
                 goals.iter().filter(|&&goal| map.connected(start, goal)).map(|&goal| (goal, 0.0)).collect();
             if near.is_empty() {
                 return None;
             }
-            let way = self.query.search(map, steer, &[(start, 0.0)], &near)?;
+            let way = self.query.search(map, checker, &[(start, 0.0)], &near)?;
             if self.improves && way.length >= self.best * (1.0 - 1e-9) {
                 return None;
             }
-            if verify(map, steer, &way) {
+            if verify(map, checker, &way) {
                 self.best = way.length;
                 return map.path(&way);
             }
@@ -158,23 +158,11 @@ where
     }
 }
 
-/// How a problem is moved in, and from where to where.
-pub(crate) fn taken_apart<'c, C, L>(
-    problem: Problem<'c, C, L>,
-) -> (EdgeChecker<'c, C, L>, C::State, Goals<'c, C::State>)
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-{
-    let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
-    (EdgeChecker::boxed(space, local, verify, PATIENCE), start, goals)
-}
-
 /// Verifies the edges of a way that have not passed yet, in the direction in which they are run. Blocks
 /// the first that fails; whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
-    steer: &mut EdgeChecker<'_, C, L>,
+    checker: &mut EdgeChecker<'_, C, L>,
     way: &GraphPath,
 ) -> bool
 where
@@ -186,12 +174,12 @@ where
         if map.edge(edge).verified[usize::from(backward)] {
             continue;
         }
-        let passes = map
-            .motion(edge, ends[0])
-            .is_some_and(|motion| steer.passes(map.state(ends[0]), &motion.edge, &motion.end));
+        let passes = map.motion(edge, ends[0]).is_some_and(|motion| {
+            checker.passes(map.state(ends[0]), &motion.edge, &motion.end, Direction::Forward)
+        });
         if !passes {
             map.block(edge);
-            steer.rejected += 1;
+            checker.count_rejected();
             return false;
         }
         map.passed(edge, backward);

@@ -5,7 +5,9 @@
 //! then made one after the other as ever, and take the answers that are there.
 
 use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Roadmap};
-use mp_cspace::{Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers};
+use mp_cspace::{
+    Direction, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers,
+};
 use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
@@ -21,7 +23,7 @@ pub(crate) type PrefetchedAttempt<S, E> = Vec<(Candidate<S, E>, Prefetched<S, E>
 pub struct Prefetching<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     map: &'a Roadmap<C::State, L::Edge>,
     index: &'a N,
-    steer: &'a mut EdgeChecker<'c, C, L>,
+    checker: &'a mut EdgeChecker<'c, C, L>,
     q: &'a C::State,
     answers: Prefetched<C::State, L::Edge>,
 }
@@ -36,7 +38,7 @@ where
     #[must_use]
     pub fn near(&self, k: usize, radius: f64) -> Vec<Hit> {
         let mut near = Vec::new();
-        self.index.k_nearest(self.steer.space(), self.map.states(), self.q, k, &mut near);
+        self.index.k_nearest(self.checker.space(), self.map.states(), self.q, k, &mut near);
         near.retain(|hit| hit.distance <= radius);
         near
     }
@@ -55,7 +57,7 @@ where
 
     /// Asks for the motion from a node to the candidate, and keeps the answer. Whether there is one.
     pub fn reach(&mut self, from: NodeId) -> bool {
-        let motion = self.steer.reach(self.map.state(from), self.q);
+        let motion = self.checker.reach(self.map.state(from), self.q, Direction::Forward);
         let found = motion.is_some();
         self.answers.push((from, motion));
         found
@@ -102,7 +104,7 @@ impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Prefetcher<'_,
 
 /// One thread's part of the work.
 struct Hand<'c, C: Space, L: LocalPlanner<C::State>, G> {
-    steer: EdgeChecker<'c, C, L>,
+    checker: EdgeChecker<'c, C, L>,
     generate: Option<G>,
     attempts: Range<u64>,
     made: Vec<PrefetchedAttempt<C::State, L::Edge>>,
@@ -128,8 +130,8 @@ where
     #[must_use]
     pub fn on(mut self, workers: Workers, hands: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
         let none = 0..0;
-        let hands = hands.into_iter().map(|steer| Hand {
-            steer,
+        let hands = hands.into_iter().map(|checker| Hand {
+            checker,
             generate: None::<G>,
             attempts: none.clone(),
             made: Vec::new(),
@@ -162,11 +164,12 @@ where
         for attempt in self.attempts.clone() {
             let mut rng = Rng::stream(look.seed, attempt);
             let mut candidates = Vec::new();
-            generate.generate(attempt, look.map, &mut self.steer, &mut rng, &mut candidates);
+            generate.generate(attempt, look.map, &mut self.checker, &mut rng, &mut candidates);
             let foreseen = candidates.into_iter().map(|candidate| {
                 let (map, index) = (look.map, look.index);
                 let q = &candidate.state;
-                let mut ahead = Prefetching { map, index, steer: &mut self.steer, q, answers: Vec::new() };
+                let mut ahead =
+                    Prefetching { map, index, checker: &mut self.checker, q, answers: Vec::new() };
                 look.connect.foresee(&mut ahead);
                 let answers = ahead.answers;
                 (candidate, answers)

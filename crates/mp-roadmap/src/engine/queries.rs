@@ -5,7 +5,8 @@ use super::planner::verify;
 use super::{AStar, Builder, EdgeChecker, EdgeId, GraphPath, LinkState, Query, Roadmap};
 use mp_cspace::shortest::shortest_paths;
 use mp_cspace::{
-    BuildError, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible, Space,
+    BuildError, Direction, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible,
+    Space,
 };
 
 /// Why a query has no answer.
@@ -34,7 +35,7 @@ pub enum Unanswered {
 /// start to goal is tried first.
 #[derive(Debug)]
 pub struct RoadmapQueries<'c, C: Space, L: LocalPlanner<C::State>, N> {
-    steer: EdgeChecker<'c, C, L>,
+    checker: EdgeChecker<'c, C, L>,
     indexed: IndexedRoadmap<C::State, L::Edge, N>,
 }
 
@@ -58,8 +59,8 @@ where
     /// What was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
     #[must_use]
     pub fn into_answers(self, neighbours: usize) -> RoadmapQueries<'c, C, L, N> {
-        let Self { steer, map, index, .. } = self;
-        RoadmapQueries { steer, indexed: IndexedRoadmap::filled(map, index, neighbours) }
+        let Self { checker, map, index, .. } = self;
+        RoadmapQueries { checker, indexed: IndexedRoadmap::filled(map, index, neighbours) }
     }
 }
 
@@ -88,18 +89,18 @@ where
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
     pub fn new(
-        steer: EdgeChecker<'c, C, L>,
+        checker: EdgeChecker<'c, C, L>,
         map: Roadmap<C::State, L::Edge>,
         index: N,
         neighbours: usize,
     ) -> Result<Self, BuildError> {
-        let indexed = IndexedRoadmap::new(steer.space(), map, index, neighbours)?;
-        Ok(Self { steer, indexed })
+        let indexed = IndexedRoadmap::new(checker.space(), map, index, neighbours)?;
+        Ok(Self { checker, indexed })
     }
 
     /// As [`IndexedRoadmap::verify`].
     pub fn verify(&mut self) -> usize {
-        self.indexed.verify(&mut self.steer)
+        self.indexed.verify(&mut self.checker)
     }
 
     /// The roadmap.
@@ -117,7 +118,7 @@ where
     /// Motions asked of the local planner so far.
     #[must_use]
     pub fn motions(&self) -> u64 {
-        self.steer.motions
+        self.checker.motions()
     }
 
     /// A verified path from `start` to `goal`.
@@ -129,7 +130,7 @@ where
         start: &C::State,
         goal: &C::State,
     ) -> Result<Path<C::State, L::Edge>, Unanswered> {
-        self.indexed.answer(&mut self.steer, start, goal)
+        self.indexed.answer(&mut self.checker, start, goal)
     }
 
     /// As [`IndexedRoadmap::alternatives`].
@@ -142,7 +143,7 @@ where
         goal: &C::State,
         k: usize,
     ) -> Result<Listed<C::State, L::Edge>, Unanswered> {
-        self.indexed.alternatives(&mut self.steer, start, goal, k)
+        self.indexed.alternatives(&mut self.checker, start, goal, k)
     }
 }
 
@@ -199,7 +200,7 @@ where
     ///
     /// A planner of one path is better off with the verification of that path; of thousands each edge is on
     /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
-    pub fn verify<C, L>(&mut self, steer: &mut EdgeChecker<'_, C, L>) -> usize
+    pub fn verify<C, L>(&mut self, checker: &mut EdgeChecker<'_, C, L>) -> usize
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -213,7 +214,7 @@ where
             let [a, b] = self.map.ends(edge);
             for nodes in [vec![a, b], vec![b, a]] {
                 let way = GraphPath { nodes, edges: vec![edge], length: self.map.edge(edge).length };
-                if !self.star.check(&mut self.map, steer, &way) || !verify(&mut self.map, steer, &way) {
+                if !self.star.check(&mut self.map, checker, &way) || !verify(&mut self.map, checker, &way) {
                     break;
                 }
             }
@@ -227,7 +228,7 @@ where
     /// When there is none in the roadmap, with the reason.
     pub fn answer<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
     ) -> Result<Path<S, E>, Unanswered>
@@ -236,18 +237,18 @@ where
         L: LocalPlanner<S, Edge = E>,
         N: NearestNeighbors<C>,
     {
-        self.prepare(steer, start, goal)?;
-        if let Some(motion) = steer.reach(start, goal)
-            && steer.passes(start, &motion.edge, goal)
+        self.prepare(checker, start, goal)?;
+        if let Some(motion) = checker.reach(start, goal, Direction::Forward)
+            && checker.passes(start, &motion.edge, goal, Direction::Forward)
         {
             return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
         }
         loop {
-            let ends = self.join(steer, start, goal)?;
-            let way = self.way(steer, ends.nodes);
+            let ends = self.join(checker, start, goal)?;
+            let way = self.way(checker, ends.nodes);
             // Without a way a lazy search has blocked what connected the ends.
             if let Some(way) = way
-                && verify(&mut self.map, steer, &way)
+                && verify(&mut self.map, checker, &way)
                 && let Some(path) = self.map.path(&way)
             {
                 return Ok(whole(&ends, path));
@@ -256,17 +257,17 @@ where
     }
 
     /// A shortest way between two nodes, all of whose edges have motions.
-    fn way<C, L>(&mut self, steer: &mut EdgeChecker<'_, C, L>, [from, to]: [NodeId; 2]) -> Option<GraphPath>
+    fn way<C, L>(&mut self, checker: &mut EdgeChecker<'_, C, L>, [from, to]: [NodeId; 2]) -> Option<GraphPath>
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
         N: NearestNeighbors<C>,
     {
         if !self.forest.holds(&mut self.map) {
-            return self.star.search(&mut self.map, steer, &[(from, 0.0)], &[(to, 0.0)]);
+            return self.star.search(&mut self.map, checker, &[(from, 0.0)], &[(to, 0.0)]);
         }
         let way = self.forest.way(&self.map, from, to)?;
-        self.star.check(&mut self.map, steer, &way).then_some(way)
+        self.star.check(&mut self.map, checker, &way).then_some(way)
     }
 
     /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin and
@@ -279,7 +280,7 @@ where
     /// When there is none in the roadmap, with the reason.
     pub fn alternatives<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
         k: usize,
@@ -289,10 +290,10 @@ where
         L: LocalPlanner<S, Edge = E>,
         N: NearestNeighbors<C>,
     {
-        self.prepare(steer, start, goal)?;
+        self.prepare(checker, start, goal)?;
         loop {
-            let ends = self.join(steer, start, goal)?;
-            if let Some(ways) = self.ways(steer, ends.nodes, k) {
+            let ends = self.join(checker, start, goal)?;
+            if let Some(ways) = self.ways(checker, ends.nodes, k) {
                 let more = ends.first.1.cost + ends.last.1.cost;
                 let paths = ways.iter().filter_map(|way| Some((self.map.path(way)?, way.length + more)));
                 return Ok(paths.map(|(path, length)| (whole(&ends, path), length)).collect());
@@ -304,7 +305,7 @@ where
     /// blocked on the way.
     fn ways<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         [from, to]: [NodeId; 2],
         k: usize,
     ) -> Option<Vec<GraphPath>>
@@ -328,10 +329,10 @@ where
             let edges =
                 nodes.windows(2).map(|pair| self.shortest_edge(pair[0], pair[1])).collect::<Option<_>>()?;
             let way = GraphPath { nodes, edges, length };
-            if !self.star.check(&mut self.map, steer, &way) {
+            if !self.star.check(&mut self.map, checker, &way) {
                 return None;
             }
-            if !verify(&mut self.map, steer, &way) {
+            if !verify(&mut self.map, checker, &way) {
                 return None;
             }
             ways.push(way);
@@ -348,7 +349,7 @@ where
     /// Looks at the ends, and for the nodes nearest to them.
     fn prepare<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
     ) -> Result<(), Unanswered>
@@ -358,13 +359,13 @@ where
         N: NearestNeighbors<C>,
     {
         for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
-            if !steer.space().contains(q) {
+            if !checker.space().contains(q) {
                 return Err(Unanswered::Outside(endpoint));
             }
-            if !steer.admits(q) {
+            if !checker.admits(q) {
                 return Err(Unanswered::NotFree(endpoint));
             }
-            let (space, states) = (steer.space(), self.map.states());
+            let (space, states) = (checker.space(), self.map.states());
             self.index.k_nearest(space, states, q, self.neighbours, &mut self.near[i]);
         }
         Ok(())
@@ -374,7 +375,7 @@ where
     /// the query.
     fn join<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
     ) -> Result<Joined<S, E>, Unanswered>
@@ -391,16 +392,16 @@ where
                 to.iter().any(|other| map.component(other.id) == part)
             };
             let Some(&first) = from.iter().find(|hit| shares(hit, &mut self.map)) else {
-                return Err(self.why(steer, start, goal, reached));
+                return Err(self.why(checker, start, goal, reached));
             };
-            let Some(ahead) = self.hop(steer, start, first.id, false) else {
+            let Some(ahead) = self.hop(checker, start, first.id, false) else {
                 self.near[0].retain(|hit| hit.id != first.id);
                 continue;
             };
             reached[0] = true;
             let part = self.map.component(first.id);
             while let Some(&last) = self.near[1].iter().find(|hit| self.map.component(hit.id) == part) {
-                if let Some(behind) = self.hop(steer, goal, last.id, true) {
+                if let Some(behind) = self.hop(checker, goal, last.id, true) {
                     return Ok(Joined { first: ahead, last: behind, nodes: [first.id, last.id] });
                 }
                 self.near[1].retain(|hit| hit.id != last.id);
@@ -411,7 +412,7 @@ where
     /// Why the ends cannot be joined.
     fn why<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
         reached: [bool; 2],
@@ -423,7 +424,7 @@ where
     {
         for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
             let near = self.near[i].clone();
-            if !reached[i] && !near.iter().any(|hit| self.hop(steer, q, hit.id, i == 1).is_some()) {
+            if !reached[i] && !near.iter().any(|hit| self.hop(checker, q, hit.id, i == 1).is_some()) {
                 return Unanswered::Unreached(endpoint);
             }
         }
@@ -433,7 +434,7 @@ where
     /// A verified motion from an end to a node, or with `back` from the node to it.
     fn hop<C, L>(
         &self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         q: &S,
         node: NodeId,
         back: bool,
@@ -443,8 +444,8 @@ where
         L: LocalPlanner<S, Edge = E>,
     {
         let (from, to) = if back { (self.map.state(node), q) } else { (q, self.map.state(node)) };
-        let motion = steer.reach(from, to)?;
-        steer.passes(from, &motion.edge, to).then(|| (from.clone(), motion))
+        let motion = checker.reach(from, to, Direction::Forward)?;
+        checker.passes(from, &motion.edge, to, Direction::Forward).then(|| (from.clone(), motion))
     }
 }
 

@@ -1,7 +1,7 @@
 //! Shortest ways through a roadmap.
 
 use super::{EdgeChecker, EdgeId, GraphPath, LinkState, Roadmap};
-use mp_cspace::{LocalPlanner, Metric, NodeId, Reversible, Space};
+use mp_cspace::{Direction, LocalPlanner, Metric, NodeId, Reversible, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -15,7 +15,7 @@ pub trait Query<C: Space, L: LocalPlanner<C::State>> {
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         from: &[Entry],
         to: &[Entry],
     ) -> Option<GraphPath>;
@@ -159,13 +159,13 @@ where
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         from: &[Entry],
         to: &[Entry],
     ) -> Option<GraphPath> {
         loop {
-            let way = self.shortest(map, steer.space(), from, to)?;
-            if self.check(map, steer, &way) {
+            let way = self.shortest(map, checker.space(), from, to)?;
+            if self.check(map, checker, &way) {
                 return Some(way);
             }
         }
@@ -182,14 +182,14 @@ impl AStar {
     pub(crate) fn check<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         way: &GraphPath,
     ) -> bool
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
     {
-        self.nodes_pass(map, steer, way) && edges_pass(map, steer, way)
+        self.nodes_pass(map, checker, way) && edges_pass(map, checker, way)
     }
 
     /// Checks the nodes at the ends of unchecked edges of a way. Blocks all edges of the first that is not
@@ -197,7 +197,7 @@ impl AStar {
     fn nodes_pass<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         way: &GraphPath,
     ) -> bool
     where
@@ -213,7 +213,7 @@ impl AStar {
             if self.free[node as usize] {
                 continue;
             }
-            if !steer.admits(map.state(node)) {
+            if !checker.admits(map.state(node)) {
                 let edges: Vec<EdgeId> = map.links(node).map(|(edge, ..)| edge).collect();
                 edges.into_iter().for_each(|edge| map.block(edge));
                 return false;
@@ -227,7 +227,7 @@ impl AStar {
 /// Checks the unchecked edges of a way, whose nodes are free. Blocks the first that fails; whether none did.
 fn edges_pass<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
-    steer: &mut EdgeChecker<'_, C, L>,
+    checker: &mut EdgeChecker<'_, C, L>,
     way: &GraphPath,
 ) -> bool
 where
@@ -239,7 +239,7 @@ where
             continue;
         }
         let [a, b] = map.ends(edge);
-        let motion = steer.reach(map.state(a), map.state(b));
+        let motion = checker.reach(map.state(a), map.state(b), Direction::Forward);
         let failed = motion.is_none();
         map.tried(a, failed);
         map.tried(b, failed);

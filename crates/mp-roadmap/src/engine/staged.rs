@@ -1,7 +1,9 @@
 //! Connecting in stages: cheap motions first, then some that turn in place.
 
 use super::{Candidate, Connector, Growing, Kind, Reachable};
-use mp_cspace::{BuildError, Hit, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Reversible, Space};
+use mp_cspace::{
+    BuildError, Direction, Hit, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Reversible, Space,
+};
 use std::collections::BTreeMap;
 
 /// To which nodes a candidate is connected.
@@ -108,13 +110,13 @@ impl<H> StagedConnector<H> {
         if at < 1.0 {
             corners.push(self.hints.turned(&middle, &end));
         }
-        if !corners.iter().all(|q| growing.steer().admits(q)) {
+        if !corners.iter().all(|q| growing.checker().admits(q)) {
             return;
         }
         let mut motions = Vec::with_capacity(3);
         let mut here = &start;
         for next in corners.iter().chain([&end]) {
-            let Some(motion) = growing.steer().reach(here, next) else { return };
+            let Some(motion) = growing.checker().reach(here, next, Direction::Forward) else { return };
             motions.push(motion);
             here = next;
         }

@@ -57,13 +57,13 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// When the roadmap has no path, with the reason.
     fn answer(
         roadmap: &mut AnyRoadmap<Self>,
-        steer: &mut AnyEdgeChecker<'_, Self>,
+        checker: &mut AnyEdgeChecker<'_, Self>,
         start: &Self,
         goal: &Self,
     ) -> Result<Path<Self>, Unanswered>;
 
     /// As [`IndexedRoadmap::verify`].
-    fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, steer: &mut AnyEdgeChecker<'_, Self>) -> usize;
+    fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, checker: &mut AnyEdgeChecker<'_, Self>) -> usize;
 }
 
 /// Compiles the planners by name for states of your own: implements [`RoadmapState`] for them.
@@ -90,17 +90,17 @@ macro_rules! compile_for {
             }
             fn answer(
                 roadmap: &mut $crate::AnyRoadmap<Self>,
-                steer: &mut $crate::AnyEdgeChecker<'_, Self>,
+                checker: &mut $crate::AnyEdgeChecker<'_, Self>,
                 start: &Self,
                 goal: &Self,
             ) -> ::core::result::Result<$crate::Path<Self>, $crate::Unanswered> {
-                roadmap.answer(steer, start, goal)
+                roadmap.answer(checker, start, goal)
             }
             fn verify_roadmap(
                 roadmap: &mut $crate::AnyRoadmap<Self>,
-                steer: &mut $crate::AnyEdgeChecker<'_, Self>,
+                checker: &mut $crate::AnyEdgeChecker<'_, Self>,
             ) -> usize {
-                roadmap.verify(steer)
+                roadmap.verify(checker)
             }
         }
     )+};

@@ -163,14 +163,14 @@ fn candidates<'c, G: NodeGenerator<Se2, Local<'c>>>(
 ) -> Vec<Candidate<Se2State, ()>> {
     let check = Certified::new(space, robot.clone(), TOLERANCE).unwrap();
     let verifier = Verifier::new(space, robot).unwrap();
-    let mut steer = EdgeChecker::new(space, Straight::new(space, check), verifier, 10);
+    let mut checker = EdgeChecker::new(space, Straight::new(space, check), verifier, 10);
     let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
     for attempt in attempts {
         let mut rng = Rng::stream(7, attempt);
-        generate.generate(attempt, &map, &mut steer, &mut rng, &mut out);
+        generate.generate(attempt, &map, &mut checker, &mut rng, &mut out);
         all.append(&mut out);
     }
-    assert!(all.iter().all(|c| steer.admits(&c.state)), "all that is proposed is free");
+    assert!(all.iter().all(|c| checker.admits(&c.state)), "all that is proposed is free");
     all
 }
 
@@ -210,13 +210,13 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
         true
     };
     let check = || Discrete::new(&space, counts, Resolution::Fraction(0.1)).unwrap();
-    let mut steer =
+    let mut checker =
         EdgeChecker::new(&space, Straight::new(&space, check()), Verifier::new(&space, &robot).unwrap(), 10);
     let (map, mut out, mut first) = (Roadmap::new(), Vec::new(), generate());
     for attempt in 0..400 {
-        first.generate(attempt, &map, &mut steer, &mut Rng::stream(7, attempt), &mut out);
+        first.generate(attempt, &map, &mut checker, &mut Rng::stream(7, attempt), &mut out);
     }
-    drop(steer);
+    drop(checker);
     assert_eq!(tests.get(), 0);
     assert!(out.len() > 10 && out.iter().all(|c| c.kind == Kind::Far && robot.is_far(&c.state)));
 
@@ -237,12 +237,12 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
     let rod = FreeFlyer::new(&cuboid(0.8, 0.1, 0.1).unwrap(), [pillar]).unwrap();
     let space = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
     let check = Certified::new(&space, rod.clone(), rod.tolerance()).unwrap();
-    let mut steer =
+    let mut checker =
         EdgeChecker::new(&space, Straight::new(&space, check), Verifier::new(&space, &rod).unwrap(), 10);
     let mut generate = AroundObstacles::new(rod.clone(), ByGeometry { far: 0, bands: 20 }).unwrap();
     let (map, mut pairs) = (Roadmap::new(), 0);
     for attempt in (0..200).step_by(2) {
-        out_of(&mut generate, attempt, &map, &mut steer, &mut pairs);
+        out_of(&mut generate, attempt, &map, &mut checker, &mut pairs);
     }
     assert!(pairs > 80, "{pairs}");
 }
@@ -253,11 +253,11 @@ fn out_of(
     generate: &mut AroundObstacles<FreeFlyer>,
     attempt: u64,
     map: &Roadmap<Isometry3<f64>>,
-    steer: &mut EdgeChecker<'_, Se3, Rod<'_>>,
+    checker: &mut EdgeChecker<'_, Se3, Rod<'_>>,
     pairs: &mut u32,
 ) {
     let mut out = Vec::new();
-    generate.generate(attempt, map, steer, &mut Rng::stream(3, attempt), &mut out);
+    generate.generate(attempt, map, checker, &mut Rng::stream(3, attempt), &mut out);
     let axes: Vec<Vector3<f64>> = out.iter().map(|c| c.state.rotation * Vector3::x()).collect();
     if let [parallel, across] = axes[..] {
         assert!(parallel.z.abs() > 1.0 - 1e-9 && across.z.abs() < 1e-9);

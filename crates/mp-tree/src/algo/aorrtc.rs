@@ -128,8 +128,8 @@ impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Ex
     ) -> Grown {
         let direction = growing.tree().direction();
         let (origin, target) = (growing.tree().state(from).clone(), growing.target().clone());
-        let reach = Reach::Step(growing.steer().step());
-        let extension = growing.steer().extend(&origin, &target, direction, reach);
+        let reach = Reach::Step(growing.checker().step());
+        let extension = growing.checker().extend(&origin, &target, direction, reach);
         let (mut parent, mut motion, reached) = match extension {
             Extension::Trapped => return Grown::Trapped,
             Extension::Advanced(motion) => (from, motion, false),
@@ -142,11 +142,11 @@ impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Ex
                 break;
             }
             let bound = least + (cost - least) * growing.rng().random::<f64>();
-            let space = growing.steer().space();
+            let space = growing.checker().space();
             let nearest = nearest_within(space, growing.tree(), growing.selector(), &motion.end, bound);
             let Some(id) = nearest.filter(|&id| id != parent) else { break };
             let state = growing.tree().state(id).clone();
-            match growing.steer().reach(&state, &motion.end, direction) {
+            match growing.checker().reach(&state, &motion.end, direction) {
                 Some(way) if growing.tree().cost(id) + way.cost < cost => (parent, motion) = (id, way),
                 _ => break,
             }
@@ -218,7 +218,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             self.best = 0.0;
             return Some(self.trees[0].tree().path(root));
         }
-        let space = self.core.steer.space();
+        let space = self.core.checker.space();
         while let Some(goal) = self.core.goals.listed().get(self.planted) {
             self.planted += 1;
             if !self.trees[1].knows(space, goal) {
@@ -230,7 +230,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             let roots = 0..self.trees[1].tree().len() as NodeId;
             let mut roots = roots.filter(|&id| self.trees[1].tree().state(id) == goal);
             let root = roots.find(|&id| self.trees[1].tree().parent(id).is_none());
-            let grown = self.trees[0].leap(0, goal, &mut self.core.steer, rng, observer);
+            let grown = self.trees[0].leap(0, goal, &mut self.core.checker, rng, observer);
             if let (Grown::Reached(id), Some(root)) = (grown, root)
                 && let Some(path) = self.candidate([id, root], rng, observer)
             {
@@ -252,7 +252,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
 
     /// The node of a tree to grow from toward `q`, at a cost of at most `bound`.
     fn choose(&mut self, tree: usize, q: &C::State, bound: f64) -> Option<NodeId> {
-        let space = self.core.steer.space();
+        let space = self.core.checker.space();
         let branch = &mut self.trees[tree];
         if bound < f64::INFINITY {
             return nearest_within(space, branch.tree(), branch.selector(), q, bound);
@@ -271,7 +271,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
-            if !tree.verify(id, &mut self.core.steer, observer, |_| ()) {
+            if !tree.verify(id, &mut self.core.checker, observer, |_| ()) {
                 return None;
             }
         }
@@ -301,11 +301,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             let j = rng.random_range(i + 2..path.states.len());
             let cost: f64 = costs[i..j].iter().sum();
             let (from, to) = (&path.states[i], &path.states[j]);
-            if self.core.steer.space().distance(from, to) >= cost * (1.0 - GAIN) {
+            if self.core.checker.space().distance(from, to) >= cost * (1.0 - GAIN) {
                 continue;
             }
-            let Some(way) = self.core.steer.reach(from, to, Direction::Forward) else { continue };
-            if way.cost < cost && self.core.steer.passes(from, &way.edge, to) {
+            let Some(way) = self.core.checker.reach(from, to, Direction::Forward) else { continue };
+            if way.cost < cost && self.core.checker.passes(from, &way.edge, to, Direction::Forward) {
                 path.states.drain(i + 1..j);
                 path.edges.splice(i..j, [way.edge]);
                 costs.splice(i..j, [way.cost]);
@@ -347,16 +347,16 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
         }
         let bound = if most < f64::INFINITY { least + (most - least) * rng.random::<f64>() } else { most };
         let from = self.choose(turn, &target, bound)?;
-        let (branch, steer, informed) = (&mut self.trees[turn], &mut self.core.steer, &self.informed);
+        let (branch, checker, informed) = (&mut self.trees[turn], &mut self.core.checker, &self.informed);
         let mut growth = Resampled(
             |direction, q: &C::State| if most < f64::INFINITY { informed.least(direction, q) } else { most },
         );
-        let grown = branch.grow_from(from, &target, steer, &mut growth, rng, observer);
+        let grown = branch.grow_from(from, &target, checker, &mut growth, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
         let state = self.trees[turn].tree().state(i).clone();
         let from = self.choose(other, &state, self.best - self.trees[turn].tree().cost(i))?;
-        let (branch, steer) = (&mut self.trees[other], &mut self.core.steer);
-        let joined = branch.grow_from(from, &state, steer, &mut Connect::default(), rng, observer);
+        let (branch, checker) = (&mut self.trees[other], &mut self.core.checker);
+        let joined = branch.grow_from(from, &state, checker, &mut Connect::default(), rng, observer);
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, rng, observer)
     }

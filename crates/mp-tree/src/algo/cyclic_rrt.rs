@@ -60,8 +60,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo,
-    Recipe, Samples, Selector, SingleTree, Tree, TreeEdgeChecker, Tuning,
+    AppendDistinct, BuildError, EdgeChecker, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
+    PlannerInfo, Recipe, Samples, Selector, SingleTree, Tree, Tuning,
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
@@ -169,12 +169,7 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
     }
 
     /// Verifies an edge in one direction; once. Whether that changes what there is to choose from.
-    fn ask<C, L>(
-        &mut self,
-        tree: &Tree<S, E>,
-        steer: &mut TreeEdgeChecker<'_, C, L>,
-        (from, to): Ends,
-    ) -> bool
+    fn ask<C, L>(&mut self, tree: &Tree<S, E>, checker: &mut EdgeChecker<'_, C, L>, (from, to): Ends) -> bool
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -192,11 +187,11 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
             Some(edge) => (edge.1, Some(edge)),
             None => {
                 let back = hangs(from, to).or_else(|| self.edges.get(&(to, from)).cloned());
-                let way = steer.reach(a, b, Direction::Forward).map(|motion| (motion.edge, motion.cost));
+                let way = checker.reach(a, b, Direction::Forward).map(|motion| (motion.edge, motion.cost));
                 (back.map_or(f64::NAN, |edge| edge.1), way)
             }
         };
-        let answer = forward.filter(|(edge, _)| verified || steer.passes(a, edge, b));
+        let answer = forward.filter(|(edge, _)| verified || checker.passes(a, edge, b, Direction::Forward));
         let changed = answer.as_ref().is_none_or(|&(_, cost)| cost != believed);
         self.asked.insert((from, to), answer);
         changed
@@ -209,10 +204,10 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L:
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (space, step) = (growing.checker().space(), growing.checker().step());
         let (direction, target) = (growing.tree().direction(), growing.target().clone());
         let a = growing.tree().state(from).clone();
-        let extension = growing.steer().extend(&a, &target, direction, Reach::Step(step));
+        let extension = growing.checker().extend(&a, &target, direction, Reach::Step(step));
         let (Extension::Advanced(motion) | Extension::Reached(motion)) = &extension else {
             return Grown::Trapped;
         };
@@ -222,7 +217,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L:
             let other = self.near.iter().map(|hit| hit.id).find(|&id| !self.joined(tree, from, id));
             let state = other.map(|id| (id, tree.state(id).clone()));
             if let Some((to, b)) = state
-                && let Some(way) = growing.steer().reach(&a, &b, direction)
+                && let Some(way) = growing.checker().reach(&a, &b, direction)
             {
                 self.edges.insert((from, to), (way.edge, way.cost));
                 return Grown::Trapped;
@@ -337,19 +332,19 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
         &mut self,
         choose: impl Fn(&C, &Tree<C::State, L::Edge>, &[Vec<(u32, f64)>]) -> Vec<(f64, Vec<u32>)>,
     ) -> Listed<C::State, L::Edge> {
-        let (tree, steer, cyclic) = self.inner.parts();
+        let (tree, checker, cyclic) = self.inner.parts();
         let is_goal = |id: &NodeId| self.arrived.contains(tree.state(*id));
         let goals: Vec<NodeId> = (0..tree.len() as NodeId).filter(is_goal).collect();
         if goals.is_empty() {
             return Vec::new();
         }
         loop {
-            let mut found = choose(steer.space(), tree, &cyclic.arcs(tree, &goals));
+            let mut found = choose(checker.space(), tree, &cyclic.arcs(tree, &goals));
             let mut changed = false;
             for (_, nodes) in &mut found {
                 nodes.pop();
                 for pair in nodes.windows(2) {
-                    changed |= cyclic.ask(tree, steer, (pair[0], pair[1]));
+                    changed |= cyclic.ask(tree, checker, (pair[0], pair[1]));
                 }
             }
             if changed {

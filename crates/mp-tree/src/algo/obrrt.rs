@@ -235,7 +235,7 @@ where
     Se: Selector<C>,
     A: Inserter<C, L>,
 {
-    let (space, step) = (growing.steer().space(), growing.steer().step());
+    let (space, step) = (growing.checker().space(), growing.checker().step());
     let state = growing.tree().state(from);
     let distance = space.distance(state, along);
     if !(distance > 0.0 && distance.is_finite()) {
@@ -255,7 +255,7 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (space, step) = (growing.checker().space(), growing.checker().step());
         let (state, sample) = (growing.tree().state(from).clone(), growing.target().clone());
         let method = self.weights.draw(growing.rng());
         let grown = match method {

@@ -229,8 +229,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         L: Send,
         N: Sync,
     {
-        let (space, points) = (self.core.steer.space(), self.branch.tree().states());
-        let (step, index) = (self.core.steer.step(), &self.branch.selector().0);
+        let (space, points) = (self.core.checker.space(), self.branch.tree().states());
+        let (step, index) = (self.core.checker.step(), &self.branch.selector().0);
         self.workers.each(&mut self.slots, |slot| {
             let work = AssertUnwindSafe(|| slot.work((space, step), points, index));
             slot.panicked = catch_unwind(work).err();
@@ -254,7 +254,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             let new = self.branch.tree().len();
             self.motions += u64::from(*self.branch.tree().state(from) != target);
             let mut found = Found(Some(extension));
-            let grown = self.branch.grow_from(from, &target, &mut self.core.steer, &mut found, rng, observer);
+            let grown =
+                self.branch.grow_from(from, &target, &mut self.core.checker, &mut found, rng, observer);
             let entered = match (slot.why, grown) {
                 (Purpose::Join, Grown::Reached(id)) => Some(id),
                 _ => {

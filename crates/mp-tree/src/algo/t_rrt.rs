@@ -249,7 +249,7 @@ impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let step = growing.steer().step();
+        let step = growing.checker().step();
         let refines = growing.purpose() == Purpose::Explore && growing.distance(from) <= step;
         let many = self.refined as f64 > self.with.refine * growing.tree().len() as f64;
         if refines && many && !growing.rng().random_bool(self.with.refine) {
@@ -257,7 +257,7 @@ impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C
         }
         let (state, target) = (growing.tree().state(from).clone(), growing.target().clone());
         let direction = growing.tree().direction();
-        let extension = growing.steer().extend(&state, &target, direction, Reach::Step(step));
+        let extension = growing.checker().extend(&state, &target, direction, Reach::Step(step));
         let (Extension::Advanced(motion) | Extension::Reached(motion)) = &extension else {
             return Grown::Trapped;
         };

@@ -153,7 +153,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for UtilityGuided<C::St
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (space, step) = (growing.checker().space(), growing.checker().step());
         let nodes = growing.tree().len();
         let tree = usize::from(growing.tree().direction() == Direction::Backward);
         self.past[tree].resize_with(nodes, Past::default);

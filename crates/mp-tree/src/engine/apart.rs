@@ -1,7 +1,7 @@
 //! Slot: motions that only join the tree where nothing is yet.
 
-use super::{Inserted, Inserter, Selector, Tree, TreeEdgeChecker};
-use mp_cspace::{BuildError, Hit, LocalPlanner, Motion, NodeId, Space};
+use super::{Inserted, Inserter, Selector, Tree};
+use mp_cspace::{BuildError, EdgeChecker, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// Under the node it came from, unless another node of the tree is there already: up to rounding, or
 /// within a radius.
@@ -35,14 +35,14 @@ const SIMILAR: f64 = 1e-9;
 impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendApart {
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut TreeEdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
     ) -> Inserted {
-        let radius = self.radius.unwrap_or(SIMILAR * steer.space().extent());
-        select.near(steer.space(), tree.states(), &motion.end, radius, &mut self.near);
+        let radius = self.radius.unwrap_or(SIMILAR * checker.space().extent());
+        select.near(checker.space(), tree.states(), &motion.end, radius, &mut self.near);
         let same = |hit: &&Hit| *tree.state(hit.id) == motion.end;
         // A motion to a state similar to where it began is as short as it is meant to be.
         let similar = |hit: &&Hit| hit.id != from;

@@ -1,8 +1,8 @@
 //! What the loops have in common: the ends of the path, the straight way between them, verified paths.
 
-use super::{Grown, Inserter, SearchTree, Selector, TreeEdgeChecker, Tuning};
+use super::{Grown, Inserter, SearchTree, Selector, Tuning};
 use mp_cspace::{
-    BuildError, Goals, LocalPlanner, NodeId, Observer, Path, Problem, ProblemParts, Progress, Rng, Space,
+    BuildError, EdgeChecker, Goals, LocalPlanner, NodeId, Observer, Path, Problem, Progress, Rng, Space,
 };
 use rand::RngExt;
 
@@ -15,7 +15,7 @@ pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
     /// Where they end.
     pub goals: Goals<'c, C::State>,
     /// How trees move, and the verifier.
-    pub steer: TreeEdgeChecker<'c, C, L>,
+    pub checker: EdgeChecker<'c, C, L>,
     /// The probability of aiming at a goal; zero where there is none to aim at.
     pub goal_bias: f64,
     /// Iterations so far.
@@ -31,9 +31,10 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     /// When a parameter is out of range.
     pub fn new(problem: Problem<'c, C, L>, tuning: &Tuning) -> Result<Self, BuildError> {
         let goal_bias = tuning.checked_bias()?;
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
+        let step = tuning.step.length_in(problem.space())?;
+        let (checker, start, goals) = EdgeChecker::of(problem, tuning.patience);
         Ok(Self {
-            steer: TreeEdgeChecker::new(space, local, verify, tuning)?,
+            checker: checker.with_step(step),
             start,
             goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
             goals,
@@ -52,7 +53,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
             return None;
         }
         let arrived = self.goals.reached(&self.start);
-        let root = branch.add_root(self.steer.space(), self.start.clone(), observer);
+        let root = branch.add_root(self.checker.space(), self.start.clone(), observer);
         arrived.then_some(root)
     }
 
@@ -66,7 +67,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     ) -> Option<Grown> {
         let goal = self.goals.listed().get(self.tried)?;
         self.tried += 1;
-        Some(branch.leap(0, goal, &mut self.steer, rng, observer))
+        Some(branch.leap(0, goal, &mut self.checker, rng, observer))
     }
 
     /// A goal to aim at instead of exploring, now and then.
@@ -82,11 +83,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         observer: &mut dyn Observer<C::State>,
     ) {
         let wanted = branch.tree().is_empty() || rng.random_bool(self.goal_bias);
-        let space = self.steer.space();
+        let space = self.checker.space();
         if wanted
             && let Some(goal) = self.goals.sample(rng)
             && !branch.knows(space, &goal)
-            && self.steer.accepts(&goal)
+            && self.checker.accepts(&goal)
         {
             branch.add_root(space, goal, observer);
         }
@@ -101,15 +102,15 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         observer: &mut dyn Observer<C::State>,
         pruned: impl FnMut(&[NodeId]),
     ) -> Option<Path<C::State, L::Edge>> {
-        let passed = branch.verify(id, &mut self.steer, observer, pruned);
+        let passed = branch.verify(id, &mut self.checker, observer, pruned);
         passed.then(|| branch.tree().path(id))
     }
 
     /// What has been done, with so many nodes.
     #[must_use]
     pub fn progress(&self, nodes: usize) -> Progress {
-        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
-        progress.rejected = self.steer.rejected();
+        let mut progress = Progress::new(self.iterations, nodes, self.checker.motions());
+        progress.rejected = self.checker.rejected();
         progress
     }
 }

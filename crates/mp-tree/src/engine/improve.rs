@@ -149,11 +149,11 @@ where
             Some(goal) => (goal, Purpose::Join),
             None => {
                 let (points, select) = self.branch.parts();
-                (self.propose.propose(rng, self.core.steer.space(), points, select), Purpose::Explore)
+                (self.propose.propose(rng, self.core.checker.space(), points, select), Purpose::Explore)
             }
         };
         observer.on(Event::Sampled(&target));
-        let grown = self.branch.toward(&target, why, &mut self.core.steer, &mut self.growth, rng, observer);
+        let grown = self.branch.toward(&target, why, &mut self.core.checker, &mut self.growth, rng, observer);
         if why == Purpose::Join && !self.core.goals.has_region() {
             self.note(grown);
         }

@@ -1,7 +1,7 @@
 //! Slot: how a new motion joins the tree.
 
-use super::{Selector, Tree, TreeEdgeChecker};
-use mp_cspace::{Hit, LocalPlanner, Motion, NodeId, Space};
+use super::{Selector, Tree};
+use mp_cspace::{EdgeChecker, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// What became of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -20,7 +20,7 @@ pub trait Inserter<C: Space, L: LocalPlanner<C::State>> {
     /// Attaches `motion`, which leaves (in time: enters, in a backward tree) node `from`.
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut TreeEdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
@@ -44,7 +44,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Append {
     #[inline]
     fn attach<Se: Selector<C>>(
         &mut self,
-        _: &mut TreeEdgeChecker<'_, C, L>,
+        _: &mut EdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         _: &mut Se,
         from: NodeId,
@@ -67,13 +67,13 @@ pub struct AppendDistinct {
 impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendDistinct {
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut TreeEdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
     ) -> Inserted {
-        select.near(steer.space(), tree.states(), &motion.end, 0.0, &mut self.near);
+        select.near(checker.space(), tree.states(), &motion.end, 0.0, &mut self.near);
         match self.near.iter().find(|hit| *tree.state(hit.id) == motion.end) {
             Some(hit) => Inserted::Known(hit.id),
             None => Inserted::New(tree.push(from, motion)),

@@ -29,7 +29,7 @@ pub use improve::{Improving, improve};
 pub use insert::{Append, AppendDistinct, Inserted, Inserter};
 pub use recipe::{Recipe, Tuning};
 pub use rewire::{Near, Rewire};
-pub use search_tree::{Growing, SearchTree, TreeEdgeChecker};
+pub use search_tree::{Growing, SearchTree};
 pub use select::{NearestSelector, Purpose, Selector};
 pub use settings::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 pub use single::SingleTree;

@@ -1,7 +1,7 @@
 //! Attach by the cheapest way: what makes RRT* of RRT.
 
-use super::{Inserted, Inserter, Selector, Tree, TreeEdgeChecker};
-use mp_cspace::{BuildError, Direction, Hit, LocalPlanner, Motion, NodeId, Space};
+use super::{Inserted, Inserter, Selector, Tree};
+use mp_cspace::{BuildError, Direction, EdgeChecker, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// Which nodes of a tree of n nodes, in a space of dimension d, count as near a new one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +97,7 @@ fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: 
 impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
     fn attach<Se: Selector<C>>(
         &mut self,
-        steer: &mut TreeEdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
         select: &mut Se,
         from: NodeId,
@@ -107,8 +107,8 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
         if motion.end == *tree.state(from) {
             return Inserted::Known(from);
         }
-        let (space, direction) = (steer.space(), tree.direction());
-        self.near.find((space, steer.step()), tree.states(), select, &motion.end, &mut self.hits);
+        let (space, direction) = (checker.space(), tree.direction());
+        self.near.find((space, checker.step()), tree.states(), select, &motion.end, &mut self.hits);
         if let Some(hit) = self.hits.iter().find(|hit| *tree.state(hit.id) == motion.end) {
             return Inserted::Known(hit.id);
         }
@@ -128,20 +128,20 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
             if promise >= cost {
                 break;
             }
-            let Some(way) = steer.reach(tree.state(id), &best.1.end, direction) else { continue };
+            let Some(way) = checker.reach(tree.state(id), &best.1.end, direction) else { continue };
             if tree.cost(id) + way.cost < cost {
                 cost = tree.cost(id) + way.cost;
                 best = (id, way);
             }
         }
         let (parent, motion) = best;
-        let verified = steer.distrusts();
+        let verified = checker.distrusts();
         let mut better = Vec::new();
         for &Hit { id, .. } in &self.hits {
             let promise = cost + distance(space, direction, &motion.end, tree.state(id));
             if id != parent
                 && promise < tree.cost(id)
-                && let Some(way) = steer.reach(&motion.end, tree.state(id), direction)
+                && let Some(way) = checker.reach(&motion.end, tree.state(id), direction)
             {
                 better.push((id, way));
             }

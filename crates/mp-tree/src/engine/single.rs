@@ -1,12 +1,9 @@
 //! The loop with one tree, grown from the start.
 
-use super::{
-    Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree,
-    TreeEdgeChecker,
-};
+use super::{Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree};
 use mp_cspace::{
-    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
-    Space,
+    BuildError, Direction, EdgeChecker, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem,
+    Progress, Rng, Space,
 };
 
 /// A planner that grows one tree from the start until it enters the goal.
@@ -27,7 +24,7 @@ pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
 /// A tree, how it moves and how it grows.
 type Parts<'a, 'c, C, L, G> = (
     &'a Tree<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>,
-    &'a mut TreeEdgeChecker<'c, C, L>,
+    &'a mut EdgeChecker<'c, C, L>,
     &'a mut G,
 );
 
@@ -67,7 +64,7 @@ where
 
     /// The tree, how it moves and how it grows.
     pub(crate) fn parts(&mut self) -> Parts<'_, 'c, C, L, G> {
-        (self.branch.tree(), &mut self.core.steer, &mut self.growth)
+        (self.branch.tree(), &mut self.core.checker, &mut self.growth)
     }
 
     /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the
@@ -101,7 +98,7 @@ where
     ) -> Option<Path<C::State, L::Edge>> {
         observer.on(Event::Sampled(target));
         let before = self.branch.tree().len();
-        let grown = self.branch.toward(target, why, &mut self.core.steer, &mut self.growth, rng, observer);
+        let grown = self.branch.toward(target, why, &mut self.core.checker, &mut self.growth, rng, observer);
         if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
             return self.candidate(id, observer);
         }
@@ -148,7 +145,7 @@ where
             return self.grow(&goal, Purpose::Join, rng, observer);
         }
         let (points, select) = self.branch.parts();
-        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
+        let target = self.propose.propose(rng, self.core.checker.space(), points, select);
         self.grow(&target, Purpose::Explore, rng, observer)
     }
 

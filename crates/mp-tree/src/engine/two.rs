@@ -88,7 +88,7 @@ where
         if let Some(root) = self.core.plant(&mut self.trees[0], observer) {
             return Some(self.trees[0].tree().path(root));
         }
-        let space = self.core.steer.space();
+        let space = self.core.checker.space();
         while let Some(goal) = self.core.goals.listed().get(self.planted) {
             self.planted += 1;
             if !self.trees[1].knows(space, goal) {
@@ -101,7 +101,7 @@ where
             self.tried += 1;
             let [forward, backward] = &mut self.trees;
             let goal = backward.tree().state(goal_root);
-            let grown = forward.leap(0, goal, &mut self.core.steer, rng, observer);
+            let grown = forward.leap(0, goal, &mut self.core.checker, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate([id, goal_root], observer) {
                 return Some(path);
@@ -123,7 +123,7 @@ where
                 self.explore.pruned(direction, survivors);
                 self.join.pruned(direction, survivors);
             };
-            if !tree.verify(id, &mut self.core.steer, observer, pruned) {
+            if !tree.verify(id, &mut self.core.checker, observer, pruned) {
                 return None;
             }
         }
@@ -160,13 +160,13 @@ where
         let [forward, backward] = &mut self.trees;
         let (a, b) = if turn == 0 { (forward, backward) } else { (backward, forward) };
         let (points, select) = a.parts();
-        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
+        let target = self.propose.propose(rng, self.core.checker.space(), points, select);
         observer.on(Event::Sampled(&target));
         let grown =
-            a.toward(&target, Purpose::Explore, &mut self.core.steer, &mut self.explore, rng, observer);
+            a.toward(&target, Purpose::Explore, &mut self.core.checker, &mut self.explore, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
         let joined =
-            b.toward(a.tree().state(i), Purpose::Join, &mut self.core.steer, &mut self.join, rng, observer);
+            b.toward(a.tree().state(i), Purpose::Join, &mut self.core.checker, &mut self.join, rng, observer);
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, observer)
     }

@@ -36,14 +36,14 @@ impl<C: Space, L: LocalPlanner<C::State> + EachOnce> Extender<C, L> for Untried 
         if self.tried.len() <= node {
             self.tried.resize_with(node + 1, Vec::new);
         }
-        let count = growing.steer().local().count();
+        let count = growing.checker().local().count();
         let (most, rounds) = if self.one { (1, 1) } else { (count, count) };
         // More than one round only where a successor is free but in the tree already.
         for _ in 0..rounds {
             let tried = std::mem::take(&mut self.tried[node]);
-            growing.steer().local().lend_tried(tried, most);
+            growing.checker().local().lend_tried(tried, most);
             let grown = growing.step(from);
-            self.tried[node] = growing.steer().local().take_tried();
+            self.tried[node] = growing.checker().local().take_tried();
             if grown != Grown::Trapped || self.tried[node].iter().all(|tried| *tried) {
                 return grown;
             }

@@ -133,7 +133,7 @@ impl<L: LocalPlanner<Point>> Extender<Rn<2>, L> for Sidestep {
             return grown;
         }
         self.taken += 1;
-        let space = growing.steer().space();
+        let space = growing.checker().space();
         let aside = space.sample_uniform(growing.rng());
         growing.step_toward(from, &aside)
     }
