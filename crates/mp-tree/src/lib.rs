@@ -57,17 +57,17 @@
 //! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //! use mp_cspace::{Linear, Uniform};
-//! use mp_tree::{Append, Connect, NearestSelector, Recipe, Samples, SingleTree, Tuning};
+//! use mp_tree::{Append, Connect, NearestSelector, TreePlannerParts, Samples, SingleTree, Tuning};
 //!
-//! let propose = Samples(Uniform(&space));
-//! let (select, grow) = (NearestSelector(Linear::new()), Connect::default());
-//! let recipe = Recipe { propose, select, grow, attach: Append, tuning: Tuning::default() };
-//! let mut planner = SingleTree::assemble(problem, recipe)?;
+//! let target_sampler = Samples(Uniform(&space));
+//! let (selector, extender) = (NearestSelector(Linear::new()), Connect::default());
+//! let parts = TreePlannerParts { target_sampler, selector, extender, inserter: Append, tuning: Tuning::default() };
+//! let mut planner = SingleTree::assemble(problem, parts)?;
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! assert!(matches!(outcome, Outcome::Solved(_)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! The loops try the straight way to the goal first, unless the growth [declines](Extender::leaps).
+//! The loops try the straight way to the goal first, unless the extender [declines](Extender::leaps).
 //!
 //! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem and traces
 //! and verifies paths, [`SearchTree`] is a tree that grows, and forgets what hangs on an edge the verifier refuses. A tree
@@ -79,7 +79,7 @@
 //!
 //! struct RandomTree<'c, C: Space, L: LocalPlanner<C::State>> {
 //!     core: Core<'c, C, L>,
-//!     branch: SearchTree<C, L, NearestSelector<Linear>, AppendDistinct>,
+//!     tree: SearchTree<C, L, NearestSelector<Linear>, AppendDistinct>,
 //! }
 //!
 //! impl<C: Space, L: LocalPlanner<C::State>> Planner<C::State> for RandomTree<'_, C, L> {
@@ -90,23 +90,23 @@
 //!         rng: &mut Rng,
 //!         observer: &mut dyn Observer<C::State>,
 //!     ) -> Option<Path<C::State, L::Edge>> {
-//!         let Self { core, branch } = self;
+//!         let Self { core, tree } = self;
 //!         core.iterations += 1;
-//!         if let Some(root) = core.plant(branch, observer) {
-//!             return core.path(branch, root, observer, |_| ());
+//!         if let Some(root) = core.plant(tree, observer) {
+//!             return core.path(tree, root, observer, |_| ());
 //!         }
 //!         let goal = core.aim(rng);
 //!         let target = goal.clone().unwrap_or_else(|| core.checker.space().sample_uniform(rng));
-//!         let from = rng.random_range(0..branch.tree().len()) as NodeId;
-//!         let grown = branch.grow_from(from, &target, &mut core.checker, &mut Extend, rng, observer);
+//!         let from = rng.random_range(0..tree.nodes().len()) as NodeId;
+//!         let grown = tree.grow_from(from, &target, &mut core.checker, &mut Extend, rng, observer);
 //!         match grown {
-//!             Grown::Reached(id) if goal.is_some() => core.path(branch, id, observer, |_| ()),
+//!             Grown::Reached(id) if goal.is_some() => core.path(tree, id, observer, |_| ()),
 //!             _ => None,
 //!         }
 //!     }
 //!
 //!     fn progress(&self) -> Progress {
-//!         self.core.progress(self.branch.tree().len())
+//!         self.core.progress(self.tree.nodes().len())
 //!     }
 //! }
 //! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Straight};
@@ -120,8 +120,8 @@
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //!
 //! let tuning = Tuning { step: Step::Fraction(0.2), goal_bias: 0.2, ..Tuning::default() };
-//! let branch = SearchTree::new(0, Direction::Forward, NearestSelector(Linear::new()), AppendDistinct::default());
-//! let mut planner = RandomTree { core: Core::new(problem, &tuning)?, branch };
+//! let tree = SearchTree::new(0, Direction::Forward, NearestSelector(Linear::new()), AppendDistinct::default());
+//! let mut planner = RandomTree { core: Core::new(problem, &tuning)?, tree };
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! assert!(matches!(outcome, Outcome::Solved(_)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -149,9 +149,9 @@ pub use algo::types::*;
 pub use by_name::{AnyPlanner, INPUTS, LEVELS};
 pub use engine::{
     Acceptable, Append, AppendApart, AppendDistinct, Connect, Core, Extend, Extender, GOAL_BIAS, Growing,
-    Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Recipe,
-    Rewire, STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, Tuning, TwoTrees, Untried,
-    improve,
+    Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Rewire,
+    STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, TreePlannerParts, Tuning, TwoTrees,
+    Untried, improve,
 };
 pub use mp_cspace::AnyProblem;
 pub use mp_cspace::erased::AnyIndex;

@@ -96,13 +96,13 @@ const GAIN: f64 = 1e-9;
 fn nearest_within<C: Space, E, Se: Selector<C>>(
     space: &C,
     tree: &Tree<C::State, E>,
-    select: &Se,
+    selector: &Se,
     q: &C::State,
     bound: f64,
 ) -> Option<NodeId> {
     let (mut hits, mut k): (Vec<Hit>, usize) = (Vec::new(), 8);
     loop {
-        select.k_nearest(space, tree.states(), q, k, &mut hits);
+        selector.k_nearest(space, tree.states(), q, k, &mut hits);
         let fit = hits.iter().filter(|hit| tree.cost(hit.id) + hit.distance <= bound);
         let both = fit.map(|hit| (hit.distance.hypot(bound - tree.cost(hit.id)), hit.id));
         let best = both.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -121,7 +121,7 @@ struct Resampled<F>(F);
 impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Extender<C, L>
     for Resampled<F>
 {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -203,7 +203,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     /// The trees of the current search, from the start and from the goal.
     #[must_use]
     pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
-        [self.trees[0].tree(), self.trees[1].tree()]
+        [self.trees[0].nodes(), self.trees[1].nodes()]
     }
 
     /// Plants what is not planted yet, and tries the straight ways that were not tried yet.
@@ -216,7 +216,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             && self.best > 0.0
         {
             self.best = 0.0;
-            return Some(self.trees[0].tree().path(root));
+            return Some(self.trees[0].nodes().path(root));
         }
         let space = self.core.checker.space();
         while let Some(goal) = self.core.goals.listed().get(self.planted) {
@@ -227,9 +227,9 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         }
         while let Some(goal) = self.core.goals.listed().get(self.tried) {
             self.tried += 1;
-            let roots = 0..self.trees[1].tree().len() as NodeId;
-            let mut roots = roots.filter(|&id| self.trees[1].tree().state(id) == goal);
-            let root = roots.find(|&id| self.trees[1].tree().parent(id).is_none());
+            let roots = 0..self.trees[1].nodes().len() as NodeId;
+            let mut roots = roots.filter(|&id| self.trees[1].nodes().state(id) == goal);
+            let root = roots.find(|&id| self.trees[1].nodes().parent(id).is_none());
             let grown = self.trees[0].leap(0, goal, &mut self.core.checker, rng, observer);
             if let (Grown::Reached(id), Some(root)) = (grown, root)
                 && let Some(path) = self.candidate([id, root], rng, observer)
@@ -253,12 +253,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     /// The node of a tree to grow from toward `q`, at a cost of at most `bound`.
     fn choose(&mut self, tree: usize, q: &C::State, bound: f64) -> Option<NodeId> {
         let space = self.core.checker.space();
-        let branch = &mut self.trees[tree];
+        let tree = &mut self.trees[tree];
         if bound < f64::INFINITY {
-            return nearest_within(space, branch.tree(), branch.selector(), q, bound);
+            return nearest_within(space, tree.nodes(), tree.selector(), q, bound);
         }
         let mut hits = Vec::new();
-        branch.selector().k_nearest(space, branch.tree().states(), q, 1, &mut hits);
+        tree.selector().k_nearest(space, tree.nodes().states(), q, 1, &mut hits);
         hits.first().map(|hit| hit.id)
     }
 
@@ -275,7 +275,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
                 return None;
             }
         }
-        let [a, b] = [0, 1].map(|i| self.trees[i].tree());
+        let [a, b] = [0, 1].map(|i| self.trees[i].nodes());
         if a.cost(meeting[0]) + b.cost(meeting[1]) >= self.best * (1.0 - GAIN) {
             return None;
         }
@@ -339,30 +339,30 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
         self.turn = other;
         let target = self.informed.sample(rng);
         observer.on(Event::Sampled(&target));
-        let direction = self.trees[turn].tree().direction();
+        let direction = self.trees[turn].nodes().direction();
         let least = self.informed.least(direction, &target);
-        let most = self.best - self.informed.least(self.trees[other].tree().direction(), &target);
+        let most = self.best - self.informed.least(self.trees[other].nodes().direction(), &target);
         if most < least {
             return None;
         }
         let bound = if most < f64::INFINITY { least + (most - least) * rng.random::<f64>() } else { most };
         let from = self.choose(turn, &target, bound)?;
-        let (branch, checker, informed) = (&mut self.trees[turn], &mut self.core.checker, &self.informed);
-        let mut growth = Resampled(
+        let (tree, checker, informed) = (&mut self.trees[turn], &mut self.core.checker, &self.informed);
+        let mut extender = Resampled(
             |direction, q: &C::State| if most < f64::INFINITY { informed.least(direction, q) } else { most },
         );
-        let grown = branch.grow_from(from, &target, checker, &mut growth, rng, observer);
+        let grown = tree.grow_from(from, &target, checker, &mut extender, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
-        let state = self.trees[turn].tree().state(i).clone();
-        let from = self.choose(other, &state, self.best - self.trees[turn].tree().cost(i))?;
-        let (branch, checker) = (&mut self.trees[other], &mut self.core.checker);
-        let joined = branch.grow_from(from, &state, checker, &mut Connect::default(), rng, observer);
+        let state = self.trees[turn].nodes().state(i).clone();
+        let from = self.choose(other, &state, self.best - self.trees[turn].nodes().cost(i))?;
+        let (tree, checker) = (&mut self.trees[other], &mut self.core.checker);
+        let joined = tree.grow_from(from, &state, checker, &mut Connect::default(), rng, observer);
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, rng, observer)
     }
 
     fn progress(&self) -> Progress {
-        let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
+        let nodes = self.trees.iter().map(|tree| tree.nodes().len()).sum();
         self.core.progress(nodes)
     }
 

@@ -44,7 +44,7 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, Extend, NearestSelector, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use crate::{Append, Extend, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -69,9 +69,9 @@ pub type BiRrt<'c, C, L, N> =
 constructors! {
     "Bi-RRT" BiRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let grow = (Extend, Extend);
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let extender = (Extend, Extend);
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

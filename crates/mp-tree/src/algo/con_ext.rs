@@ -44,7 +44,9 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, Connect, Extend, NearestSelector, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use crate::{
+    Append, Connect, Extend, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees,
+};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -69,9 +71,9 @@ pub type RrtConExt<'c, C, L, N> =
 constructors! {
     "RRTConExt" RrtConExt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let grow = (Connect::default(), Extend);
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let extender = (Connect::default(), Extend);
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

@@ -52,8 +52,8 @@ use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, NearestSelector, PlannerInfo, Purpose, Recipe, Samples, Selector, SingleTree, Tuning,
-    Untried,
+    AppendApart, NearestSelector, PlannerInfo, Purpose, Samples, Selector, SingleTree, TreePlannerParts,
+    Tuning, Untried,
 };
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
@@ -82,10 +82,10 @@ pub type CvpRrt<'c, C, L, N> =
 constructors! {
     "CVP-RRT" CvpRrt<C, L, N> where [L: EachOnce],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let select = LeastViolated::new(NearestSelector(index), problem.local().count());
-        let attach = AppendApart::default();
-        Self::assemble(problem, Recipe { propose, select, grow: Untried::one(), attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let selector = LeastViolated::new(NearestSelector(index), problem.local().count());
+        let inserter = AppendApart::default();
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector, extender: Untried::one(), inserter, tuning })
     }
 }
 

@@ -61,7 +61,7 @@ use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, EdgeChecker, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
-    PlannerInfo, Recipe, Samples, Selector, SingleTree, Tree, Tuning,
+    PlannerInfo, Samples, Selector, SingleTree, Tree, TreePlannerParts, Tuning,
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
@@ -199,7 +199,7 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
 }
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L::Edge> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -254,16 +254,16 @@ constructors! {
             let range = "in [0, 1], in steps".to_owned();
             return Err(BuildError::OutOfRange { name: "tolerance", value: tolerance, range });
         }
-        let grow = Cyclic {
+        let extender = Cyclic {
             tolerance: tolerance * tuning.step.length_in(problem.space())?,
             goals: problem.goals().listed().to_vec(),
             edges: BTreeMap::new(),
             asked: BTreeMap::new(),
             near: Vec::new(),
         };
-        let (propose, attach) = (Samples(Uniform(problem.space())), AppendDistinct::default());
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach, tuning };
-        Ok(Self { inner: SingleTree::assemble(problem, recipe)?, arrived: Vec::new() })
+        let (target_sampler, inserter) = (Samples(Uniform(problem.space())), AppendDistinct::default());
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter, tuning };
+        Ok(Self { inner: SingleTree::assemble(problem, parts)?, arrived: Vec::new() })
     }
 }
 
@@ -276,7 +276,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
 
     /// The edges beside the tree: from which node to which.
     pub fn cycles(&self) -> impl Iterator<Item = (NodeId, NodeId)> {
-        self.inner.growth().edges.keys().copied()
+        self.inner.extender().edges.keys().copied()
     }
 
     /// The `k` cheapest paths, each with its cost, that visit no node twice, from the start to where

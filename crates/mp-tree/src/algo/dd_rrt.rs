@@ -54,7 +54,7 @@ use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Acceptable, Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose,
-    Recipe, Samples, Selector, Settings, Tuning, TwoTrees,
+    Samples, Selector, Settings, TreePlannerParts, Tuning, TwoTrees,
 };
 use mp_cspace::{Hit, NearestNeighbors, NodeId, Rng, Space, Uniform};
 
@@ -222,10 +222,10 @@ pub type DdRrt<'c, C, L, N> = TwoTrees<
 constructors! {
     "Dynamic-domain RRT" DdRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning, domain: Domain| {
-        let propose = Acceptable::new(Samples(Uniform(problem.space())));
+        let target_sampler = Acceptable::new(Samples(Uniform(problem.space())));
         let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
-        let select = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;
-        let grow = (Extend, Connect::default());
-        Self::assemble(name, problem, Recipe { propose, select, grow, attach: Append, tuning })
+        let selector = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;
+        let extender = (Extend, Connect::default());
+        Self::assemble(name, problem, TreePlannerParts { target_sampler, selector, extender, inserter: Append, tuning })
     }
 }

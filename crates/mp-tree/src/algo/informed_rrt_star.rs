@@ -52,8 +52,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    Extend, Improving, Near, NearestSelector, PlannerInfo, Problem, Recipe, Rewire, Selector, TargetSampler,
-    Tuning,
+    Extend, Improving, Near, NearestSelector, PlannerInfo, Problem, Rewire, Selector, TargetSampler,
+    TreePlannerParts, Tuning,
 };
 use mp_cspace::{Direction, LocalPlanner, Rng, Space};
 
@@ -139,7 +139,7 @@ impl<'c, C: Space> Informed<'c, C> {
 }
 
 impl<C: Space> TargetSampler<C> for Informed<'_, C> {
-    fn propose<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
+    fn next_target<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
         self.sample(rng)
     }
     fn improved(&mut self, cost: f64) {
@@ -154,8 +154,8 @@ pub type InformedRrtStar<'c, C, L, N> =
 constructors! {
     "Informed RRT*" InformedRrtStar<C, L, N>,
     |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
-        let propose = Informed::of(&problem);
-        let attach = Rewire::new(near)?;
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
+        let target_sampler = Informed::of(&problem);
+        let inserter = Rewire::new(near)?;
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })
     }
 }

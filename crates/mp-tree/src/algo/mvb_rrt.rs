@@ -53,8 +53,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
-    Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose, Recipe, Selector,
-    TargetSampler, Tuning, TwoTrees,
+    Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose, Selector,
+    TargetSampler, TreePlannerParts, Tuning, TwoTrees,
 };
 use mp_cspace::{Hit, NodeId, Rng, Space};
 
@@ -91,19 +91,19 @@ pub struct VoronoiBias {
 }
 
 impl<C: Space> TargetSampler<C> for VoronoiBias {
-    fn propose<Se: Selector<C>>(
+    fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
         space: &C,
         points: &[C::State],
-        select: &mut Se,
+        selector: &mut Se,
     ) -> C::State {
         // Of each region that was hit: its node, how often, the mean.
         let mut regions: Vec<(NodeId, u32, C::State)> = Vec::new();
         let mut best = 0;
         for _ in 0..self.samples {
             let q = space.sample_uniform(rng);
-            select.select(space, points, &q, Purpose::Explore, rng, &mut self.hits);
+            selector.select(space, points, &q, Purpose::Explore, rng, &mut self.hits);
             let Some(hit) = self.hits.first() else { continue };
             let Some(i) = regions.iter().position(|(id, ..)| *id == hit.id) else {
                 regions.push((hit.id, 1, q));
@@ -130,9 +130,9 @@ constructors! {
     "Multi-sample RRT" MvbRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning, samples: u64| {
         let samples = BuildError::count_within(SAMPLES.name, samples, 1, 100_000)?;
-        let propose = VoronoiBias { samples, hits: Vec::new() };
-        let grow = (Extend, Connect::default());
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = VoronoiBias { samples, hits: Vec::new() };
+        let extender = (Extend, Connect::default());
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

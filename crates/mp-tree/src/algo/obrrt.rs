@@ -100,8 +100,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo, Recipe,
-    Samples, Selector, SingleTree, Tuning,
+    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo, Samples,
+    Selector, SingleTree, TreePlannerParts, Tuning,
 };
 use mp_cspace::{LocalPlanner, NodeId, ObstacleHints, Rng, Space, Uniform};
 use rand::RngExt;
@@ -250,7 +250,7 @@ where
 }
 
 impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C, L> for ObstacleGuided<H> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -310,8 +310,8 @@ pub type Obrrt<'c, C, L, N, H> =
 constructors! {
     "Obstacle-based RRT" Obrrt<C, L, N, H> where [H: ObstacleHints<C::State>],
     |problem, index, hints: H, tuning: Tuning, weights: GrowthWeights| {
-        let (propose, grow) = (Samples(Uniform(problem.space())), ObstacleGuided::new(hints, weights)?);
-        let attach = AppendDistinct::default();
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow, attach, tuning })
+        let (target_sampler, extender) = (Samples(Uniform(problem.space())), ObstacleGuided::new(hints, weights)?);
+        let inserter = AppendDistinct::default();
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter, tuning })
     }
 }

@@ -52,8 +52,8 @@ use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, BuildError, NearestSelector, Parameter, PlannerInfo, Purpose, Recipe, Samples, Selector,
-    Settings, SingleTree, Tuning, Untried,
+    AppendApart, BuildError, NearestSelector, Parameter, PlannerInfo, Purpose, Samples, Selector, Settings,
+    SingleTree, TreePlannerParts, Tuning, Untried,
 };
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
@@ -95,9 +95,9 @@ pub type RcRrt<'c, C, L, N> =
 constructors! {
     "RC-RRT, where states within `apart` count as one," RcRrt<C, L, N> where [L: EachOnce],
     |problem, index, apart: f64, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let (select, attach) = (Unexhausted::new(NearestSelector(index)), AppendApart::within(apart)?);
-        Self::assemble(problem, Recipe { propose, select, grow: Untried::until_new(), attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let (selector, inserter) = (Unexhausted::new(NearestSelector(index)), AppendApart::within(apart)?);
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector, extender: Untried::until_new(), inserter, tuning })
     }
 }
 

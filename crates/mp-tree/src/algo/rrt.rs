@@ -45,7 +45,7 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{Append, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{Append, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -69,8 +69,8 @@ pub type Rrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Neares
 constructors! {
     "RRT" Rrt<C, L, N>,
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let recipe = Recipe { propose, select: NearestSelector(index), grow: Extend, attach: Append, tuning };
-        Self::assemble(problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter: Append, tuning };
+        Self::assemble(problem, parts)
     }
 }

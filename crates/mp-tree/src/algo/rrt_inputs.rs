@@ -60,7 +60,9 @@
 use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{AppendDistinct, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{
+    AppendDistinct, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning,
+};
 use mp_cspace::Uniform;
 use mp_cspace::inputs::{Order, TestOrder};
 
@@ -89,8 +91,8 @@ constructors! {
     |problem, index, tuning: Tuning| {
         let mut problem = problem;
         problem.local_mut().set_order(Order::TestAll);
-        let propose = Samples(Uniform(problem.space()));
-        let attach = AppendDistinct::default();
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let inserter = AppendDistinct::default();
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })
     }
 }

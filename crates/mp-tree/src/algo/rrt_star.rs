@@ -53,8 +53,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    BuildError, Extend, Improving, Near, NearestSelector, Parameter, PlannerInfo, Recipe, Rewire, Samples,
-    Settings, Tuning,
+    BuildError, Extend, Improving, Near, NearestSelector, Parameter, PlannerInfo, Rewire, Samples, Settings,
+    TreePlannerParts, Tuning,
 };
 use mp_cspace::Uniform;
 
@@ -109,8 +109,8 @@ pub type RrtStar<'c, C, L, N> =
 constructors! {
     "RRT*" RrtStar<C, L, N>,
     |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
-        let propose = Samples(Uniform(problem.space()));
-        let attach = Rewire::new(near)?;
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let inserter = Rewire::new(near)?;
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })
     }
 }

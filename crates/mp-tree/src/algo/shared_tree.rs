@@ -114,7 +114,7 @@ impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
 struct Found<S, E>(Option<Extension<S, E>>);
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Found<C::State, L::Edge> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -126,7 +126,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Found<C::State, L::
 /// One RRT grown by all threads: see the [module](self).
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
-    branch: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
+    tree: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
     slots: Vec<Slot<C::State, L>>,
     workers: Workers,
     seed: Option<u64>,
@@ -181,7 +181,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         let slots = (1..=batch).map(slot).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {
             core,
-            branch: SearchTree::new(0, Direction::Forward, NearestSelector(index), AppendDistinct::default()),
+            tree: SearchTree::new(0, Direction::Forward, NearestSelector(index), AppendDistinct::default()),
             slots,
             workers,
             seed: None,
@@ -195,7 +195,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     /// The tree; empty before the first step.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
-        self.branch.tree()
+        self.tree.nodes()
     }
 
     /// How many samples were lost to a panic of the local planner, but for batches that were lost whole.
@@ -206,8 +206,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
 
     /// Plants the root and tries the straight ways to the goal.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        self.arrived.extend(self.core.plant(&mut self.branch, observer));
-        while let Some(grown) = self.core.leap(&mut self.branch, rng, observer) {
+        self.arrived.extend(self.core.plant(&mut self.tree, observer));
+        while let Some(grown) = self.core.leap(&mut self.tree, rng, observer) {
             if let Grown::Reached(id) = grown {
                 return self.arrived.push(id);
             }
@@ -229,8 +229,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         L: Send,
         N: Sync,
     {
-        let (space, points) = (self.core.checker.space(), self.branch.tree().states());
-        let (step, index) = (self.core.checker.step(), &self.branch.selector().0);
+        let (space, points) = (self.core.checker.space(), self.tree.nodes().states());
+        let (step, index) = (self.core.checker.step(), &self.tree.selector().0);
         self.workers.each(&mut self.slots, |slot| {
             let work = AssertUnwindSafe(|| slot.work((space, step), points, index));
             slot.panicked = catch_unwind(work).err();
@@ -251,15 +251,14 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
                 observer.on(Event::Trapped { tree: 0 });
                 continue;
             };
-            let new = self.branch.tree().len();
-            self.motions += u64::from(*self.branch.tree().state(from) != target);
+            let new = self.tree.nodes().len();
+            self.motions += u64::from(*self.tree.nodes().state(from) != target);
             let mut found = Found(Some(extension));
-            let grown =
-                self.branch.grow_from(from, &target, &mut self.core.checker, &mut found, rng, observer);
+            let grown = self.tree.grow_from(from, &target, &mut self.core.checker, &mut found, rng, observer);
             let entered = match (slot.why, grown) {
                 (Purpose::Join, Grown::Reached(id)) => Some(id),
                 _ => {
-                    let state = self.branch.tree().states().get(new);
+                    let state = self.tree.nodes().states().get(new);
                     state.is_some_and(|state| self.core.goals.reached(state)).then_some(new as NodeId)
                 }
             };
@@ -274,7 +273,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         while !self.arrived.is_empty() {
             let id = self.arrived.remove(0);
             let rest = &mut self.arrived;
-            let path = self.core.path(&mut self.branch, id, observer, |survivors| {
+            let path = self.core.path(&mut self.tree, id, observer, |survivors| {
                 let renamed = rest.iter().filter_map(|old| survivors.binary_search(old).ok());
                 *rest = renamed.map(|new| new as NodeId).collect();
             });
@@ -313,7 +312,7 @@ where
 
     /// An iteration is a batch.
     fn progress(&self) -> Progress {
-        let mut progress = self.core.progress(self.branch.tree().len());
+        let mut progress = self.core.progress(self.tree.nodes().len());
         progress.motions += self.motions;
         progress
     }

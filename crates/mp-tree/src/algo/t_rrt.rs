@@ -68,7 +68,7 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP, constructors};
 use crate::{
     Append, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo, Purpose,
-    Recipe, Samples, Selector, SingleTree, Tuning,
+    Samples, Selector, SingleTree, TreePlannerParts, Tuning,
 };
 use mp_cspace::{ClearanceGradient, Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform};
 use rand::RngExt;
@@ -244,7 +244,7 @@ impl<F> Transition<F> {
 }
 
 impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C, L> for Transition<F> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -286,7 +286,7 @@ pub type TRrt<'c, C, L, N, F> =
 constructors! {
     "T-RRT by the cost of states" TRrt<C, L, N, F> where [F: FnMut(&C::State) -> f64],
     |problem, index, cost: F, tuning: Tuning, with: Temperature| {
-        let (propose, grow) = (Samples(Uniform(problem.space())), Transition::new(cost, with)?);
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning })
+        let (target_sampler, extender) = (Samples(Uniform(problem.space())), Transition::new(cost, with)?);
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning })
     }
 }

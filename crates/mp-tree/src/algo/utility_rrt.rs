@@ -58,7 +58,7 @@ use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
-    PlannerInfo, Recipe, Samples, Selector, Tuning, TwoTrees,
+    PlannerInfo, Samples, Selector, TreePlannerParts, Tuning, TwoTrees,
 };
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space, Uniform};
 use rand::RngExt;
@@ -148,7 +148,7 @@ impl<S: Clone> UtilityGuided<S> {
 }
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for UtilityGuided<C::State> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -222,13 +222,13 @@ constructors! {
     |problem, index, tuning: Tuning, candidates: u64| {
         let candidates = BuildError::count_within(CANDIDATES.name, candidates, 1, 100_000)?;
         let explore = UtilityGuided { candidates, past: [Vec::new(), Vec::new()] };
-        let recipe = Recipe {
-            propose: Samples(Uniform(problem.space())),
-            select: NearestSelector(index),
-            grow: (explore, Connect::default()),
-            attach: AppendDistinct::default(),
+        let parts = TreePlannerParts {
+            target_sampler: Samples(Uniform(problem.space())),
+            selector: NearestSelector(index),
+            extender: (explore, Connect::default()),
+            inserter: AppendDistinct::default(),
             tuning,
         };
-        Self::assemble(INFO.name, problem, recipe)
+        Self::assemble(INFO.name, problem, parts)
     }
 }

@@ -46,14 +46,14 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     /// Plants the root of the first tree at the start, if there is none. The root, where that is in the goal.
     pub fn plant<Se: Selector<C>, A: Inserter<C, L>>(
         &self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<NodeId> {
-        if !branch.tree().is_empty() {
+        if !tree.nodes().is_empty() {
             return None;
         }
         let arrived = self.goals.reached(&self.start);
-        let root = branch.add_root(self.checker.space(), self.start.clone(), observer);
+        let root = tree.add_root(self.checker.space(), self.start.clone(), observer);
         arrived.then_some(root)
     }
 
@@ -61,13 +61,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     /// panic of the user's code interrupts is not tried again.
     pub fn leap<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Grown> {
         let goal = self.goals.listed().get(self.tried)?;
         self.tried += 1;
-        Some(branch.leap(0, goal, &mut self.checker, rng, observer))
+        Some(tree.leap(0, goal, &mut self.checker, rng, observer))
     }
 
     /// A goal to aim at instead of exploring, now and then.
@@ -78,18 +78,18 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     /// Roots the tree from the goal at a new sample of the goal, now and then, and always where it has no root.
     pub fn sample_goal<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) {
-        let wanted = branch.tree().is_empty() || rng.random_bool(self.goal_bias);
+        let wanted = tree.nodes().is_empty() || rng.random_bool(self.goal_bias);
         let space = self.checker.space();
         if wanted
             && let Some(goal) = self.goals.sample(rng)
-            && !branch.knows(space, &goal)
+            && !tree.knows(space, &goal)
             && self.checker.accepts(&goal)
         {
-            branch.add_root(space, goal, observer);
+            tree.add_root(space, goal, observer);
         }
     }
 
@@ -97,13 +97,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     /// is told as by [`SearchTree::verify`].
     pub fn path<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         id: NodeId,
         observer: &mut dyn Observer<C::State>,
         pruned: impl FnMut(&[NodeId]),
     ) -> Option<Path<C::State, L::Edge>> {
-        let passed = branch.verify(id, &mut self.checker, observer, pruned);
-        passed.then(|| branch.tree().path(id))
+        let passed = tree.verify(id, &mut self.checker, observer, pruned);
+        passed.then(|| tree.nodes().path(id))
     }
 
     /// What has been done, with so many nodes.

@@ -18,7 +18,7 @@ pub enum Grown {
 /// made; [`Growing`] makes them.
 pub trait Extender<C: Space, L: LocalPlanner<C::State>> {
     /// Grows from `from`.
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -39,7 +39,7 @@ pub struct Extend;
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Extend {
     #[inline]
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -67,7 +67,7 @@ impl Default for Connect {
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Connect {
     #[inline]
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,

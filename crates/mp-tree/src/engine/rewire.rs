@@ -32,7 +32,7 @@ impl Near {
         self,
         (space, step): (&C, f64),
         points: &[C::State],
-        select: &Se,
+        selector: &Se,
         q: &C::State,
         out: &mut Vec<Hit>,
     ) {
@@ -40,11 +40,11 @@ impl Near {
         match self {
             Self::NearestSelector { factor } => {
                 let k = (factor * std::f64::consts::E * (1.0 + 1.0 / d) * n.ln()).ceil();
-                select.k_nearest(space, points, q, k as usize, out);
+                selector.k_nearest(space, points, q, k as usize, out);
             }
             Self::Radius { gamma } => {
                 let radius = (gamma * (n.ln() / n).powf(1.0 / d)).min(step);
-                select.near(space, points, q, radius, out);
+                selector.near(space, points, q, radius, out);
             }
         }
     }
@@ -95,11 +95,11 @@ fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: 
 }
 
 impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
-    fn attach<Se: Selector<C>>(
+    fn insert<Se: Selector<C>>(
         &mut self,
         checker: &mut EdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
-        select: &mut Se,
+        selector: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
     ) -> Inserted {
@@ -108,7 +108,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
             return Inserted::Known(from);
         }
         let (space, direction) = (checker.space(), tree.direction());
-        self.near.find((space, checker.step()), tree.states(), select, &motion.end, &mut self.hits);
+        self.near.find((space, checker.step()), tree.states(), selector, &motion.end, &mut self.hits);
         if let Some(hit) = self.hits.iter().find(|hit| *tree.state(hit.id) == motion.end) {
             return Inserted::Known(hit.id);
         }

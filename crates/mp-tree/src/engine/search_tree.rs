@@ -11,20 +11,20 @@ use std::fmt;
 pub struct SearchTree<C: Space, L: LocalPlanner<C::State>, Se, A> {
     index: usize,
     tree: Tree<C::State, L::Edge>,
-    select: Se,
-    attach: A,
+    selector: Se,
+    inserter: A,
     candidates: Vec<Hit>,
 }
 
 impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> SearchTree<C, L, Se, A> {
     /// An empty tree. `index` is its number in events.
-    pub fn new(index: usize, direction: Direction, select: Se, attach: A) -> Self {
-        Self { index, tree: Tree::new(direction), select, attach, candidates: Vec::new() }
+    pub fn new(index: usize, direction: Direction, selector: Se, inserter: A) -> Self {
+        Self { index, tree: Tree::new(direction), selector, inserter, candidates: Vec::new() }
     }
 
-    /// The tree.
+    /// The nodes and edges.
     #[must_use]
-    pub fn tree(&self) -> &Tree<C::State, L::Edge> {
+    pub fn nodes(&self) -> &Tree<C::State, L::Edge> {
         &self.tree
     }
 
@@ -32,25 +32,25 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     #[must_use]
     pub fn knows(&self, space: &C, q: &C::State) -> bool {
         let mut near = Vec::new();
-        self.select.near(space, self.tree.states(), q, 0.0, &mut near);
+        self.selector.near(space, self.tree.states(), q, 0.0, &mut near);
         near.iter().any(|hit| self.tree.state(hit.id) == q)
     }
 
     /// Whether there are nodes and the selector has none left to grow from.
     #[must_use]
     pub fn is_exhausted(&self) -> bool {
-        !self.tree.is_empty() && self.select.exhausted()
+        !self.tree.is_empty() && self.selector.exhausted()
     }
 
     /// The states of the tree and its selector.
     pub fn parts(&mut self) -> (&[C::State], &mut Se) {
-        (self.tree.states(), &mut self.select)
+        (self.tree.states(), &mut self.selector)
     }
 
     /// Adds a root.
     pub fn add_root(&mut self, space: &C, state: C::State, observer: &mut dyn Observer<C::State>) -> NodeId {
         let id = self.tree.add_root(state);
-        self.select.inserted(space, self.tree.states(), id, None);
+        self.selector.inserted(space, self.tree.states(), id, None);
         observer.on(Event::Rooted { tree: self.index, id, state: self.tree.state(id) });
         id
     }
@@ -62,19 +62,19 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         target: &C::State,
         why: Purpose,
         checker: &mut EdgeChecker<'_, C, L>,
-        growth: &mut G,
+        extender: &mut G,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Grown {
-        self.select.select(checker.space(), self.tree.states(), target, why, rng, &mut self.candidates);
+        self.selector.select(checker.space(), self.tree.states(), target, why, rng, &mut self.candidates);
         for i in 0..self.candidates.len() {
             let Hit { id, distance } = self.candidates[i];
             if distance == 0.0 && self.tree.state(id) == target {
                 return Grown::Reached(id);
             }
-            let grown = growth.grow(id, &mut self.growing(target, why, checker, rng, observer));
+            let grown = extender.extend(id, &mut self.growing(target, why, checker, rng, observer));
             let grew = grown != Grown::Trapped;
-            self.select.feedback(id, why, grew);
+            self.selector.feedback(id, why, grew);
             if grew {
                 return grown;
             }
@@ -86,7 +86,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     /// The selector.
     #[must_use]
     pub fn selector(&self) -> &Se {
-        &self.select
+        &self.selector
     }
 
     /// Grows from node `from` toward `target`, whatever the selector would choose.
@@ -95,14 +95,15 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         from: NodeId,
         target: &C::State,
         checker: &mut EdgeChecker<'_, C, L>,
-        growth: &mut G,
+        extender: &mut G,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Grown {
         if self.tree.state(from) == target {
             return Grown::Reached(from);
         }
-        let grown = growth.grow(from, &mut self.growing(target, Purpose::Explore, checker, rng, observer));
+        let grown =
+            extender.extend(from, &mut self.growing(target, Purpose::Explore, checker, rng, observer));
         if grown == Grown::Trapped {
             observer.on(Event::Trapped { tree: self.index });
         }
@@ -144,7 +145,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
             }
             checker.count_rejected();
             let survivors = self.tree.prune(node);
-            self.select.pruned(checker.space(), self.tree.states(), &survivors);
+            self.selector.pruned(checker.space(), self.tree.states(), &survivors);
             pruned(&survivors);
             observer.on(Event::Rejected);
             observer.on(Event::Pruned { tree: self.index, survivors: &survivors });
@@ -171,8 +172,8 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         Growing {
             index: self.index,
             tree: &mut self.tree,
-            select: &mut self.select,
-            attach: &mut self.attach,
+            selector: &mut self.selector,
+            inserter: &mut self.inserter,
             target,
             why,
             checker,
@@ -186,8 +187,8 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
 pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     index: usize,
     tree: &'a mut Tree<C::State, L::Edge>,
-    select: &'a mut Se,
-    attach: &'a mut A,
+    selector: &'a mut Se,
+    inserter: &'a mut A,
     target: &'a C::State,
     why: Purpose,
     checker: &'a mut EdgeChecker<'c, C, L>,
@@ -223,7 +224,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
 
     /// The selector.
     pub fn selector(&self) -> &Se {
-        self.select
+        self.selector
     }
 
     /// The random numbers.
@@ -265,7 +266,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
                 return Grown::Trapped;
             }
         }
-        match self.attach.attach(self.checker, self.tree, self.select, from, motion) {
+        match self.inserter.insert(self.checker, self.tree, self.selector, from, motion) {
             Inserted::Known(id) if reached && self.tree.state(id) == self.target => Grown::Reached(id),
             Inserted::Known(_) => Grown::Trapped,
             Inserted::New(id) => {
@@ -273,10 +274,10 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
                 if distrusts && parent == Some(from) {
                     self.tree.set_verified(id);
                 }
-                self.select.inserted(self.checker.space(), self.tree.states(), id, parent);
+                self.selector.inserted(self.checker.space(), self.tree.states(), id, parent);
                 let (tree, state) = (self.index, self.tree.state(id));
                 self.observer.on(Event::Added { tree, id, parent: parent.unwrap_or(from), state });
-                for &id in self.attach.rewired() {
+                for &id in self.inserter.rewired() {
                     let Some(parent) = self.tree.parent(id) else { continue };
                     self.observer.on(Event::Rewired { tree, id, parent });
                 }

@@ -1,6 +1,8 @@
 //! The loop with one tree, grown from the start.
 
-use super::{Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree};
+use super::{
+    Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
+};
 use mp_cspace::{
     BuildError, Direction, EdgeChecker, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem,
     Progress, Rng, Space,
@@ -16,9 +18,9 @@ use mp_cspace::{
 #[derive(Debug)]
 pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
-    branch: SearchTree<C, L, Se, A>,
-    propose: P,
-    growth: G,
+    tree: SearchTree<C, L, Se, A>,
+    target_sampler: P,
+    extender: G,
 }
 
 /// A tree, how it moves and how it grows.
@@ -41,30 +43,33 @@ where
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
+    pub fn assemble(
+        problem: Problem<'c, C, L>,
+        parts: TreePlannerParts<P, Se, G, A>,
+    ) -> Result<Self, BuildError> {
         Ok(Self {
-            core: Core::new(problem, &recipe.tuning)?,
-            branch: SearchTree::new(0, Direction::Forward, recipe.select, recipe.attach),
-            propose: recipe.propose,
-            growth: recipe.grow,
+            core: Core::new(problem, &parts.tuning)?,
+            tree: SearchTree::new(0, Direction::Forward, parts.selector, parts.inserter),
+            target_sampler: parts.target_sampler,
+            extender: parts.extender,
         })
     }
 
     /// The tree; empty before the first step.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
-        self.branch.tree()
+        self.tree.nodes()
     }
 
     /// How it grows.
     #[must_use]
-    pub fn growth(&self) -> &G {
-        &self.growth
+    pub fn extender(&self) -> &G {
+        &self.extender
     }
 
     /// The tree, how it moves and how it grows.
     pub(crate) fn parts(&mut self) -> Parts<'_, 'c, C, L, G> {
-        (self.branch.tree(), &mut self.core.checker, &mut self.growth)
+        (self.tree.nodes(), &mut self.core.checker, &mut self.extender)
     }
 
     /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the
@@ -74,11 +79,11 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if let Some(root) = self.core.plant(&mut self.branch, observer) {
+        if let Some(root) = self.core.plant(&mut self.tree, observer) {
             return self.candidate(root, observer);
         }
-        while self.growth.leaps()
-            && let Some(grown) = self.core.leap(&mut self.branch, rng, observer)
+        while self.extender.leaps()
+            && let Some(grown) = self.core.leap(&mut self.tree, rng, observer)
         {
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate(id, observer) {
@@ -89,7 +94,7 @@ where
     }
 
     /// Grows toward `target`, which is a goal when the purpose is to join.
-    fn grow(
+    fn grow_toward(
         &mut self,
         target: &C::State,
         why: Purpose,
@@ -97,14 +102,14 @@ where
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         observer.on(Event::Sampled(target));
-        let before = self.branch.tree().len();
-        let grown = self.branch.toward(target, why, &mut self.core.checker, &mut self.growth, rng, observer);
+        let before = self.tree.nodes().len();
+        let grown = self.tree.toward(target, why, &mut self.core.checker, &mut self.extender, rng, observer);
         if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
             return self.candidate(id, observer);
         }
         if self.core.goals.has_region() {
-            let mut new = before as NodeId..self.branch.tree().len() as NodeId;
-            let entered = new.find(|&id| self.core.goals.reached(self.branch.tree().state(id)))?;
+            let mut new = before as NodeId..self.tree.nodes().len() as NodeId;
+            let entered = new.find(|&id| self.core.goals.reached(self.tree.nodes().state(id)))?;
             return self.candidate(entered, observer);
         }
         None
@@ -116,8 +121,8 @@ where
         id: NodeId,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        let pruned = |survivors: &[NodeId]| self.growth.pruned(Direction::Forward, survivors);
-        self.core.path(&mut self.branch, id, observer, pruned)
+        let pruned = |survivors: &[NodeId]| self.extender.pruned(Direction::Forward, survivors);
+        self.core.path(&mut self.tree, id, observer, pruned)
     }
 }
 
@@ -142,16 +147,16 @@ where
             return Some(path);
         }
         if let Some(goal) = self.core.aim(rng) {
-            return self.grow(&goal, Purpose::Join, rng, observer);
+            return self.grow_toward(&goal, Purpose::Join, rng, observer);
         }
-        let (points, select) = self.branch.parts();
-        let target = self.propose.propose(rng, self.core.checker.space(), points, select);
-        self.grow(&target, Purpose::Explore, rng, observer)
+        let (points, selector) = self.tree.parts();
+        let target = self.target_sampler.next_target(rng, self.core.checker.space(), points, selector);
+        self.grow_toward(&target, Purpose::Explore, rng, observer)
     }
 
     fn progress(&self) -> Progress {
-        let mut progress = self.core.progress(self.branch.tree().len());
-        progress.exhausted = self.branch.is_exhausted();
+        let mut progress = self.core.progress(self.tree.nodes().len());
+        progress.exhausted = self.tree.is_exhausted();
         progress
     }
 }

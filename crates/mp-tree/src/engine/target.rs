@@ -6,12 +6,12 @@ use mp_cspace::{Hit, Rng, Sampler, Space};
 /// Proposes the next target of exploration, seeing the tree that is about to grow.
 pub trait TargetSampler<C: Space> {
     /// The next target.
-    fn propose<Se: Selector<C>>(
+    fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
         space: &C,
         points: &[C::State],
-        select: &mut Se,
+        selector: &mut Se,
     ) -> C::State;
     /// A verified path of this cost was found: from now on only cheaper ones are of interest.
     fn improved(&mut self, _cost: f64) {}
@@ -23,7 +23,7 @@ pub struct Samples<Sa>(pub Sa);
 
 impl<C: Space, Sa: Sampler<C::State>> TargetSampler<C> for Samples<Sa> {
     #[inline]
-    fn propose<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
+    fn next_target<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
         self.0.sample(rng)
     }
 }
@@ -45,20 +45,20 @@ impl<P> Acceptable<P> {
 }
 
 impl<C: Space, P: TargetSampler<C>> TargetSampler<C> for Acceptable<P> {
-    fn propose<Se: Selector<C>>(
+    fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
         space: &C,
         points: &[C::State],
-        select: &mut Se,
+        selector: &mut Se,
     ) -> C::State {
-        let mut target = self.inner.propose(rng, space, points, select);
+        let mut target = self.inner.next_target(rng, space, points, selector);
         for _ in 0..10_000 {
-            select.select(space, points, &target, Purpose::Explore, rng, &mut self.hits);
+            selector.select(space, points, &target, Purpose::Explore, rng, &mut self.hits);
             if points.is_empty() || !self.hits.is_empty() {
                 break;
             }
-            target = self.inner.propose(rng, space, points, select);
+            target = self.inner.next_target(rng, space, points, selector);
         }
         target
     }

@@ -1,7 +1,9 @@
 //! The loop with two trees, grown from the start and from the goal.
 
 use super::core::joined;
-use super::{Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree};
+use super::{
+    Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
+};
 use mp_cspace::{
     BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
     Space,
@@ -25,7 +27,7 @@ pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
     planted: usize,
     roots: NodeId,
     tried: NodeId,
-    propose: P,
+    target_sampler: P,
     explore: GA,
     join: GB,
     turn: usize,
@@ -48,7 +50,7 @@ where
     pub fn assemble(
         planner: &'static str,
         problem: Problem<'c, C, L>,
-        recipe: Recipe<P, Se, (GA, GB), A>,
+        parts: TreePlannerParts<P, Se, (GA, GB), A>,
     ) -> Result<Self, BuildError>
     where
         Se: Clone,
@@ -57,17 +59,17 @@ where
         if !problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner });
         }
-        let forward = SearchTree::new(0, Direction::Forward, recipe.select.clone(), recipe.attach.clone());
-        let backward = SearchTree::new(1, Direction::Backward, recipe.select, recipe.attach);
+        let forward = SearchTree::new(0, Direction::Forward, parts.selector.clone(), parts.inserter.clone());
+        let backward = SearchTree::new(1, Direction::Backward, parts.selector, parts.inserter);
         Ok(Self {
-            core: Core::new(problem, &recipe.tuning)?,
+            core: Core::new(problem, &parts.tuning)?,
             trees: [forward, backward],
             planted: 0,
             roots: 0,
             tried: 0,
-            propose: recipe.propose,
-            explore: recipe.grow.0,
-            join: recipe.grow.1,
+            target_sampler: parts.target_sampler,
+            explore: parts.extender.0,
+            join: parts.extender.1,
             turn: 0,
         })
     }
@@ -75,7 +77,7 @@ where
     /// The trees from the start and from the goal; empty before the first step.
     #[must_use]
     pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
-        [self.trees[0].tree(), self.trees[1].tree()]
+        [self.trees[0].nodes(), self.trees[1].nodes()]
     }
 
     /// Plants the roots and tries the straight way. What a panic of the user's code interrupts,
@@ -86,7 +88,7 @@ where
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         if let Some(root) = self.core.plant(&mut self.trees[0], observer) {
-            return Some(self.trees[0].tree().path(root));
+            return Some(self.trees[0].nodes().path(root));
         }
         let space = self.core.checker.space();
         while let Some(goal) = self.core.goals.listed().get(self.planted) {
@@ -94,13 +96,13 @@ where
             if !self.trees[1].knows(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
-            self.roots = self.trees[1].tree().len() as NodeId;
+            self.roots = self.trees[1].nodes().len() as NodeId;
         }
         while self.explore.leaps() && self.join.leaps() && self.tried < self.roots {
             let goal_root = self.tried;
             self.tried += 1;
             let [forward, backward] = &mut self.trees;
-            let goal = backward.tree().state(goal_root);
+            let goal = backward.nodes().state(goal_root);
             let grown = forward.leap(0, goal, &mut self.core.checker, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate([id, goal_root], observer) {
@@ -118,7 +120,7 @@ where
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
-            let direction = tree.tree().direction();
+            let direction = tree.nodes().direction();
             let pruned = |survivors: &[NodeId]| {
                 self.explore.pruned(direction, survivors);
                 self.join.pruned(direction, survivors);
@@ -127,7 +129,7 @@ where
                 return None;
             }
         }
-        Some(joined([0, 1].map(|i| self.trees[i].tree().path(meeting[i]))))
+        Some(joined([0, 1].map(|i| self.trees[i].nodes().path(meeting[i]))))
     }
 }
 
@@ -159,20 +161,26 @@ where
         self.turn ^= 1;
         let [forward, backward] = &mut self.trees;
         let (a, b) = if turn == 0 { (forward, backward) } else { (backward, forward) };
-        let (points, select) = a.parts();
-        let target = self.propose.propose(rng, self.core.checker.space(), points, select);
+        let (points, selector) = a.parts();
+        let target = self.target_sampler.next_target(rng, self.core.checker.space(), points, selector);
         observer.on(Event::Sampled(&target));
         let grown =
             a.toward(&target, Purpose::Explore, &mut self.core.checker, &mut self.explore, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
-        let joined =
-            b.toward(a.tree().state(i), Purpose::Join, &mut self.core.checker, &mut self.join, rng, observer);
+        let joined = b.toward(
+            a.nodes().state(i),
+            Purpose::Join,
+            &mut self.core.checker,
+            &mut self.join,
+            rng,
+            observer,
+        );
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, observer)
     }
 
     fn progress(&self) -> Progress {
-        let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
+        let nodes = self.trees.iter().map(|tree| tree.nodes().len()).sum();
         self.core.progress(nodes)
     }
 }

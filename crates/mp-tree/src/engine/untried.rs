@@ -27,7 +27,7 @@ impl Untried {
 }
 
 impl<C: Space, L: LocalPlanner<C::State> + EachOnce> Extender<C, L> for Untried {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,

@@ -1,10 +1,10 @@
 //! Planners by name, for programs that choose at run time.
 
+mod meta;
 mod state;
-mod wrap;
 
+pub use meta::{MetaPlanner, PlannerSpec, build_from, wrappers};
 pub use state::{ProblemFactory, TreeState};
-pub use wrap::{MetaPlanner, PlannerSpec, build_from, wrappers};
 
 use crate::algo;
 use crate::by_name::{AnyPlanner, Given};

@@ -213,18 +213,18 @@ impl LocalPlanner<Point> for Grid {
 #[test]
 fn finitely_many_moves_make_no_duplicates_either() {
     let space = Rn::<2>::new([0.0; 2], [10.0; 2]).unwrap();
-    let recipe = Recipe {
-        propose: Samples(Uniform(&space)),
-        select: NearestSelector(Linear::new()),
-        grow: Extend,
-        attach: AppendDistinct::default(),
+    let parts = TreePlannerParts {
+        target_sampler: Samples(Uniform(&space)),
+        selector: NearestSelector(Linear::new()),
+        extender: Extend,
+        inserter: AppendDistinct::default(),
         tuning: Tuning { step: Step::Length(1.0), ..Tuning::default() },
     };
     let never = Goals::region(|_: &Point| false);
     let start = Point::new(5.0, 5.0);
     let free = Exact(Boxes::default());
     let problem = Problem::new(&space, Grid, free, start, never).unwrap();
-    let mut planner = SingleTree::assemble(problem, recipe).unwrap();
+    let mut planner = SingleTree::assemble(problem, parts).unwrap();
     planner.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());
     assert_no_duplicates(planner.tree());
     // The grid is 11 by 11; a move outside it from a border node may add a ring.

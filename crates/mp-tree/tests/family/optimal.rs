@@ -182,14 +182,14 @@ fn rewired_edges_are_in_forward_time_in_trees_of_both_directions() {
     let (space, (boxes, _)) = (square(), wall());
     let local = certified(&space, boxes, 1e-3);
     let problem = Problem::new(&space, Remembers(local), Anything, START.into(), Point::from(GOAL)).unwrap();
-    let recipe = Recipe {
-        propose: Samples(Uniform(&space)),
-        select: NearestSelector(Linear::new()),
-        grow: (Extend, Connect::default()),
-        attach: Rewire::default(),
+    let parts = TreePlannerParts {
+        target_sampler: Samples(Uniform(&space)),
+        selector: NearestSelector(Linear::new()),
+        extender: (Extend, Connect::default()),
+        inserter: Rewire::default(),
         tuning: Tuning { step: Step::Length(0.05), ..Tuning::default() },
     };
-    let mut planner = TwoTrees::assemble("rewired", problem, recipe).unwrap();
+    let mut planner = TwoTrees::assemble("rewired", problem, parts).unwrap();
     let (mut rng, mut rewired) = (Rng::seed(1), [0; 2]);
     for _ in 0..1_000 {
         let mut count = OnEvent(|event: Event<'_, Point>| {
