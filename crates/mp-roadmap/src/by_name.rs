@@ -1,6 +1,8 @@
 //! What planners by name are made from.
 
-use crate::{Connector, EdgeChecker, HasRoadmap, NodeGenerator, PATIENCE, Query, Recipe, RoadmapPlanner};
+use crate::{
+    Connector, EdgeChecker, HasRoadmap, NodeGenerator, PATIENCE, Query, RoadmapPlanner, RoadmapPlannerParts,
+};
 use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
 use mp_cspace::{BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible, Settings, Space, Workers};
 
@@ -12,7 +14,7 @@ pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;
 pub struct ParallelProblem<'c, C: Space, L: LocalPlanner<C::State>> {
     problem: Problem<'c, C, L>,
     workers: Workers,
-    hands: Vec<EdgeChecker<'c, C, L>>,
+    checkers: Vec<EdgeChecker<'c, C, L>>,
 }
 
 /// How a robot moves in an erased problem.
@@ -34,21 +36,21 @@ where
     /// Those of `problem`.
     pub fn new(
         workers: Workers,
-        hands: usize,
+        checkers: usize,
         problem: impl Fn() -> Result<Problem<'c, C, L>, BuildError>,
     ) -> Result<Self, BuildError> {
-        let more = if hands > 1 { hands } else { 0 };
-        let hands = (0..more)
+        let more = if checkers > 1 { checkers } else { 0 };
+        let checkers = (0..more)
             .map(|_| Ok(EdgeChecker::of(problem()?, PATIENCE).0))
             .collect::<Result<_, BuildError>>()?;
-        Ok(Self { problem: problem()?, workers, hands })
+        Ok(Self { problem: problem()?, workers, checkers })
     }
 
     /// The planner of a recipe.
     pub(crate) fn made<G, K, Q, N>(
         self,
         index: N,
-        recipe: Recipe<G, K, Q>,
+        parts: RoadmapPlannerParts<G, K, Q>,
     ) -> AnyPlanner<'c, C::State, L::Edge>
     where
         C::State: 'c,
@@ -58,10 +60,10 @@ where
         Q: Query<C, L> + Send + 'c,
         N: NearestNeighbors<C> + Send + Sync + 'c,
     {
-        let planner = RoadmapPlanner::assemble(self.problem, index, recipe);
-        match self.hands.is_empty() {
+        let planner = RoadmapPlanner::assemble(self.problem, index, parts);
+        match self.checkers.is_empty() {
             true => Box::new(planner),
-            false => Box::new(planner.on(self.workers, self.hands)),
+            false => Box::new(planner.on(self.workers, self.checkers)),
         }
     }
 }
@@ -69,7 +71,7 @@ where
 /// On the thread of the caller.
 impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for ParallelProblem<'c, C, L> {
     fn from(problem: Problem<'c, C, L>) -> Self {
-        Self { problem, workers: Workers::alone(), hands: Vec::new() }
+        Self { problem, workers: Workers::alone(), checkers: Vec::new() }
     }
 }
 
@@ -97,7 +99,7 @@ where
 
 /// What a planner by name is made from.
 pub(crate) struct Given<'c, 's, T: Types<'c>> {
-    team: ParallelProblem<'c, T::Space, T::Local>,
+    parallel: ParallelProblem<'c, T::Space, T::Local>,
     /// An empty index.
     index: T::Index,
     /// All parameters that are set; the planner has parameters of these names.
@@ -117,12 +119,12 @@ pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
 impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
     /// To make a planner of.
     pub(crate) fn new(
-        mut team: ParallelProblem<'c, T::Space, T::Local>,
+        mut parallel: ParallelProblem<'c, T::Space, T::Local>,
         index: T::Index,
         settings: &'s Settings,
     ) -> Self {
-        let (space, geometry) = (team.problem.space(), team.problem.take_obstacles().geometry);
-        Self { team, index, settings, space, geometry }
+        let (space, geometry) = (parallel.problem.space(), parallel.problem.take_obstacles().geometry);
+        Self { parallel, index, settings, space, geometry }
     }
 
     /// What obstacles look like, for `planner`, which cannot do without.
@@ -134,12 +136,12 @@ impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
     }
 
     /// The planner of a recipe.
-    pub(crate) fn made<G, K, Q>(self, recipe: Recipe<G, K, Q>) -> Made<'c, T>
+    pub(crate) fn made<G, K, Q>(self, parts: RoadmapPlannerParts<G, K, Q>) -> Made<'c, T>
     where
         G: NodeGenerator<T::Space, T::Local> + Clone + Send + Sync + 'c,
         K: Connector<T::Space, T::Local> + Send + Sync + 'c,
         Q: Query<T::Space, T::Local> + Send + 'c,
     {
-        Ok(self.team.made(self.index, recipe))
+        Ok(self.parallel.made(self.index, parts))
     }
 }

@@ -57,9 +57,9 @@ pub use algo::types::*;
 pub use by_name::{AnyEdgeChecker, AnyParallelProblem, AnyPlanner, ParallelProblem};
 pub use engine::{
     AStar, Builder, CYCLES, Candidate, Connector, EdgeChecker, EdgeId, Entry, Free, GraphPath, Growing,
-    HasRoadmap, IndexedRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, NearestConnector,
+    HasRoadmap, IndexedRoadmap, Link, LinkState, Listed, MilestoneKind, Mixing, NEIGHBOURS, NearestConnector,
     NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, ParentMotion, Prefetching, Query, RADIUS,
-    Reachable, Recipe, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapQueries,
+    Reachable, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries,
     StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;

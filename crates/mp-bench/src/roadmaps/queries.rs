@@ -107,10 +107,10 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     row("RRT-Connect", [const { String::new() }; 3], &alone);
     for &size in sizes {
         let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
-        let recipe = prm::recipe(space, reach, Learning::default()).into_error()?;
+        let parts = prm::parts(space, reach, Learning::default()).into_error()?;
         let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
         let mut builder =
-            Builder::new(checker(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
+            Builder::new(checker(scene, verifier.clone())?, parts.generator, parts.connector, index);
         let began = nanoseconds();
         builder.build(&mut Rng::seed(1), &mut Nodes(size), &mut ());
         let build = seconds_since(began);

@@ -68,8 +68,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = Pairs::<BetweenObstacles>::read(given.space, given.settings, MIXING)?;
-    given.made(recipe)
+    let parts = Pairs::<BetweenObstacles>::read(given.space, given.settings, MIXING)?;
+    given.made(parts)
 }
 
 /// The free middle of two states that are not: the rule of bridge-test PRM.

@@ -68,8 +68,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = Pairs::<NearObstacles>::read(given.space, given.settings, MIXING)?;
-    given.made(recipe)
+    let parts = Pairs::<NearObstacles>::read(given.space, given.settings, MIXING)?;
+    given.made(parts)
 }
 
 /// Of two states, the free one where the other is not: the rule of Gaussian PRM.

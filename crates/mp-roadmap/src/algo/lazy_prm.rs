@@ -50,8 +50,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, EdgeId, Kind, LinkState, NearestConnector, NodeGenerator, Pace, Reachable,
-    Recipe, Roadmap, RoadmapPlanner,
+    AStar, Candidate, EdgeChecker, EdgeId, LinkState, MilestoneKind, NearestConnector, NodeGenerator, Pace,
+    Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, PlannerInfo, Problem, Reversible, Rng,
@@ -84,8 +84,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+    let parts = read(given.space, given.settings)?;
+    given.made(parts)
 }
 
 /// Samples that are not checked: uniform ones, and once edges were removed also about their middles.
@@ -130,7 +130,7 @@ where
             }
         }
         if space.contains(&q) {
-            out.push(Candidate::new(q, Kind::Plain));
+            out.push(Candidate::new(q, MilestoneKind::Plain));
         }
     }
 }
@@ -153,7 +153,7 @@ where
         C: DefaultNn<Nn = N>,
         N: Default,
     {
-        Ok(Self::assemble(problem, N::default(), recipe(reach, pace)?))
+        Ok(Self::assemble(problem, N::default(), parts(reach, pace)?))
     }
 }
 
@@ -161,15 +161,15 @@ where
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe(
+pub fn parts(
     reach: Reachable,
     pace: Pace,
-) -> Result<Recipe<Unchecked, NearestConnector, AStar>, BuildError> {
+) -> Result<RoadmapPlannerParts<Unchecked, NearestConnector, AStar>, BuildError> {
     BuildError::count_within(FIRST.name, pace.first as u64, 1, 1_000_000_000)?;
     BuildError::count_within(MORE.name, pace.more as u64, 1, 1_000_000_000)?;
-    Ok(Recipe {
-        generate: Unchecked { first: pace.first },
-        connect: NearestConnector::unchecked(reach)?,
+    Ok(RoadmapPlannerParts {
+        generator: Unchecked { first: pace.first },
+        connector: NearestConnector::unchecked(reach)?,
         query: AStar::new(),
         pace,
         improves: false,
@@ -179,7 +179,7 @@ pub fn recipe(
 fn read<C: Space>(
     space: &C,
     settings: &Settings,
-) -> Result<Recipe<Unchecked, NearestConnector, AStar>, BuildError> {
+) -> Result<RoadmapPlannerParts<Unchecked, NearestConnector, AStar>, BuildError> {
     let pace = Pace { first: settings.count_of(&FIRST)? as usize, more: settings.count_of(&MORE)? as usize };
-    recipe(reachable(space, settings)?, pace)
+    parts(reachable(space, settings)?, pace)
 }

@@ -76,8 +76,8 @@ use crate::by_name::{Given, Made, Types};
 use crate::engine::mixed::{drew_uniform, part, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, Kind, NeighborSet, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner, StagedConnector, Turns,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Pace, Reachable, Roadmap,
+    RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter, PlannerInfo, PointOf,
@@ -244,8 +244,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.geometry(INFO.name)?, given.settings)?;
-    given.made(recipe)
+    let parts = read(given.space, given.geometry(INFO.name)?, given.settings)?;
+    given.made(parts)
 }
 
 /// Configurations on and near the surfaces of obstacles: the generator of OBPRM.
@@ -357,20 +357,20 @@ where
             let toward = space.sample_uniform(rng);
             let Some(contact) = self.contact(obstacle, [&inside, &toward], checker) else { continue };
             let gap = self.gap / space.distance(&inside, &toward);
-            let mut take = |at: f64, kind: Kind, checker: &mut EdgeChecker<'_, C, L>| {
+            let mut take = |at: f64, kind: MilestoneKind, checker: &mut EdgeChecker<'_, C, L>| {
                 let q = space.interpolate(&inside, &toward, at);
                 // In contact it was found free already.
-                if at <= 1.0 && (kind == Kind::Contact || checker.admits(&q)) {
+                if at <= 1.0 && (kind == MilestoneKind::Contact || checker.admits(&q)) {
                     out.push(Candidate::new(q, kind).of(obstacle as u32));
                 }
             };
             match strategy {
-                Strategy::Prototype | Strategy::Contact => take(contact, Kind::Contact, checker),
-                Strategy::Free => take(contact + gap * rng.random::<f64>(), Kind::Near, checker),
+                Strategy::Prototype | Strategy::Contact => take(contact, MilestoneKind::Contact, checker),
+                Strategy::Free => take(contact + gap * rng.random::<f64>(), MilestoneKind::Near, checker),
                 Strategy::Shells => {
-                    take(contact, Kind::Contact, checker);
+                    take(contact, MilestoneKind::Contact, checker);
                     for shell in 1..=shells {
-                        take(contact + gap * shell as f64, Kind::Near, checker);
+                        take(contact + gap * shell as f64, MilestoneKind::Near, checker);
                     }
                 }
             }
@@ -406,8 +406,8 @@ where
         C: DefaultNn<Nn = N>,
         N: Default,
     {
-        let recipe = recipe(problem.space(), hints, reach, with)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
+        let parts = parts(problem.space(), hints, reach, with)?;
+        Ok(Self::assemble(problem, N::default(), parts))
     }
 }
 
@@ -415,17 +415,17 @@ where
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<C: Space, H: Clone>(
+pub fn parts<C: Space, H: Clone>(
     space: &C,
     hints: H,
     reach: Reachable,
     with: OnSurfaces,
-) -> Result<Recipe<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+) -> Result<RoadmapPlannerParts<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
     let turns = Turns::At(AT[..with.turns].to_vec());
-    Ok(Recipe {
-        generate: OnObstacles::new(space, hints.clone(), with)?,
-        connect: StagedConnector::new(hints, reach, with.among, turns)?,
+    Ok(RoadmapPlannerParts {
+        generator: OnObstacles::new(space, hints.clone(), with)?,
+        connector: StagedConnector::new(hints, reach, with.among, turns)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
@@ -436,6 +436,6 @@ fn read<C: Space, H: Clone>(
     space: &C,
     hints: H,
     settings: &Settings,
-) -> Result<Recipe<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
-    recipe(space, hints, reachable(space, settings)?, OnSurfaces::read(settings)?)
+) -> Result<RoadmapPlannerParts<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+    parts(space, hints, reachable(space, settings)?, OnSurfaces::read(settings)?)
 }

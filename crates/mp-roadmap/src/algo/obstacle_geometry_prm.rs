@@ -68,8 +68,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, Kind, NeighborSet, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner, StagedConnector, Turns,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Pace, Reachable, Roadmap,
+    RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
     BodyFeatures, BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter,
@@ -122,8 +122,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.geometry(INFO.name)?, given.settings)?;
-    given.made(recipe)
+    let parts = read(given.space, given.geometry(INFO.name)?, given.settings)?;
+    given.made(parts)
 }
 
 /// Far and near configurations: the generator of obstacle-geometry PRM.
@@ -167,7 +167,7 @@ impl<H> AroundObstacles<H> {
     fn band<C, L>(
         &self,
         obstacle: usize,
-        (q, kind): (&C::State, Kind),
+        (q, kind): (&C::State, MilestoneKind),
         checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
@@ -213,16 +213,16 @@ where
         let obstacles = self.hints.obstacles().len() as u64;
         if attempt < self.with.far {
             if self.hints.is_far(&q) {
-                out.push(Candidate::new(q, Kind::Far));
+                out.push(Candidate::new(q, MilestoneKind::Far));
             }
         } else if obstacles > 0 && attempt.is_multiple_of(2) {
             let obstacle = (attempt / 2 % obstacles) as usize;
-            self.band(obstacle, (&q, Kind::Near), checker, rng, out);
+            self.band(obstacle, (&q, MilestoneKind::Near), checker, rng, out);
         } else if checker.admits(&q) {
-            let kind = if self.hints.is_far(&q) { Kind::Far } else { Kind::Plain };
+            let kind = if self.hints.is_far(&q) { MilestoneKind::Far } else { MilestoneKind::Plain };
             out.push(Candidate::new(q, kind));
         } else if let Some(obstacle) = self.hints.touched(&q) {
-            self.band(obstacle, (&q, Kind::Salvaged), checker, rng, out);
+            self.band(obstacle, (&q, MilestoneKind::Salvaged), checker, rng, out);
         }
     }
 
@@ -256,8 +256,8 @@ where
         C: DefaultNn<Nn = N>,
         N: Default,
     {
-        let recipe = recipe(hints, reach, with)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
+        let parts = parts(hints, reach, with)?;
+        Ok(Self::assemble(problem, N::default(), parts))
     }
 }
 
@@ -265,14 +265,14 @@ where
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<H: Clone>(
+pub fn parts<H: Clone>(
     hints: H,
     reach: Reachable,
     with: ByGeometry,
-) -> Result<Recipe<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: AroundObstacles::new(hints.clone(), with)?,
-        connect: StagedConnector::new(hints, reach, NeighborSet::NearestConnector, Turns::WhereFar)?,
+) -> Result<RoadmapPlannerParts<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+    Ok(RoadmapPlannerParts {
+        generator: AroundObstacles::new(hints.clone(), with)?,
+        connector: StagedConnector::new(hints, reach, NeighborSet::NearestConnector, Turns::WhereFar)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
@@ -283,7 +283,7 @@ fn read<C: Space, H: Clone>(
     space: &C,
     hints: H,
     settings: &Settings,
-) -> Result<Recipe<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
+) -> Result<RoadmapPlannerParts<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
-    recipe(hints, reachable(space, settings)?, with)
+    parts(hints, reachable(space, settings)?, with)
 }

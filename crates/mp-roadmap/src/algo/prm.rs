@@ -64,8 +64,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, Free, Kind, NearestConnector, NodeGenerator, Pace, ParentMotion,
-    Reachable, Recipe, Roadmap, RoadmapPlanner,
+    AStar, Candidate, EdgeChecker, Free, MilestoneKind, NearestConnector, NodeGenerator, Pace, ParentMotion,
+    Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, DefaultNn, Direction, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter,
@@ -145,8 +145,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+    let parts = read(given.space, given.settings)?;
+    given.made(parts)
 }
 
 /// The two steps of the learning phase in turn: the generator of PRM.
@@ -240,8 +240,8 @@ where
                 }
                 here = motion.end.clone();
                 let from = (bounce == 0 || out.is_empty()).then_some(first);
-                let mut candidate = Candidate::new(here.clone(), Kind::Expanded);
-                candidate.came = Some(ParentMotion { from, motion });
+                let mut candidate = Candidate::new(here.clone(), MilestoneKind::Expanded);
+                candidate.parent = Some(ParentMotion { from, motion });
                 out.push(candidate);
                 break;
             }
@@ -288,8 +288,8 @@ where
         reach: Reachable,
         learning: Learning,
     ) -> Result<Self, BuildError> {
-        let recipe = recipe(problem.space(), reach, learning)?;
-        Ok(Self::assemble(problem, index, recipe))
+        let parts = parts(problem.space(), reach, learning)?;
+        Ok(Self::assemble(problem, index, parts))
     }
 }
 
@@ -297,14 +297,14 @@ where
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<C: Space>(
+pub fn parts<C: Space>(
     space: &C,
     reach: Reachable,
     learning: Learning,
-) -> Result<Recipe<Learn<'_, C>, NearestConnector, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: Learn::new(space, learning)?,
-        connect: NearestConnector::new(reach)?,
+) -> Result<RoadmapPlannerParts<Learn<'_, C>, NearestConnector, AStar>, BuildError> {
+    Ok(RoadmapPlannerParts {
+        generator: Learn::new(space, learning)?,
+        connector: NearestConnector::new(reach)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
@@ -314,6 +314,6 @@ pub fn recipe<C: Space>(
 fn read<'c, C: Space>(
     space: &'c C,
     settings: &Settings,
-) -> Result<Recipe<Learn<'c, C>, NearestConnector, AStar>, BuildError> {
-    recipe(space, reachable(space, settings)?, Learning::read(settings)?)
+) -> Result<RoadmapPlannerParts<Learn<'c, C>, NearestConnector, AStar>, BuildError> {
+    parts(space, reachable(space, settings)?, Learning::read(settings)?)
 }

@@ -46,8 +46,8 @@
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::UNDIRECTED;
 use crate::{
-    AStar, Candidate, Connector, Free, Growing, NearestConnector, Pace, Prefetching, Reachable, Recipe,
-    RoadmapPlanner,
+    AStar, Candidate, Connector, Free, Growing, NearestConnector, Pace, Prefetching, Reachable,
+    RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
@@ -73,8 +73,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+    let parts = read(given.space, given.settings)?;
+    given.made(parts)
 }
 
 /// Every candidate becomes a node, and is connected to as many neighbours as shortest paths need.
@@ -119,10 +119,10 @@ where
         Some(self.adopt(candidate, growing))
     }
 
-    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Prefetching<'_, '_, C, L, N>) {
-        let k = self.neighbours(ahead.nodes() + 1);
-        ahead.near(k, f64::INFINITY).iter().for_each(|hit| {
-            ahead.reach(hit.id);
+    fn prefetch<N: NearestNeighbors<C>>(&self, prefetching: &mut Prefetching<'_, '_, C, L, N>) {
+        let k = self.neighbours(prefetching.nodes() + 1);
+        prefetching.near(k, f64::INFINITY).iter().for_each(|hit| {
+            prefetching.reach(hit.id);
         });
     }
 
@@ -154,8 +154,8 @@ where
         C: DefaultNn<Nn = N>,
         N: Default,
     {
-        let recipe = recipe(problem.space(), factor)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
+        let parts = parts(problem.space(), factor)?;
+        Ok(Self::assemble(problem, N::default(), parts))
     }
 }
 
@@ -163,13 +163,13 @@ where
 ///
 /// # Errors
 /// When the factor is not in \[1, 100\].
-pub fn recipe<C: Space>(
+pub fn parts<C: Space>(
     space: &C,
     factor: f64,
-) -> Result<Recipe<Free<Uniform<'_, C>>, Star, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: Free::uniform(space),
-        connect: Star::new(space.dim(), factor)?,
+) -> Result<RoadmapPlannerParts<Free<Uniform<'_, C>>, Star, AStar>, BuildError> {
+    Ok(RoadmapPlannerParts {
+        generator: Free::uniform(space),
+        connector: Star::new(space.dim(), factor)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: true,
@@ -179,6 +179,6 @@ pub fn recipe<C: Space>(
 fn read<'c, C: Space>(
     space: &'c C,
     settings: &Settings,
-) -> Result<Recipe<Free<Uniform<'c, C>>, Star, AStar>, BuildError> {
-    recipe(space, settings.number(FACTOR.name)?.unwrap_or(1.1))
+) -> Result<RoadmapPlannerParts<Free<Uniform<'c, C>>, Star, AStar>, BuildError> {
+    parts(space, settings.number(FACTOR.name)?.unwrap_or(1.1))
 }

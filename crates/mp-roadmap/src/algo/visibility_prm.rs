@@ -31,7 +31,7 @@
 //!
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Problem, Resolution, Rn, Rng, StopReason, Straight};
-//! use mp_roadmap::{Kind, VisibilityPrm};
+//! use mp_roadmap::{MilestoneKind, VisibilityPrm};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
@@ -44,14 +44,17 @@
 //! let reason = builder.build(&mut Rng::seed(1), &mut mp_cspace::Iterations(100_000), &mut ());
 //! assert_eq!((reason, builder.connector().coverage()), (StopReason::Exhausted, 1.0 - 1.0 / 200.0));
 //! let map = builder.map();
-//! let guards = (0..map.len() as u32).filter(|&id| map.tag(id).kind == Kind::Guard).count();
+//! let guards = (0..map.len() as u32).filter(|&id| map.tag(id).kind == MilestoneKind::Guard).count();
 //! assert!((2..10).contains(&guards) && map.len() < 20);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 use crate::by_name::{Given, Made, Types};
 use crate::engine::settings::UNDIRECTED;
-use crate::{AStar, Candidate, Connector, Free, Growing, Kind, Pace, Recipe, Roadmap, RoadmapPlanner};
+use crate::{
+    AStar, Candidate, Connector, Free, Growing, MilestoneKind, Pace, Roadmap, RoadmapPlanner,
+    RoadmapPlannerParts,
+};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, Motion, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
     Reversible, Settings, Space, Uniform,
@@ -76,8 +79,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+    let parts = read(given.space, given.settings)?;
+    given.made(parts)
 }
 
 /// Only guards and connections become nodes: the connector of Visib-PRM.
@@ -207,7 +210,7 @@ impl Visibility {
         L: LocalPlanner<C::State, Edge: Reversible>,
         N: NearestNeighbors<C>,
     {
-        let id = growing.add(Candidate { kind: Kind::Guard, ..candidate });
+        let id = growing.add(Candidate { kind: MilestoneKind::Guard, ..candidate });
         self.parts.push(vec![id]);
         id
     }
@@ -229,7 +232,7 @@ where
             return Some(self.guard(candidate, growing));
         }
         self.failures += 1;
-        let connection = Candidate { kind: Kind::Connection, ..candidate };
+        let connection = Candidate { kind: MilestoneKind::Connection, ..candidate };
         (seen.len() > 1).then(|| self.join(connection, seen, growing))
     }
 
@@ -246,7 +249,7 @@ where
     }
 
     fn resumed(&mut self, map: &Roadmap<C::State, L::Edge>) {
-        let guards = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == Kind::Guard);
+        let guards = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == MilestoneKind::Guard);
         (self.parts, self.blocked, self.failures) = (vec![guards.collect()], None, 0);
     }
 
@@ -273,8 +276,8 @@ where
         C: DefaultNn<Nn = N>,
         N: Default,
     {
-        let recipe = recipe(problem.space(), failures)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
+        let parts = parts(problem.space(), failures)?;
+        Ok(Self::assemble(problem, N::default(), parts))
     }
 }
 
@@ -282,13 +285,13 @@ where
 ///
 /// # Errors
 /// When the number of failures is not from 1 to 10⁹.
-pub fn recipe<C: Space>(
+pub fn parts<C: Space>(
     space: &C,
     failures: u64,
-) -> Result<Recipe<Free<Uniform<'_, C>>, Visibility, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: Free::uniform(space),
-        connect: Visibility::new(failures)?,
+) -> Result<RoadmapPlannerParts<Free<Uniform<'_, C>>, Visibility, AStar>, BuildError> {
+    Ok(RoadmapPlannerParts {
+        generator: Free::uniform(space),
+        connector: Visibility::new(failures)?,
         query: AStar::new(),
         pace: Pace::default(),
         improves: false,
@@ -298,6 +301,6 @@ pub fn recipe<C: Space>(
 fn read<'c, C: Space>(
     space: &'c C,
     settings: &Settings,
-) -> Result<Recipe<Free<Uniform<'c, C>>, Visibility, AStar>, BuildError> {
-    recipe(space, settings.count_of(&FAILURES)?)
+) -> Result<RoadmapPlannerParts<Free<Uniform<'c, C>>, Visibility, AStar>, BuildError> {
+    parts(space, settings.count_of(&FAILURES)?)
 }

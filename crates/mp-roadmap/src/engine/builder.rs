@@ -1,6 +1,6 @@
 //! The one loop that builds roadmaps.
 
-use super::prefetch::{Look, Prefetched, Prefetcher};
+use super::prefetch::{PrefetchJob, Prefetched, Prefetcher};
 use super::{Candidate, Connector, EdgeChecker, Growing, NodeGenerator, Roadmap};
 use mp_cspace::{
     BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
@@ -11,11 +11,11 @@ use std::ops::Range;
 
 /// One variant of the family: a policy for each slot.
 #[derive(Clone, Copy, Debug)]
-pub struct Recipe<G, K, Q> {
+pub struct RoadmapPlannerParts<G, K, Q> {
     /// What configurations are tried as nodes.
-    pub generate: G,
+    pub generator: G,
     /// Which become nodes, and with which edges.
-    pub connect: K,
+    pub connector: K,
     /// How ways are looked for.
     pub query: Q,
     /// When ways are looked for.
@@ -42,12 +42,12 @@ pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) checker: EdgeChecker<'c, C, L>,
     pub(crate) map: Roadmap<C::State, L::Edge>,
     pub(crate) index: N,
-    generate: G,
-    connect: K,
+    generator: G,
+    connector: K,
     seed: Option<u64>,
     attempts: u64,
     candidates: Vec<Candidate<C::State, L::Edge>>,
-    pub(crate) ahead: Prefetcher<'c, C, L, G, K, N>,
+    pub(crate) prefetcher: Prefetcher<'c, C, L, G, K, N>,
 }
 
 impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
@@ -59,18 +59,18 @@ where
     N: NearestNeighbors<C>,
 {
     /// With no nodes yet; `index` is empty.
-    pub fn new(checker: EdgeChecker<'c, C, L>, generate: G, connect: K, index: N) -> Self {
+    pub fn new(checker: EdgeChecker<'c, C, L>, generator: G, connector: K, index: N) -> Self {
         let map = Roadmap::new();
         Self {
             checker,
             map,
             index,
-            generate,
-            connect,
+            generator,
+            connector,
             seed: None,
             attempts: 0,
             candidates: Vec::new(),
-            ahead: Prefetcher::default(),
+            prefetcher: Prefetcher::default(),
         }
     }
 
@@ -86,8 +86,8 @@ where
     pub(crate) fn replace(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
         map.fill(self.checker.space(), &mut self.index)?;
         self.map = map;
-        self.connect.resumed(&self.map);
-        self.ahead.ready.clear();
+        self.connector.resumed(&self.map);
+        self.prefetcher.ready.clear();
         Ok(())
     }
 
@@ -128,7 +128,7 @@ where
                 }
             }
         }
-        self.connect.resumed(&self.map);
+        self.connector.resumed(&self.map);
         Ok(())
     }
 
@@ -146,7 +146,7 @@ where
     /// The connector.
     #[must_use]
     pub fn connector(&self) -> &K {
-        &self.connect
+        &self.connector
     }
 
     /// The roadmap alone.
@@ -159,11 +159,11 @@ where
     pub fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Range<NodeId> {
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         let before = self.map.len() as NodeId;
-        self.look_ahead(seed);
-        if let Some(foreseen) = self.ahead.ready.pop_front() {
+        self.prefetch(seed);
+        if let Some(prefetched) = self.prefetcher.ready.pop_front() {
             self.attempts += 1;
             let mut last = None;
-            for (candidate, answers) in foreseen {
+            for (candidate, answers) in prefetched {
                 observer.on(Event::Sampled(&candidate.state));
                 last = self.take(candidate, answers, last, observer);
             }
@@ -171,7 +171,7 @@ where
         }
         let mut candidates = std::mem::take(&mut self.candidates);
         let mut stream = Rng::stream(seed, self.attempts);
-        self.generate.generate(self.attempts, &self.map, &mut self.checker, &mut stream, &mut candidates);
+        self.generator.generate(self.attempts, &self.map, &mut self.checker, &mut stream, &mut candidates);
         self.attempts += 1;
         let mut last = None;
         for candidate in candidates.drain(..) {
@@ -183,17 +183,24 @@ where
     }
 
     /// Has the threads make the next attempts, where there are any and none is left from before.
-    fn look_ahead(&mut self, seed: u64) {
-        let Some(work) = &mut self.ahead.work else { return };
-        let most = self.generate.independent(&self.map).min(self.ahead.most);
-        if !self.ahead.ready.is_empty() || most < 2 {
+    fn prefetch(&mut self, seed: u64) {
+        let Some(work) = &mut self.prefetcher.work else { return };
+        let most = self.generator.independent(&self.map).min(self.prefetcher.most);
+        if !self.prefetcher.ready.is_empty() || most < 2 {
             return;
         }
         self.map.refresh();
         let attempts = self.attempts..self.attempts + most;
         let (map, index) = (&self.map, &self.index);
-        let look = Look { map, index, generate: &self.generate, connect: &self.connect, seed, attempts };
-        self.ahead.ready = work(look).into();
+        let job = PrefetchJob {
+            map,
+            index,
+            generator: &self.generator,
+            connector: &self.connector,
+            seed,
+            attempts,
+        };
+        self.prefetcher.ready = work(job).into();
     }
 
     /// Connects a candidate, of which the local planner has answered some questions already.
@@ -204,8 +211,8 @@ where
         last: Option<NodeId>,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<NodeId> {
-        if let Some(came) = &mut candidate.came {
-            came.from = Some(came.from.or(last)?);
+        if let Some(parent) = &mut candidate.parent {
+            parent.from = Some(parent.from.or(last)?);
         }
         let mut growing = Growing {
             map: &mut self.map,
@@ -214,7 +221,7 @@ where
             observer,
             answers,
         };
-        self.connect.connect(candidate, &mut growing)
+        self.connector.connect(candidate, &mut growing)
     }
 
     /// Adds a configuration whatever the connector thinks of it: an end of a path.
@@ -230,7 +237,7 @@ where
             observer,
             answers: Vec::new(),
         };
-        self.connect.adopt(candidate, &mut growing)
+        self.connector.adopt(candidate, &mut growing)
     }
 
     /// Builds until stopped. Call again to go on.
@@ -256,7 +263,7 @@ where
     #[must_use]
     pub fn progress(&self) -> Progress {
         let mut progress = Progress::new(self.attempts, self.map.len(), self.checker.motions());
-        (progress.rejected, progress.exhausted) = (self.checker.rejected(), self.connect.exhausted());
+        (progress.rejected, progress.exhausted) = (self.checker.rejected(), self.connector.exhausted());
         progress
     }
 }

@@ -71,7 +71,7 @@ where
         let id = self.map.add(candidate.state, tag);
         self.index.inserted(self.checker.space(), self.map.states(), id);
         self.observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
-        if let Some(ParentMotion { from: Some(from), motion }) = candidate.came {
+        if let Some(ParentMotion { from: Some(from), motion }) = candidate.parent {
             self.link(from, id, motion);
         }
         id
@@ -121,7 +121,7 @@ pub trait Connector<C: Space, L: LocalPlanner<C::State>> {
 
     /// Asks for the motions that connecting a candidate will probably ask for. What it does not ask for
     /// ahead is asked for later; so nothing depends on it but the time.
-    fn foresee<N: NearestNeighbors<C>>(&self, _ahead: &mut Prefetching<'_, '_, C, L, N>) {}
+    fn prefetch<N: NearestNeighbors<C>>(&self, _prefetching: &mut Prefetching<'_, '_, C, L, N>) {}
 
     /// Goes on with a roadmap that it did not connect, or not all of it.
     fn resumed(&mut self, _map: &Roadmap<C::State, L::Edge>) {}
@@ -195,14 +195,14 @@ where
         Some(self.adopt(candidate, growing))
     }
 
-    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Prefetching<'_, '_, C, L, N>) {
+    fn prefetch<N: NearestNeighbors<C>>(&self, prefetching: &mut Prefetching<'_, '_, C, L, N>) {
         if self.lazy {
             return;
         }
         let mut joined = Vec::new();
-        for hit in ahead.near(self.within.neighbours, self.within.radius) {
-            let part = ahead.component(hit.id);
-            if (self.within.cycles || !joined.contains(&part)) && ahead.reach(hit.id) {
+        for hit in prefetching.near(self.within.neighbours, self.within.radius) {
+            let part = prefetching.component(hit.id);
+            if (self.within.cycles || !joined.contains(&part)) && prefetching.reach(hit.id) {
                 joined.push(part);
             }
         }

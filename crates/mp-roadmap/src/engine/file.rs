@@ -1,6 +1,6 @@
 //! Roadmaps in files. `docs/formats/roadmap.md` describes them.
 
-use super::{Kind, Link, LinkState, Roadmap, Tag};
+use super::{Link, LinkState, MilestoneKind, Roadmap, Tag};
 use mp_cspace::{NodeId, StateVector};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -98,7 +98,7 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
             numbers.clear();
             state.write(&mut numbers);
             put(&mut bytes, &numbers);
-            let kind = Kind::ALL.iter().position(|kind| *kind == tag.kind).unwrap_or(0);
+            let kind = MilestoneKind::ALL.iter().position(|kind| *kind == tag.kind).unwrap_or(0);
             bytes.push(kind as u8);
             for number in [tag.obstacle.unwrap_or(NONE), tag.tried, tag.failed] {
                 bytes.extend(number.to_le_bytes());
@@ -156,7 +156,7 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
             let at = reader.at;
             let state = S::read(&reader.f64s(width)?);
             let state = state.ok_or(RoadmapError::Invalid { at, expected: "a state of this space" })?;
-            let kind = Kind::ALL.get(usize::from(reader.u8()?)).copied();
+            let kind = MilestoneKind::ALL.get(usize::from(reader.u8()?)).copied();
             let kind = kind.ok_or(RoadmapError::Invalid { at: reader.at - 1, expected: "a kind of node" })?;
             let obstacle = Some(reader.u32()?).filter(|obstacle| *obstacle != NONE);
             map.add(state, Tag { kind, obstacle, tried: reader.u32()?, failed: reader.u32()? });

@@ -1,6 +1,6 @@
 //! Where nodes come from.
 
-use super::{EdgeChecker, Kind, Roadmap};
+use super::{EdgeChecker, MilestoneKind, Roadmap};
 use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, Uniform};
 
 /// A configuration that may become a node.
@@ -9,11 +9,11 @@ pub struct Candidate<S, E> {
     /// The configuration: free, by [`EdgeChecker::admits`].
     pub state: S,
     /// What it is there for.
-    pub kind: Kind,
+    pub kind: MilestoneKind,
     /// The obstacle it belongs to, if any.
     pub obstacle: Option<u32>,
     /// How it was come to, when from a node; that edge is kept.
-    pub came: Option<ParentMotion<S, E>>,
+    pub parent: Option<ParentMotion<S, E>>,
 }
 
 /// How a candidate was come to.
@@ -27,8 +27,8 @@ pub struct ParentMotion<S, E> {
 
 impl<S, E> Candidate<S, E> {
     /// A configuration, come to by itself.
-    pub fn new(state: S, kind: Kind) -> Self {
-        Self { state, kind, obstacle: None, came: None }
+    pub fn new(state: S, kind: MilestoneKind) -> Self {
+        Self { state, kind, obstacle: None, parent: None }
     }
 
     /// The same, belonging to an obstacle.
@@ -98,7 +98,7 @@ where
     ) {
         let state = self.sampler.sample(rng);
         if checker.admits(&state) {
-            out.push(Candidate::new(state, Kind::Plain));
+            out.push(Candidate::new(state, MilestoneKind::Plain));
         }
     }
 

@@ -2,8 +2,8 @@
 
 use super::settings::{length, reachable};
 use super::{
-    AStar, Candidate, EdgeChecker, Kind, NearestConnector, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NearestConnector, NodeGenerator, Pace, Reachable, Roadmap,
+    RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, Problem, Reversible, Rng, Settings,
@@ -97,14 +97,14 @@ impl<R: PairRule> Pairs<R> {
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub fn recipe<C: Space>(
+    pub fn parts<C: Space>(
         space: &C,
         reach: Reachable,
         mixing: Mixing,
-    ) -> Result<Recipe<Self, NearestConnector, AStar>, BuildError> {
-        Ok(Recipe {
-            generate: Self::new(space, mixing)?,
-            connect: NearestConnector::new(reach)?,
+    ) -> Result<RoadmapPlannerParts<Self, NearestConnector, AStar>, BuildError> {
+        Ok(RoadmapPlannerParts {
+            generator: Self::new(space, mixing)?,
+            connector: NearestConnector::new(reach)?,
             query: AStar::new(),
             pace: Pace::default(),
             improves: false,
@@ -115,8 +115,8 @@ impl<R: PairRule> Pairs<R> {
         space: &C,
         settings: &Settings,
         mixing: Mixing,
-    ) -> Result<Recipe<Self, NearestConnector, AStar>, BuildError> {
-        Self::recipe(space, reachable(space, settings)?, mixing.read(settings)?)
+    ) -> Result<RoadmapPlannerParts<Self, NearestConnector, AStar>, BuildError> {
+        Self::parts(space, reachable(space, settings)?, mixing.read(settings)?)
     }
 }
 
@@ -139,7 +139,7 @@ where
         }
         let space = checker.space();
         let found = R::attempt(space, |q: &C::State| checker.admits(q), self.sigma, rng);
-        out.extend(found.map(|q| Candidate::new(q, Kind::Near)));
+        out.extend(found.map(|q| Candidate::new(q, MilestoneKind::Near)));
     }
 
     fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
@@ -176,8 +176,8 @@ where
         reach: Reachable,
         mixing: Mixing,
     ) -> Result<Self, BuildError> {
-        let recipe = Pairs::recipe(problem.space(), reach, mixing)?;
-        Ok(Self::assemble(problem, index, recipe))
+        let parts = Pairs::parts(problem.space(), reach, mixing)?;
+        Ok(Self::assemble(problem, index, parts))
     }
 }
 
@@ -196,7 +196,7 @@ where
     if draw {
         let q = checker.space().sample_uniform(rng);
         if checker.admits(&q) {
-            out.push(Candidate::new(q, Kind::Plain));
+            out.push(Candidate::new(q, MilestoneKind::Plain));
         }
     }
     draw

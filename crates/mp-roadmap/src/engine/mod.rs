@@ -16,7 +16,7 @@ mod search;
 pub(crate) mod settings;
 mod staged;
 
-pub use builder::{Builder, Pace, Recipe};
+pub use builder::{Builder, Pace, RoadmapPlannerParts};
 pub use connect::{Connector, Growing, NearestConnector, Reachable};
 pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Candidate, Free, NodeGenerator, ParentMotion};
@@ -25,7 +25,7 @@ pub use mp_cspace::EdgeChecker;
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
 pub use prefetch::Prefetching;
 pub use queries::{IndexedRoadmap, Listed, RoadmapQueries, Unanswered};
-pub use roadmap::{EdgeId, GraphPath, Kind, Link, LinkState, Roadmap, Tag};
+pub use roadmap::{EdgeId, GraphPath, Link, LinkState, MilestoneKind, Roadmap, Tag};
 pub use search::{AStar, Entry, Query};
 pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
 pub use staged::{NeighborSet, StagedConnector, Turns};

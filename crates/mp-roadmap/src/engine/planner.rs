@@ -1,7 +1,8 @@
 //! Roadmaps as planners of one path: they grow until start and goal are connected.
 
 use super::{
-    Builder, Candidate, Connector, EdgeChecker, GraphPath, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap,
+    Builder, Candidate, Connector, EdgeChecker, GraphPath, MilestoneKind, NodeGenerator, Pace, Query,
+    Roadmap, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
@@ -44,13 +45,13 @@ where
     N: NearestNeighbors<C>,
 {
     /// The planner made by a recipe, with an empty index.
-    pub fn assemble(problem: Problem<'c, C, L>, index: N, recipe: Recipe<G, K, Q>) -> Self {
+    pub fn assemble(problem: Problem<'c, C, L>, index: N, parts: RoadmapPlannerParts<G, K, Q>) -> Self {
         let (checker, start, goals) = EdgeChecker::of(problem, PATIENCE);
         Self {
-            builder: Builder::new(checker, recipe.generate, recipe.connect, index),
-            query: recipe.query,
-            pace: recipe.pace,
-            improves: recipe.improves,
+            builder: Builder::new(checker, parts.generator, parts.connector, index),
+            query: parts.query,
+            pace: parts.pace,
+            improves: parts.improves,
             start,
             goals,
             ends: None,
@@ -62,7 +63,7 @@ where
 
     /// Builds on several threads: see [`Builder::on`].
     #[must_use]
-    pub fn on(self, workers: Workers, hands: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self
+    pub fn on(self, workers: Workers, checkers: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self
     where
         C::State: 'c,
         L: Send + 'c,
@@ -71,7 +72,7 @@ where
         K: Sync,
         N: Sync,
     {
-        Self { builder: self.builder.on(workers, hands), ..self }
+        Self { builder: self.builder.on(workers, checkers), ..self }
     }
 
     /// The roadmap; before the first step without start and goal.
@@ -93,7 +94,7 @@ where
     }
 
     fn begin(&mut self, observer: &mut dyn Observer<C::State>) {
-        let start = self.builder.adopt(Candidate::new(self.start.clone(), Kind::End), observer);
+        let start = self.builder.adopt(Candidate::new(self.start.clone(), MilestoneKind::End), observer);
         let mut goals = Vec::new();
         if self.goals.reached(&self.start) {
             goals.push(start);
@@ -103,7 +104,7 @@ where
             goals.push(if same {
                 start
             } else {
-                self.builder.adopt(Candidate::new(goal.clone(), Kind::End), observer)
+                self.builder.adopt(Candidate::new(goal.clone(), MilestoneKind::End), observer)
             });
         }
         self.ends = Some((start, goals));
@@ -115,7 +116,7 @@ where
         if !self.builder.checker.accepts(&goal) {
             return;
         }
-        let id = self.builder.adopt(Candidate::new(goal, Kind::End), observer);
+        let id = self.builder.adopt(Candidate::new(goal, MilestoneKind::End), observer);
         self.add_goals([id]);
     }
 

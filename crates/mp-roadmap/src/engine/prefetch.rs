@@ -65,11 +65,11 @@ where
 }
 
 /// What the threads look at: the roadmap and its neighbours, the policies, the seed, and which attempts.
-pub(crate) struct Look<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+pub(crate) struct PrefetchJob<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) map: &'a Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a N,
-    pub(crate) generate: &'a G,
-    pub(crate) connect: &'a K,
+    pub(crate) generator: &'a G,
+    pub(crate) connector: &'a K,
     pub(crate) seed: u64,
     pub(crate) attempts: Range<u64>,
 }
@@ -77,7 +77,7 @@ pub(crate) struct Look<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
 /// What was made of some attempts, in order.
 type Made<C, L> = Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
 
-type Work<'c, C, L, G, K, N> = Box<dyn FnMut(Look<'_, C, L, G, K, N>) -> Made<C, L> + Send + 'c>;
+type Work<'c, C, L, G, K, N> = Box<dyn FnMut(PrefetchJob<'_, C, L, G, K, N>) -> Made<C, L> + Send + 'c>;
 
 /// Threads that make attempts ahead, and what they have made.
 pub(crate) struct Prefetcher<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
@@ -103,9 +103,9 @@ impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Prefetcher<'_,
 }
 
 /// One thread's part of the work.
-struct Hand<'c, C: Space, L: LocalPlanner<C::State>, G> {
+struct PrefetchTask<'c, C: Space, L: LocalPlanner<C::State>, G> {
     checker: EdgeChecker<'c, C, L>,
-    generate: Option<G>,
+    generator: Option<G>,
     attempts: Range<u64>,
     made: Vec<PrefetchedAttempt<C::State, L::Edge>>,
 }
@@ -128,53 +128,53 @@ where
     /// time; give at least as many as there are threads. The roadmap is the same to the bit as without,
     /// whatever their number and that of the threads.
     #[must_use]
-    pub fn on(mut self, workers: Workers, hands: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
+    pub fn on(mut self, workers: Workers, checkers: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
         let none = 0..0;
-        let hands = hands.into_iter().map(|checker| Hand {
+        let tasks = checkers.into_iter().map(|checker| PrefetchTask {
             checker,
-            generate: None::<G>,
+            generator: None::<G>,
             attempts: none.clone(),
             made: Vec::new(),
         });
-        let mut hands: Vec<_> = hands.collect();
-        self.ahead.most = SHARE * hands.len() as u64;
-        self.ahead.work = Some(Box::new(move |look: Look<'_, C, L, G, K, N>| {
-            let mut next = look.attempts.start;
-            for hand in &mut hands {
-                let end = (next + SHARE).min(look.attempts.end);
-                hand.attempts = next..end;
-                hand.generate = Some(look.generate.clone());
+        let mut tasks: Vec<_> = tasks.collect();
+        self.prefetcher.most = SHARE * tasks.len() as u64;
+        self.prefetcher.work = Some(Box::new(move |job: PrefetchJob<'_, C, L, G, K, N>| {
+            let mut next = job.attempts.start;
+            for task in &mut tasks {
+                let end = (next + SHARE).min(job.attempts.end);
+                task.attempts = next..end;
+                task.generator = Some(job.generator.clone());
                 next = end;
             }
-            workers.each(&mut hands, |hand| hand.work(&look));
-            hands.iter_mut().flat_map(|hand| hand.made.drain(..)).collect()
+            workers.each(&mut tasks, |task| task.work(&job));
+            tasks.iter_mut().flat_map(|task| task.made.drain(..)).collect()
         }));
         self
     }
 }
 
-impl<C, L, G> Hand<'_, C, L, G>
+impl<C, L, G> PrefetchTask<'_, C, L, G>
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
     G: NodeGenerator<C, L>,
 {
-    fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, look: &Look<'_, C, L, G, K, N>) {
-        let Some(generate) = &mut self.generate else { return };
+    fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, job: &PrefetchJob<'_, C, L, G, K, N>) {
+        let Some(generator) = &mut self.generator else { return };
         for attempt in self.attempts.clone() {
-            let mut rng = Rng::stream(look.seed, attempt);
+            let mut rng = Rng::stream(job.seed, attempt);
             let mut candidates = Vec::new();
-            generate.generate(attempt, look.map, &mut self.checker, &mut rng, &mut candidates);
-            let foreseen = candidates.into_iter().map(|candidate| {
-                let (map, index) = (look.map, look.index);
+            generator.generate(attempt, job.map, &mut self.checker, &mut rng, &mut candidates);
+            let prefetched = candidates.into_iter().map(|candidate| {
+                let (map, index) = (job.map, job.index);
                 let q = &candidate.state;
-                let mut ahead =
+                let mut prefetching =
                     Prefetching { map, index, checker: &mut self.checker, q, answers: Vec::new() };
-                look.connect.foresee(&mut ahead);
-                let answers = ahead.answers;
+                job.connector.prefetch(&mut prefetching);
+                let answers = prefetching.answers;
                 (candidate, answers)
             });
-            self.made.push(foreseen.collect());
+            self.made.push(prefetched.collect());
         }
     }
 }

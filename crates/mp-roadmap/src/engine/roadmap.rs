@@ -8,7 +8,7 @@ use petgraph::visit::EdgeRef;
 /// What a node is there for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum Kind {
+pub enum MilestoneKind {
     /// Nothing in particular.
     #[default]
     Plain,
@@ -30,7 +30,7 @@ pub enum Kind {
     Salvaged,
 }
 
-impl Kind {
+impl MilestoneKind {
     /// All kinds, each at the place of its number in files.
     pub const ALL: [Self; 9] = [
         Self::Plain,
@@ -65,7 +65,7 @@ impl Kind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tag {
     /// What it is there for.
-    pub kind: Kind,
+    pub kind: MilestoneKind,
     /// The obstacle it belongs to, if any.
     pub obstacle: Option<u32>,
     /// How often a connection to another node was tried.

@@ -47,10 +47,10 @@ struct Mark {
     search: u32,
     length: f64,
     rest: f64,
-    came: Option<EdgeId>,
+    via: Option<EdgeId>,
 }
 
-const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, came: None };
+const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, via: None };
 
 /// A* (Hart, Nilsson and Raphael 1968, *A formal basis for the heuristic determination of minimum cost
 /// paths*), with the distance to the ends as estimate. A value of it keeps its memory from search to
@@ -124,7 +124,7 @@ impl AStar {
         let (length, end) = best?;
         let mut way = GraphPath { nodes: vec![end], edges: Vec::new(), length };
         let mut at = end;
-        while let Some(edge) = self.marks[at as usize].came {
+        while let Some(edge) = self.marks[at as usize].via {
             let [a, b] = map.ends(edge);
             at = if at == a { b } else { a };
             way.nodes.push(at);
@@ -136,15 +136,15 @@ impl AStar {
     }
 
     #[inline]
-    fn push(&mut self, node: NodeId, length: f64, came: Option<EdgeId>, estimate: impl Fn(NodeId) -> f64) {
+    fn push(&mut self, node: NodeId, length: f64, via: Option<EdgeId>, estimate: impl Fn(NodeId) -> f64) {
         let mark = &mut self.marks[node as usize];
         if mark.search == self.search {
             if length >= mark.length {
                 return;
             }
-            (mark.length, mark.came) = (length, came);
+            (mark.length, mark.via) = (length, via);
         } else {
-            *mark = Mark { search: self.search, length, rest: estimate(node), came };
+            *mark = Mark { search: self.search, length, rest: estimate(node), via };
         }
         self.open.push(Open { estimate: length + mark.rest, length, node });
     }

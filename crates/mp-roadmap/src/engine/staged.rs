@@ -1,6 +1,6 @@
 //! Connecting in stages: cheap motions first, then some that turn in place.
 
-use super::{Candidate, Connector, Growing, Kind, Reachable};
+use super::{Candidate, Connector, Growing, MilestoneKind, Reachable};
 use mp_cspace::{
     BuildError, Direction, Hit, LocalPlanner, NearestNeighbors, NodeId, ObstacleHints, Reversible, Space,
 };
@@ -123,7 +123,7 @@ impl<H> StagedConnector<H> {
         let mut last = from;
         for (i, motion) in motions.into_iter().enumerate() {
             let next = match corners.get(i) {
-                Some(q) => growing.add(Candidate::new(q.clone(), Kind::Expanded)),
+                Some(q) => growing.add(Candidate::new(q.clone(), MilestoneKind::Expanded)),
                 None => to,
             };
             growing.link(last, next, motion);
@@ -152,7 +152,7 @@ where
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId {
         self.look(&candidate.state, growing);
-        let far = candidate.kind == Kind::Far;
+        let far = candidate.kind == MilestoneKind::Far;
         let id = growing.add(candidate);
         for hit in &self.near {
             if self.within.cycles || !growing.map().connected(hit.id, id) {
@@ -171,7 +171,9 @@ where
                 let at = match &self.turns {
                     Turns::At(fractions) => fractions[round],
                     // At the one end, then at the other.
-                    Turns::WhereFar if round == 0 && growing.map().tag(hit.id).kind == Kind::Far => 0.0,
+                    Turns::WhereFar if round == 0 && growing.map().tag(hit.id).kind == MilestoneKind::Far => {
+                        0.0
+                    }
                     Turns::WhereFar if round == 1 && far => 1.0,
                     Turns::WhereFar => continue,
                 };

@@ -58,7 +58,7 @@ where
 /// As [`build`].
 pub fn build_with<'c, C, L, N>(
     name: &str,
-    team: impl Into<ParallelProblem<'c, C, L>>,
+    parallel: impl Into<ParallelProblem<'c, C, L>>,
     index: N,
     settings: &Settings,
 ) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
@@ -69,5 +69,5 @@ where
 {
     let (info, make) = algo::find::<(C, L, N)>(name).ok_or_else(|| unknown(name))?;
     settings.check(info)?;
-    make(Given::new(team.into(), index, settings))
+    make(Given::new(parallel.into(), index, settings))
 }

@@ -44,7 +44,7 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// As [`build`](crate::build).
     fn roadmap_planner<'c>(
         name: &str,
-        team: AnyParallelProblem<'c, Self>,
+        parallel: AnyParallelProblem<'c, Self>,
         index: AnyIndex<Self>,
         settings: &Settings,
     ) -> Result<AnyPlanner<'c, Self, ()>, BuildError>
@@ -79,14 +79,14 @@ macro_rules! compile_for {
         impl $crate::RoadmapState for $state {
             fn roadmap_planner<'c>(
                 name: &str,
-                team: $crate::AnyParallelProblem<'c, Self>,
+                parallel: $crate::AnyParallelProblem<'c, Self>,
                 index: $crate::AnyIndex<Self>,
                 settings: &$crate::Settings,
             ) -> ::core::result::Result<$crate::AnyPlanner<'c, Self, ()>, $crate::BuildError>
             where
                 Self: 'c,
             {
-                $crate::build_with(name, team, index, settings)
+                $crate::build_with(name, parallel, index, settings)
             }
             fn answer(
                 roadmap: &mut $crate::AnyRoadmap<Self>,
