@@ -48,9 +48,9 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
-use crate::engine::mixed::{sigma, uniform};
+use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
-use crate::{AStar, Mixing, NearestConnector, PairRule, Pairs, RoadmapPlanner};
+use crate::{Mixing, PairRule, Pairs, PairsPlanner};
 use mp_cspace::{Bridge, PlannerInfo, Rng, Space, Step};
 
 /// The defaults.
@@ -88,5 +88,4 @@ impl PairRule for BetweenObstacles {
 }
 
 /// Bridge-test PRM: see the [module](self).
-pub type BridgePrm<'c, C, L, N> =
-    RoadmapPlanner<'c, C, L, Pairs<BetweenObstacles>, NearestConnector, AStar, N>;
+pub type BridgePrm<'c, C, L, N> = PairsPlanner<'c, C, L, N, BetweenObstacles>;

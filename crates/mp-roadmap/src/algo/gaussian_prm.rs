@@ -48,9 +48,9 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
-use crate::engine::mixed::{sigma, uniform};
+use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
-use crate::{AStar, Mixing, NearestConnector, PairRule, Pairs, RoadmapPlanner};
+use crate::{Mixing, PairRule, Pairs, PairsPlanner};
 use mp_cspace::{Gaussian, PlannerInfo, Rng, Space, Step};
 
 /// The defaults.
@@ -88,5 +88,4 @@ impl PairRule for NearObstacles {
 }
 
 /// Gaussian PRM: see the [module](self).
-pub type GaussianPrm<'c, C, L, N> =
-    RoadmapPlanner<'c, C, L, Pairs<NearObstacles>, NearestConnector, AStar, N>;
+pub type GaussianPrm<'c, C, L, N> = PairsPlanner<'c, C, L, N, NearObstacles>;

@@ -48,15 +48,13 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
 use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::{
     AStar, Candidate, EdgeChecker, EdgeId, LinkState, MilestoneKind, NearestConnector, NodeGenerator, Pace,
     Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
 };
-use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, PlannerInfo, Problem, Reversible, Rng,
-    Settings, Space,
-};
+use mp_cspace::{BuildError, LocalPlanner, Parameter, PlannerInfo, Reversible, Rng, Space};
 use rand::RngExt;
 
 const FIRST: Parameter = Parameter {
@@ -84,7 +82,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = read(given.space, given.settings)?;
+    let count = |parameter| Ok::<_, BuildError>(given.settings.count_of(parameter)? as usize);
+    let pace = Pace { first: count(&FIRST)?, more: count(&MORE)? };
+    let parts = parts(reachable(given.space, given.settings)?, pace)?;
     given.made(parts)
 }
 
@@ -138,26 +138,12 @@ where
 /// LazyPRM: see the [module](self).
 pub type LazyPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Unchecked, NearestConnector, AStar, N>;
 
-impl<'c, C, L, N> LazyPrm<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// LazyPRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, pace: Pace) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Ok(Self::assemble(problem, N::default(), parts(reach, pace)?))
-    }
+constructors! {
+    "LazyPRM" LazyPrm<C, L, N>,
+    |_, reach: Reachable, pace: Pace| parts(reach, pace)
 }
 
-/// The recipe of LazyPRM.
+/// The parts of LazyPRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
@@ -167,19 +153,7 @@ pub fn parts(
 ) -> Result<RoadmapPlannerParts<Unchecked, NearestConnector, AStar>, BuildError> {
     BuildError::count_within(FIRST.name, pace.first as u64, 1, 1_000_000_000)?;
     BuildError::count_within(MORE.name, pace.more as u64, 1, 1_000_000_000)?;
-    Ok(RoadmapPlannerParts {
-        generator: Unchecked { first: pace.first },
-        connector: NearestConnector::unchecked(reach)?,
-        query: AStar::new(),
-        pace,
-        improves: false,
-    })
-}
-
-fn read<C: Space>(
-    space: &C,
-    settings: &Settings,
-) -> Result<RoadmapPlannerParts<Unchecked, NearestConnector, AStar>, BuildError> {
-    let pace = Pace { first: settings.count_of(&FIRST)? as usize, more: settings.count_of(&MORE)? as usize };
-    parts(reachable(space, settings)?, pace)
+    let generator = Unchecked { first: pace.first };
+    let parts = RoadmapPlannerParts::new(generator, NearestConnector::unchecked(reach)?);
+    Ok(RoadmapPlannerParts { pace, ..parts })
 }

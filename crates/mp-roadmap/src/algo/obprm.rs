@@ -73,15 +73,16 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
-use crate::engine::mixed::{drew_uniform, part, uniform};
+use crate::engine::constructors;
+use crate::engine::pairs::{drew_uniform, part, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Pace, Reachable, Roadmap,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Reachable, Roadmap,
     RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter, PlannerInfo, PointOf,
-    Problem, Reversible, Rng, Settings, Space, Step,
+    BuildError, LocalPlanner, ObstacleGeometry, Parameter, PlannerInfo, PointOf, Reversible, Rng, Settings,
+    Space, Step,
 };
 use rand::RngExt;
 
@@ -244,7 +245,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = read(given.space, given.geometry(INFO.name)?, given.settings)?;
+    let (geometry, reach) = (given.geometry(INFO.name)?, reachable(given.space, given.settings)?);
+    let parts = parts(given.space, geometry, reach, OnSurfaces::read(given.settings)?)?;
     given.made(parts)
 }
 
@@ -385,33 +387,12 @@ where
 /// OBPRM: see the [module](self).
 pub type Obprm<'c, C, L, N, H> = RoadmapPlanner<'c, C, L, OnObstacles<H>, StagedConnector<H>, AStar, N>;
 
-impl<'c, C, L, N, H> Obprm<'c, C, L, N, H>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-    H: ObstacleGeometry<C::State> + Clone,
-{
-    /// OBPRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(
-        problem: Problem<'c, C, L>,
-        hints: H,
-        reach: Reachable,
-        with: OnSurfaces,
-    ) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let parts = parts(problem.space(), hints, reach, with)?;
-        Ok(Self::assemble(problem, N::default(), parts))
-    }
+constructors! {
+    "OBPRM" Obprm<C, L, N, H> where [H: ObstacleGeometry<C::State> + Clone],
+    |space, hints: H, reach: Reachable, with: OnSurfaces| parts(space, hints, reach, with)
 }
 
-/// The recipe of OBPRM.
+/// The parts of OBPRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
@@ -423,19 +404,6 @@ pub fn parts<C: Space, H: Clone>(
 ) -> Result<RoadmapPlannerParts<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
     let turns = Turns::At(AT[..with.turns].to_vec());
-    Ok(RoadmapPlannerParts {
-        generator: OnObstacles::new(space, hints.clone(), with)?,
-        connector: StagedConnector::new(hints, reach, with.among, turns)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<C: Space, H: Clone>(
-    space: &C,
-    hints: H,
-    settings: &Settings,
-) -> Result<RoadmapPlannerParts<OnObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
-    parts(space, hints, reachable(space, settings)?, OnSurfaces::read(settings)?)
+    let generator = OnObstacles::new(space, hints.clone(), with)?;
+    Ok(RoadmapPlannerParts::new(generator, StagedConnector::new(hints, reach, with.among, turns)?))
 }

@@ -66,14 +66,14 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Pace, Reachable, Roadmap,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Reachable, Roadmap,
     RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BodyFeatures, BuildError, DefaultNn, LocalPlanner, NearestNeighbors, ObstacleGeometry, Parameter,
-    PlannerInfo, Problem, Reversible, Rng, Settings, Space,
+    BodyFeatures, BuildError, LocalPlanner, ObstacleGeometry, Parameter, PlannerInfo, Reversible, Rng, Space,
 };
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -122,7 +122,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = read(given.space, given.geometry(INFO.name)?, given.settings)?;
+    let (geometry, settings) = (given.geometry(INFO.name)?, given.settings);
+    let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
+    let parts = parts(geometry, reachable(given.space, settings)?, with)?;
     given.made(parts)
 }
 
@@ -235,33 +237,12 @@ where
 pub type ObstacleGeometryPrm<'c, C, L, N, H> =
     RoadmapPlanner<'c, C, L, AroundObstacles<H>, StagedConnector<H>, AStar, N>;
 
-impl<'c, C, L, N, H> ObstacleGeometryPrm<'c, C, L, N, H>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-    H: ObstacleGeometry<C::State> + Clone,
-{
-    /// Obstacle-geometry PRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(
-        problem: Problem<'c, C, L>,
-        hints: H,
-        reach: Reachable,
-        with: ByGeometry,
-    ) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let parts = parts(hints, reach, with)?;
-        Ok(Self::assemble(problem, N::default(), parts))
-    }
+constructors! {
+    "Obstacle-geometry PRM" ObstacleGeometryPrm<C, L, N, H> where [H: ObstacleGeometry<C::State> + Clone],
+    |_, hints: H, reach: Reachable, with: ByGeometry| parts(hints, reach, with)
 }
 
-/// The recipe of obstacle-geometry PRM.
+/// The parts of obstacle-geometry PRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
@@ -270,20 +251,7 @@ pub fn parts<H: Clone>(
     reach: Reachable,
     with: ByGeometry,
 ) -> Result<RoadmapPlannerParts<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
-    Ok(RoadmapPlannerParts {
-        generator: AroundObstacles::new(hints.clone(), with)?,
-        connector: StagedConnector::new(hints, reach, NeighborSet::NearestConnector, Turns::WhereFar)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<C: Space, H: Clone>(
-    space: &C,
-    hints: H,
-    settings: &Settings,
-) -> Result<RoadmapPlannerParts<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
-    let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
-    parts(hints, reachable(space, settings)?, with)
+    let generator = AroundObstacles::new(hints.clone(), with)?;
+    let connector = StagedConnector::new(hints, reach, NeighborSet::NearestConnector, Turns::WhereFar)?;
+    Ok(RoadmapPlannerParts::new(generator, connector))
 }

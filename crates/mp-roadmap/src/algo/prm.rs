@@ -62,14 +62,15 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, Free, MilestoneKind, NearestConnector, NodeGenerator, Pace, ParentMotion,
+    AStar, Candidate, EdgeChecker, Free, MilestoneKind, NearestConnector, NodeGenerator, ParentMotion,
     Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, Direction, Extension, LocalPlanner, NearestNeighbors, NodeId, Parameter,
-    PlannerInfo, Problem, Reach, Reversible, Rng, Settings, Space, Step, Uniform,
+    BuildError, Direction, Extension, LocalPlanner, NodeId, Parameter, PlannerInfo, Reach, Reversible, Rng,
+    Settings, Space, Step, Uniform,
 };
 use rand::RngExt;
 
@@ -145,7 +146,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = read(given.space, given.settings)?;
+    let reach = reachable(given.space, given.settings)?;
+    let parts = parts(given.space, reach, Learning::read(given.settings)?)?;
     given.made(parts)
 }
 
@@ -260,40 +262,12 @@ where
 /// PRM: see the [module](self).
 pub type Prm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Learn<'c, C>, NearestConnector, AStar, N>;
 
-impl<'c, C, L, N> Prm<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// PRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, learning: Learning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), reach, learning)
-    }
-
-    /// PRM with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        reach: Reachable,
-        learning: Learning,
-    ) -> Result<Self, BuildError> {
-        let parts = parts(problem.space(), reach, learning)?;
-        Ok(Self::assemble(problem, index, parts))
-    }
+constructors! {
+    "PRM" Prm<C, L, N>,
+    |space, reach: Reachable, learning: Learning| parts(space, reach, learning)
 }
 
-/// The recipe of PRM.
+/// The parts of PRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
@@ -302,18 +276,5 @@ pub fn parts<C: Space>(
     reach: Reachable,
     learning: Learning,
 ) -> Result<RoadmapPlannerParts<Learn<'_, C>, NearestConnector, AStar>, BuildError> {
-    Ok(RoadmapPlannerParts {
-        generator: Learn::new(space, learning)?,
-        connector: NearestConnector::new(reach)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<'c, C: Space>(
-    space: &'c C,
-    settings: &Settings,
-) -> Result<RoadmapPlannerParts<Learn<'c, C>, NearestConnector, AStar>, BuildError> {
-    parts(space, reachable(space, settings)?, Learning::read(settings)?)
+    Ok(RoadmapPlannerParts::new(Learn::new(space, learning)?, NearestConnector::new(reach)?))
 }

@@ -44,14 +44,14 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
 use crate::engine::settings::UNDIRECTED;
 use crate::{
-    AStar, Candidate, Connector, Free, Growing, NearestConnector, Pace, Prefetching, Reachable,
-    RoadmapPlanner, RoadmapPlannerParts,
+    AStar, Candidate, Connector, Free, Growing, NearestConnector, Prefetching, Reachable, RoadmapPlanner,
+    RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
-    Reversible, Settings, Space, Uniform,
+    BuildError, LocalPlanner, NearestNeighbors, NodeId, Parameter, PlannerInfo, Reversible, Space, Uniform,
 };
 
 const FACTOR: Parameter = Parameter {
@@ -73,7 +73,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = read(given.space, given.settings)?;
+    let parts = parts(given.space, given.settings.number(FACTOR.name)?.unwrap_or(1.1))?;
     given.made(parts)
 }
 
@@ -139,27 +139,12 @@ where
 /// PRM*: see the [module](self).
 pub type PrmStar<'c, C, L, N> = RoadmapPlanner<'c, C, L, Free<Uniform<'c, C>>, Star, AStar, N>;
 
-impl<'c, C, L, N> PrmStar<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// PRM* with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When the factor is not in \[1, 100\].
-    pub fn new(problem: Problem<'c, C, L>, factor: f64) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let parts = parts(problem.space(), factor)?;
-        Ok(Self::assemble(problem, N::default(), parts))
-    }
+constructors! {
+    "PRM*" PrmStar<C, L, N>,
+    |space, factor: f64| parts(space, factor)
 }
 
-/// The recipe of PRM*.
+/// The parts of PRM*.
 ///
 /// # Errors
 /// When the factor is not in \[1, 100\].
@@ -167,18 +152,6 @@ pub fn parts<C: Space>(
     space: &C,
     factor: f64,
 ) -> Result<RoadmapPlannerParts<Free<Uniform<'_, C>>, Star, AStar>, BuildError> {
-    Ok(RoadmapPlannerParts {
-        generator: Free::uniform(space),
-        connector: Star::new(space.dim(), factor)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: true,
-    })
-}
-
-fn read<'c, C: Space>(
-    space: &'c C,
-    settings: &Settings,
-) -> Result<RoadmapPlannerParts<Free<Uniform<'c, C>>, Star, AStar>, BuildError> {
-    parts(space, settings.number(FACTOR.name)?.unwrap_or(1.1))
+    let parts = RoadmapPlannerParts::new(Free::uniform(space), Star::new(space.dim(), factor)?);
+    Ok(RoadmapPlannerParts { improves: true, ..parts })
 }

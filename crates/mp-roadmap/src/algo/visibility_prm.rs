@@ -50,14 +50,14 @@
 //! ```
 
 use crate::by_name::{Given, Made, Types};
+use crate::engine::constructors;
 use crate::engine::settings::UNDIRECTED;
 use crate::{
-    AStar, Candidate, Connector, Free, Growing, MilestoneKind, Pace, Roadmap, RoadmapPlanner,
-    RoadmapPlannerParts,
+    AStar, Candidate, Connector, Free, Growing, MilestoneKind, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, Motion, NearestNeighbors, NodeId, Parameter, PlannerInfo, Problem,
-    Reversible, Settings, Space, Uniform,
+    BuildError, LocalPlanner, Motion, NearestNeighbors, NodeId, Parameter, PlannerInfo, Reversible, Space,
+    Uniform,
 };
 
 const FAILURES: Parameter = Parameter {
@@ -79,7 +79,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = read(given.space, given.settings)?;
+    let parts = parts(given.space, given.settings.count_of(&FAILURES)?)?;
     given.made(parts)
 }
 
@@ -261,27 +261,12 @@ where
 /// Visib-PRM: see the [module](self).
 pub type VisibilityPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Free<Uniform<'c, C>>, Visibility, AStar, N>;
 
-impl<'c, C, L, N> VisibilityPrm<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// Visib-PRM, which ends after `failures` samples in a row that were no guards.
-    ///
-    /// # Errors
-    /// When that is not from 1 to 10⁹.
-    pub fn new(problem: Problem<'c, C, L>, failures: u64) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let parts = parts(problem.space(), failures)?;
-        Ok(Self::assemble(problem, N::default(), parts))
-    }
+constructors! {
+    "Visib-PRM, which ends after `failures` samples in a row that are no guards," VisibilityPrm<C, L, N>,
+    |space, failures: u64| parts(space, failures)
 }
 
-/// The recipe of Visib-PRM.
+/// The parts of Visib-PRM.
 ///
 /// # Errors
 /// When the number of failures is not from 1 to 10⁹.
@@ -289,18 +274,5 @@ pub fn parts<C: Space>(
     space: &C,
     failures: u64,
 ) -> Result<RoadmapPlannerParts<Free<Uniform<'_, C>>, Visibility, AStar>, BuildError> {
-    Ok(RoadmapPlannerParts {
-        generator: Free::uniform(space),
-        connector: Visibility::new(failures)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<'c, C: Space>(
-    space: &'c C,
-    settings: &Settings,
-) -> Result<RoadmapPlannerParts<Free<Uniform<'c, C>>, Visibility, AStar>, BuildError> {
-    parts(space, settings.count_of(&FAILURES)?)
+    Ok(RoadmapPlannerParts::new(Free::uniform(space), Visibility::new(failures)?))
 }

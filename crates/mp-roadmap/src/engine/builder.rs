@@ -9,30 +9,6 @@ use mp_cspace::{
 use rand::RngExt;
 use std::ops::Range;
 
-/// One variant of the family: a policy for each slot.
-#[derive(Clone, Copy, Debug)]
-pub struct RoadmapPlannerParts<G, K, Q> {
-    /// What configurations are tried as nodes.
-    pub generator: G,
-    /// Which become nodes, and with which edges.
-    pub connector: K,
-    /// How ways are looked for.
-    pub query: Q,
-    /// When ways are looked for.
-    pub pace: Pace,
-    /// Whether stepping on after a path is found pays: only better ones are returned then.
-    pub improves: bool,
-}
-
-/// When a planner looks for a way, once start and goal are in the same component.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pace {
-    /// Not before there are so many nodes; but straight from start to goal at once.
-    pub first: usize,
-    /// Then whenever there are so many more.
-    pub more: usize,
-}
-
 /// Builds a roadmap: attempt after attempt, generate and connect.
 ///
 /// Attempt i draws from stream (seed, i), where the seed is the first number drawn from the generator of
@@ -111,13 +87,7 @@ where
             observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
         }
         let mut near = Vec::new();
-        let mut growing = Growing {
-            map: &mut self.map,
-            index: &mut self.index,
-            checker: &mut self.checker,
-            observer,
-            answers: Vec::new(),
-        };
+        let (_, mut growing) = self.growing(Vec::new(), observer);
         for id in before..growing.map.len() as NodeId {
             let q = growing.map.state(id).clone();
             growing.near(&q, neighbours.saturating_add(1), f64::INFINITY, &mut near);
@@ -214,14 +184,18 @@ where
         if let Some(parent) = &mut candidate.parent {
             parent.from = Some(parent.from.or(last)?);
         }
-        let mut growing = Growing {
-            map: &mut self.map,
-            index: &mut self.index,
-            checker: &mut self.checker,
-            observer,
-            answers,
-        };
-        self.connector.connect(candidate, &mut growing)
+        let (connector, mut growing) = self.growing(answers, observer);
+        connector.connect(candidate, &mut growing)
+    }
+
+    /// The connector, and what it works with.
+    fn growing<'a>(
+        &'a mut self,
+        answers: Prefetched<C::State, L::Edge>,
+        observer: &'a mut dyn Observer<C::State>,
+    ) -> (&'a mut K, Growing<'a, 'c, C, L, N>) {
+        let Self { checker, map, index, connector, .. } = self;
+        (connector, Growing { map, index, checker, observer, answers })
     }
 
     /// Adds a configuration whatever the connector thinks of it: an end of a path.
@@ -230,14 +204,8 @@ where
         candidate: Candidate<C::State, L::Edge>,
         observer: &mut dyn Observer<C::State>,
     ) -> NodeId {
-        let mut growing = Growing {
-            map: &mut self.map,
-            index: &mut self.index,
-            checker: &mut self.checker,
-            observer,
-            answers: Vec::new(),
-        };
-        self.connector.adopt(candidate, &mut growing)
+        let (connector, mut growing) = self.growing(Vec::new(), observer);
+        connector.adopt(candidate, &mut growing)
     }
 
     /// Builds until stopped. Call again to go on.

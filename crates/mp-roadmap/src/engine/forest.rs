@@ -54,7 +54,7 @@ impl Forest {
 
     /// The way from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in
     /// different trees. Time by the depth of the nodes.
-    pub(crate) fn way<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<GraphPath> {
+    pub(crate) fn path<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<GraphPath> {
         let (mut a, mut b) = (from, to);
         let (mut head, mut tail) = (Vec::new(), Vec::new());
         while a != b {
@@ -101,7 +101,7 @@ mod tests {
                 for _ in 0..20 {
                     let (a, b) = (rng.random_range(0..n), rng.random_range(0..n));
                     let star = AStar::new().shortest(map, &space, &[(a, 0.0)], &[(b, 0.0)]);
-                    let way = forest.way(map, a, b);
+                    let way = forest.path(map, a, b);
                     let parts = |way: &GraphPath| (way.nodes.clone(), way.edges.clone());
                     assert_eq!(way.as_ref().map(parts), star.as_ref().map(parts));
                     let lengths = way.zip(star).map(|(w, s)| (w.length - s.length).abs());

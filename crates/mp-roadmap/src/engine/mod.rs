@@ -3,11 +3,13 @@
 
 mod builder;
 mod connect;
+mod constructors;
 mod export;
 mod file;
 mod forest;
 mod generate;
-pub(crate) mod mixed;
+pub(crate) mod pairs;
+mod parts;
 mod planner;
 mod prefetch;
 mod queries;
@@ -16,12 +18,15 @@ mod search;
 pub(crate) mod settings;
 mod staged;
 
-pub use builder::{Builder, Pace, RoadmapPlannerParts};
+pub(crate) use constructors::constructors;
+
+pub use builder::Builder;
 pub use connect::{Connector, Growing, NearestConnector, Reachable};
 pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Candidate, Free, NodeGenerator, ParentMotion};
-pub use mixed::{Mixing, PairRule, Pairs};
 pub use mp_cspace::EdgeChecker;
+pub use pairs::{Mixing, PairRule, Pairs, PairsPlanner};
+pub use parts::{Pace, RoadmapPlannerParts};
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
 pub use prefetch::Prefetching;
 pub use queries::{IndexedRoadmap, Listed, RoadmapQueries, Unanswered};

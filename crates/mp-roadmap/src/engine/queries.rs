@@ -177,8 +177,8 @@ where
     S: Clone + PartialEq + std::fmt::Debug + Send + Sync,
     E: Clone + Reversible,
 {
-    /// Of a roadmap made before, with an empty index. Each end of a query is connected to one of its `neighbours`
-    /// nearest nodes.
+    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its `neighbours` nearest
+    /// nodes.
     ///
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
@@ -195,11 +195,11 @@ where
         Ok(Self::filled(map, index, neighbours))
     }
 
-    /// Verifies all edges now, in both directions, so that no query waits for it; those that fail are blocked. How many
-    /// did. Edges that were only guessed are checked first.
+    /// Verifies all edges now, in both directions, so that no query waits for it. Edges that were only guessed are
+    /// checked first; edges that fail are blocked. Returns how many were blocked.
     ///
-    /// A planner of one path is better off with the verification of that path; of thousands each edge is on
-    /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
+    /// Pays off for thousands of queries, where each edge is on many paths; for a single path verify only that path.
+    /// Takes time by the number of edges not verified yet.
     pub fn verify<C, L>(&mut self, checker: &mut EdgeChecker<'_, C, L>) -> usize
     where
         C: Space<State = S>,
@@ -213,8 +213,8 @@ where
             }
             let [a, b] = self.map.ends(edge);
             for nodes in [vec![a, b], vec![b, a]] {
-                let way = GraphPath { nodes, edges: vec![edge], length: self.map.edge(edge).length };
-                if !self.star.check(&mut self.map, checker, &way) || !verify(&mut self.map, checker, &way) {
+                let path = GraphPath { nodes, edges: vec![edge], length: self.map.edge(edge).length };
+                if !self.star.check(&mut self.map, checker, &path) || !verify(&mut self.map, checker, &path) {
                     break;
                 }
             }
@@ -237,37 +237,7 @@ where
         L: LocalPlanner<S, Edge = E>,
         N: NearestNeighbors<C>,
     {
-        self.prepare(checker, start, goal)?;
-        if let Some(motion) = checker.reach(start, goal, Direction::Forward)
-            && checker.passes(start, &motion.edge, goal, Direction::Forward)
-        {
-            return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
-        }
-        loop {
-            let ends = self.join(checker, start, goal)?;
-            let way = self.way(checker, ends.nodes);
-            // Without a way a lazy search has blocked what connected the ends.
-            if let Some(way) = way
-                && verify(&mut self.map, checker, &way)
-                && let Some(path) = self.map.path(&way)
-            {
-                return Ok(whole(&ends, path));
-            }
-        }
-    }
-
-    /// A shortest way between two nodes, all of whose edges have motions.
-    fn way<C, L>(&mut self, checker: &mut EdgeChecker<'_, C, L>, [from, to]: [NodeId; 2]) -> Option<GraphPath>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        if !self.forest.holds(&mut self.map) {
-            return self.star.search(&mut self.map, checker, &[(from, 0.0)], &[(to, 0.0)]);
-        }
-        let way = self.forest.way(&self.map, from, to)?;
-        self.star.check(&mut self.map, checker, &way).then_some(way)
+        RunningQuery { roadmap: self, checker, ends: [start, goal] }.answer()
     }
 
     /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin and
@@ -290,163 +260,170 @@ where
         L: LocalPlanner<S, Edge = E>,
         N: NearestNeighbors<C>,
     {
-        self.prepare(checker, start, goal)?;
+        RunningQuery { roadmap: self, checker, ends: [start, goal] }.alternatives(k)
+    }
+}
+
+/// A query that is being answered: the roadmap, how motions are checked, start and goal.
+struct RunningQuery<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
+    roadmap: &'a mut IndexedRoadmap<C::State, L::Edge, N>,
+    checker: &'a mut EdgeChecker<'c, C, L>,
+    ends: [&'a C::State; 2],
+}
+
+/// What [`RunningQuery::ends`] are called in errors.
+const ENDPOINTS: [Endpoint; 2] = [Endpoint::Start, Endpoint::Goal];
+
+impl<C, L, N> RunningQuery<'_, '_, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+{
+    fn answer(mut self) -> Result<Path<C::State, L::Edge>, Unanswered> {
+        self.prepare()?;
+        let [start, goal] = self.ends;
+        if let Some(motion) = self.verified(start, goal) {
+            return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
+        }
         loop {
-            let ends = self.join(checker, start, goal)?;
-            if let Some(ways) = self.ways(checker, ends.nodes, k) {
+            let ends = self.join()?;
+            // Where there is no path, a lazy search has blocked what connected the ends.
+            if let Some(path) = self.shortest(ends.nodes)
+                && verify(&mut self.roadmap.map, self.checker, &path)
+                && let Some(path) = self.roadmap.map.path(&path)
+            {
+                return Ok(whole(&ends, path));
+            }
+        }
+    }
+
+    fn alternatives(mut self, k: usize) -> Result<Listed<C::State, L::Edge>, Unanswered> {
+        self.prepare()?;
+        loop {
+            let ends = self.join()?;
+            if let Some(found) = self.shortest_paths(ends.nodes, k) {
                 let more = ends.first.1.cost + ends.last.1.cost;
-                let paths = ways.iter().filter_map(|way| Some((self.map.path(way)?, way.length + more)));
+                let map = &self.roadmap.map;
+                let paths = found.iter().filter_map(|path| Some((map.path(path)?, path.length + more)));
                 return Ok(paths.map(|(path, length)| (whole(&ends, path), length)).collect());
             }
         }
     }
 
-    /// The shortest ways between two nodes, all of whose edges are verified; `None` when some edge had to be
-    /// blocked on the way.
-    fn ways<C, L>(
-        &mut self,
-        checker: &mut EdgeChecker<'_, C, L>,
-        [from, to]: [NodeId; 2],
-        k: usize,
-    ) -> Option<Vec<GraphPath>>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        let part = self.map.component(from);
-        let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.map.len()];
-        for node in 0..self.map.len() as NodeId {
-            if self.map.component(node) == part {
-                let out = &mut arcs[node as usize];
-                out.extend(self.map.links(node).map(|(_, end, link)| (end, link.length)));
-                out.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-                out.dedup_by_key(|arc| arc.0);
+    /// Checks the ends, and finds the nodes nearest to them.
+    fn prepare(&mut self) -> Result<(), Unanswered> {
+        for (i, q) in self.ends.into_iter().enumerate() {
+            if !self.checker.space().contains(q) {
+                return Err(Unanswered::Outside(ENDPOINTS[i]));
             }
-        }
-        let mut ways = Vec::new();
-        for (length, nodes) in shortest_paths(&arcs, from, to, k) {
-            let edges =
-                nodes.windows(2).map(|pair| self.shortest_edge(pair[0], pair[1])).collect::<Option<_>>()?;
-            let way = GraphPath { nodes, edges, length };
-            if !self.star.check(&mut self.map, checker, &way) {
-                return None;
+            if !self.checker.admits(q) {
+                return Err(Unanswered::NotFree(ENDPOINTS[i]));
             }
-            if !verify(&mut self.map, checker, &way) {
-                return None;
-            }
-            ways.push(way);
-        }
-        Some(ways)
-    }
-
-    fn shortest_edge(&self, from: NodeId, to: NodeId) -> Option<EdgeId> {
-        let between = self.map.links(from).filter(|(_, end, _)| *end == to);
-        let shortest = between.min_by(|a, b| a.2.length.total_cmp(&b.2.length).then(a.0.cmp(&b.0)));
-        shortest.map(|(edge, ..)| edge)
-    }
-
-    /// Looks at the ends, and for the nodes nearest to them.
-    fn prepare<C, L>(
-        &mut self,
-        checker: &mut EdgeChecker<'_, C, L>,
-        start: &S,
-        goal: &S,
-    ) -> Result<(), Unanswered>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
-            if !checker.space().contains(q) {
-                return Err(Unanswered::Outside(endpoint));
-            }
-            if !checker.admits(q) {
-                return Err(Unanswered::NotFree(endpoint));
-            }
-            let (space, states) = (checker.space(), self.map.states());
-            self.index.k_nearest(space, states, q, self.neighbours, &mut self.near[i]);
+            let IndexedRoadmap { map, index, neighbours, near, .. } = &mut *self.roadmap;
+            index.k_nearest(self.checker.space(), map.states(), q, *neighbours, &mut near[i]);
         }
         Ok(())
     }
 
-    /// Connects both ends to the same component. Neighbours that do not do are dropped for the rest of
-    /// the query.
-    fn join<C, L>(
-        &mut self,
-        checker: &mut EdgeChecker<'_, C, L>,
-        start: &S,
-        goal: &S,
-    ) -> Result<Joined<S, E>, Unanswered>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
+    /// Connects both ends to the same component. Neighbours to which this fails are dropped for the rest of the query.
+    fn join(&mut self) -> Result<Joined<C::State, L::Edge>, Unanswered> {
         let mut reached = [false; 2];
         loop {
-            let [from, to] = &self.near;
-            let shares = |hit: &&Hit, map: &mut Roadmap<_, _>| {
-                let part = map.component(hit.id);
-                to.iter().any(|other| map.component(other.id) == part)
+            let IndexedRoadmap { map, near: [from, to], .. } = &mut *self.roadmap;
+            let shares = |hit: &&Hit| {
+                let component = map.component(hit.id);
+                to.iter().any(|other| map.component(other.id) == component)
             };
-            let Some(&first) = from.iter().find(|hit| shares(hit, &mut self.map)) else {
-                return Err(self.why(checker, start, goal, reached));
+            let Some(&first) = from.iter().find(shares) else {
+                return Err(self.why(reached));
             };
-            let Some(ahead) = self.hop(checker, start, first.id, false) else {
-                self.near[0].retain(|hit| hit.id != first.id);
+            let Some(entry) = self.hop(0, first.id) else {
+                self.roadmap.near[0].retain(|hit| hit.id != first.id);
                 continue;
             };
             reached[0] = true;
-            let part = self.map.component(first.id);
-            while let Some(&last) = self.near[1].iter().find(|hit| self.map.component(hit.id) == part) {
-                if let Some(behind) = self.hop(checker, goal, last.id, true) {
-                    return Ok(Joined { first: ahead, last: behind, nodes: [first.id, last.id] });
+            let component = self.roadmap.map.component(first.id);
+            while let Some(last) = self.last_in(component) {
+                if let Some(exit) = self.hop(1, last) {
+                    return Ok(Joined { first: entry, last: exit, nodes: [first.id, last] });
                 }
-                self.near[1].retain(|hit| hit.id != last.id);
+                self.roadmap.near[1].retain(|hit| hit.id != last);
             }
         }
     }
 
+    /// The node of a component that is nearest to the goal, of those left to try.
+    fn last_in(&mut self, component: NodeId) -> Option<NodeId> {
+        let IndexedRoadmap { map, near, .. } = &mut *self.roadmap;
+        near[1].iter().map(|hit| hit.id).find(|&id| map.component(id) == component)
+    }
+
     /// Why the ends cannot be joined.
-    fn why<C, L>(
-        &mut self,
-        checker: &mut EdgeChecker<'_, C, L>,
-        start: &S,
-        goal: &S,
-        reached: [bool; 2],
-    ) -> Unanswered
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
-            let near = self.near[i].clone();
-            if !reached[i] && !near.iter().any(|hit| self.hop(checker, q, hit.id, i == 1).is_some()) {
-                return Unanswered::Unreached(endpoint);
+    fn why(&mut self, reached: [bool; 2]) -> Unanswered {
+        for end in 0..2 {
+            let near = self.roadmap.near[end].clone();
+            if !reached[end] && !near.iter().any(|hit| self.hop(end, hit.id).is_some()) {
+                return Unanswered::Unreached(ENDPOINTS[end]);
             }
         }
         Unanswered::Apart
     }
 
-    /// A verified motion from an end to a node, or with `back` from the node to it.
-    fn hop<C, L>(
-        &self,
-        checker: &mut EdgeChecker<'_, C, L>,
-        q: &S,
-        node: NodeId,
-        back: bool,
-    ) -> Option<Hop<S, E>>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-    {
-        let (from, to) = if back { (self.map.state(node), q) } else { (q, self.map.state(node)) };
-        let motion = checker.reach(from, to, Direction::Forward)?;
-        checker.passes(from, &motion.edge, to, Direction::Forward).then(|| (from.clone(), motion))
+    /// A verified motion from the start to a node (`end` 0), or from a node to the goal (`end` 1).
+    fn hop(&mut self, end: usize, node: NodeId) -> Option<Hop<C::State, L::Edge>> {
+        let node = self.roadmap.map.state(node).clone();
+        let (from, to) = if end == 1 { (&node, self.ends[1]) } else { (self.ends[0], &node) };
+        Some((from.clone(), self.verified(from, to)?))
     }
+
+    /// A motion that the local planner has and the verifier passes.
+    fn verified(&mut self, from: &C::State, to: &C::State) -> Option<Motion<C::State, L::Edge>> {
+        let motion = self.checker.reach(from, to, Direction::Forward)?;
+        self.checker.passes(from, &motion.edge, to, Direction::Forward).then_some(motion)
+    }
+
+    /// A shortest path between two nodes, all of whose edges have motions.
+    fn shortest(&mut self, [from, to]: [NodeId; 2]) -> Option<GraphPath> {
+        let IndexedRoadmap { map, star, forest, .. } = &mut *self.roadmap;
+        if !forest.holds(map) {
+            return star.search(map, self.checker, &[(from, 0.0)], &[(to, 0.0)]);
+        }
+        let path = forest.path(map, from, to)?;
+        star.check(map, self.checker, &path).then_some(path)
+    }
+
+    /// The shortest paths between two nodes, all of whose edges are verified; `None` when an edge had to be blocked.
+    fn shortest_paths(&mut self, [from, to]: [NodeId; 2], k: usize) -> Option<Vec<GraphPath>> {
+        let IndexedRoadmap { map, star, .. } = &mut *self.roadmap;
+        let component = map.component(from);
+        let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); map.len()];
+        for node in 0..map.len() as NodeId {
+            if map.component(node) == component {
+                let out = &mut arcs[node as usize];
+                out.extend(map.links(node).map(|(_, end, link)| (end, link.length)));
+                out.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+                out.dedup_by_key(|arc| arc.0);
+            }
+        }
+        let mut paths = Vec::new();
+        for (length, nodes) in shortest_paths(&arcs, from, to, k) {
+            let edges =
+                nodes.windows(2).map(|pair| shortest_edge(map, pair[0], pair[1])).collect::<Option<_>>()?;
+            let path = GraphPath { nodes, edges, length };
+            if !star.check(map, self.checker, &path) || !verify(map, self.checker, &path) {
+                return None;
+            }
+            paths.push(path);
+        }
+        Some(paths)
+    }
+}
+
+fn shortest_edge<S, E>(map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<EdgeId> {
+    let between = map.links(from).filter(|(_, end, _)| *end == to);
+    let shortest = between.min_by(|a, b| a.2.length.total_cmp(&b.2.length).then(a.0.cmp(&b.0)));
+    shortest.map(|(edge, ..)| edge)
 }
 
 /// A path with what leads to its beginning and on from its end.

@@ -53,7 +53,7 @@ impl<H> StagedConnector<H> {
         }
         if let Turns::At(fractions) = &turns {
             for &at in fractions {
-                super::mixed::part("where to turn", at)?;
+                super::pairs::part("where to turn", at)?;
             }
         }
         let (near, scratch, groups) = (Vec::new(), Vec::new(), BTreeMap::new());

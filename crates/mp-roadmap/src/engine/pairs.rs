@@ -1,14 +1,12 @@
 //! What the generators that look for obstacles by pairs of states have in common: most attempts look, some are uniform.
 
+use super::constructors;
 use super::settings::{length, reachable};
 use super::{
-    AStar, Candidate, EdgeChecker, MilestoneKind, NearestConnector, NodeGenerator, Pace, Reachable, Roadmap,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NearestConnector, NodeGenerator, Reachable, Roadmap,
     RoadmapPlanner, RoadmapPlannerParts,
 };
-use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Parameter, Problem, Reversible, Rng, Settings,
-    Space, Step,
-};
+use mp_cspace::{BuildError, LocalPlanner, Parameter, Reversible, Rng, Settings, Space, Step};
 use rand::RngExt;
 use std::fmt::Debug;
 use std::marker::PhantomData;
@@ -102,13 +100,7 @@ impl<R: PairRule> Pairs<R> {
         reach: Reachable,
         mixing: Mixing,
     ) -> Result<RoadmapPlannerParts<Self, NearestConnector, AStar>, BuildError> {
-        Ok(RoadmapPlannerParts {
-            generator: Self::new(space, mixing)?,
-            connector: NearestConnector::new(reach)?,
-            query: AStar::new(),
-            pace: Pace::default(),
-            improves: false,
-        })
+        Ok(RoadmapPlannerParts::new(Self::new(space, mixing)?, NearestConnector::new(reach)?))
     }
 
     pub(crate) fn read<C: Space>(
@@ -147,38 +139,12 @@ where
     }
 }
 
-impl<'c, C, L, R, N> RoadmapPlanner<'c, C, L, Pairs<R>, NearestConnector, AStar, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    R: PairRule,
-    N: NearestNeighbors<C>,
-{
-    /// With the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, mixing: Mixing) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), reach, mixing)
-    }
+/// The planner that draws [`Pairs`] by a rule.
+pub type PairsPlanner<'c, C, L, N, R> = RoadmapPlanner<'c, C, L, Pairs<R>, NearestConnector, AStar, N>;
 
-    /// With an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        reach: Reachable,
-        mixing: Mixing,
-    ) -> Result<Self, BuildError> {
-        let parts = Pairs::parts(problem.space(), reach, mixing)?;
-        Ok(Self::assemble(problem, index, parts))
-    }
+constructors! {
+    "The planner" PairsPlanner<C, L, N, R> where [R: PairRule],
+    |space, reach: Reachable, mixing: Mixing| Pairs::parts(space, reach, mixing)
 }
 
 /// Whether this attempt is to be a uniform sample; if so, and it is free, it goes into `out`.
