@@ -1,6 +1,6 @@
 //! External energies: what pushes a snake.
 
-use crate::error::{not_negative, positive};
+use crate::params::{not_negative, positive};
 use mp_cspace::{ClearanceGradient, ParameterError};
 
 /// An energy of states, which a snake lowers by moving.

@@ -1,7 +1,7 @@
 //! Scalar maps of the plane.
 
 use crate::Field;
-use crate::error::positive;
+use crate::params::positive;
 use mp_cspace::{ClearanceGradient, ParameterError};
 use nalgebra::Vector2;
 

@@ -1,7 +1,7 @@
 //! Operations on maps: blur, Laplacian, and the image energy of the paper.
 
 use crate::Grid;
-use crate::error::positive;
+use crate::params::positive;
 use mp_cspace::ParameterError;
 
 /// Applies `line` to every row, then to every column: `line(from, to)` makes one of the other.

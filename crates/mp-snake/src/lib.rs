@@ -49,12 +49,10 @@
 mod band;
 mod bulge;
 mod distance;
-mod error;
 mod field;
 mod grid;
 mod image;
 mod local;
-mod mend;
 mod params;
 mod relax;
 pub mod risk;

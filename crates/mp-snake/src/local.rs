@@ -65,11 +65,11 @@ const PATIENCE: u32 = 3;
 const GAIN: f64 = 0.05;
 
 /// One snake may relax in vain for so many motions that were bent.
-const VAIN: u64 = 50;
+const BENT_PER_VAIN_RELAXATION: u64 = 50;
 
 /// One motion in so many may be lost, and a few at first.
-const LOST: u64 = 3;
-const FIRST: u64 = 16;
+const MOTIONS_PER_FAILURE: u64 = 3;
+const FREE_FAILURES: u64 = 16;
 
 /// Motions that take more nodes are not bent.
 const LONGEST: f64 = 24.0;
@@ -130,7 +130,7 @@ where
             Bulged::Nowhere => return false,
             Bulged::Laid => {}
         }
-        if counters.relaxed_in_vain > counters.bent / VAIN {
+        if counters.relaxed_in_vain > counters.bent / BENT_PER_VAIN_RELAXATION {
             return false;
         }
         let gain = GAIN * field.range();
@@ -203,7 +203,10 @@ where
             return found(PolylineEdge::straight(), length);
         }
         let long = length > LONGEST * self.snake.params().spacing;
-        if length <= 0.0 || long || self.counters.not_bent > FIRST + self.counters.motions() / LOST {
+        if length <= 0.0
+            || long
+            || self.counters.not_bent > FREE_FAILURES + self.counters.motions() / MOTIONS_PER_FAILURE
+        {
             self.counters.not_tried += 1;
             return Extension::Trapped;
         }

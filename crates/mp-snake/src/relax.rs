@@ -47,7 +47,7 @@ pub fn relax<C: Space>(
     params: Params,
     stretch: f64,
 ) -> Result<Relaxed<C::State>, SnakeError> {
-    crate::error::within("the stretch", stretch, 1.0, f64::MAX, "at least 1 and finite")?;
+    crate::params::within("the stretch", stretch, 1.0, f64::MAX, "at least 1 and finite")?;
     let mut snake = Snake::new(space, Params { iterations: 1, ..params })?;
     params.checked()?;
     let before = path.length(space);

@@ -5,7 +5,7 @@
 //! distance; the product of both probabilities is the risk. Models as of S. Thrun, W. Burgard and D. Fox,
 //! *Probabilistic robotics*, 2005.
 
-use crate::error::{not_negative, positive};
+use crate::params::{not_negative, positive};
 use crate::{Grid, blurred};
 use mp_cspace::{ParameterError, Path, wrap_angle};
 use nalgebra::Vector2;

@@ -1,6 +1,6 @@
 //! The snake: a curve that moves until its energy is least.
 
-use crate::bulge::Sight;
+use crate::bulge::Blockage;
 use crate::params::scale;
 use crate::{Band, Field, Params, SnakeError};
 use mp_cspace::Space;
@@ -24,7 +24,7 @@ impl Energy {
     }
 }
 
-/// Why a snake came to rest.
+/// Why a snake incoming to rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rest {
     /// It hardly moves any more.
@@ -96,40 +96,40 @@ pub struct Snake<'c, C: Space> {
     pub(crate) scale: Vec<f64>,
     /// By the number of nodes that move.
     bands: Vec<Option<Band>>,
-    now: Shape,
-    trial: Shape,
-    /// Where each moving node goes, then what a node is moved by.
+    now: CurveMeasurement,
+    trial: CurveMeasurement,
+    /// Where each moving node outgoing, then what a node is moved by.
     step: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
     /// Gradients nobody asked for.
     pub(crate) unused: Vec<f64>,
     /// What bulges begin with.
-    pub(crate) sight: Sight,
+    pub(crate) blockage: Blockage,
     pub(crate) next: Vec<C::State>,
     trace: Vec<Energy>,
 }
 
 /// What is known of a curve. Numbers are scaled: lengths in the metric.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Shape {
+pub(crate) struct CurveMeasurement {
     pub(crate) energy: Energy,
     /// From each node to the next.
-    pub(crate) ways: Vec<f64>,
+    pub(crate) segments: Vec<f64>,
     /// Their lengths.
     lengths: Vec<f64>,
     /// The gradient of the field at each node between the ends, across the curve.
-    pub(crate) pushes: Vec<f64>,
+    pub(crate) gradients: Vec<f64>,
     /// The clearance of those nodes.
     pub(crate) clearances: Vec<f64>,
 }
 
-impl Shape {
+impl CurveMeasurement {
     fn with_room(dim: usize) -> Self {
         Self {
             energy: Energy::default(),
-            ways: Vec::with_capacity(NODES * dim),
+            segments: Vec::with_capacity(NODES * dim),
             lengths: Vec::with_capacity(NODES),
-            pushes: Vec::with_capacity(NODES * dim),
+            gradients: Vec::with_capacity(NODES * dim),
             clearances: Vec::with_capacity(NODES),
         }
     }
@@ -164,12 +164,12 @@ impl<'c, C: Space> Snake<'c, C> {
             params: params.checked()?,
             scale: scale(space)?,
             bands: Vec::new(),
-            now: Shape::with_room(dim),
-            trial: Shape::with_room(dim),
+            now: CurveMeasurement::with_room(dim),
+            trial: CurveMeasurement::with_room(dim),
             step: Vec::with_capacity(NODES * dim),
             velocity: Vec::with_capacity(dim),
             unused: Vec::with_capacity(dim),
-            sight: Sight::with_room(dim),
+            blockage: Blockage::with_room(dim),
             next: Vec::with_capacity(NODES),
             trace: Vec::new(),
         })
@@ -214,9 +214,9 @@ impl<'c, C: Space> Snake<'c, C> {
 
     /// The energy of a curve.
     pub fn energy(&mut self, curve: &[C::State], field: &mut impl Field<C::State>) -> Energy {
-        let mut shape = std::mem::take(&mut self.trial);
-        self.measure(curve, field, &mut shape);
-        self.trial = shape;
+        let mut measured = std::mem::take(&mut self.trial);
+        self.measure(curve, field, &mut measured);
+        self.trial = measured;
         self.trial.energy
     }
 
@@ -264,55 +264,63 @@ impl<'c, C: Space> Snake<'c, C> {
         rest
     }
 
-    /// Measures a curve: its energy, its ways and the forces on it.
-    fn measure(&mut self, curve: &[C::State], field: &mut impl Field<C::State>, shape: &mut Shape) {
+    /// Measures a curve: its energy, its segments and the forces on it.
+    fn measure(
+        &mut self,
+        curve: &[C::State],
+        field: &mut impl Field<C::State>,
+        measured: &mut CurveMeasurement,
+    ) {
         let (dim, h) = (self.space.dim(), self.params.spacing);
         let parts = curve.len().saturating_sub(1);
-        shape.ways.resize(parts * dim, 0.0);
-        shape.lengths.clear();
-        for (pair, way) in curve.windows(2).zip(shape.ways.chunks_exact_mut(dim)) {
-            self.space.velocity_into(&pair[0], &pair[1], way);
-            way.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-            shape.lengths.push(norm(way));
+        measured.segments.resize(parts * dim, 0.0);
+        measured.lengths.clear();
+        for (pair, segment) in curve.windows(2).zip(measured.segments.chunks_exact_mut(dim)) {
+            self.space.velocity_into(&pair[0], &pair[1], segment);
+            segment.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+            measured.lengths.push(norm(segment));
         }
-        let ways = &shape.ways;
-        let bends: f64 =
-            ways.iter().zip(ways.iter().skip(dim)).map(|(came, goes)| (goes - came).powi(2)).sum();
-        let stretched: f64 = ways.iter().map(|x| x * x).sum();
-        let length: f64 = shape.lengths.iter().sum();
+        let segments = &measured.segments;
+        let bends: f64 = segments
+            .iter()
+            .zip(segments.iter().skip(dim))
+            .map(|(incoming, outgoing)| (outgoing - incoming).powi(2))
+            .sum();
+        let stretched: f64 = segments.iter().map(|x| x * x).sum();
+        let length: f64 = measured.lengths.iter().sum();
         let Params { membrane, plate, straighten, .. } = self.params;
-        shape.energy.internal = 0.5 * (membrane * stretched / h + plate * bends / (h * h * h));
-        shape.energy.optimal = straighten * length;
-        shape.energy.external = 0.0;
+        measured.energy.internal = 0.5 * (membrane * stretched / h + plate * bends / (h * h * h));
+        measured.energy.optimal = straighten * length;
+        measured.energy.external = 0.0;
         let inner = parts.saturating_sub(1);
-        shape.pushes.resize(inner * dim, 0.0);
-        shape.clearances.clear();
-        let pairs = shape.ways.chunks_exact(dim).zip(shape.ways.chunks_exact(dim).skip(1));
-        let pushes = shape.pushes.chunks_exact_mut(dim);
-        for (q, (push, (came, goes))) in curve.iter().skip(1).zip(pushes.zip(pairs)) {
-            shape.energy.external += h * field.energy(q, push);
-            shape.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
+        measured.gradients.resize(inner * dim, 0.0);
+        measured.clearances.clear();
+        let pairs = measured.segments.chunks_exact(dim).zip(measured.segments.chunks_exact(dim).skip(1));
+        let gradients = measured.gradients.chunks_exact_mut(dim);
+        for (q, (push, (incoming, outgoing))) in curve.iter().skip(1).zip(gradients.zip(pairs)) {
+            measured.energy.external += h * field.energy(q, push);
+            measured.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
             push.iter_mut().zip(&self.scale).for_each(|(x, s)| *x /= s);
-            across(push, came, goes);
+            across(push, incoming, outgoing);
         }
     }
 
     /// The implicit step of all nodes, from the forces on the curve.
-    fn aim(&mut self, shape: &Shape) {
-        let (dim, parts) = (self.space.dim(), shape.lengths.len());
+    fn aim(&mut self, measured: &CurveMeasurement) {
+        let (dim, parts) = (self.space.dim(), measured.lengths.len());
         let Params { membrane, plate, straighten, spacing: h, pace, .. } = self.params;
         let bent = |i: usize, k: usize| {
-            if i == 0 || i >= parts { 0.0 } else { bend(&shape.ways, dim, i, k) }
+            if i == 0 || i >= parts { 0.0 } else { bend(&measured.segments, dim, i, k) }
         };
         self.step.clear();
         for i in 1..parts {
-            let [before, after] = [i - 1, i].map(|j| (j * dim, straighten / shape.lengths[j].max(1e-300)));
+            let [before, after] = [i - 1, i].map(|j| (j * dim, straighten / measured.lengths[j].max(1e-300)));
             for k in 0..dim {
-                let (came, goes) = (shape.ways[before.0 + k], shape.ways[after.0 + k]);
-                let stretch = membrane / h * (came - goes);
+                let (incoming, outgoing) = (measured.segments[before.0 + k], measured.segments[after.0 + k]);
+                let stretch = membrane / h * (incoming - outgoing);
                 let curl = plate / (h * h * h) * (bent(i - 1, k) - 2.0 * bent(i, k) + bent(i + 1, k));
-                let slack = before.1 * came - after.1 * goes;
-                let push = h * shape.pushes[(i - 1) * dim + k];
+                let slack = before.1 * incoming - after.1 * outgoing;
+                let push = h * measured.gradients[(i - 1) * dim + k];
                 self.step.push(-pace / h * (stretch + curl + slack + push));
             }
         }
@@ -329,7 +337,7 @@ impl<'c, C: Space> Snake<'c, C> {
         &mut self,
         curve: &mut [C::State],
         field: &mut impl Field<C::State>,
-        now: &mut Shape,
+        now: &mut CurveMeasurement,
     ) -> Option<f64> {
         let most = now.energy.total() * (1.0 + 1e-12) + 1e-300;
         let mut next = std::mem::take(&mut self.next);
@@ -374,8 +382,8 @@ impl<'c, C: Space> Snake<'c, C> {
 
 /// The second difference of a curve at node `i`.
 #[inline]
-fn bend(ways: &[f64], dim: usize, i: usize, k: usize) -> f64 {
-    ways[i * dim + k] - ways[(i - 1) * dim + k]
+fn bend(segments: &[f64], dim: usize, i: usize, k: usize) -> f64 {
+    segments[i * dim + k] - segments[(i - 1) * dim + k]
 }
 
 #[inline]
@@ -383,10 +391,10 @@ pub(crate) fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Takes from `push` its part along the curve: the way that comes to the node and the one that goes on.
+/// Takes from `push` its part along the curve: the way that comes to the node and the one that outgoing on.
 #[inline]
-fn across(push: &mut [f64], came: &[f64], goes: &[f64]) {
-    let along = || came.iter().zip(goes).map(|(c, g)| c + g);
+fn across(push: &mut [f64], incoming: &[f64], outgoing: &[f64]) {
+    let along = || incoming.iter().zip(outgoing).map(|(c, g)| c + g);
     let square: f64 = along().map(|a| a * a).sum();
     if square > 0.0 {
         let part: f64 = push.iter().zip(along()).map(|(p, a)| p * a).sum::<f64>() / square;

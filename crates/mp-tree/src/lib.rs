@@ -160,6 +160,6 @@ pub use mp_cspace::{
     Verify, Workers, closest,
 };
 pub use registry::{
-    MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, planner, planners,
-    wrappers,
+    MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, meta_planners,
+    planner, planners,
 };

@@ -8,7 +8,6 @@ use crate::algo;
 use crate::by_name::{AnyPlanner, Given, ParallelProblem};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, PlannerInfo, Problem, Reversible, Settings, Space,
-    closest,
 };
 
 /// All planners of the crate.
@@ -22,14 +21,8 @@ pub fn planners() -> &'static [PlannerInfo] {
 /// # Errors
 /// When there is none, with the names there are.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
-}
-
-fn unknown(name: &str) -> BuildError {
-    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
-    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
-    let suggestion = closest(name, known.iter().copied().chain(aliases));
-    BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
+    let found = planners().iter().find(|info| info.is_called(name));
+    found.ok_or_else(|| BuildError::unknown_planner(name, planners()))
 }
 
 /// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
@@ -67,7 +60,8 @@ where
     L: LocalPlanner<C::State, Edge: Reversible + 'c> + Send + 'c,
     N: NearestNeighbors<C> + Send + Sync + 'c,
 {
-    let (info, make) = algo::find::<(C, L, N)>(name).ok_or_else(|| unknown(name))?;
+    let (info, make) =
+        algo::find::<(C, L, N)>(name).ok_or_else(|| BuildError::unknown_planner(name, planners()))?;
     settings.check(info)?;
     make(Given::new(parallel.into(), index, settings))
 }

@@ -52,10 +52,10 @@ const RESTART: MetaPlanner = MetaPlanner {
     around: None,
 };
 
-/// All wrappers of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
+/// All meta_planners of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
 /// that restart.
 #[must_use]
-pub fn wrappers() -> &'static [MetaPlanner] {
+pub fn meta_planners() -> &'static [MetaPlanner] {
     &[OR, SHARED, RESTART]
 }
 
@@ -63,23 +63,23 @@ pub fn wrappers() -> &'static [MetaPlanner] {
 ///
 /// ```
 /// use mp_tree::{PlannerSpec, Settings};
-/// let named = PlannerSpec::new("restart-rrt-connect")?;
-/// assert_eq!(named.to_string(), "restart-rrt-connect");
-/// assert!(named.check(&Settings::parse(["unit=500", "step=10%"])?).is_ok());
-/// assert!(named.check(&Settings::parse(["runs=2"])?).is_err());
+/// let spec = PlannerSpec::new("restart-rrt-connect")?;
+/// assert_eq!(spec.to_string(), "restart-rrt-connect");
+/// assert!(spec.check(&Settings::parse(["unit=500", "step=10%"])?).is_ok());
+/// assert!(spec.check(&Settings::parse(["runs=2"])?).is_err());
 /// assert!(PlannerSpec::new("or-dijkstra").is_err());
 /// # Ok::<(), mp_tree::BuildError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlannerSpec {
-    /// The wrappers, the outermost first.
-    pub wrappers: Vec<&'static MetaPlanner>,
+    /// The meta_planners, the outermost first.
+    pub meta_planners: Vec<&'static MetaPlanner>,
     /// The planner inside.
     pub planner: &'static PlannerInfo,
 }
 
 impl PlannerSpec {
-    /// Most wrappers around one planner.
+    /// Most meta_planners around one planner.
     const DEEPEST: usize = 4;
 
     /// The planner called `name`.
@@ -88,22 +88,22 @@ impl PlannerSpec {
     /// When there is none, with the names there are.
     pub fn new(name: &str) -> Result<Self, BuildError> {
         let mut rest = name;
-        let mut wrappers = Vec::new();
+        let mut meta_planners = Vec::new();
         loop {
             if let Ok(inner) = planner(rest) {
-                let innermost = wrappers.len().wrapping_sub(1);
-                let runs = |(i, wrapper): (usize, &&MetaPlanner)| {
-                    wrapper.around.is_none_or(|names| i == innermost && names.contains(&inner.name))
+                let innermost = meta_planners.len().wrapping_sub(1);
+                let runs = |(i, meta): (usize, &&MetaPlanner)| {
+                    meta.around.is_none_or(|names| i == innermost && names.contains(&inner.name))
                 };
-                if !wrappers.iter().enumerate().all(runs) {
+                if !meta_planners.iter().enumerate().all(runs) {
                     planner(name).map(|_| ())?;
                 }
-                return Ok(Self { wrappers, planner: inner });
+                return Ok(Self { meta_planners, planner: inner });
             }
-            let outer = self::wrappers().iter().find_map(|w| Some((w, rest.strip_prefix(w.prefix)?)));
+            let outer = self::meta_planners().iter().find_map(|w| Some((w, rest.strip_prefix(w.prefix)?)));
             match outer {
-                Some((wrapper, inner)) if wrappers.len() < Self::DEEPEST => {
-                    wrappers.push(wrapper);
+                Some((meta, inner)) if meta_planners.len() < Self::DEEPEST => {
+                    meta_planners.push(meta);
                     rest = inner;
                 }
                 _ => planner(rest).map(|_| ())?,
@@ -111,13 +111,13 @@ impl PlannerSpec {
         }
     }
 
-    /// Refuses settings that neither the planner nor a wrapper has, and values that cannot be read.
+    /// Refuses settings that neither the planner nor a meta has, and values that cannot be read.
     /// The range of the planner's own parameters is checked when it is made.
     ///
     /// # Errors
     /// When there is one.
     pub fn check(&self, settings: &Settings) -> Result<(), BuildError> {
-        let own = self.wrappers.iter().flat_map(|wrapper| wrapper.parameters);
+        let own = self.meta_planners.iter().flat_map(|meta| meta.parameters);
         settings.check_among(self.planner.name, own.chain(self.planner.parameters))?;
         Tuning::read(&self.planner_settings(settings), self.planner)?;
         Schedule::of(settings)?;
@@ -131,7 +131,7 @@ impl PlannerSpec {
 
 impl fmt::Display for PlannerSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.wrappers.iter().try_for_each(|wrapper| f.write_str(wrapper.prefix))?;
+        self.meta_planners.iter().try_for_each(|meta| f.write_str(meta.prefix))?;
         f.write_str(self.planner.name)
     }
 }
@@ -153,10 +153,10 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
-    let named = PlannerSpec::new(name)?;
-    named.check(settings)?;
+    let spec = PlannerSpec::new(name)?;
+    spec.check(settings)?;
     let factory =
-        Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), named };
+        Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), spec };
     factory.planner(0)
 }
 
@@ -168,18 +168,18 @@ struct Factory<'c, C: Space, M: MotionValidity<C::State>, N> {
     index: N,
     settings: Settings,
     workers: Workers,
-    named: PlannerSpec,
+    spec: PlannerSpec,
 }
 
 impl<'c, C: Space, M: MotionValidity<C::State>, N: Clone> Clone for Factory<'c, C, M, N> {
     fn clone(&self) -> Self {
-        let Self { make, index, settings, workers, named } = self;
+        let Self { make, index, settings, workers, spec } = self;
         Self {
             make: Arc::clone(make),
             index: index.clone(),
             settings: settings.clone(),
             workers: workers.clone(),
-            named: named.clone(),
+            spec: spec.clone(),
         }
     }
 }
@@ -190,22 +190,22 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
-    /// The planner inside the wrappers before `depth`.
+    /// The planner inside the meta_planners before `depth`.
     fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, ()>, BuildError> {
         let count = |parameter: Parameter| self.settings.count_of(&parameter);
-        match self.named.wrappers.get(depth) {
+        match self.spec.meta_planners.get(depth) {
             None => {
-                let settings = self.named.planner_settings(&self.settings);
-                build_with(self.named.planner.name, (self.make)()?, self.index.clone(), &settings)
+                let settings = self.spec.planner_settings(&self.settings);
+                build_with(self.spec.planner.name, (self.make)()?, self.index.clone(), &settings)
             }
-            Some(wrapper) if **wrapper == OR => {
+            Some(meta) if **meta == OR => {
                 let workers = self.workers.clone();
                 Ok(Box::new(OrParallel::new(count(RUNS)?, count(SLICE)?, workers, |_| {
                     self.planner(depth + 1)
                 })?))
             }
-            Some(wrapper) if **wrapper == SHARED => {
-                let (info, settings) = (self.named.planner, self.named.planner_settings(&self.settings));
+            Some(meta) if **meta == SHARED => {
+                let (info, settings) = (self.spec.planner, self.spec.planner_settings(&self.settings));
                 let tuning = Tuning::read(&settings, info)?;
                 let (batch, workers, index) = (count(BATCH)?, self.workers.clone(), self.index.clone());
                 Ok(if info.name == rrs::INFO.name {

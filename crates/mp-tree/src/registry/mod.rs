@@ -3,12 +3,12 @@
 mod meta;
 mod state;
 
-pub use meta::{MetaPlanner, PlannerSpec, build_from, wrappers};
+pub use meta::{MetaPlanner, PlannerSpec, build_from, meta_planners};
 pub use state::{ProblemFactory, TreeState};
 
 use crate::algo;
 use crate::by_name::{AnyPlanner, Given};
-use crate::{BuildError, PlannerInfo, Problem, Settings, Tuning, closest};
+use crate::{BuildError, PlannerInfo, Problem, Settings, Tuning};
 use mp_cspace::{DefaultNn, MotionValidity, NearestNeighbors, Space, Straight};
 
 /// All planners of the crate.
@@ -22,14 +22,8 @@ pub fn planners() -> &'static [PlannerInfo] {
 /// # Errors
 /// When there is none, with the names there are.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
-}
-
-fn unknown(name: &str) -> BuildError {
-    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
-    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
-    let suggestion = closest(name, known.iter().copied().chain(aliases));
-    BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
+    let found = planners().iter().find(|info| info.is_called(name));
+    found.ok_or_else(|| BuildError::unknown_planner(name, planners()))
 }
 
 /// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
@@ -65,7 +59,8 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + 'c,
 {
-    let (info, make) = algo::find::<(C, M, N)>(name).ok_or_else(|| unknown(name))?;
+    let (info, make) =
+        algo::find::<(C, M, N)>(name).ok_or_else(|| BuildError::unknown_planner(name, planners()))?;
     let tuning = Tuning::read(settings, info)?;
     make(Given { problem, index, tuning, settings })
 }

@@ -253,18 +253,18 @@ fn bad_numbers_and_names_are_refused() {
         let make = || problem(&space, &boxes);
         build_from(name, make, Linear::new(), &settings, &Workers::alone()).map(|_| ())
     };
-    for wrapper in wrappers() {
-        let inner = wrapper.around.map_or("rrt-connect", |names| names[0]);
-        let name = format!("{}{inner}", wrapper.prefix);
-        for parameter in wrapper.parameters {
+    for meta in meta_planners() {
+        let inner = meta.around.map_or("rrt-connect", |names| names[0]);
+        let name = format!("{}{inner}", meta.prefix);
+        for parameter in meta.parameters {
             for bad in ["0", "-7", "99999999999999"] {
                 assert!(build(&name, &format!("{}={bad}", parameter.name)).is_err(), "{}", parameter.name);
             }
             build(&name, &format!("{}={}", parameter.name, parameter.default)).unwrap();
         }
         let error = build(&name, "stride=1").unwrap_err().to_string();
-        assert!(error.contains(wrapper.parameters[0].name) && error.contains("goal-bias"), "{error}");
-        let error = build(&format!("{}rrt-conect", wrapper.prefix), "step=0.1").unwrap_err();
+        assert!(error.contains(meta.parameters[0].name) && error.contains("goal-bias"), "{error}");
+        let error = build(&format!("{}rrt-conect", meta.prefix), "step=0.1").unwrap_err();
         assert!(error.to_string().contains("did you mean `rrt-connect`?"), "{error}");
     }
     assert!(matches!(build("or-or-or-or-or-rrt", "runs=1"), Err(BuildError::UnknownPlanner { .. })));
