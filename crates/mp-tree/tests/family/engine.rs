@@ -233,9 +233,9 @@ fn finitely_many_moves_make_no_duplicates_either() {
 
 /// Straight motions that remember their ends, in forward time.
 #[derive(Clone, Debug)]
-struct Remembers<'c>(Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>);
+pub struct Remembers<L>(pub L);
 
-impl LocalPlanner<Point> for Remembers<'_> {
+impl<L: LocalPlanner<Point, Edge = ()>> LocalPlanner<Point> for Remembers<L> {
     type Edge = [Point; 2];
     fn extend(
         &mut self,
@@ -295,7 +295,7 @@ const REMEMBERING: [&str; 14] = [
 /// Planners by type, of a local planner that no planner by name has.
 fn remembering<'c>(
     name: &str,
-    problem: Problem<'c, Rn<2>, Remembers<'c>>,
+    problem: Problem<'c, Rn<2>, Remembers<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>>,
     boxes: &Boxes<2>,
     tuning: Tuning,
 ) -> Result<Remembered<'c>, BuildError> {

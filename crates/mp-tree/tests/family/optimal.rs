@@ -1,6 +1,7 @@
 //! Planners that improve: paths get ever cheaper, trees stay what their events say.
 
 use crate::common::*;
+use crate::engine::Remembers;
 use mp_cspace::*;
 use mp_tree::*;
 use nalgebra::Vector2;
@@ -137,33 +138,6 @@ fn events_tell_of_rewiring_and_costs_add_up() {
         // One that believes such a check to the end always prefers the way through the wall.
         assert!(seen.1 > 1_000 && (paths > 0 || patience > 3), "{} rewired, {paths} paths", seen.1);
         assert_eq!(planner.progress().rejected > 0, patience > 0);
-    }
-}
-
-/// Straight motions that remember their ends, in forward time.
-struct Remembers<'c>(Local<'c>);
-
-impl LocalPlanner<Point> for Remembers<'_> {
-    type Edge = [Point; 2];
-    fn extend(
-        &mut self,
-        from: &Point,
-        toward: &Point,
-        direction: Direction,
-        reach: Reach,
-    ) -> Extension<Point, [Point; 2]> {
-        let remember = |motion: Motion<Point, ()>| {
-            let edge = match direction {
-                Direction::Forward => [*from, motion.end],
-                Direction::Backward => [motion.end, *from],
-            };
-            Motion { end: motion.end, edge, cost: motion.cost }
-        };
-        match self.0.extend(from, toward, direction, reach) {
-            Extension::Trapped => Extension::Trapped,
-            Extension::Advanced(motion) => Extension::Advanced(remember(motion)),
-            Extension::Reached(motion) => Extension::Reached(remember(motion)),
-        }
     }
 }
 
