@@ -1,4 +1,4 @@
-//! What planners by name are made from.
+//! What planners made by name are made from.
 
 use crate::{
     Connector, EdgeChecker, HasRoadmap, NodeGenerator, PATIENCE, Query, RoadmapPlanner, RoadmapPlannerParts,
@@ -9,7 +9,7 @@ use mp_cspace::{BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible,
 /// A planner chosen at run time.
 pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;
 
-/// A problem, and as many local planners and verifiers for it beside as threads are to build the roadmap.
+/// A problem with further edge checkers for it, so that several threads can build the roadmap.
 #[derive(Debug)]
 pub struct ParallelProblem<'c, C: Space, L: LocalPlanner<C::State>> {
     problem: Problem<'c, C, L>,
@@ -17,10 +17,10 @@ pub struct ParallelProblem<'c, C: Space, L: LocalPlanner<C::State>> {
     checkers: Vec<EdgeChecker<'c, C, L>>,
 }
 
-/// How a robot moves in an erased problem.
+/// The edge checker of an erased problem.
 pub type AnyEdgeChecker<'c, S> = EdgeChecker<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
-/// A team for an erased problem.
+/// An erased problem for several threads.
 pub type AnyParallelProblem<'c, S> = ParallelProblem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
 impl<'c, C, L> ParallelProblem<'c, C, L>
@@ -28,9 +28,9 @@ where
     C: Space + 'c,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// `problem` makes the same problem again and again; `hands` is how many work at the same time, best as many as
-    /// `workers` are threads. The roadmap is the same to the bit however many there are. Only generators whose
-    /// attempts are [independent](crate::NodeGenerator::independent) use them.
+    /// A problem with `checkers` edge checkers that work at the same time, best as many as `workers` has threads.
+    /// `problem` makes the same problem on every call. The roadmap is the same to the bit for any number of checkers. Only
+    /// generators with [independent](crate::NodeGenerator::independent) attempts use them.
     ///
     /// # Errors
     /// Those of `problem`.
@@ -46,7 +46,7 @@ where
         Ok(Self { problem: problem()?, workers, checkers })
     }
 
-    /// The planner of a recipe.
+    /// The planner with these parts.
     pub(crate) fn made<G, K, Q, N>(
         self,
         index: N,
@@ -68,14 +68,14 @@ where
     }
 }
 
-/// On the thread of the caller.
+/// The problem for the thread of the caller alone.
 impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for ParallelProblem<'c, C, L> {
     fn from(problem: Problem<'c, C, L>) -> Self {
         Self { problem, workers: Workers::alone(), checkers: Vec::new() }
     }
 }
 
-/// The types that a planner by name is made of, in one: a tuple of space, local planner and index.
+/// The types of a planner made by name: a tuple of space, local planner and index.
 pub(crate) trait Types<'c> {
     type State: Clone + PartialEq + Send + Sync + std::fmt::Debug + 'c;
     type Edge: Clone + Reversible + Send + Sync + 'c;
@@ -97,7 +97,7 @@ where
     type Index = N;
 }
 
-/// What a planner by name is made from.
+/// What a planner is made from by name.
 pub(crate) struct Given<'c, 's, T: Types<'c>> {
     parallel: ParallelProblem<'c, T::Space, T::Local>,
     /// An empty index.
@@ -109,7 +109,7 @@ pub(crate) struct Given<'c, 's, T: Types<'c>> {
     geometry: Option<AnyGeometry<'c, T::State>>,
 }
 
-/// A planner by name, or why there is none.
+/// The planner, or why it cannot be made.
 pub(crate) type Made<'c, T> =
     Result<AnyPlanner<'c, <T as Types<'c>>::State, <T as Types<'c>>::Edge>, BuildError>;
 
@@ -117,7 +117,7 @@ pub(crate) type Made<'c, T> =
 pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
 
 impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
-    /// To make a planner of.
+    /// What a planner of this problem is made from.
     pub(crate) fn new(
         mut parallel: ParallelProblem<'c, T::Space, T::Local>,
         index: T::Index,
@@ -127,15 +127,15 @@ impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
         Self { parallel, index, settings, space, geometry }
     }
 
-    /// What obstacles look like, for `planner`, which cannot do without.
+    /// The geometry of obstacles, for the planner called `planner`.
     ///
     /// # Errors
-    /// When the problem does not know.
+    /// When the problem does not have it.
     pub(crate) fn geometry(&self, planner: &'static str) -> Result<AnyGeometry<'c, T::State>, BuildError> {
         self.geometry.clone().ok_or(BuildError::NoGeometry { planner })
     }
 
-    /// The planner of a recipe.
+    /// The planner with these parts.
     pub(crate) fn made<G, K, Q>(self, parts: RoadmapPlannerParts<G, K, Q>) -> Made<'c, T>
     where
         G: NodeGenerator<T::Space, T::Local> + Clone + Send + Sync + 'c,

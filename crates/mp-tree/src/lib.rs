@@ -1,12 +1,11 @@
 //! The rapidly-exploring random tree family: one engine, and one file per named algorithm. [`algo`] has the table of them.
 //!
 //! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
-//! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
+//! Two meta-planners run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
 //! ([`algo::restarts`]) one after the other. [`build_from`] makes them by name.
 //!
-//! A planner is made from a checked [`Problem`] and works through the trait
-//! [`Planner`](mp_cspace::Planner): one step at a time, or until a stop says so. [`build`] makes
-//! one by name.
+//! A planner is made from a checked [`Problem`] and is run through the trait [`Planner`](mp_cspace::Planner): one step
+//! at a time, or until a stop ends it. [`build`] makes one by name.
 //!
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Rng, Straight};
@@ -29,8 +28,8 @@
 //! ```
 //!
 //! # The engine
-//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant is: sample a
-//! target, select nodes, extend them toward it, insert what came of it. Each verb is a slot:
+//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant samples a target, selects nodes,
+//! extends them toward the target and inserts the motions. Each of these verbs is a slot:
 //!
 //! | slot | trait | here |
 //! |---|---|---|
@@ -38,14 +37,14 @@
 //! | which nodes to grow from | [`Selector`] | [`NearestSelector`], [`DynamicDomain`], [`LeastViolated`], [`Unexhausted`] |
 //! | how far | [`Extender`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`ObstacleGuided`], [`Untried`], [`Cyclic`] |
 //! | how a motion joins the tree | [`Inserter`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
-//! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
+//! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
-//! A variant is a [`Recipe`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
-//! the loop of anytime planners, which go on for better paths.
+//! A variant is a set of [`TreePlannerParts`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
+//! the loop of anytime planners.
 //!
 //! # Writing your own planner
-//! A variant of the family is made of slots, those here or your own. RRT whose tree is as greedy as those of
-//! [`RrtConCon`]:
+//! A variant of the family fills the slots with policies, those here or your own. RRT whose tree is as greedy as those
+//! of [`RrtConCon`]:
 //! ```
 //! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
 //! # use mp_tree::Problem;
@@ -57,7 +56,7 @@
 //! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //! use mp_cspace::{Linear, Uniform};
-//! use mp_tree::{Append, Connect, NearestSelector, TreePlannerParts, Samples, SingleTree, Tuning};
+//! use mp_tree::{Append, Connect, NearestSelector, Samples, SingleTree, TreePlannerParts, Tuning};
 //!
 //! let target_sampler = Samples(Uniform(&space));
 //! let (selector, extender) = (NearestSelector(Linear::new()), Connect::default());
@@ -70,8 +69,8 @@
 //! The loops try the straight way to the goal first, unless the extender [declines](Extender::leaps).
 //!
 //! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem and traces
-//! and verifies paths, [`SearchTree`] is a tree that grows, and forgets what hangs on an edge the verifier refuses. A tree
-//! that grows from random nodes:
+//! and verifies paths; [`SearchTree`] is a tree that grows, and that prunes the subtree below an edge the verifier
+//! rejects. A tree that grows from random nodes:
 //! ```
 //! use mp_cspace::{Direction, Linear, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
 //! use mp_tree::{AppendDistinct, SearchTree, Core, Extend, Grown, NearestSelector};
@@ -127,15 +126,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What is promised
-//! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that
-//!   fails is removed from the tree with all that hangs on it, and planning goes on.
+//! # Guarantees
+//! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that fails is removed from
+//!   the tree with the subtree below it, and planning goes on.
 //! - Bad input is a [`BuildError`] before planning begins.
-//! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping
-//!   and going on changes nothing.
+//! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping and continuing changes
+//!   nothing.
 //! - No tree has two nodes with the same state.
-//! - A panic in a local planner, verifier, goal or observer leaves the planner as it was but for the
-//!   step it interrupts: whoever catches it may look at the trees and step on.
+//! - A panic in a local planner, verifier, goal or observer loses only the step it interrupts: a caller that catches it
+//!   may inspect the trees and continue.
 
 pub mod algo;
 mod by_name;

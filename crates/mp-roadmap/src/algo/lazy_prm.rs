@@ -1,30 +1,30 @@
-//! LazyPRM: nothing is checked before a path leads along it.
+//! LazyPRM: nodes and edges are only checked when a path leads along them.
 //!
 //! R. Bohlin and L. E. Kavraki, *Path planning using lazy PRM*, ICRA 2000.
 //!
-//! 1. Take in start, goal and `first` samples, uniform in the space, as nodes, free or not;
+//! 1. add start, goal and `first` samples, uniform in the space, as nodes, free or not;
 //! 2. give each an edge to its nearest neighbours, at most `neighbours`, none farther than `radius`,
 //!    unchecked;
-//! 3. find the shortest way from start to goal;
+//! 3. find the shortest path from start to goal;
 //! 4. check its nodes that are not known to be free, alternately from both ends toward the middle; remove
 //!    the first that is not free with all its edges, and go to 3;
 //! 5. check its edges the same way; remove the first that is not free, and go to 3;
 //! 6. when no edge is removed, verify the path and return it;
-//! 7. when there is no way, add `more` nodes: half of them uniform, half about the middle of edges that were
-//!    removed, as there is something difficult; go to 2.
+//! 7. when there is no path, add `more` nodes: half of them uniform, half around the middle of edges that were
+//!    removed, where the space is difficult; go to 2.
 //!
-//! (The paper checks the edges of a way at coarse resolution first, then at finer ones. The checks of this
-//! library test in an order that finds obstacles of any size soon, and certified ones have no resolution;
-//! so edges are checked one after the other. Nodes about an edge are drawn from its middle, as far toward a
-//! uniform sample as a random part of its length.)
+//! (The paper checks the edges of a path at coarse resolution first, then at finer ones. The checks of this
+//! library test in an order that finds obstacles of any size early, and certified ones have no resolution;
+//! so edges are checked one after the other. Nodes around an edge are drawn from its middle toward a uniform sample, at a
+//! random part of the length of the edge.)
 //!
-//! **When to use it.** When checks are dear and the scene is not crowded: it checks little but what lies on
-//! a shortest path. Where most edges collide, each search finds another that does.
+//! **When to use it.** When checks are expensive and the scene is not crowded: it checks little beside the shortest paths.
+//! Where most edges collide, each search finds another that does.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `first`: nodes before the first search | 1, 2, … 10⁹ | 500 |
-//! | `more`: nodes added when there is no way | 1, 2, … 10⁹ | 100 |
+//! | `more`: nodes added when there is no path | 1, 2, … 10⁹ | 100 |
 //! | `neighbours`, `radius` | as of [PRM](super::prm) | 15, 100% |
 //!
 //! A point goes around a disc in the unit square, with few motions checked:
@@ -67,13 +67,13 @@ const MORE: Parameter = Parameter {
     name: "more",
     range: "a whole number, 1 to 10⁹",
     default: "100",
-    doc: "nodes added when there is no way",
+    doc: "nodes added when there is no path",
 };
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "lazy-prm",
-    summary: "a roadmap of which only what a path leads along is checked; when checks are dear",
+    summary: "a roadmap that is checked only along possible paths; when checks are expensive",
     citation: "Bohlin and Kavraki 2000",
     parameters: &[FIRST, MORE, NEIGHBOURS, RADIUS],
     aliases: &[],
@@ -88,14 +88,14 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
     given.made(parts)
 }
 
-/// Samples that are not checked: uniform ones, and once edges were removed also about their middles.
+/// Samples that are not checked: uniform ones, and once edges were removed also around their middles.
 #[derive(Clone, Debug)]
 pub struct Unchecked {
-    /// Uniform ones only, up to so many nodes.
+    /// Up to this many nodes there are only uniform samples.
     first: usize,
 }
 
-/// So many edges are looked at for one that was removed.
+/// How many random edges are tried to find one that was removed.
 const LOOKS: usize = 16;
 
 impl<C, L> NodeGenerator<C, L> for Unchecked

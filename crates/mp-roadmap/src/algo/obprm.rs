@@ -7,36 +7,37 @@
 //! For one obstacle after the other, by `nodes`:
 //!
 //! `prototype` (PROTOTYPE NODE GENERATION)
-//! 1. C_in: the robot with its centre in that of the obstacle, turned at random until it collides;
+//! 1. C_in: the robot with its centre in that of the obstacle, rotated at random until it collides;
 //! 2. D: `directions` random directions from there: toward uniform samples;
 //! 3. for each, look for a free C_out, in equal steps as far as the surrounding spheres of robot and obstacle overlap;
 //! 4. find where contact ends between C_in and C_out by binary search: a *contact* configuration.
 //!
 //! `contact` (GENERATE CONTACT CONFIGURATION)
 //! 1. p_rob, a point of the robot, and p_obs, a point of the obstacle, both by `points`;
-//! 2. C_in: the robot with the one in the other, turned at random until it collides;
+//! 2. C_in: the robot with p_rob in p_obs, rotated at random until it collides;
 //! 3. d: one random direction; C_out and contact as above.
 //!
-//! `free`: from a contact configuration as in `contact`, on in the same direction for a random length of at most `gap`.
+//! `free`: from a contact configuration as in `contact`, a random length of at most `gap` farther in the same direction.
 //!
 //! `shells`: a contact configuration, and `shells` more behind it, `gap` apart.
 //!
-//! A part `uniform` of the attempts are uniform samples; the papers have none, and would leave scenes without obstacles
-//! without nodes. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the `per-obstacle` nearest of
-//! each obstacle (`obstacles`); in stages: first by the local planner, then, to what is still apart, by
-//! rotate-at-s at `turns` fractions of the way: 1/2, 0 and 1, in this order (see [`StagedConnector`]).
+//! A part `uniform` of the attempts are uniform samples; the papers have none, and so no nodes in scenes without
+//! obstacles. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the `per-obstacle` nearest of
+//! each obstacle (`obstacles`); in stages: first by the local planner, then, to nodes still in other components, by
+//! rotate-at-s at `turns` fractions of the motion: 1/2, 0 and 1, in this order (see [`StagedConnector`]).
 //!
-//! The path found is verified; an edge that fails is blocked. Obstacles here are what hangs together
-//! ([`ObstacleGeometry`]); where the centre of one is outside of the space, or does not collide, points of surfaces stand in.
+//! The path found is verified; an edge that fails is blocked. An obstacle here is a connected part of the scene
+//! ([`ObstacleGeometry`]); where its centre is outside of the space, or does not collide, points of its surface are used.
 //!
-//! **When to use it.** Narrow passages that obstacles of moderate size leave between them. It needs
-//! [`ObstacleGeometry`], which rigid bodies among meshes have. With certified motions take `free`: nodes in contact have next to no
-//! clearance, so motions between them cost much to check, and mostly fail. A rod of 0.8 m by 0.1 m before a corridor 0.175 m wide, 20 seeds
-//! of 100,000 collision queries, certified: `free` 20 solved, `shells` 3, `contact` and `prototype` none, PRM 14; 0.1375 m wide: `free` 10, PRM 1.
+//! **When to use it.** For narrow passages between obstacles of moderate size. It needs [`ObstacleGeometry`], which rigid
+//! bodies among meshes have. With certified motions use `free`: nodes in contact have almost no clearance, so motions
+//! between them are expensive to check, and mostly fail. A rod of 0.8 m by 0.1 m before a corridor 0.175 m wide, 20 seeds
+//! of 100,000 collision queries, certified: `free` 20 solved, `shells` 3, `contact` and `prototype` none, PRM 14; 0.1375 m
+//! wide: `free` 10, PRM 1.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `nodes`: how they are made | prototype, contact, free, shells | free |
+//! | `nodes`: how nodes are generated | prototype, contact, free, shells | free |
 //! | `points`: of robot and obstacle | centers, vertices, surface | surface |
 //! | `directions`: of `prototype`, m | 1, 2, … 1000 | 10 |
 //! | `gap`: of `free` and `shells`, in the metric of the space or with % of its extent | positive | 1% |
@@ -46,8 +47,8 @@
 //! | `per-obstacle`: most of each obstacle, k | 1, 2, … 10⁶ | 3 |
 //! | `turns`: fractions tried in the second stage | 0, 1, 2, 3 | 1 |
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //!
 //! A disc goes between two boxes:
 //! ```
@@ -86,36 +87,36 @@ use mp_cspace::{
 };
 use rand::RngExt;
 
-/// States looked at for one that is free.
+/// States tested to find one that is free.
 const LOOKS: u32 = 16;
 /// Halvings of the binary search.
 const HALVINGS: u32 = 12;
-/// Turns tried for one that collides.
+/// Rotations tried to find one that collides.
 const TRIES: usize = 10;
 
-/// How nodes are made.
+/// How nodes are generated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Strategy {
     /// Contact configurations in many directions from the centre of the obstacle.
     Prototype,
-    /// Contact configurations from a point of the robot in a point of the obstacle.
+    /// Contact configurations with a point of the robot in a point of the obstacle.
     Contact,
     /// Free configurations behind contact.
     Free,
-    /// Contact configurations with more behind them.
+    /// Contact configurations with further ones behind them.
     Shells,
 }
 
 /// The parameters of OBPRM.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnSurfaces {
-    /// How nodes are made.
+    /// How nodes are generated.
     pub strategy: Strategy,
     /// Which points of robot and obstacle are put into each other.
     pub points: PointOf,
     /// Directions of [`Strategy::Prototype`]; 1 or more.
     pub directions: usize,
-    /// How far behind contact free nodes are at most, and shells from each other.
+    /// The greatest distance of free nodes from contact, and the distance between shells.
     pub gap: Step,
     /// Shells behind contact; 1 or more.
     pub shells: usize,
@@ -123,7 +124,7 @@ pub struct OnSurfaces {
     pub uniform: f64,
     /// To which nodes a new one is connected.
     pub among: NeighborSet,
-    /// How many fractions of the way are tried for a turn in place: at most 3.
+    /// At how many fractions of the motion a turn in place is tried: at most 3.
     pub turns: usize,
 }
 
@@ -154,7 +155,7 @@ const fn parameter(
     Parameter { name, range, default, doc }
 }
 const NODES: Parameter =
-    parameter("nodes", "prototype, contact, free or shells", "free", "how nodes are made");
+    parameter("nodes", "prototype, contact, free or shells", "free", "how nodes are generated");
 const POINTS: Parameter =
     parameter("points", "centers, vertices or surface", "surface", "which points are put into each other");
 const DIRECTIONS: Parameter =
@@ -163,14 +164,14 @@ const GAP: Parameter = parameter(
     "gap",
     "in (0, extent of the space], or with % in (0%, 100%] of the extent",
     "1%",
-    "how far behind contact `free` nodes are at most, and `shells` from each other",
+    "greatest distance of `free` nodes from contact, and distance between `shells`",
 );
 const SHELLS: Parameter = parameter("shells", "a whole number, 1 to 100", "3", "shells behind contact");
 const CONNECT: Parameter = parameter(
     "connect",
     "nearest or obstacles",
     "nearest",
-    "to the nearest nodes, or those of each obstacle",
+    "to the nearest nodes, or to the nearest of each obstacle",
 );
 const PER_OBSTACLE: Parameter =
     parameter("per-obstacle", "a whole number, 1 to 10⁶", "3", "most nodes of each obstacle (k)");
@@ -178,7 +179,7 @@ const TURNS: Parameter = parameter(
     "turns",
     "a whole number, 0 to 3",
     "1",
-    "fractions of the way (1/2, 0, 1) at which rotate-at-s is tried where the straight line fails",
+    "fractions of a motion (1/2, 0, 1) at which rotate-at-s is tried where the straight motion fails",
 );
 
 impl OnSurfaces {
@@ -284,7 +285,7 @@ impl<H> OnObstacles<H> {
         let asked =
             if self.with.strategy == Strategy::Prototype { PointOf::Center } else { self.with.points };
         (0..TRIES).find_map(|i| {
-            // Where what is asked for does not do, as with the centre of a ring, the surface does.
+            // Where such points do not collide, as the centre of a ring, points of the surface are used.
             let of = if i < TRIES / 2 { asked } else { PointOf::Surface };
             let turned = space.sample_uniform(rng);
             let point = self.hints.robot_point(of, rng);
@@ -294,8 +295,8 @@ impl<H> OnObstacles<H> {
         })
     }
 
-    /// The fraction of the way from `inside` to `toward` at which contact ends, if it does before the robot is
-    /// clear of the obstacle.
+    /// The fraction of the motion from `inside` to `toward` at which contact ends, if it ends before the robot is past the
+    /// obstacle.
     fn contact<C, L>(
         &self,
         obstacle: usize,
@@ -361,7 +362,7 @@ where
             let gap = self.gap / space.distance(&inside, &toward);
             let mut take = |at: f64, kind: MilestoneKind, checker: &mut EdgeChecker<'_, C, L>| {
                 let q = space.interpolate(&inside, &toward, at);
-                // In contact it was found free already.
+                // Contact configurations were tested before.
                 if at <= 1.0 && (kind == MilestoneKind::Contact || checker.admits(&q)) {
                     out.push(Candidate::new(q, kind).of(obstacle as u32));
                 }

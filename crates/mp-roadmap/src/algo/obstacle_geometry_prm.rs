@@ -6,41 +6,41 @@
 //!
 //! First approximation, for `far` attempts:
 //! 1. draw a sample, uniform in the space;
-//! 2. where the surrounding sphere of the robot touches that of no obstacle, take it as a *far* configuration. Nothing else is
-//!    tested: the robot is free there, however it is turned.
+//! 2. where the bounding sphere of the robot touches that of no obstacle, take the sample as a *far* configuration. Nothing
+//!    else is tested: the robot is free there in every rotation.
 //!
-//! Expansion, attempts in turn:
+//! Expansion, by two kinds of attempts in turn:
 //! - around one obstacle B after the other, from a uniform sample q: an elastic band, for *near* configurations;
 //! - a uniform sample: taken where it is free; *salvaged* where it is not, by an elastic band around the obstacle B it touches.
 //!
 //! Elastic band around B, once for each of two kinds of configuration, from q:
 //! 1. d: the direction from the centre of B to that of the robot at q;
-//! 2. MIN and MAX, from the *volume*: what the radii of robot and obstacle add up to, of balls of the same volume as they,
-//!    and of their surrounding spheres;
-//! 3. a *parallel* configuration has the *straightness* of the robot along that of B, a *perpendicular* one across it
-//!    (any way across);
-//! 4. for k = 0, …, `bands` (CTE): put the robot at the distance MIN + (MAX − MIN)·k / `bands` from B along d, turned about its own
-//!    straightness by one golden angle more each time; take the first configuration that is free.
+//! 2. MIN and MAX, from the *volume*: the sum of the radii of balls of the same volume as robot and obstacle, and the sum
+//!    of the radii of their bounding spheres;
+//! 3. a *parallel* configuration has the long axis (*straightness*) of the robot along that of B, a *perpendicular* one in
+//!    any direction across it;
+//! 4. for k = 0, …, `bands` (CTE): put the robot at the distance MIN + (MAX − MIN)·k / `bands` from B along d, rotated
+//!    about its own long axis by one golden angle more each time; take the first configuration that is free.
 //!
 //! Each node is connected to its nearest nodes by the local planner; where that fails and one of the two is far, by turning
 //! in place there (see [`StagedConnector`]).
 //!
-//! The paper is followed where it speaks. Left open there, and decided here: how MIN and MAX depend on the
-//! volume, in which steps the vector is scaled (the listing sets `scalar` to MIN and never changes it), and how far the robot is
-//! rotated at a time. The path found is verified; an edge that fails is blocked.
+//! The paper leaves open, and this implementation decides: how MIN and MAX depend on the volume, in which steps the vector
+//! is scaled (the listing sets `scalar` to MIN and never changes it), and by which angle the robot is rotated each time.
+//! The path found is verified; an edge that fails is blocked.
 //!
-//! **When to use it.** Scenes of separate, compact obstacles, with long robots. Where one obstacle encloses the scene, as
-//! the walls of a room in one piece do, no configuration is far, and what is left is mostly plain PRM. It needs
-//! [`ObstacleGeometry`], which rigid bodies among meshes have. In the corridors told of at [OBPRM](super::obprm) it solved 20 and 9 of 20; in
-//! one 0.25 m wide it took 3,000 collision queries, where PRM took 12,000 to 19,000 (medians).
+//! **When to use it.** For scenes of separate, compact obstacles, with long robots. Where one obstacle encloses the scene,
+//! as the walls of a room in one piece do, no configuration is far, and the planner behaves mostly like PRM. It needs
+//! [`ObstacleGeometry`], which rigid bodies among meshes have. In the corridors described at [OBPRM](super::obprm) it
+//! solved 20 and 9 of 20; in one 0.25 m wide it took 3,000 collision queries, where PRM took 12,000 to 19,000 (medians).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `far`: attempts of the first approximation | 0, 1, … 10⁹ | 100 |
 //! | `bands`: steps of the elastic band, CTE | 1, 2, … 10⁶ | 20 |
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //!
 //! A rod goes around a block:
 //! ```
@@ -79,7 +79,7 @@ use nalgebra::Vector3;
 use rand::RngExt;
 use std::f64::consts::TAU;
 
-/// The golden angle (rad): multiples of it are spread evenly, however many.
+/// The golden angle (rad): any number of its multiples are spread evenly.
 const GOLDEN: f64 = 2.399_963_229_728_653;
 
 /// The parameters of obstacle-geometry PRM.
@@ -113,7 +113,7 @@ const BANDS: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "obstacle-geometry-prm",
-    summary: "a roadmap of samples far from obstacles, by spheres, and near them, by their direction and volume",
+    summary: "a roadmap of samples far from obstacles, by bounding spheres, and near them, by their axis and volume",
     citation: "Benitez and Vallejo 2004",
     parameters: &[FAR, BANDS, NEIGHBOURS, RADIUS, CYCLES],
     aliases: &["geometry-prm"],
@@ -141,7 +141,7 @@ fn limits(robot: &BodyFeatures, obstacle: &BodyFeatures) -> [f64; 2] {
     [equal(robot) + equal(obstacle), robot.radius + obstacle.radius]
 }
 
-/// A unit vector in a random direction; across `axis`, if there is one.
+/// A unit vector in a random direction, perpendicular to `axis` if given.
 fn random_unit(axis: Option<&Vector3<f64>>, rng: &mut Rng) -> Vector3<f64> {
     let (z, angle) = (2.0 * rng.random::<f64>() - 1.0, TAU * rng.random::<f64>());
     let round = (1.0 - z * z).sqrt();

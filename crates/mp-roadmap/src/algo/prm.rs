@@ -1,28 +1,28 @@
-//! PRM: the probabilistic roadmap, with its expansion where connecting is difficult.
+//! PRM: the probabilistic roadmap, expanded where connecting is difficult.
 //!
 //! L. E. Kavraki, P. Švestka, J.-C. Latombe and M. H. Overmars, *Probabilistic roadmaps for path planning
 //! in high-dimensional configuration spaces*, IEEE Transactions on Robotics and Automation 12, 1996. As in
 //! §3.1 of A. Benitez, I. Huitzil, D. Vallejo, J. de la Calleja and M. A. Medina, *Key elements for motion
 //! planning algorithms*, 2010.
 //!
-//! The learning phase repeats two steps. Construction, until `learn` more nodes are there:
-//! 1. draw a sample, uniform in the space; go on when it is free;
+//! The learning phase repeats two steps. Construction, until there are `learn` more nodes:
+//! 1. draw a sample, uniform in the space; continue if it is free;
 //! 2. add it as a node q;
 //! 3. N_q: the nodes within `radius` (MAXDIST) of q, at most `neighbours` (K) of them;
 //! 4. in order of distance, ask the local planner for a motion from each to q, unless both are in the same
 //!    component by now; where there is one, it becomes an edge.
 //!
-//! Expansion, until `expand` times as many nodes more are there:
-//! 1. when it begins, weigh each node c by its failure ratio f(c) / (n(c) + 1), of n(c) attempts to connect
-//!    it to others f(c) failed;
+//! Expansion, until there are `expand` times as many nodes more:
+//! 1. at the beginning, weight each node c by its failure ratio f(c) / (n(c) + 1), where f(c) of n(c) attempts to connect
+//!    it to others failed;
 //! 2. draw a node by these weights;
-//! 3. go on a random-bounce walk from there: `bounces` times, move toward a uniform sample, as far as a
-//!    random length of at most `walk`, halved up to four times where something is in the way;
-//! 4. take in where each of its motions ends as a node, with that motion as an edge, and connect it as above.
+//! 3. make a random-bounce walk from there: `bounces` times, move toward a uniform sample by a random length of at most
+//!    `walk`, halved up to four times where the motion is blocked;
+//! 4. add the end of each of its motions as a node, with that motion as an edge, and connect it as above.
 //!
 //! (The paper keeps only the end of the walk, and the walk as its edge. Here its corners are nodes, so that
-//! each edge is one motion.) A query takes start and goal in as nodes; as long as they are in different
-//! components learning goes on, so that roadmaps grow during queries. The path found is verified; an edge
+//! each edge is one motion.) A query adds start and goal as nodes; as long as they are in different
+//! components learning continues, so that roadmaps grow during queries. The path found is verified; an edge
 //! that fails is blocked.
 //!
 //! **When to use it.** To answer many queries in one scene. For a single one RRT-Connect is faster.
@@ -30,15 +30,14 @@
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `neighbours`: most neighbours tried per node, K | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, MAXDIST, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, MAXDIST, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //! | `learn`: nodes of a construction step | 1, 2, … 10⁹ | 500 |
-//! | `expand`: nodes of an expansion step, as a part of those | \[0, 10\] | 0.5 |
+//! | `expand`: nodes of an expansion step, as a part of those of a construction step | \[0, 10\] | 0.5 |
 //! | `bounces`: motions of a random-bounce walk | 1, 2, … 100 | 3 |
 //! | `walk`: longest motion of such a walk, in the metric of the space or with % of its extent | positive | 10% |
 //!
-//! K and MAXDIST are the paper's to choose for each problem; twice as many nodes are constructed as are
-//! added by expansion, as there.
+//! The paper chooses K and MAXDIST for each problem. As in the paper, construction adds twice as many nodes as expansion.
 //!
 //! A point goes around a disc in the unit square:
 //! ```
@@ -74,12 +73,12 @@ use mp_cspace::{
 };
 use rand::RngExt;
 
-/// How the learning phase goes.
+/// The parameters of the learning phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Learning {
     /// Nodes of a construction step; 1 or more.
     pub learn: usize,
-    /// Nodes of an expansion step, as a part of those; 0 for none.
+    /// Nodes of an expansion step, as a part of those of a construction step; 0 for no expansion.
     pub expand: f64,
     /// Motions of a random-bounce walk; 1 or more.
     pub bounces: usize,
@@ -157,9 +156,9 @@ pub struct Learn<'c, C> {
     free: Free<Uniform<'c, C>>,
     learning: Learning,
     walk: f64,
-    /// The roadmap has so many nodes when this step ends.
+    /// The step ends when the roadmap has this many nodes.
     until: usize,
-    /// In an expansion step: the sums of the weights of nodes up to each.
+    /// In an expansion step: the cumulative sums of the weights of nodes.
     weights: Option<Vec<f64>>,
 }
 
@@ -219,7 +218,7 @@ where
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
         self.turn(map);
-        // Where no connection failed nowhere is difficult.
+        // Without failed connections there is nothing to expand.
         let Some(sums) = self.weights.as_ref().filter(|sums| sums.last().is_some_and(|sum| *sum > 0.0))
         else {
             return self.free.generate(attempt, map, checker, rng, out);
@@ -236,7 +235,7 @@ where
                     length /= 2.0;
                     continue;
                 };
-                // A step that is lost in rounding is none.
+                // A step may vanish in rounding.
                 if motion.end == here {
                     break;
                 }

@@ -1,28 +1,28 @@
-//! PRM*: a roadmap in which paths get ever better.
+//! PRM*: a roadmap whose shortest paths become optimal as it grows.
 //!
 //! S. Karaman and E. Frazzoli, *Sampling-based algorithms for optimal motion planning*, International
 //! Journal of Robotics Research 30, 2011, Algorithm 4, in its variant k-nearest PRM*.
 //!
 //! Repeat:
-//! 1. draw a sample, uniform in the space; go on when it is free;
+//! 1. draw a sample, uniform in the space; continue if it is free;
 //! 2. add it as a node q, the n-th;
 //! 3. ask the local planner for a motion from each of its k(n) nearest neighbours, k(n) = ⌈k₀ ln n⌉ with
-//!    k₀ = `factor` · e (1 + 1/d) in d dimensions; each that there is becomes an edge, whether it closes a
+//!    k₀ = `factor` · e (1 + 1/d) in d dimensions; each motion becomes an edge, whether it closes a
 //!    cycle or not.
 //!
 //! (The paper draws all n samples first and then connects each to k(n) neighbours; here the n-th is
-//! connected when it comes, so that the roadmap can grow on. As many neighbours are tried in the limit.)
-//! With `factor` above 1 the length of the shortest path tends to the least there is as n grows. A path is
-//! looked for whenever there are a tenth more nodes; stepping on returns shorter ones only.
+//! connected when it is added, so that the roadmap can keep growing. In the limit as many neighbours are tried.)
+//! With `factor` above 1 the length of the shortest path converges to the optimum as n grows. A path is
+//! searched for whenever there are a tenth more nodes; stepping on returns shorter paths only.
 //!
-//! **When to use it.** For short paths, to many queries in one scene. For one query
-//! RRT* or AORRTC spend less on regions that are of no use to it.
+//! **When to use it.** For short paths for many queries in one scene. For one query
+//! RRT* or AORRTC spend less time on regions that do not matter to it.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `factor`: neighbours, as a multiple of what is needed | \[1, 100\] | 1.1 |
 //!
-//! Around a disc, ever better:
+//! A point goes around a disc, on ever shorter paths:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Planner, Problem, Resolution, Rn, Rng, Straight};
 //! use mp_roadmap::PrmStar;
@@ -64,7 +64,7 @@ const FACTOR: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "prm-star",
-    summary: "a roadmap with ever better paths; to answer many queries shortly",
+    summary: "a roadmap with ever shorter paths; for short paths for many queries",
     citation: "Karaman and Frazzoli 2011",
     parameters: &[FACTOR],
     aliases: &["prm*"],

@@ -15,15 +15,15 @@
 //! 4. when none saw q, it is a guard: add it to Guard, and set ntry to 0;
 //! 5. otherwise add 1 to ntry, whether q is a connection or of no use.
 //!
-//! (In which order the nodes of a component are tried is left open: here by distance.) After M samples in
-//! a row that were no guards, the guards see the part 1 − 1/M of the free space, as an estimate:
+//! (The paper does not say in which order the nodes of a component are tried: here by distance.) After M samples in
+//! a row that are no guards, the guards see an estimated part 1 − 1/M of the free space:
 //! [`Visibility::coverage`]. The planner then stops as exhausted.
 //!
 //! Start and goal must be nodes: each is a guard if no guard sees it; otherwise it gets an edge to a guard
 //! of each component that sees it.
 //!
-//! **When to use it.** For a small roadmap: it has far fewer nodes than PRM's and says when it is complete
-//! enough. It tries many motions to get there. A narrow passage needs a sample that sees both sides.
+//! **When to use it.** For a small roadmap: it has far fewer nodes than that of PRM and an estimate of its coverage. It
+//! tries many motions to get there. A narrow passage needs a sample that sees both sides.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -70,7 +70,7 @@ const FAILURES: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "visibility-prm",
-    summary: "a small roadmap of guards that do not see each other, and connections; says when it is complete",
+    summary: "a small roadmap of guards that do not see each other, and connections; estimates its coverage",
     citation: "Laumond and Siméon 2000",
     parameters: &[FAILURES],
     aliases: &["visib-prm"],
@@ -90,9 +90,9 @@ pub struct Visibility {
     most: u64,
     /// ntry.
     failures: u64,
-    /// The guards of each component, in the order of their first.
+    /// The guards of each component, the components in the order of their first guards.
     parts: Vec<Vec<NodeId>>,
-    /// How many edges were blocked when these were the components.
+    /// How many edges were blocked when the components were computed.
     blocked: Option<usize>,
 }
 
@@ -109,8 +109,8 @@ impl Visibility {
         Ok(Self { most, failures: 0, parts: Vec::new(), blocked: Some(0) })
     }
 
-    /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry
-    /// samples were no guards; 0 before there was one.
+    /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry samples were no
+    /// guards; 0 before there is such a sample.
     #[must_use]
     pub fn coverage(&self) -> f64 {
         1.0 - 1.0 / self.failures.max(1) as f64
@@ -122,7 +122,7 @@ impl Visibility {
         self.failures
     }
 
-    /// Works the components of guards out anew when edges were blocked.
+    /// Recomputes the components of guards if edges were blocked.
     fn regroup<S, E>(&mut self, map: &mut Roadmap<S, E>) {
         if self.blocked == Some(map.blocked()) {
             return;
@@ -143,7 +143,7 @@ impl Visibility {
         }
     }
 
-    /// Of every component the guard that is found first to see the candidate.
+    /// For every component the first guard found that sees the candidate.
     fn seen<C, L, N>(
         &mut self,
         q: &C::State,
@@ -169,7 +169,7 @@ impl Visibility {
         seen
     }
 
-    /// Adds a node with the edges of what sees it, and merges their components.
+    /// Adds a node with edges to the guards that see it, and merges their components.
     fn join<C, L, N>(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,

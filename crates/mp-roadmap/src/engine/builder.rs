@@ -9,9 +9,9 @@ use mp_cspace::{
 use rand::RngExt;
 use std::ops::Range;
 
-/// Builds a roadmap: attempt after attempt, generate and connect.
+/// Builds a roadmap: each attempt generates candidates and connects them.
 ///
-/// Attempt i draws from stream (seed, i), where the seed is the first number drawn from the generator of
+/// Attempt i draws from stream (seed, i), where the seed is the first number drawn from the random numbers of
 /// the first step.
 #[derive(Debug)]
 pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
@@ -34,7 +34,7 @@ where
     K: Connector<C, L>,
     N: NearestNeighbors<C>,
 {
-    /// With no nodes yet; `index` is empty.
+    /// A builder of a roadmap without nodes; `index` is empty.
     pub fn new(checker: EdgeChecker<'c, C, L>, generator: G, connector: K, index: N) -> Self {
         let map = Roadmap::new();
         Self {
@@ -50,7 +50,7 @@ where
         }
     }
 
-    /// Goes on with a roadmap there is already, instead of none.
+    /// Continues a roadmap that was built before.
     ///
     /// # Errors
     /// When a state of it is outside the space.
@@ -67,9 +67,9 @@ where
         Ok(())
     }
 
-    /// Takes in another roadmap of the same space and scene: its nodes and edges as they are, and then an
-    /// edge from each of its nodes to the nearest of the `neighbours` nearest that is in another component
-    /// and can be connected. What was verified of it is verified again when it is used.
+    /// Adds another roadmap of the same space and scene: its nodes and edges as they are, and then an edge from each of
+    /// its nodes to the nearest node that is in another component and can be connected, among its `neighbours` nearest.
+    /// Edges that were verified before are verified again when a path uses them.
     ///
     /// # Errors
     /// When a state of it is outside the space.
@@ -91,7 +91,7 @@ where
         for id in before..growing.map.len() as NodeId {
             let q = growing.map.state(id).clone();
             growing.near(&q, neighbours.saturating_add(1), f64::INFINITY, &mut near);
-            // At most one edge for each: enough to join all components that can be.
+            // One edge per node is enough to join all components that can be joined.
             for hit in near.iter().filter(|hit| hit.id != id) {
                 if !growing.map.connected(hit.id, id) && growing.try_link(hit.id, id) {
                     break;
@@ -108,7 +108,7 @@ where
         &self.map
     }
 
-    /// The roadmap, to ask for its components.
+    /// The roadmap, mutable to compute its components.
     pub fn map_mut(&mut self) -> &mut Roadmap<C::State, L::Edge> {
         &mut self.map
     }
@@ -119,13 +119,13 @@ where
         &self.connector
     }
 
-    /// The roadmap alone.
+    /// The roadmap, without the builder.
     #[must_use]
     pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
         self.map
     }
 
-    /// One attempt: generate, and connect what comes of it. The ids of the nodes that were added.
+    /// One attempt: generates candidates and connects them. Returns the ids of the nodes that were added.
     pub fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Range<NodeId> {
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         let before = self.map.len() as NodeId;
@@ -152,7 +152,7 @@ where
         before..self.map.len() as NodeId
     }
 
-    /// Has the threads make the next attempts, where there are any and none is left from before.
+    /// Lets the threads prefetch the next attempts, where there are threads and no attempt is prefetched already.
     fn prefetch(&mut self, seed: u64) {
         let Some(work) = &mut self.prefetcher.work else { return };
         let most = self.generator.independent(&self.map).min(self.prefetcher.most);
@@ -173,7 +173,7 @@ where
         self.prefetcher.ready = work(job).into();
     }
 
-    /// Connects a candidate, of which the local planner has answered some questions already.
+    /// Connects a candidate; `answers` are motions to it that were prefetched.
     fn take(
         &mut self,
         mut candidate: Candidate<C::State, L::Edge>,
@@ -198,7 +198,7 @@ where
         (connector, Growing { map, index, checker, observer, answers })
     }
 
-    /// Adds a configuration whatever the connector thinks of it: an end of a path.
+    /// Adds a configuration that the connector may not refuse: an end of a path.
     pub fn adopt(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,
@@ -227,7 +227,7 @@ where
         }
     }
 
-    /// What has been done so far.
+    /// The progress so far.
     #[must_use]
     pub fn progress(&self) -> Progress {
         let mut progress = Progress::new(self.attempts, self.map.len(), self.checker.motions());
@@ -236,7 +236,7 @@ where
     }
 }
 
-/// Tells that building has ended: a function that is compiled once.
+/// Logs that building has ended. Not generic, so that it is compiled once.
 fn built(progress: &Progress, edges: usize, reason: StopReason) {
     tracing::debug!(attempts = progress.iterations, nodes = progress.nodes, edges, ?reason, "built");
 }

@@ -1,13 +1,13 @@
-//! The only way between two nodes of a roadmap without cycles.
+//! The only path between two nodes of a roadmap without cycles.
 
 use super::{EdgeId, GraphPath, Roadmap};
 use mp_cspace::NodeId;
 
-/// How the trees of a roadmap hang, so that the way between two nodes is found in time by their depth, where A* would
-/// visit much of the tree: it has one way, however long, and distances do not tell which.
+/// The parents of the nodes in the trees of a roadmap without cycles, by which the path between two nodes is found in
+/// time linear in their depth. A* would visit much of the tree, as distances say little about the only path.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Forest {
-    /// Nodes, edges and blocked edges of the roadmap this was made of.
+    /// How many nodes, edges and blocked edges the roadmap had when this was computed.
     of: Option<[usize; 3]>,
     cycles: bool,
     /// The edge to the parent, and the parent.
@@ -16,7 +16,7 @@ pub(crate) struct Forest {
 }
 
 impl Forest {
-    /// Looks at the roadmap again where it has changed. Whether it is a forest.
+    /// Updates this where the roadmap has changed. Returns whether the roadmap is a forest.
     pub(crate) fn holds<S, E>(&mut self, map: &mut Roadmap<S, E>) -> bool {
         let now = [map.len(), map.edges(), map.blocked()];
         if self.of != Some(now) {
@@ -29,7 +29,7 @@ impl Forest {
         !self.cycles
     }
 
-    /// Hangs each tree by its first node.
+    /// Makes the first node of each tree its root.
     fn hang<S, E>(&mut self, map: &Roadmap<S, E>) {
         self.up = vec![None; map.len()];
         self.depth = vec![u32::MAX; map.len()];
@@ -52,8 +52,8 @@ impl Forest {
         }
     }
 
-    /// The way from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in
-    /// different trees. Time by the depth of the nodes.
+    /// The path from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in different
+    /// trees. Linear in the depth of the nodes.
     pub(crate) fn path<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<GraphPath> {
         let (mut a, mut b) = (from, to);
         let (mut head, mut tail) = (Vec::new(), Vec::new());
@@ -80,7 +80,7 @@ mod tests {
     use mp_cspace::{Metric, Rn, Rng, Space};
     use rand::RngExt;
 
-    /// The same ways as A* finds, before and after an edge is blocked; none where there are cycles.
+    /// The same paths as A* finds, before and after an edge is blocked; none where there are cycles.
     #[test]
     fn ways_are_those_of_a_star() {
         let space = Rn::<2>::new([0.0; 2], [1.0; 2]).unwrap();

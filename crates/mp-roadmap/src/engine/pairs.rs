@@ -1,4 +1,4 @@
-//! What the generators that look for obstacles by pairs of states have in common: most attempts look, some are uniform.
+//! Generators that find states near obstacles by pairs of samples; some attempts are uniform samples instead.
 
 use super::constructors;
 use super::settings::{length, reachable};
@@ -11,13 +11,12 @@ use rand::RngExt;
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-/// How far apart the states of a pair are, and how often none is drawn.
+/// How far apart the states of a pair are, and how often a uniform sample is drawn instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixing {
     /// Standard deviation of the distance, in (0, extent of the space].
     pub sigma: Step,
-    /// Part of the attempts that are uniform samples instead, in \[0, 1\]: where there is nothing to be near to,
-    /// only these find anything.
+    /// Part of the attempts that are uniform samples instead, in \[0, 1\]; without obstacles only these find states.
     pub uniform: f64,
 }
 
@@ -63,7 +62,7 @@ pub(crate) fn part(name: &'static str, value: f64) -> Result<f64, BuildError> {
     Err(BuildError::OutOfRange { name, value, range: "in [0, 1]".to_owned() })
 }
 
-/// What is drawn as a pair of states, and what of it is taken.
+/// Which pairs of states are drawn, and which state of a pair is taken.
 pub trait PairRule: Copy + Debug + Send {
     /// One attempt: a free state, or none. `sigma` is the standard deviation of the distance of the pair, positive and
     /// in the metric of the space.
@@ -75,7 +74,7 @@ pub trait PairRule: Copy + Debug + Send {
     ) -> Option<C::State>;
 }
 
-/// Free states by pairs, and some uniform ones: the generator of Gaussian and of bridge-test PRM.
+/// Free states by pairs, and some uniform samples: the generator of Gaussian and of bridge-test PRM.
 #[derive(Clone, Copy, Debug)]
 pub struct Pairs<R> {
     sigma: f64,
@@ -91,7 +90,7 @@ impl<R: PairRule> Pairs<R> {
         Ok(Self { sigma, uniform, rule: PhantomData })
     }
 
-    /// The recipe of the planner that draws these.
+    /// The parts of a planner with this generator.
     ///
     /// # Errors
     /// When a parameter is out of range.
@@ -139,7 +138,7 @@ where
     }
 }
 
-/// The planner that draws [`Pairs`] by a rule.
+/// The planner that generates nodes by [`Pairs`] under a rule.
 pub type PairsPlanner<'c, C, L, N, R> = RoadmapPlanner<'c, C, L, Pairs<R>, NearestConnector, AStar, N>;
 
 constructors! {
@@ -147,7 +146,7 @@ constructors! {
     |space, reach: Reachable, mixing: Mixing| Pairs::parts(space, reach, mixing)
 }
 
-/// Whether this attempt is to be a uniform sample; if so, and it is free, it goes into `out`.
+/// Decides whether this attempt is a uniform sample; if so, writes it to `out` if it is free. Returns the decision.
 pub(crate) fn drew_uniform<C, L>(
     probability: f64,
     checker: &mut EdgeChecker<'_, C, L>,

@@ -1,4 +1,4 @@
-//! Roadmaps as planners of one path: they grow until start and goal are connected.
+//! The loop that plans one path: the roadmap grows until start and goal are connected.
 
 use super::{
     Builder, Candidate, Connector, EdgeChecker, GraphPath, MilestoneKind, NodeGenerator, Pace, Query,
@@ -12,13 +12,13 @@ use mp_cspace::{
 /// Rejected paths after which each new motion is verified.
 pub const PATIENCE: u64 = 10;
 
-/// Every so many iterations a new goal is drawn, where there is a sampler.
+/// Every this many iterations a new goal is drawn, where there is a sampler.
 const GOAL_EVERY: u64 = 16;
 
 /// A planner that grows a roadmap until it connects start and goal.
 ///
-/// The first step takes the start and the listed goals in as nodes. Each one makes one attempt of the
-/// generator, and where start and a goal are in the same component looks for a way and verifies it.
+/// The first step adds the start and the listed goals as nodes. Each step makes one attempt of the generator; where start
+/// and a goal are in the same component it searches for a path and verifies it.
 #[derive(Debug)]
 pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
     builder: Builder<'c, C, L, G, K, N>,
@@ -30,7 +30,7 @@ pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
     /// The node of the start, and those of goals.
     ends: Option<(NodeId, Vec<NodeId>)>,
     iterations: u64,
-    /// The length of the last path returned, and how many nodes there were when one was last looked for.
+    /// The length of the path returned last, and the number of nodes at the last search.
     best: f64,
     looked: usize,
 }
@@ -44,7 +44,7 @@ where
     Q: Query<C, L>,
     N: NearestNeighbors<C>,
 {
-    /// The planner made by a recipe, with an empty index.
+    /// A planner for a problem, with an empty index.
     pub fn assemble(problem: Problem<'c, C, L>, index: N, parts: RoadmapPlannerParts<G, K, Q>) -> Self {
         let (checker, start, goals) = EdgeChecker::of(problem, PATIENCE);
         Self {
@@ -75,19 +75,19 @@ where
         Self { builder: self.builder.on(workers, checkers), ..self }
     }
 
-    /// The roadmap; before the first step without start and goal.
+    /// The roadmap; without start and goal before the first step.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
         self.builder.map()
     }
 
-    /// What grows the roadmap.
+    /// The builder of the roadmap.
     #[must_use]
     pub fn builder(&self) -> &Builder<'c, C, L, G, K, N> {
         &self.builder
     }
 
-    /// The same, to go on with alone.
+    /// The builder of the roadmap, without the planner.
     #[must_use]
     pub fn into_builder(self) -> Builder<'c, C, L, G, K, N> {
         self.builder
@@ -110,7 +110,7 @@ where
         self.ends = Some((start, goals));
     }
 
-    /// Draws a goal and takes it in, if it may be one.
+    /// Draws a goal and adds it, if it may be an end of a path.
     fn draw_goal(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
         let Some(goal) = self.goals.sample(rng) else { return };
         if !self.builder.checker.accepts(&goal) {
@@ -150,8 +150,7 @@ where
         }
     }
 
-    /// Whether it is time to look for a way. When a better path is wanted, whenever there are a tenth more
-    /// nodes.
+    /// Whether it is time to search for a path. A better path is searched for whenever there are a tenth more nodes.
     fn due(&self) -> bool {
         let nodes = self.builder.map.len();
         let better = if self.best.is_finite() && self.improves { self.looked / 10 } else { 0 };
@@ -159,8 +158,8 @@ where
     }
 }
 
-/// Verifies the edges of a way that have not passed yet, in the direction in which they are run. Blocks
-/// the first that fails; whether none did.
+/// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that fails.
+/// Returns whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
@@ -188,22 +187,21 @@ where
     true
 }
 
-/// A planner whose roadmap can be looked at, kept, and gone on with.
+/// A planner whose roadmap can be inspected, saved and continued.
 pub trait HasRoadmap<S, E>: Planner<S, Edge = E>
 where
     E: Clone,
 {
-    /// The roadmap; before the first step without start and goal.
+    /// The roadmap; without start and goal before the first step.
     fn map(&self) -> &Roadmap<S, E>;
-    /// The roadmap, to ask for its components.
+    /// The roadmap, mutable to compute its components.
     fn map_mut(&mut self) -> &mut Roadmap<S, E>;
-    /// Goes on with a roadmap there is already, made by a planner of the same kind, instead of its own. Before
-    /// the first step.
+    /// Continues with a roadmap made by a planner of the same kind, instead of its own. To be called before the first step.
     ///
     /// # Errors
     /// When a state of it is outside the space.
     fn resume(&mut self, map: Roadmap<S, E>) -> Result<(), BuildError>;
-    /// Grows the roadmap until stopped, whether or not it connects start and goal: for many queries later.
+    /// Grows the roadmap until stopped, whether or not it connects start and goal, for many queries later.
     fn build(&mut self, rng: &mut Rng, stop: &mut dyn Stop, observer: &mut dyn Observer<S>) -> StopReason;
 }
 

@@ -1,8 +1,8 @@
-//! Attempts made ahead of their turn, on several threads, without changing what comes of them.
+//! Prefetching: several threads make attempts beforehand, without changing the result.
 //!
-//! What takes time is asking the local planner. Its answers do not depend on when it is asked; so threads ask
-//! what the attempts to come will probably ask, of the roadmap as it is, and keep the answers. The attempts are
-//! then made one after the other as ever, and take the answers that are there.
+//! Most time goes into motions of the local planner, and its answers do not depend on when they are made. So threads make
+//! the motions that the next attempts will probably need, given the roadmap as it is, and keep them. The attempts are
+//! then made one after the other as usual, and use the motions that were prefetched.
 
 use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Roadmap};
 use mp_cspace::{
@@ -12,13 +12,13 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
 
-/// What the local planner answered, by the node that a motion leads from.
+/// The answers of the local planner, with the node where each motion begins.
 pub(crate) type Prefetched<S, E> = Vec<(NodeId, Option<Motion<S, E>>)>;
 
-/// The candidates of an attempt, and what was asked about each.
+/// The candidates of an attempt, with the motions prefetched for each.
 pub(crate) type PrefetchedAttempt<S, E> = Vec<(Candidate<S, E>, Prefetched<S, E>)>;
 
-/// What a connector has to look ahead with: the roadmap as it is, to which candidates are not added.
+/// What a connector prefetches with: the roadmap as it is, to which candidates are not added.
 #[allow(missing_debug_implementations)] // verifiers need not have any
 pub struct Prefetching<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     map: &'a Roadmap<C::State, L::Edge>,
@@ -55,7 +55,7 @@ where
         self.map.len()
     }
 
-    /// Asks for the motion from a node to the candidate, and keeps the answer. Whether there is one.
+    /// Prefetches the motion from a node to the candidate. Returns whether there is one.
     pub fn reach(&mut self, from: NodeId) -> bool {
         let motion = self.checker.reach(self.map.state(from), self.q, Direction::Forward);
         let found = motion.is_some();
@@ -64,7 +64,7 @@ where
     }
 }
 
-/// What the threads look at: the roadmap and its neighbours, the policies, the seed, and which attempts.
+/// What the threads prefetch from: the roadmap and its index, the policies, the seed, and the range of attempts.
 pub(crate) struct PrefetchJob<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) map: &'a Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a N,
@@ -74,16 +74,16 @@ pub(crate) struct PrefetchJob<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> 
     pub(crate) attempts: Range<u64>,
 }
 
-/// What was made of some attempts, in order.
+/// The prefetched attempts, in order.
 type Made<C, L> = Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
 
 type Work<'c, C, L, G, K, N> = Box<dyn FnMut(PrefetchJob<'_, C, L, G, K, N>) -> Made<C, L> + Send + 'c>;
 
-/// Threads that make attempts ahead, and what they have made.
+/// Prefetches attempts on several threads, and keeps them.
 pub(crate) struct Prefetcher<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) ready: VecDeque<PrefetchedAttempt<C::State, L::Edge>>,
     pub(crate) work: Option<Work<'c, C, L, G, K, N>>,
-    /// Most attempts made ahead.
+    /// Most attempts prefetched at a time.
     pub(crate) most: u64,
 }
 
@@ -102,7 +102,7 @@ impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Prefetcher<'_,
     }
 }
 
-/// One thread's part of the work.
+/// The attempts that one edge checker prefetches.
 struct PrefetchTask<'c, C: Space, L: LocalPlanner<C::State>, G> {
     checker: EdgeChecker<'c, C, L>,
     generator: Option<G>,
@@ -110,7 +110,7 @@ struct PrefetchTask<'c, C: Space, L: LocalPlanner<C::State>, G> {
     made: Vec<PrefetchedAttempt<C::State, L::Edge>>,
 }
 
-/// Attempts that one hand makes at a time.
+/// Attempts that one edge checker prefetches at a time.
 const SHARE: u64 = 16;
 
 impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
@@ -123,10 +123,9 @@ where
     K: Connector<C, L> + Sync,
     N: NearestNeighbors<C> + Sync,
 {
-    /// Builds on several threads, where the generator has [independent](NodeGenerator::independent) attempts.
-    /// Each of `hands`, which are like the one that the builder was made with, makes some attempts at a
-    /// time; give at least as many as there are threads. The roadmap is the same to the bit as without,
-    /// whatever their number and that of the threads.
+    /// Builds on several threads, where the generator has [independent](NodeGenerator::independent) attempts. Each of
+    /// `checkers`, which must equal the checker of the builder, prefetches some attempts at a time; give at least as many as
+    /// there are threads. The roadmap is the same to the bit for any number of checkers and threads.
     #[must_use]
     pub fn on(mut self, workers: Workers, checkers: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
         let none = 0..0;

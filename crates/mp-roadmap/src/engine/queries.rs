@@ -1,4 +1,4 @@
-//! Many queries to one roadmap.
+//! Many queries on one roadmap.
 
 use super::forest::Forest;
 use super::planner::verify;
@@ -16,31 +16,31 @@ pub enum Unanswered {
     /// An end is outside the space.
     #[error("the {0} is outside the space")]
     Outside(Endpoint),
-    /// An end is not free, or too close to something for the local planner.
+    /// An end is not free, or too close to an obstacle for the local planner.
     #[error("the {0} is not free")]
     NotFree(Endpoint),
     /// No node near an end can be connected to it: the roadmap needs more nodes there.
     #[error("no node of the roadmap near the {0} can be connected to it")]
     Unreached(Endpoint),
-    /// Both ends are connected, to different components: the roadmap needs more nodes between.
+    /// The ends are connected to different components: the roadmap needs more nodes between them.
     #[error("start and goal are connected to different components of the roadmap")]
     Apart,
 }
 
 /// A roadmap that answers queries; it does not grow by them.
 ///
-/// To answer, start and goal are connected to one of the nodes nearest to them, in order of distance, such
-/// that both are in one component, and a shortest way between is looked for. The path is verified; edges
-/// that passed once are not verified again, and one that fails is blocked for good. A direct motion from
-/// start to goal is tried first.
+/// A query first tries a direct motion from start to goal. Then start and goal are each connected to one of their nearest
+/// nodes, in order of distance, such that both are in one component, and a shortest path between these nodes is searched
+/// for. The path is verified; edges that passed once are not verified again, and an edge that fails is blocked
+/// permanently.
 #[derive(Debug)]
 pub struct RoadmapQueries<'c, C: Space, L: LocalPlanner<C::State>, N> {
     checker: EdgeChecker<'c, C, L>,
     indexed: IndexedRoadmap<C::State, L::Edge, N>,
 }
 
-/// A roadmap, an index of its nodes and what searches have learnt: what of [`RoadmapQueries`] outlives a local planner. It
-/// answers the same queries to whoever brings one, always for the same space and scene.
+/// A roadmap, an index of its nodes and the memory of searches: [`RoadmapQueries`] without the edge checker, which each
+/// query brings along, always for the same space and scene.
 #[derive(Clone, Debug)]
 pub struct IndexedRoadmap<S, E, N> {
     map: Roadmap<S, E>,
@@ -56,7 +56,7 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// What was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
+    /// The roadmap that was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
     #[must_use]
     pub fn into_answers(self, neighbours: usize) -> RoadmapQueries<'c, C, L, N> {
         let Self { checker, map, index, .. } = self;
@@ -64,13 +64,13 @@ where
     }
 }
 
-/// A motion from one state to another, and the states.
+/// The state where a motion begins, and the motion.
 type Hop<S, E> = (S, Motion<S, E>);
 
 /// Paths and their lengths.
 pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;
 
-/// How the ends of a path hang on the roadmap.
+/// The motions that connect the ends of a path to the roadmap, and the nodes they lead to.
 struct Joined<S, E> {
     first: Hop<S, E>,
     last: Hop<S, E>,
@@ -83,8 +83,8 @@ where
     L: LocalPlanner<C::State, Edge: Reversible>,
     N: NearestNeighbors<C>,
 {
-    /// Of a roadmap made before, with an empty index. Each end of a query is connected to one of its
-    /// `neighbours` nearest nodes.
+    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its `neighbours` nearest
+    /// nodes.
     ///
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
@@ -109,13 +109,13 @@ where
         &self.indexed.map
     }
 
-    /// The roadmap alone, with what was learnt about its edges.
+    /// The roadmap, with the states of its edges as queries have found them.
     #[must_use]
     pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
         self.indexed.map
     }
 
-    /// Motions asked of the local planner so far.
+    /// How many motions the local planner was asked for.
     #[must_use]
     pub fn motions(&self) -> u64 {
         self.checker.motions()
@@ -148,7 +148,7 @@ where
 }
 
 impl<S, E, N> IndexedRoadmap<S, E, N> {
-    /// Of a roadmap whose nodes the index holds already.
+    /// A roadmap whose nodes are in the index already.
     fn filled(map: Roadmap<S, E>, index: N, neighbours: usize) -> Self {
         let (star, forest) = (AStar::new(), Forest::default());
         Self { map, index, star, forest, neighbours, near: Default::default() }
@@ -160,12 +160,12 @@ impl<S, E, N> IndexedRoadmap<S, E, N> {
         &self.map
     }
 
-    /// The roadmap, to ask for its components.
+    /// The roadmap, mutable to compute its components.
     pub fn map_mut(&mut self) -> &mut Roadmap<S, E> {
         &mut self.map
     }
 
-    /// The roadmap alone, with what was learnt about its edges.
+    /// The roadmap, with the states of its edges as queries have found them.
     #[must_use]
     pub fn into_map(self) -> Roadmap<S, E> {
         self.map
@@ -426,7 +426,7 @@ fn shortest_edge<S, E>(map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<
     shortest.map(|(edge, ..)| edge)
 }
 
-/// A path with what leads to its beginning and on from its end.
+/// A path through the roadmap, with the motions from the start and to the goal.
 fn whole<S: Clone, E: Clone>(ends: &Joined<S, E>, path: Path<S, E>) -> Path<S, E> {
     let (mut states, mut edges) = (vec![ends.first.0.clone()], vec![ends.first.1.edge.clone()]);
     states.extend(path.states);

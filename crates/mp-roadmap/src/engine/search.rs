@@ -1,17 +1,17 @@
-//! Shortest ways through a roadmap.
+//! Shortest paths in a roadmap.
 
 use super::{EdgeChecker, EdgeId, GraphPath, LinkState, Roadmap};
 use mp_cspace::{Direction, LocalPlanner, Metric, NodeId, Reversible, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// A node that a way may begin or end with, and how long it is to there from outside of the roadmap.
+/// A node where a path may begin or end, and the length of the motion between it and the start or goal.
 pub type Entry = (NodeId, f64);
 
-/// A slot: how a way through the roadmap is looked for.
+/// Slot: how a path in the roadmap is searched for.
 pub trait Query<C: Space, L: LocalPlanner<C::State>> {
-    /// A shortest way from one of `from` to one of `to`, all of whose edges have motions of the local
-    /// planner. It may block edges that turn out to have none.
+    /// A shortest path from one of `from` to one of `to`, all of whose edges have motions of the local planner. May block
+    /// edges that turn out to have none.
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
@@ -21,7 +21,7 @@ pub trait Query<C: Space, L: LocalPlanner<C::State>> {
     ) -> Option<GraphPath>;
 }
 
-/// A place in the queue: the least estimate first, ties by node.
+/// An entry of the queue: the least estimate first, ties by node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Open {
     estimate: f64,
@@ -41,7 +41,7 @@ impl PartialOrd for Open {
     }
 }
 
-/// What is known of a node in the search numbered `search`.
+/// The state of a node in the search numbered `search`.
 #[derive(Clone, Copy, Debug)]
 struct Mark {
     search: u32,
@@ -53,12 +53,12 @@ struct Mark {
 const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, via: None };
 
 /// A* (Hart, Nilsson and Raphael 1968, *A formal basis for the heuristic determination of minimum cost
-/// paths*), with the distance to the ends as estimate. A value of it keeps its memory from search to
-/// search, so that a search costs only what it visits.
+/// paths*), with the distance to the ends as heuristic. Memory is reused from search to search, so that the cost of a
+/// search depends only on the nodes it visits.
 ///
-/// One value goes with one roadmap, as it remembers which of its nodes are free. Ways are shortest where edges are no shorter than the distance of their ends, as those of a metric are. Under a
-/// distance that breaks the triangle inequality nodes are visited again when a shorter way to them shows
-/// up.
+/// Use one `AStar` per roadmap, as it caches which nodes are free. Paths are shortest where no edge is shorter than the
+/// distance between its ends. Under a distance that violates the triangle inequality, nodes are visited again when a
+/// shorter path to them is found.
 #[derive(Clone, Debug, Default)]
 pub struct AStar {
     marks: Vec<Mark>,
@@ -68,18 +68,18 @@ pub struct AStar {
     free: Vec<bool>,
 }
 
-/// More ends than this, and the estimate is not worth its cost.
+/// With more ends than this the heuristic costs more than it saves.
 const FEW: usize = 8;
 
 impl AStar {
-    /// With nothing remembered.
+    /// A search without memory.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A shortest way from one of `from` to one of `to`, each with the length that is added there;
-    /// `None` when there is none. Ties by node.
+    /// A shortest path from one of `from` to one of `to`, each with the length that is added there; `None` when there is
+    /// none. Ties by node.
     pub fn shortest<S, E>(
         &mut self,
         map: &Roadmap<S, E>,
@@ -155,7 +155,7 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// Edges not yet checked are checked on the way found, and the search repeated when one is blocked.
+    /// Checks the unchecked edges of the path found, and searches again when one is blocked.
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
@@ -172,13 +172,13 @@ where
     }
 }
 
-/// The numbers below `n` from both ends inward.
+/// The numbers below `n`, alternately from both ends to the middle.
 fn inward(n: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
 }
 
 impl AStar {
-    /// Checks what is unchecked of a way. Blocks what fails first; whether nothing did.
+    /// Checks the unchecked nodes and edges of a path. Blocks the first that fails. Returns whether none did.
     pub(crate) fn check<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
@@ -192,8 +192,8 @@ impl AStar {
         self.nodes_pass(map, checker, way) && edges_pass(map, checker, way)
     }
 
-    /// Checks the nodes at the ends of unchecked edges of a way. Blocks all edges of the first that is not
-    /// admitted; whether there was none.
+    /// Checks the nodes of a path with unchecked edges. Blocks all edges of the first that is not admitted. Returns whether
+    /// there was none.
     fn nodes_pass<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
@@ -224,7 +224,7 @@ impl AStar {
     }
 }
 
-/// Checks the unchecked edges of a way, whose nodes are free. Blocks the first that fails; whether none did.
+/// Checks the unchecked edges of a path, whose nodes are free. Blocks the first that fails. Returns whether none did.
 fn edges_pass<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,

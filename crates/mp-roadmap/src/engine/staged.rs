@@ -1,4 +1,4 @@
-//! Connecting in stages: cheap motions first, then some that turn in place.
+//! Connecting in stages: first by the local planner, then by motions that turn in place.
 
 use super::{Candidate, Connector, Growing, MilestoneKind, Reachable};
 use mp_cspace::{
@@ -11,26 +11,27 @@ use std::collections::BTreeMap;
 pub enum NeighborSet {
     /// The nearest.
     NearestConnector,
-    /// The nearest of each obstacle, so many of each (and of those of none); of all these the nearest.
-    /// Costs a distance to every node.
+    /// The nearest of all that are among this many nearest nodes of each obstacle, or of no obstacle. Costs a distance to
+    /// every node.
     EachObstacle(usize),
 }
 
 /// Where a second stage turns in place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Turns {
-    /// At these fractions of the way, one after the other. None: there is no second stage.
+    /// At these fractions of the motion, one after the other. Without fractions there is no second stage.
     At(Vec<f64>),
-    /// At the ends that are far from all obstacles, where the robot may turn any way.
+    /// At the ends that are far from all obstacles, where the robot is free in every rotation.
     WhereFar,
 }
 
 /// Every candidate becomes a node and is connected to others in stages (Amato, Bayazit, Dale, Jones and Vallejo
 /// 1998, *OBPRM: an obstacle-based PRM for 3D workspaces*): first by the local planner; then, to
-/// those that are still in other components, by rotate-at-s. Where the robot turns there are two nodes more, so that
+/// those that are still in other components, by rotate-at-s. Where the robot turns there are two more nodes, so that
 /// each edge is one motion of the local planner.
 ///
-/// Each node goes through the stages as it comes, rather than all through one after the other.
+/// Each node goes through both stages when it is added; in the paper all nodes go through the first stage before the
+/// second.
 #[derive(Clone, Debug)]
 pub struct StagedConnector<H> {
     hints: H,
@@ -39,7 +40,7 @@ pub struct StagedConnector<H> {
     turns: Turns,
     near: Vec<Hit>,
     scratch: Vec<(f64, NodeId)>,
-    /// The nodes of each obstacle, of all nodes up to `grouped`.
+    /// The nodes of each obstacle, among the nodes below `grouped`.
     groups: BTreeMap<Option<u32>, Vec<NodeId>>,
     grouped: NodeId,
 }
@@ -60,7 +61,7 @@ impl<H> StagedConnector<H> {
         Ok(Self { hints, within: within.check()?, among, turns, near, scratch, groups, grouped: 0 })
     }
 
-    /// What there is to try from `q`, in order of distance, ties by node, into `self.near`.
+    /// Writes the nodes to try from `q`, in order of distance, ties by node, to `self.near`.
     fn look<C, L, N>(&mut self, q: &C::State, growing: &mut Growing<'_, '_, C, L, N>)
     where
         C: Space,
@@ -92,7 +93,7 @@ impl<H> StagedConnector<H> {
         self.near.truncate(neighbours);
     }
 
-    /// Tries to connect two nodes by a turn in place at a fraction of the way.
+    /// Tries to connect two nodes by a turn in place at a fraction of the motion.
     fn turn<C, L, N>(&self, from: NodeId, to: NodeId, at: f64, growing: &mut Growing<'_, '_, C, L, N>)
     where
         C: Space,
@@ -170,7 +171,7 @@ where
                 }
                 let at = match &self.turns {
                     Turns::At(fractions) => fractions[round],
-                    // At the one end, then at the other.
+                    // First at one end, then at the other.
                     Turns::WhereFar if round == 0 && growing.map().tag(hit.id).kind == MilestoneKind::Far => {
                         0.0
                     }

@@ -1,4 +1,4 @@
-//! Planners by name of erased problems: compiled here, for the kinds of state that robots have.
+//! Planners of erased problems, made by name: compiled here for the kinds of state that robots have.
 
 use crate::{
     AnyEdgeChecker, AnyIndex, AnyParallelProblem, AnyPlanner, BuildError, IndexedRoadmap, Settings,
@@ -10,8 +10,8 @@ use std::fmt::Debug;
 /// A roadmap of an erased problem, ready to answer queries.
 pub type AnyRoadmap<S> = IndexedRoadmap<S, (), AnyIndex<S>>;
 
-/// A kind of state for which the planners by name are compiled: those of SE(3), SE(2), the plane, and joints, here;
-/// others where [`compile_for`](crate::compile_for) names them. Whoever calls the method compiles no planner.
+/// A kind of state for which the planners are compiled: here those of SE(3), SE(2), the plane, and joints; others where
+/// [`compile_for`](crate::compile_for) is called. Calling the methods compiles no planner.
 ///
 /// ```
 /// use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
@@ -66,7 +66,7 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, checker: &mut AnyEdgeChecker<'_, Self>) -> usize;
 }
 
-/// Compiles the planners by name for states of your own: implements [`RoadmapState`] for them.
+/// Compiles the planners for states of your own: implements [`RoadmapState`] for them.
 ///
 /// ```
 /// #[derive(Clone, Debug, PartialEq)]
@@ -106,6 +106,6 @@ macro_rules! compile_for {
     )+};
 }
 
-// Unit tests do not ask for them: they would compile all of them once more.
+// Not in unit tests, which do not need them and would compile all of them again.
 #[cfg(not(test))]
 compile_for!(nalgebra::Isometry3<f64>, mp_cspace::Se2State, nalgebra::Vector2<f64>, nalgebra::DVector<f64>,);

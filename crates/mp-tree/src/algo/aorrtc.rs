@@ -1,5 +1,4 @@
-//! AORRTC: RRT-Connect over and over in the space of states and costs, so that its paths become
-//! optimal.
+//! AORRTC: RRT-Connect again and again in the space of states and costs, so that its paths become optimal.
 //!
 //! T. S. Wilson, W. Thomason, Z. Kingston and J. D. Gammell, *AORRTC: almost-surely asymptotically
 //! optimal planning with RRT-Connect*, IEEE Robotics and Automation Letters 10(12), 2025; an
@@ -13,22 +12,20 @@
 //!    b between ĝ(x) and c − ĥ(x);
 //! 2. of the nodes v with g(v) + d(v, x) ≤ b find that nearest to (x, b) in states and costs, the one with
 //!    the least d(v, x)² + (b − g(v))²; move from there one step toward x;
-//! 3. draw a smaller cost for the new state, between ĝ and what it would have, and find its nearest
-//!    node likewise: where that is cheaper and the motion free it becomes the parent; again until it is
-//!    not;
+//! 3. draw a smaller cost for the new state, between ĝ and its present cost, and find its nearest node likewise: where
+//!    that node is cheaper and the motion free it becomes the parent; repeat until it does not;
 //! 4. connect the other tree to the new state, from the node nearest to it in states and costs by which
 //!    the path would cost less than c;
 //! 5. where the trees have met, verify the path, replace parts of it by single motions where these are
 //!    free and cheaper, return it, and begin the next search with its cost;
-//! 6. the other tree has the next turn. A search without success ends after 10 000 iterations, the
-//!    next one after 10 000 more than that.
+//! 6. the other tree has the next turn. A search without success ends after 10 000 iterations, and each search after it
+//!    may take 10 000 iterations more.
 //!
-//! The paper also smooths paths by B-splines; this is left out, being possible only for straight motions.
+//! The paper also smooths paths by B-splines. That is possible for straight motions only, and left out here.
 //!
-//! **When to use it.** First, when the length of the path matters: there is a path as soon as
-//! RRT-Connect has one, and it gets better from then on. Both ends must be known states (or the goal a
-//! sampler), motions must run backward as well as forward, and the metric should be a true one that
-//! no motion costs less than.
+//! **When to use it.** Try it first when the length of the path matters: it has a path as soon as RRT-Connect has one, and
+//! improves it from then on. Both ends must be known states (or the goal a sampler), motions must run backward as well as
+//! forward, the metric should satisfy the triangle inequality, and no motion should cost less than its distance.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -36,7 +33,7 @@
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
-//! A point goes around a disc, by ever shorter ways:
+//! A point goes around a disc, on ever shorter paths:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Aorrtc, Problem, Tuning, improve};
@@ -73,7 +70,7 @@ use rand::RngExt;
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "aorrtc",
-    summary: "RRT-Connect for ever shorter paths until it is stopped; the first to try for short ones",
+    summary: "RRT-Connect for ever shorter paths until it is stopped; the first to try for short paths",
     citation: "Wilson, Thomason, Kingston and Gammell 2025",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -115,7 +112,7 @@ fn nearest_within<C: Space, E, Se: Selector<C>>(
     }
 }
 
-/// One step, whose end is hung on ever cheaper parents.
+/// One step, whose end is given ever cheaper parents.
 struct Resampled<F>(F);
 
 impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Extender<C, L>
@@ -167,7 +164,7 @@ pub struct Aorrtc<'c, C: Space, L: LocalPlanner<C::State>, N> {
     tried: usize,
     best: f64,
     turn: usize,
-    /// The iteration with which the search began, and how many it may take.
+    /// The iteration in which the search began, and how many iterations it may take.
     since: u64,
     allowed: u64,
 }
@@ -206,7 +203,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         [self.trees[0].nodes(), self.trees[1].nodes()]
     }
 
-    /// Plants what is not planted yet, and tries the straight ways that were not tried yet.
+    /// Adds the roots that are missing, and tries the straight motions to goals that were not tried yet.
     fn begin(
         &mut self,
         rng: &mut Rng,
@@ -240,7 +237,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         None
     }
 
-    /// New trees.
+    /// Begins a search with new trees.
     fn renew(&mut self, observer: &mut dyn Observer<C::State>) {
         self.trees = Self::trees_with(&self.index);
         self.planted = 0;
@@ -262,8 +259,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         hits.first().map(|hit| hit.id)
     }
 
-    /// The path through two nodes with the same state, shortened, if it is better and passes
-    /// verification; what fails is pruned.
+    /// The path through two nodes with the same state, shortened, if it is better than the last and passes verification;
+    /// the part from a failed edge on is pruned.
     fn candidate(
         &mut self,
         meeting: [NodeId; 2],
@@ -291,7 +288,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         Some(path)
     }
 
-    /// Replaces parts of a path by single motions that are cheaper, and verified.
+    /// Replaces parts of a path by single verified motions that are cheaper.
     fn shorten(&mut self, path: &mut Path<C::State, L::Edge>, costs: &mut Vec<f64>, rng: &mut Rng) {
         for _ in 0..2 * path.edges.len() {
             if path.edges.len() < 2 {

@@ -11,9 +11,8 @@
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** Where greedy connections are of no use: long motions that mostly fail, or
-//! local planners whose single steps are what is known to work. Otherwise
-//! [RRT-Connect](super::rrt_connect) needs fewer samples.
+//! **When to use it.** Where greedy connections do not pay: where long motions mostly fail, or where the local planner is
+//! only good at single steps. Otherwise [RRT-Connect](super::rrt_connect) needs fewer samples.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -50,7 +49,7 @@ use mp_cspace::Uniform;
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "bi-rrt",
-    summary: "two trees, each one step per iteration; where long connections mostly fail",
+    summary: "two trees, each with one step per iteration; where long connections mostly fail",
     citation: "LaValle and Kuffner 1999",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &["rrt-ext-ext"],

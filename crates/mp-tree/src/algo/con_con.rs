@@ -49,7 +49,7 @@ use mp_cspace::Uniform;
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-con-con",
-    summary: "two trees, both all the way in every iteration; for open spaces",
+    summary: "two greedy trees, which both extend as far as they can; for open spaces",
     citation: "LaValle and Kuffner 2001",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &[],

@@ -12,8 +12,8 @@
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** Seldom, to compare: wide open spaces where samples may be believed more than
-//! the other tree. [RRT-Connect](super::rrt_connect) is the better first choice.
+//! **When to use it.** Rarely, for comparison: in wide open spaces, where growing toward samples pays more than growing
+//! toward the other tree. [RRT-Connect](super::rrt_connect) is the better first choice.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -52,7 +52,7 @@ use mp_cspace::Uniform;
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-con-ext",
-    summary: "two trees: all the way toward samples, one step toward each other; to compare",
+    summary: "two trees: greedy toward samples, one step toward each other; for comparison",
     citation: "LaValle and Kuffner 2001",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &[],

@@ -1,4 +1,4 @@
-//! OR-parallel planning: independent runs of one planner, of which the first to end wins.
+//! OR-parallel planning: independent runs of one planner; the first to find a path wins.
 //!
 //! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
 //! Italian Association for Artificial Intelligence, 2002. There the fastest processor wins; here
@@ -8,15 +8,13 @@
 //! 1. a round: each run makes `slice` iterations, or fewer if it finds a path; the runs are shared
 //!    out to the threads;
 //! 2. when runs have found a path, the one with the fewest iterations wins, of those the lowest i;
-//! 3. otherwise the next round. So no run goes further than one slice beyond where the winner ended,
-//!    as it could not win any more.
+//! 3. otherwise the next round. So no run goes more than one slice beyond the winner, as it could not win any more.
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one round.
 //!
-//! **When to use it.** On several cores, for problems where the time of a run depends much on luck:
-//! the shortest of n runs is then far shorter than the mean. It is worth something on a single
-//! core too where the times have a heavy tail; [restarts](super::restarts) do that with one tree in
-//! memory at a time.
+//! **When to use it.** On several cores, for problems where the time of a run varies much: then the shortest of n runs is
+//! far shorter than the mean. It helps on a single core too where the times have a heavy tail;
+//! [restarts](super::restarts) do that with one tree in memory at a time.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -26,9 +24,9 @@
 //! and those of the planner that is run. By name it is `or-` and the name of that, as in
 //! `or-rrt-connect`; [`build_from`](crate::build_from) makes it.
 //!
-//! An event is reported only for what [`solve`](Planner::solve) sees. A run in which the user's code
-//! panics loses that iteration, which is [counted](OrParallel::panics), and goes on; when all runs
-//! panic in one round, the step does, in the thread that called it, with what the first said.
+//! Observers see only the events of [`solve`](Planner::solve), not those of the runs. A run in which the user's code
+//! panics loses that iteration, which is [counted](OrParallel::panics), and goes on. When all runs panic in one round,
+//! the step panics in the calling thread, with the message of the first.
 //!
 //! Eight runs on two threads:
 //! ```
@@ -123,13 +121,13 @@ impl<S, P: Planner<S>> OrParallel<S, P> {
         Ok(Self { runs, slice, workers, begun: false, winner: None, panics: 0 })
     }
 
-    /// Which run found the path returned last.
+    /// The run that found the path returned last.
     #[must_use]
     pub fn winner(&self) -> Option<usize> {
         self.winner
     }
 
-    /// How often a run has panicked, where not all did.
+    /// How often a run has panicked in a round in which not all did.
     #[must_use]
     pub fn panics(&self) -> u64 {
         self.panics

@@ -1,13 +1,13 @@
-//! RRS-Connect: two trees that reach for each other by edges that bend.
+//! RRS-Connect: RRT-Connect with edges that bend around obstacles.
 //!
 //! The snakes of K. Baizid et al., *RRS: rapidly-exploring random snakes*, §3.3, in the place of the local planner of
 //! J. J. Kuffner and S. M. LaValle, *RRT-Connect: an efficient approach to single-query path planning*, ICRA 2000.
 //!
-//! 1. to 5. are those of [RRT-Connect](super::rrt_connect); wherever a step there is blocked, though its end is free, a
-//!    [snake](mp_snake::Snake) goes around what blocks it, as in [RRS](super::rrs). In the tree from the goal edges are
-//!    bent in forward time.
+//! Steps 1 to 5 are those of [RRT-Connect](super::rrt_connect); wherever a step is blocked, though its end is free, a
+//! [snake](mp_snake::Snake) bends it around the obstacle, as in [RRS](super::rrs). In the tree from the goal edges are
+//! bent in forward time.
 //!
-//! **When to use it.** As [RRS](super::rrs), where both ends are known: it takes fewer iterations still.
+//! **When to use it.** As [RRS](super::rrs), where both ends are known: it takes even fewer iterations.
 //!
 //! | parameter | range | default |
 //! |---|---|---|

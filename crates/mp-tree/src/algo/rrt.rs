@@ -12,8 +12,8 @@
 //! 4. where the motion is free, add its end as a child of the node;
 //! 5. where that is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
-//! **When to use it.** Goals that are only a test (a region), local planners that cannot run
-//! backward, and problems where the goal is easy to get out of but hard to get into. When both
+//! **When to use it.** For goals that are only a test (a region), local planners that cannot run
+//! backward, and goals that are easy to leave but hard to enter. When both
 //! ends are known states, [RRT-Connect](super::rrt_connect) is usually much faster.
 //!
 //! | parameter | range | default |

@@ -1,4 +1,4 @@
-//! RRT-Connect: two trees that reach for each other.
+//! RRT-Connect: two trees that grow toward each other.
 //!
 //! J. J. Kuffner and S. M. LaValle, *RRT-Connect: an efficient approach to single-query path
 //! planning*, ICRA 2000. As ALG. 2 and 3 of N. Jouandeau, Y. Touati and A. Ali Cherif,
@@ -12,8 +12,8 @@
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** First. Both ends must be known states (or the goal a sampler), and motions
-//! must run backward as well as forward.
+//! **When to use it.** Try it first. Both ends must be known states (or the goal a sampler), and motions must run backward
+//! as well as forward.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -52,7 +52,7 @@ use mp_cspace::Uniform;
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-connect",
-    summary: "trees from start and goal that reach for each other; the first to try",
+    summary: "trees from start and goal that grow toward each other; the first to try",
     citation: "Kuffner and LaValle 2000",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &["rrt-ext-con"],

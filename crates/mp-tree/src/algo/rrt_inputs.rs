@@ -1,4 +1,4 @@
-//! RRT by inputs, testing all: the classical expansion of a system that moves by a set of inputs.
+//! RRT by inputs: tests the successors of a node by all inputs, and keeps the best.
 //!
 //! S. M. LaValle and J. J. Kuffner, *Randomized kinodynamic planning*, ICRA 1999. As ALG. 4 of
 //! N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*,
@@ -16,8 +16,7 @@
 //! The listing in the paper does not lower `dmin` in step 5, and would keep the last of the nearer
 //! successors; its text asks for the closest, which is what is done here.
 //!
-//! **When to use it.** To compare with: [RSRT](super::rsrt) finds the same successors with fewer
-//! collision tests.
+//! **When to use it.** For comparison: [RSRT](super::rsrt) finds the same successors with fewer collision tests.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -69,7 +68,7 @@ use mp_cspace::inputs::{Order, TestOrder};
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-inputs",
-    summary: "one tree moved by a set of inputs, all of them tested for collision; rsrt does with fewer tests",
+    summary: "one tree moved by a set of inputs, all of them tested for collision; RSRT needs fewer tests",
     citation: "LaValle and Kuffner 1999",
     parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
     aliases: &[],

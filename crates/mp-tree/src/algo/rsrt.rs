@@ -13,13 +13,13 @@
 //!    unless a node is there already, and no more are tested;
 //! 6. where that is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
-//! As in the paper's sequence the child need not be nearer to the sample than `q_prox` is: a node near
-//! obstacles grows as often as another. [`InputPlanner::accepting`](mp_cspace::inputs::InputPlanner::accepting) asks for
+//! As in the paper's listing the child need not be nearer to the sample than `q_prox` is: a node near
+//! obstacles grows as often as any other. [`InputPlanner::accepting`](mp_cspace::inputs::InputPlanner::accepting) asks for
 //! [`Nearer`](mp_cspace::inputs::Accept::Nearer) ones, as ALG. 4 does.
 //!
-//! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. It
-//! takes the same successors as ALG. 4 under the same condition, for fewer collision tests. Bodies that
-//! move as they like are planned faster by [RRT-Connect](super::rrt_connect).
+//! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. Under the same
+//! condition it takes the same successors as ALG. 4, with fewer collision tests. For bodies that can move in any direction
+//! [RRT-Connect](super::rrt_connect) is faster.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -33,7 +33,7 @@
 //! [By name](crate::build) it moves by a uniform set of inputs over the degrees of freedom, translation
 //! and rotation alike, and keeps the edges of the local planner given.
 //!
-//! A car turns round in a lane too narrow to do so in one go:
+//! A car turns around in a lane too narrow to do so without reversing:
 //! ```
 //! use mp_cspace::inputs::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};

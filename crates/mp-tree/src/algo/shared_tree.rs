@@ -1,10 +1,10 @@
 //! One RRT grown by all threads: the *embarrassingly parallel* RRT.
 //!
 //! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
-//! Italian Association for Artificial Intelligence, 2002; told of in N. Jouandeau, Y. Touati and
+//! Italian Association for Artificial Intelligence, 2002; described in N. Jouandeau, Y. Touati and
 //! A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*, 2008, §3: processors share
-//! the tree and sample in parallel. There each adds to it as it comes; here they take turns in
-//! batches, so that the answer does not depend on the machine.
+//! the tree and sample in parallel. There each adds its node at once; here nodes are added in batches, so that the result
+//! does not depend on the machine.
 //!
 //! From a tree that holds the start, repeat:
 //! 1. draw `batch` samples, number i of the planner from stream (seed, i): uniform in the space, or with
@@ -17,13 +17,12 @@
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one batch.
 //!
-//! **When to use it.** Where [RRT](super::rrt) is right, its motions are slow to check (a millisecond
-//! and more) and there are several cores. The samples of a batch do not know of each other, so that
-//! more motions are needed, the more so the smaller the tree: on average over 200 seeds of the example
+//! **When to use it.** Where [RRT](super::rrt) is the right planner, its motions are slow to check (a millisecond
+//! and more) and there are several cores. The samples of a batch do not see each other's nodes, so more motions are
+//! needed, especially while the tree is small: on average over 200 seeds of the example
 //! `shared_tree`, whose tree has some 200 nodes, 14% more with batches of 4, 18% with 8, 60% with 16,
-//! and 3.3 times as many with 64. Take at least as many as there are threads, and few for easy
-//! problems. Where the time of a run depends much on luck, [independent runs](super::or_parallel)
-//! gain more.
+//! and 3.3 times as many with 64. Use batches of at least the number of threads, and small ones for easy
+//! problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -31,13 +30,12 @@
 //!
 //! and those of [RRT](super::rrt). By name it is `shared-rrt`; [`build_from`](crate::build_from) makes it.
 //!
-//! Each sample of a batch has a local planner of its own, so there are `batch` and one more for the way
-//! straight to the goal. One that panics loses its sample, which is [counted](SharedTree::panics); when
-//! all of a batch panic, the step does, in the thread that called it, with what the first said. The tree
-//! stays. Verifying is left to the thread that calls, so with a verifier that is slow and a local
-//! planner no longer believed (`patience`) nothing is gained.
+//! Each sample of a batch has its own local planner, so there are `batch` of them, and one more for the straight
+//! motion to the goal. If one panics, its sample is lost and [counted](SharedTree::panics); if all of a batch panic, the
+//! step panics in the calling thread, with the message of the first. The tree stays valid. Only the calling thread
+//! verifies, so nothing is gained with a slow verifier and a local planner that is no longer trusted (`patience`).
 //!
-//! Two threads, the same answer as one:
+//! Two threads give the same path as one:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Goals, Problem, SharedTree, Tuning, Workers};
@@ -74,7 +72,7 @@ use std::any::Any;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// How many samples at a time.
+/// How many samples a batch has.
 pub const BATCH: Parameter = Parameter {
     name: "batch",
     range: "a whole number from 1 to 1024",
@@ -82,7 +80,7 @@ pub const BATCH: Parameter = Parameter {
     doc: "samples per iteration, whatever the number of threads; their motions are checked in parallel",
 };
 
-/// One sample of a batch: where to, and what came of it.
+/// One sample of a batch, and the extension toward it.
 struct Slot<S, L: LocalPlanner<S>> {
     local: L,
     rng: Rng,
@@ -110,7 +108,7 @@ impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
     }
 }
 
-/// The extension found before.
+/// Inserts an extension found before.
 struct Found<S, E>(Option<Extension<S, E>>);
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Found<C::State, L::Edge> {
@@ -198,13 +196,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         self.tree.nodes()
     }
 
-    /// How many samples were lost to a panic of the local planner, but for batches that were lost whole.
+    /// How many samples were lost to a panic of the local planner, without batches in which all were.
     #[must_use]
     pub fn panics(&self) -> u64 {
         self.panics
     }
 
-    /// Plants the root and tries the straight ways to the goal.
+    /// Adds the root and tries the straight motions to the goals.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
         self.arrived.extend(self.core.plant(&mut self.tree, observer));
         while let Some(grown) = self.core.leap(&mut self.tree, rng, observer) {
@@ -267,8 +265,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         }
     }
 
-    /// The first path to a node in the goal that passes verification. What is pruned meanwhile is
-    /// struck off the others.
+    /// The first path to a node in the goal that passes verification. Nodes that are pruned meanwhile are dropped.
     fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
         while !self.arrived.is_empty() {
             let id = self.arrived.remove(0);

@@ -1,4 +1,4 @@
-//! What the loops have in common: the ends of the path, the straight way between them, verified paths.
+//! What the loops have in common: the ends of the path, the straight motion between them, verified paths.
 
 use super::{Grown, Inserter, SearchTree, Selector, Tuning};
 use mp_cspace::{
@@ -6,17 +6,17 @@ use mp_cspace::{
 };
 use rand::RngExt;
 
-/// What a planner of the family has beside its trees: the ends of the problem, how it moves, and what it has done. The
-/// loops here are made of it, and yours may be.
+/// What a planner of the family has beside its trees: the ends of the problem, the edge checker, and counters. The loops
+/// of this crate use it, and yours may.
 #[derive(Debug)]
 pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
     /// Where paths begin.
     pub start: C::State,
     /// Where they end.
     pub goals: Goals<'c, C::State>,
-    /// How trees move, and the verifier.
+    /// Makes and verifies the edges of the trees.
     pub checker: EdgeChecker<'c, C, L>,
-    /// The probability of aiming at a goal; zero where there is none to aim at.
+    /// The probability of aiming at a goal; zero where there is no goal state to aim at.
     pub goal_bias: f64,
     /// Iterations so far.
     pub iterations: u64,
@@ -25,7 +25,7 @@ pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
-    /// A problem to be planned.
+    /// The core of a planner for a problem.
     ///
     /// # Errors
     /// When a parameter is out of range.
@@ -43,7 +43,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         })
     }
 
-    /// Plants the root of the first tree at the start, if there is none. The root, where that is in the goal.
+    /// Adds the start as the root of the first tree, if the tree is empty. Returns the root if it is in the goal.
     pub fn plant<Se: Selector<C>, A: Inserter<C, L>>(
         &self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -57,8 +57,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         arrived.then_some(root)
     }
 
-    /// Tries to go straight from the start to the next listed goal state; `None` when all have been tried. What a
-    /// panic of the user's code interrupts is not tried again.
+    /// Tries one motion of any length from the start to the next listed goal state; `None` when all have been tried. A
+    /// motion that a panic of the user's code interrupts is not tried again.
     pub fn leap<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -70,12 +70,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         Some(tree.leap(0, goal, &mut self.checker, rng, observer))
     }
 
-    /// A goal to aim at instead of exploring, now and then.
+    /// A goal to aim at instead of exploring, with probability `goal_bias`.
     pub fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
         if self.goal_bias > 0.0 && rng.random_bool(self.goal_bias) { self.goals.aim(rng) } else { None }
     }
 
-    /// Roots the tree from the goal at a new sample of the goal, now and then, and always where it has no root.
+    /// Adds a new sample of the goal as a root of the tree from the goal: with probability `goal_bias`, and always where
+    /// the tree is empty.
     pub fn sample_goal<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -93,8 +94,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         }
     }
 
-    /// The path from the root to `id`, if it passes verification; otherwise its bad part is pruned, of which `pruned`
-    /// is told as by [`SearchTree::verify`].
+    /// The path from the root to `id`, if it passes verification. Otherwise the part from the failed edge on is pruned,
+    /// and `pruned` is called as by [`SearchTree::verify`].
     pub fn path<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         tree: &mut SearchTree<C, L, Se, A>,
@@ -106,7 +107,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         passed.then(|| tree.nodes().path(id))
     }
 
-    /// What has been done, with so many nodes.
+    /// The progress of a planner whose trees have this many nodes.
     #[must_use]
     pub fn progress(&self, nodes: usize) -> Progress {
         let mut progress = Progress::new(self.iterations, nodes, self.checker.motions());

@@ -1,4 +1,4 @@
-//! The loop with one tree that goes on after a solution, for better ones.
+//! The anytime loop with one tree.
 
 use super::{
     Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
@@ -8,16 +8,14 @@ use mp_cspace::{
     Space, Stop, StopReason,
 };
 
-/// The least part of its cost by which a path must be better than the one before: less than that
-/// may be rounding.
+/// The least part of its cost by which a path must be better than the one before: less may be rounding.
 const GAIN: f64 = 1e-9;
 
 /// A planner that grows one tree from the start and returns ever cheaper verified paths.
 ///
-/// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever
-/// the cheapest way to any of them costs less than what was returned last, be it by a new node or
-/// because the tree was rewired, that path is verified and returned. It no longer aims at listed
-/// goal states that it has reached.
+/// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever the cheapest path to
+/// any of them costs less than the path returned last, because of a new node or because the tree was rewired, it is
+/// verified and returned. Listed goal states that are reached are no longer aimed at.
 #[derive(Debug)]
 pub struct Improving<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
@@ -40,7 +38,7 @@ where
     G: Extender<C, L>,
     A: Inserter<C, L>,
 {
-    /// The planner made by a recipe.
+    /// A planner for a problem.
     ///
     /// # Errors
     /// When a parameter is out of range.
@@ -71,9 +69,9 @@ where
         self.best
     }
 
-    /// Plants the root and tries the straight ways.
+    /// Adds the root and tries the straight motions to the goals.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        // A start in the goal is found with the other nodes that are.
+        // `better` finds a start that is in the goal.
         self.core.plant(&mut self.tree, observer);
         while self.extender.leaps()
             && let Some(grown) = self.core.leap(&mut self.tree, rng, observer)
@@ -84,7 +82,7 @@ where
         }
     }
 
-    /// Notes that a state aimed at is reached.
+    /// Remembers a node that reached the state aimed at.
     fn note(&mut self, grown: Grown) {
         if let Grown::Reached(id) = grown
             && !self.arrived.contains(&id)
@@ -93,14 +91,14 @@ where
         }
     }
 
-    /// A goal to aim at instead of exploring, now and then.
+    /// A goal not reached yet to aim at instead of exploring, with probability `goal_bias`.
     fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
         let goal = self.core.aim(rng)?;
         let known = |&id: &NodeId| *self.tree.nodes().state(id) == goal;
         if self.core.goals.has_region() || !self.arrived.iter().any(known) { Some(goal) } else { None }
     }
 
-    /// The cheapest path, if it is better than what was returned last and passes verification.
+    /// The cheapest path, if it is better than the path returned last and passes verification.
     fn better(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
         while self.core.goals.has_region() && (self.tested as usize) < self.tree.nodes().len() {
             let reached = self.core.goals.reached(self.tree.nodes().state(self.tested));
@@ -177,9 +175,8 @@ where
     }
 }
 
-/// Runs a planner until it is stopped, and returns the last path it found with the reason. Each
-/// path is shown to `found` as it comes, with what had been done until then. A planner that does
-/// not [improve](Planner::improves) ends with its first.
+/// Runs a planner until it is stopped; returns the last path it found, and the reason. Calls `found` with each path and
+/// the progress so far. A planner that does not [improve](Planner::improves) ends with its first path.
 ///
 /// ```
 /// # use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};

@@ -3,21 +3,20 @@
 use super::{Selector, Tree};
 use mp_cspace::{BuildError, EdgeChecker, Hit, LocalPlanner, Motion, NodeId, Space};
 
-/// What became of a motion.
+/// The result of inserting a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Inserted {
-    /// Its end is this new node, the last of the tree.
+    /// The end of the motion is this new node, the last of the tree.
     New(NodeId),
-    /// Its end is the state of this node, or one that counts as the same, which was there before:
-    /// nothing was added.
+    /// Nothing was added: the end of the motion is the state of this older node, or counts as the same.
     Known(NodeId),
 }
 
-/// Adds the end of a motion to a tree, under the node it came from or a better one.
+/// Slot: adds the end of a motion to a tree, under the node it came from or a better one.
 ///
-/// Adds at most one node. The caller tells the selector of it afterwards.
+/// Adds at most one node; the caller passes it to the selector afterwards.
 pub trait Inserter<C: Space, L: LocalPlanner<C::State>> {
-    /// Attaches `motion`, which leaves (in time: enters, in a backward tree) node `from`.
+    /// Inserts `motion`, which leaves node `from` (enters it in time, in a backward tree).
     fn insert<Se: Selector<C>>(
         &mut self,
         checker: &mut EdgeChecker<'_, C, L>,
@@ -26,17 +25,16 @@ pub trait Inserter<C: Space, L: LocalPlanner<C::State>> {
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
     ) -> Inserted;
-    /// The nodes that the last motion attached gave another parent, in the order in which it did.
+    /// The nodes to which the last insertion gave another parent, in that order.
     fn rewired(&self) -> &[NodeId] {
         &[]
     }
 }
 
-/// Under the node it came from. A motion that goes nowhere adds nothing.
+/// Adds the end under the node the motion came from. A motion of no length adds nothing.
 ///
-/// That leaves no duplicates where nodes are chosen as the nearest to the target and motions come
-/// nearer to it, as straight ones do: were the end in the tree already, it would have been
-/// chosen. Where that does not hold use [`AppendDistinct`].
+/// There are no duplicates where the node nearest to the target is chosen and motions come nearer to it, as straight
+/// ones do: if the end were in the tree already, it would have been chosen. Otherwise use [`AppendDistinct`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Append;
 
@@ -57,8 +55,8 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Append {
     }
 }
 
-/// Under the node it came from, unless any node of the tree has that state already: for local
-/// planners that can only make finitely many moves. Asks the index once per motion.
+/// Adds the end under the node the motion came from, unless a node of the tree has that state already: for local planners
+/// with finitely many motions. One index query per motion.
 #[derive(Clone, Debug, Default)]
 pub struct AppendDistinct {
     near: Vec<Hit>,
@@ -81,12 +79,12 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendDistinct {
     }
 }
 
-/// Under the node it came from, unless another node of the tree is there already: up to rounding, or
-/// within a radius.
+/// Adds the end under the node the motion came from, unless another node of the tree has a similar state: equal up to
+/// rounding, or within a radius.
 ///
-/// For motions by finitely many inputs: one way and back again, or the same two in another order,
-/// leads to the same state but for rounding, and *similar* states must not be stacked on each other
-/// (Jouandeau, Touati and Ali Cherif 2008, §2.3). Asks the index once per motion.
+/// For motions by finitely many inputs: an input and its inverse, or two inputs in either order, lead to the same state
+/// but for rounding, and *similar* states must not be stacked on each other (Jouandeau, Touati and Ali Cherif 2008,
+/// §2.3). One index query per motion.
 #[derive(Clone, Debug, Default)]
 pub struct AppendApart {
     radius: Option<f64>,
@@ -94,7 +92,7 @@ pub struct AppendApart {
 }
 
 impl AppendApart {
-    /// Takes states no farther apart than `radius`, in the metric of the space, for the same.
+    /// States no farther apart than `radius`, in the metric of the space, are similar.
     ///
     /// # Errors
     /// When it is negative or not finite.
@@ -107,7 +105,7 @@ impl AppendApart {
     }
 }
 
-/// States this part of the extent of the space apart, or less, are similar.
+/// States at most this part of the extent of the space apart are similar by default.
 const SIMILAR: f64 = 1e-9;
 
 impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendApart {
@@ -122,7 +120,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for AppendApart {
         let radius = self.radius.unwrap_or(SIMILAR * checker.space().extent());
         selector.near(checker.space(), tree.states(), &motion.end, radius, &mut self.near);
         let same = |hit: &&Hit| *tree.state(hit.id) == motion.end;
-        // A motion to a state similar to where it began is as short as it is meant to be.
+        // Short motions are meant: the end may be similar to where the motion began.
         let similar = |hit: &&Hit| hit.id != from;
         match self.near.iter().find(same).or_else(|| self.near.iter().find(similar)) {
             Some(hit) => Inserted::Known(hit.id),

@@ -1,4 +1,5 @@
-//! The engine: trees, the loops that grow them, and a slot for each thing in which variants differ. It knows no variant.
+//! The engine: trees, the loops that grow them, and a slot for each policy in which variants differ. It does not depend
+//! on any variant.
 
 mod constructors;
 mod core;

@@ -4,7 +4,7 @@ use super::Tuning;
 
 /// One variant of the family: a policy for each slot of the engine, and the parameters.
 ///
-/// Planners with two trees have a pair of growths: one for exploring, one for joining.
+/// Planners with two trees have a pair of extenders: one for exploring, one for joining.
 #[derive(Clone, Copy, Debug)]
 pub struct TreePlannerParts<P, Se, G, A> {
     /// What to grow toward next.

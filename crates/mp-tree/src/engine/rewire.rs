@@ -1,4 +1,4 @@
-//! Attach by the cheapest way: what makes RRT* of RRT.
+//! Slot: insertion by the cheapest parent, which turns RRT into RRT*.
 
 use super::{Inserted, Inserter, Selector, Tree};
 use mp_cspace::{BuildError, Direction, EdgeChecker, Hit, LocalPlanner, Motion, NodeId, Space};
@@ -6,10 +6,10 @@ use mp_cspace::{BuildError, Direction, EdgeChecker, Hit, LocalPlanner, Motion, N
 /// Which nodes of a tree of n nodes, in a space of dimension d, count as near a new one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Near {
-    /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; any factor above 1 makes the best path
-    /// converge to an optimal one (k-nearest RRT*).
+    /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; with any factor above 1 the best path converges to an optimal
+    /// one (k-nearest RRT*).
     NearestSelector {
-        /// In (0, 1000]; 1.1 is customary.
+        /// In (0, 1000]; usually 1.1.
         factor: f64,
     },
     /// All within r = min(γ · (ln n / n)^(1/d), step). Convergence needs
@@ -50,13 +50,13 @@ impl Near {
     }
 }
 
-/// Under the near node through which the root is reached at least cost; then every near node that
-/// is reached at less cost through the new one is hung on that (Karaman and Frazzoli 2011).
+/// Adds the end of a motion under the near node that gives it the least cost from the root; then makes it the parent of
+/// every near node that costs less through it (Karaman and Frazzoli 2011).
 ///
-/// Candidates are tried in order of the cost they promise, which is that of the near node and the
-/// distance; the first motion found free is taken, so that few are checked. Costs are those of the
-/// local planner, which must be able to reach a state exactly and should ask no less than the
-/// distance: where it cannot, this attaches as [`Append`](crate::Append).
+/// Candidate parents are tried in order of a lower bound of the cost: that of the near node plus the distance. The first
+/// motion found free is taken, so few are checked. Costs are those of the local planner, which must be able to reach a
+/// state exactly, and whose costs should be no less than the distance; where it cannot reach one, this inserts as
+/// [`Append`](crate::Append).
 #[derive(Clone, Debug, Default)]
 pub struct Rewire {
     near: Near,
@@ -66,7 +66,7 @@ pub struct Rewire {
 }
 
 impl Rewire {
-    /// Rewires the nodes that are `near`.
+    /// Rewires the nodes that count as `near`.
     ///
     /// # Errors
     /// When a number in `near` is out of range.
@@ -86,7 +86,7 @@ impl Rewire {
     }
 }
 
-/// How far it is from a state nearer to the root to one farther away, in forward time.
+/// The distance in forward time between a state nearer to the root (`upper`) and one farther from it (`lower`).
 fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: &C::State) -> f64 {
     match direction {
         Direction::Forward => space.distance(upper, lower),
@@ -113,7 +113,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
             return Inserted::Known(hit.id);
         }
 
-        // All that asks the user's code comes first, so that a panic finds the tree as it was.
+        // The user's code runs first, so that a panic leaves the tree unchanged.
         let mut best = (from, motion);
         let mut cost = tree.cost(from) + best.1.cost;
         self.promises.clear();
@@ -152,7 +152,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
             tree.set_verified(new);
         }
         for (id, way) in better {
-            // One rewired before may have made it cheaper than this.
+            // A node rewired before may have made this one cheaper already.
             if cost + way.cost < tree.cost(id) && tree.reparent(id, new, way.edge, way.cost) {
                 self.rewired.push(id);
                 if verified {

@@ -28,7 +28,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         &self.tree
     }
 
-    /// Whether some node has this very state.
+    /// Whether a node has exactly this state.
     #[must_use]
     pub fn knows(&self, space: &C, q: &C::State) -> bool {
         let mut near = Vec::new();
@@ -36,7 +36,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         near.iter().any(|hit| self.tree.state(hit.id) == q)
     }
 
-    /// Whether there are nodes and the selector has none left to grow from.
+    /// Whether there are nodes, but the selector has none left to grow from.
     #[must_use]
     pub fn is_exhausted(&self) -> bool {
         !self.tree.is_empty() && self.selector.exhausted()
@@ -55,7 +55,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         id
     }
 
-    /// Grows toward `target`: selects candidates, tries them in order until one grows.
+    /// Grows toward `target`: selects candidates and tries them in order until one grows.
     #[inline]
     pub fn toward<G: Extender<C, L>>(
         &mut self,
@@ -89,7 +89,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         &self.selector
     }
 
-    /// Grows from node `from` toward `target`, whatever the selector would choose.
+    /// Grows from node `from` toward `target`, without the selector.
     pub fn grow_from<G: Extender<C, L>>(
         &mut self,
         from: NodeId,
@@ -110,7 +110,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         grown
     }
 
-    /// Tries to go from node `from` to `target` in one motion of any length.
+    /// Tries one motion of any length from node `from` to `target`.
     pub fn leap(
         &mut self,
         from: NodeId,
@@ -126,9 +126,9 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         self.growing(target, Purpose::Join, checker, rng, observer).settle(from, extension)
     }
 
-    /// Verifies the path between a root and `id`, edge by edge from the root; edges that passed
-    /// before are not asked again. `false` when an edge fails: what hangs on it is pruned, and
-    /// `pruned` is given the former ids of the nodes that remain before anybody else hears of it.
+    /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once. `false` when an
+    /// edge fails: the subtree below it is pruned, and `pruned` is called with the former ids of the remaining nodes,
+    /// before observers are.
     pub fn verify(
         &mut self,
         id: NodeId,
@@ -183,7 +183,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     }
 }
 
-/// A tree in the act of growing toward a target: what a [`Extender`] works with.
+/// A tree that is growing toward a target: what an [`Extender`] works with.
 pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     index: usize,
     tree: &'a mut Tree<C::State, L::Edge>,
@@ -199,13 +199,13 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
 impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>>
     Growing<'_, 'c, C, L, Se, A>
 {
-    /// What the tree grows toward.
+    /// The state the tree grows toward.
     #[must_use]
     pub fn target(&self) -> &C::State {
         self.target
     }
 
-    /// Why it grows: to explore, where the selector was not asked.
+    /// Why the tree grows; [`Explore`](Purpose::Explore) where the selector was not used.
     #[must_use]
     pub fn purpose(&self) -> Purpose {
         self.why
@@ -217,7 +217,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
         self.tree
     }
 
-    /// The local planner and its settings.
+    /// Makes and verifies motions.
     pub fn checker(&mut self) -> &mut EdgeChecker<'c, C, L> {
         self.checker
     }
@@ -238,13 +238,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
         self.checker.space().distance(self.tree.state(from), self.target)
     }
 
-    /// Moves one step from a node toward the target and adds where it ends.
+    /// Moves one step from a node toward the target and inserts the end.
     #[inline]
     pub fn step(&mut self, from: NodeId) -> Grown {
         self.step_toward(from, self.target)
     }
 
-    /// Moves one step from a node toward any state and adds where it ends.
+    /// Moves one step from a node toward any state and inserts the end.
     #[inline]
     pub fn step_toward(&mut self, from: NodeId, toward: &C::State) -> Grown {
         let reach = Reach::Step(self.checker.step());
@@ -252,7 +252,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
         self.settle(from, extension)
     }
 
-    /// Adds the end of an extension from a node, unless it leads to a node that exists already.
+    /// Inserts the end of an extension from a node, unless there is a node with that state already.
     #[inline]
     pub fn settle(&mut self, from: NodeId, extension: Extension<C::State, L::Edge>) -> Grown {
         let reached = matches!(extension, Extension::Reached(_));

@@ -10,11 +10,10 @@ use mp_cspace::{
 
 /// A planner that grows one tree from the start until it enters the goal.
 ///
-/// The first iteration tries to go straight from the start to each listed goal state, unless the growth
-/// [declines](Extender::leaps). Each one
-/// then proposes a target (with probability [`goal_bias`](crate::Tuning::goal_bias) a goal),
-/// grows the tree toward it, and verifies the path to what entered the goal. Stepping on after a
-/// solution grows the same tree on; the same path may be found again.
+/// The first iteration tries a straight motion from the start to each listed goal state, unless the extender
+/// [declines](Extender::leaps). Each iteration then samples a target (with probability
+/// [`goal_bias`](crate::Tuning::goal_bias) a goal), grows the tree toward it, and verifies the path to the first new node
+/// in the goal. Stepping on after a solution continues with the same tree; the same path may be found again.
 #[derive(Debug)]
 pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
@@ -23,7 +22,7 @@ pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     extender: G,
 }
 
-/// A tree, how it moves and how it grows.
+/// A tree, its edge checker and its extender.
 type Parts<'a, 'c, C, L, G> = (
     &'a Tree<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>,
     &'a mut EdgeChecker<'c, C, L>,
@@ -39,7 +38,7 @@ where
     G: Extender<C, L>,
     A: Inserter<C, L>,
 {
-    /// The planner made by a recipe.
+    /// A planner for a problem.
     ///
     /// # Errors
     /// When a parameter is out of range.
@@ -61,19 +60,19 @@ where
         self.tree.nodes()
     }
 
-    /// How it grows.
+    /// The extender.
     #[must_use]
     pub fn extender(&self) -> &G {
         &self.extender
     }
 
-    /// The tree, how it moves and how it grows.
+    /// The tree, its edge checker and its extender.
     pub(crate) fn parts(&mut self) -> Parts<'_, 'c, C, L, G> {
         (self.tree.nodes(), &mut self.core.checker, &mut self.extender)
     }
 
-    /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the
-    /// next step takes up behind the place.
+    /// Adds the root and tries the straight motions to the goals. After a panic of the user's code the next step
+    /// continues behind the motion that panicked.
     fn begin(
         &mut self,
         rng: &mut Rng,
@@ -115,7 +114,7 @@ where
         None
     }
 
-    /// The path to `id` if it passes verification; otherwise its bad part is pruned.
+    /// The path to `id` if it passes verification; otherwise the part from the failed edge on is pruned.
     fn candidate(
         &mut self,
         id: NodeId,

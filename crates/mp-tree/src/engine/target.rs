@@ -3,7 +3,7 @@
 use super::{Purpose, Selector};
 use mp_cspace::{Hit, Rng, Sampler, Space};
 
-/// Proposes the next target of exploration, seeing the tree that is about to grow.
+/// Slot: samples the next target of exploration, given the tree that is about to grow.
 pub trait TargetSampler<C: Space> {
     /// The next target.
     fn next_target<Se: Selector<C>>(
@@ -13,11 +13,11 @@ pub trait TargetSampler<C: Space> {
         points: &[C::State],
         selector: &mut Se,
     ) -> C::State;
-    /// A verified path of this cost was found: from now on only cheaper ones are of interest.
+    /// A verified path of this cost was found: only cheaper ones are wanted from now on.
     fn improved(&mut self, _cost: f64) {}
 }
 
-/// The samples of a [`Sampler`], whatever the tree looks like.
+/// The samples of a [`Sampler`], independent of the tree.
 #[derive(Clone, Debug, Default)]
 pub struct Samples<Sa>(pub Sa);
 
@@ -28,9 +28,8 @@ impl<C: Space, Sa: Sampler<C::State>> TargetSampler<C> for Samples<Sa> {
     }
 }
 
-/// The proposals of another, without those for which the selector has no candidate: for selectors
-/// that refuse targets. The selector decides when to give in; after 10,000 refusals in a row the
-/// last proposal is passed on all the same.
+/// The targets of another target sampler for which the selector has a candidate: for selectors that refuse targets. The
+/// selector decides when to stop refusing; after 10,000 refusals in a row the last target is returned all the same.
 #[derive(Clone, Debug, Default)]
 pub struct Acceptable<P> {
     inner: P,
@@ -38,7 +37,7 @@ pub struct Acceptable<P> {
 }
 
 impl<P> Acceptable<P> {
-    /// The proposals of `inner` that are accepted.
+    /// The targets of `inner` that are accepted.
     pub fn new(inner: P) -> Self {
         Self { inner, hits: Vec::new() }
     }

@@ -5,7 +5,7 @@ use mp_cspace::{BuildError, Demand, Parameter, PlannerInfo, Settings, Step};
 /// [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that grow a tree from the goal.
 pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[
     (Demand::Region, "it also grows a tree from the goal, which needs a state to grow from"),
-    (Demand::OneWay, "it also grows a tree from the goal, by motions run backward"),
+    (Demand::OneWay, "it also grows a tree from the goal, by motions that run backward"),
 ];
 
 /// [`Tuning::step`](crate::Tuning::step).
@@ -35,14 +35,13 @@ pub const PATIENCE: Parameter = Parameter {
 /// The parameters every planner of the family has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Longest step, in (0, extent of the space]; default a twentieth of the extent.
+    /// Longest step, in (0, extent of the space]; by default a twentieth of the extent.
     pub step: Step,
-    /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; default 0.05. Planners
-    /// that grow a tree from the goal use it for sampling new goal states, where there is a
-    /// sampler.
+    /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; by default 0.05. Planners that grow a tree
+    /// from the goal sample a new goal state with this probability, where there is a sampler.
     pub goal_bias: f64,
-    /// After this many rejected candidate paths the local planner is no longer believed: each
-    /// new edge is verified as it grows. Default 10; 0 verifies every edge.
+    /// After this many rejected paths the local planner is no longer trusted: each new edge is verified as it grows. By
+    /// default 10; 0 verifies every edge.
     pub patience: u64,
 }
 

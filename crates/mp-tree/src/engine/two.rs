@@ -11,19 +11,18 @@ use mp_cspace::{
 
 /// A planner that grows one tree from the start and one from the goal until they meet.
 ///
-/// The first iteration tries to go straight from the start to each listed goal state, unless one of the growths
-/// [declines](Extender::leaps). Each one
-/// then grows one tree toward a proposed target, and the other toward what was reached; the trees
-/// take turns. Where they meet, the path is verified. The goal tree has a root for each listed
+/// The first iteration tries a straight motion from the start to each listed goal state, unless one of the extenders
+/// [declines](Extender::leaps). Each iteration then grows one tree toward a sampled target, and the other toward the node
+/// that was added; the trees take turns. Where they meet, the path is verified. The goal tree has a root for each listed
 /// goal state; where goals come from a sampler, a root is added with probability
-/// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in each one until there is any.
-/// Stepping on after a solution grows the same trees on.
+/// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in every iteration until there is one. Stepping on after a
+/// solution continues with the same trees.
 #[derive(Debug)]
 pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
     core: Core<'c, C, L>,
     trees: [SearchTree<C, L, Se, A>; 2],
-    /// How many listed goal states have been looked at, how many roots that gave, and how many of
-    /// those have been tried straight from the start.
+    /// How many listed goal states were considered as roots, how many roots that gave, and to how many of those a straight
+    /// motion from the start was tried.
     planted: usize,
     roots: NodeId,
     tried: NodeId,
@@ -43,10 +42,10 @@ where
     GB: Extender<C, L>,
     A: Inserter<C, L>,
 {
-    /// The planner made by a recipe. `planner` names it in errors.
+    /// A planner for a problem. `planner` is its name in errors.
     ///
     /// # Errors
-    /// When a parameter is out of range, or there is nothing to root the goal tree at.
+    /// When a parameter is out of range, or there is no state to root the goal tree at.
     pub fn assemble(
         planner: &'static str,
         problem: Problem<'c, C, L>,
@@ -80,8 +79,8 @@ where
         [self.trees[0].nodes(), self.trees[1].nodes()]
     }
 
-    /// Plants the roots and tries the straight way. What a panic of the user's code interrupts,
-    /// the next step takes up behind the place.
+    /// Adds the roots and tries the straight motions to the goals. After a panic of the user's code the next step
+    /// continues behind the motion that panicked.
     fn begin(
         &mut self,
         rng: &mut Rng,
@@ -112,8 +111,8 @@ where
         None
     }
 
-    /// The path through two nodes with the same state, if it passes verification; otherwise its
-    /// bad part is pruned.
+    /// The path through two nodes with the same state, if it passes verification; otherwise the part from the failed edge
+    /// on is pruned.
     fn candidate(
         &mut self,
         meeting: [NodeId; 2],

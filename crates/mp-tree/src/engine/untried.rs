@@ -1,11 +1,11 @@
-//! Slot: growth by inputs none of which is tried twice at the same node.
+//! Slot: extension by inputs that are tried at most once per node.
 
 use super::{Extender, Growing, Grown, Inserter, Selector};
 use mp_cspace::inputs::EachOnce;
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
-/// Grows by the inputs that have not been tried at a node, the most promising first: one at a time, or
-/// until one leads to a new node. A node from which the latter fails is exhausted.
+/// Extends by the inputs that have not been tried at a node, the most promising first: one per call, or as many as it
+/// takes to add a node. A node from which the latter fails is exhausted.
 #[derive(Clone, Debug, Default)]
 pub struct Untried {
     one: bool,
@@ -13,13 +13,13 @@ pub struct Untried {
 }
 
 impl Untried {
-    /// One input each time, whether it leads anywhere or not.
+    /// One input per call, whether or not it adds a node.
     #[must_use]
     pub fn one() -> Self {
         Self { one: true, tried: Vec::new() }
     }
 
-    /// As many inputs as it takes.
+    /// As many inputs as it takes to add a node.
     #[must_use]
     pub fn until_new() -> Self {
         Self::default()

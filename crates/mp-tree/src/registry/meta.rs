@@ -1,4 +1,4 @@
-//! Planners that run other planners, by name.
+//! Meta-planners, which run other planners, by name.
 
 use crate::algo::or_parallel::{RUNS, SLICE};
 use crate::algo::restarts::{SCHEDULE, UNIT};
@@ -13,24 +13,24 @@ use mp_cspace::{MotionValidity, NearestNeighbors, Space, Straight};
 use std::fmt;
 use std::sync::Arc;
 
-/// A way to run another planner, named by what is put before that one's name.
+/// A way to run another planner; its name is a prefix of the name of that planner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MetaPlanner {
-    /// Before the name of the planner it runs.
+    /// The prefix.
     pub prefix: &'static str,
     /// What it is and when to use it, in a line.
     pub summary: &'static str,
     /// Its paper.
     pub citation: &'static str,
-    /// Its parameters; there are those of the planner it runs beside them.
+    /// Its own parameters, beside those of the planner it runs.
     pub parameters: &'static [Parameter],
-    /// The planners it can run, not wrapped themselves; `None`: any, wrapped or not.
+    /// The names of the planners it can run; `None` for any planner and any meta-planner.
     pub around: Option<&'static [&'static str]>,
 }
 
 const OR: MetaPlanner = MetaPlanner {
     prefix: "or-",
-    summary: "independent runs on all threads, of which the one with the fewest iterations wins",
+    summary: "independent runs on all threads; the one with the fewest iterations wins",
     citation: "Carpin and Pagello 2002",
     parameters: &[RUNS, SLICE],
     around: None,
@@ -46,20 +46,19 @@ const SHARED: MetaPlanner = MetaPlanner {
 
 const RESTART: MetaPlanner = MetaPlanner {
     prefix: "restart-",
-    summary: "begins anew when it takes too long: fewer very long runs",
+    summary: "starts again when it takes too long: fewer very long runs",
     citation: "Luby, Sinclair and Zuckerman 1993; Amato, Ashur and Har-Peled 2025",
     parameters: &[SCHEDULE, UNIT],
     around: None,
 };
 
-/// All meta_planners of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
-/// that restart.
+/// All meta-planners of the crate. They may be combined: `or-restart-rrt-connect` runs several planners that restart.
 #[must_use]
 pub fn meta_planners() -> &'static [MetaPlanner] {
     &[OR, SHARED, RESTART]
 }
 
-/// A planner by name, with what it is wrapped in: `rrt`, `or-rrt-connect`, `restart-rrt`, …
+/// The name of a planner, split into meta-planners and planner: `rrt`, `or-rrt-connect`, `restart-rrt`, …
 ///
 /// ```
 /// use mp_tree::{PlannerSpec, Settings};
@@ -72,14 +71,14 @@ pub fn meta_planners() -> &'static [MetaPlanner] {
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlannerSpec {
-    /// The meta_planners, the outermost first.
+    /// The meta-planners, the outermost first.
     pub meta_planners: Vec<&'static MetaPlanner>,
-    /// The planner inside.
+    /// The innermost planner.
     pub planner: &'static PlannerInfo,
 }
 
 impl PlannerSpec {
-    /// Most meta_planners around one planner.
+    /// Most meta-planners around one planner.
     const DEEPEST: usize = 4;
 
     /// The planner called `name`.
@@ -111,11 +110,11 @@ impl PlannerSpec {
         }
     }
 
-    /// Refuses settings that neither the planner nor a meta has, and values that cannot be read.
-    /// The range of the planner's own parameters is checked when it is made.
+    /// Refuses settings that neither the planner nor a meta-planner has, and values that cannot be read. The range of the
+    /// planner's own parameters is checked when it is made.
     ///
     /// # Errors
-    /// When there is one.
+    /// When there is such a setting or value.
     pub fn check(&self, settings: &Settings) -> Result<(), BuildError> {
         let own = self.meta_planners.iter().flat_map(|meta| meta.parameters);
         settings.check_among(self.planner.name, own.chain(self.planner.parameters))?;
@@ -136,8 +135,8 @@ impl fmt::Display for PlannerSpec {
     }
 }
 
-/// As [`build_with`](crate::build_with), also of planners that run others. `make` makes the problem, as often as there
-/// are runs; they use `workers`.
+/// As [`build_with`](crate::build_with), for meta-planners too. `make` makes the problem, once for each run; the runs use
+/// `workers`.
 ///
 /// # Errors
 /// As [`build`](crate::build), and when `make` fails.
@@ -162,7 +161,7 @@ where
 
 type Make<'c, C, M> = dyn Fn() -> Result<Problem<'c, C, Straight<'c, C, M>>, BuildError> + Send + Sync + 'c;
 
-/// All that is needed to make a planner any number of times.
+/// Makes planners any number of times.
 struct Factory<'c, C: Space, M: MotionValidity<C::State>, N> {
     make: Arc<Make<'c, C, M>>,
     index: N,
@@ -190,7 +189,7 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
-    /// The planner inside the meta_planners before `depth`.
+    /// The planner inside the first `depth` meta-planners.
     fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, ()>, BuildError> {
         let count = |parameter: Parameter| self.settings.count_of(&parameter);
         match self.spec.meta_planners.get(depth) {

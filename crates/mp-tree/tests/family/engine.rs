@@ -233,7 +233,7 @@ fn finitely_many_moves_make_no_duplicates_either() {
 
 /// Straight motions that remember their ends, in forward time.
 #[derive(Clone, Debug)]
-pub struct Remembers<L>(pub L);
+pub(crate) struct Remembers<L>(pub(crate) L);
 
 impl<L: LocalPlanner<Point, Edge = ()>> LocalPlanner<Point> for Remembers<L> {
     type Edge = [Point; 2];
