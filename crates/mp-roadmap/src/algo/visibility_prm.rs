@@ -91,7 +91,7 @@ pub struct Visibility {
     /// ntry.
     failures: u64,
     /// The guards of each component, the components in the order of their first guards.
-    parts: Vec<Vec<NodeId>>,
+    components: Vec<Vec<NodeId>>,
     /// How many edges were blocked when the components were computed.
     blocked: Option<usize>,
 }
@@ -106,7 +106,7 @@ impl Visibility {
     /// When that is not from 1 to 10⁹.
     pub fn new(failures: u64) -> Result<Self, BuildError> {
         let most = BuildError::count_within(FAILURES.name, failures, 1, 1_000_000_000)?;
-        Ok(Self { most, failures: 0, parts: Vec::new(), blocked: Some(0) })
+        Ok(Self { most, failures: 0, components: Vec::new(), blocked: Some(0) })
     }
 
     /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry samples were no
@@ -128,16 +128,16 @@ impl Visibility {
             return;
         }
         self.blocked = Some(map.blocked());
-        let mut guards: Vec<NodeId> = std::mem::take(&mut self.parts).concat();
+        let mut guards: Vec<NodeId> = std::mem::take(&mut self.components).concat();
         guards.sort_unstable();
         let mut names: Vec<NodeId> = Vec::new();
         for guard in guards {
             let name = map.component(guard);
             match names.iter().position(|known| *known == name) {
-                Some(part) => self.parts[part].push(guard),
+                Some(component) => self.components[component].push(guard),
                 None => {
                     names.push(name);
-                    self.parts.push(vec![guard]);
+                    self.components.push(vec![guard]);
                 }
             }
         }
@@ -157,13 +157,13 @@ impl Visibility {
         self.regroup(growing.map());
         let mut order: Vec<(f64, NodeId)> = Vec::new();
         let mut seen = Vec::new();
-        for (part, guards) in self.parts.iter().enumerate() {
+        for (component, guards) in self.components.iter().enumerate() {
             let space = growing.space();
             let map = growing.map();
             order.clear();
             order.extend(guards.iter().map(|&g| (space.distance(map.state(g), q), g)));
             order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            let found = order.iter().find_map(|&(_, g)| Some((part, g, growing.reach(g, q)?)));
+            let found = order.iter().find_map(|&(_, g)| Some((component, g, growing.reach(g, q)?)));
             seen.extend(found);
         }
         seen
@@ -182,18 +182,18 @@ impl Visibility {
         N: NearestNeighbors<C>,
     {
         let id = growing.add(candidate);
-        let first = seen.first().map(|(part, ..)| *part);
+        let first = seen.first().map(|(component, ..)| *component);
         let mut merged = Vec::new();
-        for (part, guard, motion) in seen {
+        for (component, guard, motion) in seen {
             growing.link(guard, id, motion);
-            if Some(part) != first {
-                merged.push(part);
+            if Some(component) != first {
+                merged.push(component);
             }
         }
         if let Some(first) = first {
-            for &part in merged.iter().rev() {
-                let guards = self.parts.remove(part);
-                self.parts[first].extend(guards);
+            for &component in merged.iter().rev() {
+                let guards = self.components.remove(component);
+                self.components[first].extend(guards);
             }
         }
         id
@@ -211,7 +211,7 @@ impl Visibility {
         N: NearestNeighbors<C>,
     {
         let id = growing.add(Candidate { kind: MilestoneKind::Guard, ..candidate });
-        self.parts.push(vec![id]);
+        self.components.push(vec![id]);
         id
     }
 }
@@ -250,7 +250,7 @@ where
 
     fn resumed(&mut self, map: &Roadmap<C::State, L::Edge>) {
         let guards = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == MilestoneKind::Guard);
-        (self.parts, self.blocked, self.failures) = (vec![guards.collect()], None, 0);
+        (self.components, self.blocked, self.failures) = (vec![guards.collect()], None, 0);
     }
 
     fn exhausted(&self) -> bool {

@@ -201,9 +201,9 @@ where
         }
         let mut joined = Vec::new();
         for hit in prefetching.near(self.within.neighbours, self.within.radius) {
-            let part = prefetching.component(hit.id);
-            if (self.within.cycles || !joined.contains(&part)) && prefetching.reach(hit.id) {
-                joined.push(part);
+            let component = prefetching.component(hit.id);
+            if (self.within.cycles || !joined.contains(&component)) && prefetching.reach(hit.id) {
+                joined.push(component);
             }
         }
     }

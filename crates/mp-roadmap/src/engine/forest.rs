@@ -23,14 +23,14 @@ impl Forest {
             self.of = Some(now);
             self.cycles = map.edges() + map.components() != map.len();
             if !self.cycles {
-                self.hang(map);
+                self.root_trees(map);
             }
         }
         !self.cycles
     }
 
     /// Makes the first node of each tree its root.
-    fn hang<S, E>(&mut self, map: &Roadmap<S, E>) {
+    fn root_trees<S, E>(&mut self, map: &Roadmap<S, E>) {
         self.up = vec![None; map.len()];
         self.depth = vec![u32::MAX; map.len()];
         let mut next = Vec::new();
@@ -101,10 +101,10 @@ mod tests {
                 for _ in 0..20 {
                     let (a, b) = (rng.random_range(0..n), rng.random_range(0..n));
                     let star = AStar::new().shortest(map, &space, &[(a, 0.0)], &[(b, 0.0)]);
-                    let way = forest.path(map, a, b);
-                    let parts = |way: &GraphPath| (way.nodes.clone(), way.edges.clone());
-                    assert_eq!(way.as_ref().map(parts), star.as_ref().map(parts));
-                    let lengths = way.zip(star).map(|(w, s)| (w.length - s.length).abs());
+                    let path = forest.path(map, a, b);
+                    let parts = |path: &GraphPath| (path.nodes.clone(), path.edges.clone());
+                    assert_eq!(path.as_ref().map(parts), star.as_ref().map(parts));
+                    let lengths = path.zip(star).map(|(w, s)| (w.length - s.length).abs());
                     assert!(lengths.is_none_or(|off| off < 1e-12));
                 }
             };

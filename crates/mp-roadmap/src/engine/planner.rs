@@ -138,13 +138,13 @@ where
             if near.is_empty() {
                 return None;
             }
-            let way = self.query.search(map, checker, &[(start, 0.0)], &near)?;
-            if self.improves && way.length >= self.best * (1.0 - 1e-9) {
+            let path = self.query.search(map, checker, &[(start, 0.0)], &near)?;
+            if self.improves && path.length >= self.best * (1.0 - 1e-9) {
                 return None;
             }
-            if verify(map, checker, &way) {
-                self.best = way.length;
-                return map.path(&way);
+            if verify(map, checker, &path) {
+                self.best = path.length;
+                return map.path(&path);
             }
             observer.on(Event::Rejected);
         }
@@ -163,13 +163,13 @@ where
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
-    way: &GraphPath,
+    path: &GraphPath,
 ) -> bool
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    for (&edge, ends) in way.edges.iter().zip(way.nodes.windows(2)) {
+    for (&edge, ends) in path.edges.iter().zip(path.nodes.windows(2)) {
         let backward = map.ends(edge)[0] != ends[0];
         if map.edge(edge).verified[usize::from(backward)] {
             continue;

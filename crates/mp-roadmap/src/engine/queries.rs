@@ -336,7 +336,7 @@ where
                 to.iter().any(|other| map.component(other.id) == component)
             };
             let Some(&first) = from.iter().find(shares) else {
-                return Err(self.why(reached));
+                return Err(self.reason(reached));
             };
             let Some(entry) = self.hop(0, first.id) else {
                 self.roadmap.near[0].retain(|hit| hit.id != first.id);
@@ -360,7 +360,7 @@ where
     }
 
     /// Why the ends cannot be joined.
-    fn why(&mut self, reached: [bool; 2]) -> Unanswered {
+    fn reason(&mut self, reached: [bool; 2]) -> Unanswered {
         for end in 0..2 {
             let near = self.roadmap.near[end].clone();
             if !reached[end] && !near.iter().any(|hit| self.hop(end, hit.id).is_some()) {

@@ -412,10 +412,10 @@ impl<S: Clone, E: Clone + Reversible> Roadmap<S, E> {
 
     /// The path of states along a path in the graph; `None` when one of its edges has no motion.
     #[must_use]
-    pub fn path(&self, way: &GraphPath) -> Option<Path<S, E>> {
-        let mut states = vec![self.state(*way.nodes.first()?).clone()];
-        let mut edges = Vec::with_capacity(way.edges.len());
-        for (&edge, &from) in way.edges.iter().zip(&way.nodes) {
+    pub fn path(&self, path: &GraphPath) -> Option<Path<S, E>> {
+        let mut states = vec![self.state(*path.nodes.first()?).clone()];
+        let mut edges = Vec::with_capacity(path.edges.len());
+        for (&edge, &from) in path.edges.iter().zip(&path.nodes) {
             let motion = self.motion(edge, from)?;
             states.push(motion.end);
             edges.push(motion.edge);

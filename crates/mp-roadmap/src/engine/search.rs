@@ -122,17 +122,17 @@ impl AStar {
             }
         }
         let (length, end) = best?;
-        let mut way = GraphPath { nodes: vec![end], edges: Vec::new(), length };
+        let mut path = GraphPath { nodes: vec![end], edges: Vec::new(), length };
         let mut at = end;
         while let Some(edge) = self.marks[at as usize].via {
             let [a, b] = map.ends(edge);
             at = if at == a { b } else { a };
-            way.nodes.push(at);
-            way.edges.push(edge);
+            path.nodes.push(at);
+            path.edges.push(edge);
         }
-        way.nodes.reverse();
-        way.edges.reverse();
-        Some(way)
+        path.nodes.reverse();
+        path.edges.reverse();
+        Some(path)
     }
 
     #[inline]
@@ -164,9 +164,9 @@ where
         to: &[Entry],
     ) -> Option<GraphPath> {
         loop {
-            let way = self.shortest(map, checker.space(), from, to)?;
-            if self.check(map, checker, &way) {
-                return Some(way);
+            let path = self.shortest(map, checker.space(), from, to)?;
+            if self.check(map, checker, &path) {
+                return Some(path);
             }
         }
     }
@@ -183,13 +183,13 @@ impl AStar {
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
         checker: &mut EdgeChecker<'_, C, L>,
-        way: &GraphPath,
+        path: &GraphPath,
     ) -> bool
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
     {
-        self.nodes_pass(map, checker, way) && edges_pass(map, checker, way)
+        self.nodes_pass(map, checker, path) && edges_pass(map, checker, path)
     }
 
     /// Checks the nodes of a path with unchecked edges. Blocks all edges of the first that is not admitted. Returns whether
@@ -198,18 +198,18 @@ impl AStar {
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
         checker: &mut EdgeChecker<'_, C, L>,
-        way: &GraphPath,
+        path: &GraphPath,
     ) -> bool
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
     {
         let unchecked = |edge: &EdgeId| map.edge(*edge).state == LinkState::Unchecked;
-        if !way.edges.iter().any(unchecked) {
+        if !path.edges.iter().any(unchecked) {
             return true;
         }
         self.free.resize(self.free.len().max(map.len()), false);
-        for node in inward(way.nodes.len()).map(|i| way.nodes[i]) {
+        for node in inward(path.nodes.len()).map(|i| path.nodes[i]) {
             if self.free[node as usize] {
                 continue;
             }
@@ -228,13 +228,13 @@ impl AStar {
 fn edges_pass<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
-    way: &GraphPath,
+    path: &GraphPath,
 ) -> bool
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    for edge in inward(way.edges.len()).map(|i| way.edges[i]) {
+    for edge in inward(path.edges.len()).map(|i| path.edges[i]) {
         if map.edge(edge).state != LinkState::Unchecked {
             continue;
         }

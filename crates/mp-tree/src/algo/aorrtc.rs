@@ -144,7 +144,9 @@ impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Ex
             let Some(id) = nearest.filter(|&id| id != parent) else { break };
             let state = growing.tree().state(id).clone();
             match growing.checker().reach(&state, &motion.end, direction) {
-                Some(way) if growing.tree().cost(id) + way.cost < cost => (parent, motion) = (id, way),
+                Some(cheaper) if growing.tree().cost(id) + cheaper.cost < cost => {
+                    (parent, motion) = (id, cheaper)
+                }
                 _ => break,
             }
         }
@@ -301,11 +303,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             if self.core.checker.space().distance(from, to) >= cost * (1.0 - GAIN) {
                 continue;
             }
-            let Some(way) = self.core.checker.reach(from, to, Direction::Forward) else { continue };
-            if way.cost < cost && self.core.checker.passes(from, &way.edge, to, Direction::Forward) {
+            let Some(motion) = self.core.checker.reach(from, to, Direction::Forward) else { continue };
+            if motion.cost < cost && self.core.checker.passes(from, &motion.edge, to, Direction::Forward) {
                 path.states.drain(i + 1..j);
-                path.edges.splice(i..j, [way.edge]);
-                costs.splice(i..j, [way.cost]);
+                path.edges.splice(i..j, [motion.edge]);
+                costs.splice(i..j, [motion.cost]);
             }
         }
     }

@@ -187,8 +187,8 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
             Some(edge) => (edge.1, Some(edge)),
             None => {
                 let back = hangs(from, to).or_else(|| self.edges.get(&(to, from)).cloned());
-                let way = checker.reach(a, b, Direction::Forward).map(|motion| (motion.edge, motion.cost));
-                (back.map_or(f64::NAN, |edge| edge.1), way)
+                let new = checker.reach(a, b, Direction::Forward).map(|motion| (motion.edge, motion.cost));
+                (back.map_or(f64::NAN, |edge| edge.1), new)
             }
         };
         let answer = forward.filter(|(edge, _)| verified || checker.passes(a, edge, b, Direction::Forward));
@@ -217,9 +217,9 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L:
             let other = self.near.iter().map(|hit| hit.id).find(|&id| !self.joined(tree, from, id));
             let state = other.map(|id| (id, tree.state(id).clone()));
             if let Some((to, b)) = state
-                && let Some(way) = growing.checker().reach(&a, &b, direction)
+                && let Some(cycle) = growing.checker().reach(&a, &b, direction)
             {
-                self.edges.insert((from, to), (way.edge, way.cost));
+                self.edges.insert((from, to), (cycle.edge, cycle.cost));
                 return Grown::Trapped;
             }
         }

@@ -158,18 +158,18 @@ impl<C: Space, N: NearestNeighbors<C>> Selector<C> for DynamicDomain<C::State, N
         space: &C,
         points: &[C::State],
         target: &C::State,
-        why: Purpose,
+        purpose: Purpose,
         rng: &mut Rng,
         out: &mut Vec<Hit>,
     ) {
         // A target that was accepted when it was sampled needs no second search.
-        if let Some((_, hit)) = self.accepted.take_if(|(q, _)| why == Purpose::Explore && q == target) {
+        if let Some((_, hit)) = self.accepted.take_if(|(q, _)| purpose == Purpose::Explore && q == target) {
             out.clear();
             out.push(hit);
             return;
         }
-        self.nearest.select(space, points, target, why, rng, out);
-        let Some(hit) = out.first().filter(|_| why == Purpose::Explore) else { return };
+        self.nearest.select(space, points, target, purpose, rng, out);
+        let Some(hit) = out.first().filter(|_| purpose == Purpose::Explore) else { return };
         if hit.distance <= self.radii[hit.id as usize] || self.refused >= self.domain.tries {
             self.refused = 0;
             self.accepted = Some((target.clone(), *hit));
@@ -186,9 +186,9 @@ impl<C: Space, N: NearestNeighbors<C>> Selector<C> for DynamicDomain<C::State, N
         self.radii.push(f64::INFINITY);
         self.nearest.inserted(space, points, id, parent);
     }
-    fn feedback(&mut self, id: NodeId, why: Purpose, grew: bool) {
+    fn feedback(&mut self, id: NodeId, purpose: Purpose, grew: bool) {
         self.accepted = None;
-        if why != Purpose::Explore {
+        if purpose != Purpose::Explore {
             return;
         }
         let Domain { radius, adapt, least, .. } = self.domain;

@@ -157,20 +157,20 @@ impl<S: Send, P: Planner<S, Edge: Send> + Send> Planner<S> for OrParallel<S, P> 
                 match step {
                     Ok(None) => {}
                     Ok(path) => return run.found = path,
-                    Err(why) => return run.panicked = Some(why),
+                    Err(panic) => return run.panicked = Some(panic),
                 }
             }
         });
-        let mut why = None;
+        let mut panic = None;
         let mut all = true;
         for run in &mut self.runs {
             let panicked = run.panicked.take();
             self.panics += u64::from(panicked.is_some());
             all &= panicked.is_some();
-            why = why.or(panicked);
+            panic = panic.or(panicked);
         }
-        if let (true, Some(why)) = (all, why) {
-            resume_unwind(why);
+        if let (true, Some(panic)) = (all, panic) {
+            resume_unwind(panic);
         }
         let ended = self.runs.iter().enumerate().filter(|(_, run)| run.found.is_some());
         let iterations = |run: &Run<P, _>| run.planner.progress().iterations;

@@ -85,7 +85,7 @@ struct Slot<S, L: LocalPlanner<S>> {
     local: L,
     rng: Rng,
     target: Option<S>,
-    why: Purpose,
+    purpose: Purpose,
     found: Option<(NodeId, Extension<S, L::Edge>)>,
     panicked: Option<Box<dyn Any + Send>>,
 }
@@ -173,8 +173,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         let core = Core::new(make(0)?, &tuning)?;
         let slot = |i| {
             let local = make(i)?.into_parts().local;
-            let why = Purpose::Explore;
-            Ok(Slot { local, rng: Rng::seed(0), target: None, why, found: None, panicked: None })
+            let purpose = Purpose::Explore;
+            Ok(Slot { local, rng: Rng::seed(0), target: None, purpose, found: None, panicked: None })
         };
         let slots = (1..=batch).map(slot).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {
@@ -218,7 +218,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             self.drawn += 1;
             slot.found = None;
             slot.target = self.core.aim(&mut slot.rng);
-            slot.why = if slot.target.is_some() { Purpose::Join } else { Purpose::Explore };
+            slot.purpose = if slot.target.is_some() { Purpose::Join } else { Purpose::Explore };
         }
     }
 
@@ -236,8 +236,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         let lost = self.slots.iter().filter(|slot| slot.panicked.is_some()).count();
         if lost < self.slots.len() {
             self.panics += lost as u64;
-        } else if let Some(why) = self.slots.iter_mut().find_map(|slot| slot.panicked.take()) {
-            resume_unwind(why);
+        } else if let Some(panic) = self.slots.iter_mut().find_map(|slot| slot.panicked.take()) {
+            resume_unwind(panic);
         }
     }
 
@@ -253,7 +253,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             self.motions += u64::from(*self.tree.nodes().state(from) != target);
             let mut found = Found(Some(extension));
             let grown = self.tree.grow_from(from, &target, &mut self.core.checker, &mut found, rng, observer);
-            let entered = match (slot.why, grown) {
+            let entered = match (slot.purpose, grown) {
                 (Purpose::Join, Grown::Reached(id)) => Some(id),
                 _ => {
                     let state = self.tree.nodes().states().get(new);

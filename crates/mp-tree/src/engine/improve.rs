@@ -148,7 +148,7 @@ where
         if let Some(path) = self.better(observer) {
             return Some(path);
         }
-        let (target, why) = match self.aim(rng) {
+        let (target, purpose) = match self.aim(rng) {
             Some(goal) => (goal, Purpose::Join),
             None => {
                 let (points, selector) = self.tree.parts();
@@ -159,8 +159,9 @@ where
             }
         };
         observer.on(Event::Sampled(&target));
-        let grown = self.tree.toward(&target, why, &mut self.core.checker, &mut self.extender, rng, observer);
-        if why == Purpose::Join && !self.core.goals.has_region() {
+        let grown =
+            self.tree.toward(&target, purpose, &mut self.core.checker, &mut self.extender, rng, observer);
+        if purpose == Purpose::Join && !self.core.goals.has_region() {
             self.note(grown);
         }
         self.better(observer)

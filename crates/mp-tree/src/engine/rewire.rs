@@ -128,10 +128,10 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
             if promise >= cost {
                 break;
             }
-            let Some(way) = checker.reach(tree.state(id), &best.1.end, direction) else { continue };
-            if tree.cost(id) + way.cost < cost {
-                cost = tree.cost(id) + way.cost;
-                best = (id, way);
+            let Some(other) = checker.reach(tree.state(id), &best.1.end, direction) else { continue };
+            if tree.cost(id) + other.cost < cost {
+                cost = tree.cost(id) + other.cost;
+                best = (id, other);
             }
         }
         let (parent, motion) = best;
@@ -141,9 +141,9 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
             let promise = cost + distance(space, direction, &motion.end, tree.state(id));
             if id != parent
                 && promise < tree.cost(id)
-                && let Some(way) = checker.reach(&motion.end, tree.state(id), direction)
+                && let Some(other) = checker.reach(&motion.end, tree.state(id), direction)
             {
-                better.push((id, way));
+                better.push((id, other));
             }
         }
 
@@ -151,9 +151,9 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
         if verified {
             tree.set_verified(new);
         }
-        for (id, way) in better {
+        for (id, other) in better {
             // A node rewired before may have made this one cheaper already.
-            if cost + way.cost < tree.cost(id) && tree.reparent(id, new, way.edge, way.cost) {
+            if cost + other.cost < tree.cost(id) && tree.reparent(id, new, other.edge, other.cost) {
                 self.rewired.push(id);
                 if verified {
                     tree.set_verified(id);

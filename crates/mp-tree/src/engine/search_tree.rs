@@ -60,21 +60,21 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     pub fn toward<G: Extender<C, L>>(
         &mut self,
         target: &C::State,
-        why: Purpose,
+        purpose: Purpose,
         checker: &mut EdgeChecker<'_, C, L>,
         extender: &mut G,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Grown {
-        self.selector.select(checker.space(), self.tree.states(), target, why, rng, &mut self.candidates);
+        self.selector.select(checker.space(), self.tree.states(), target, purpose, rng, &mut self.candidates);
         for i in 0..self.candidates.len() {
             let Hit { id, distance } = self.candidates[i];
             if distance == 0.0 && self.tree.state(id) == target {
                 return Grown::Reached(id);
             }
-            let grown = extender.extend(id, &mut self.growing(target, why, checker, rng, observer));
+            let grown = extender.extend(id, &mut self.growing(target, purpose, checker, rng, observer));
             let grew = grown != Grown::Trapped;
-            self.selector.feedback(id, why, grew);
+            self.selector.feedback(id, purpose, grew);
             if grew {
                 return grown;
             }
@@ -164,7 +164,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     fn growing<'a, 'c>(
         &'a mut self,
         target: &'a C::State,
-        why: Purpose,
+        purpose: Purpose,
         checker: &'a mut EdgeChecker<'c, C, L>,
         rng: &'a mut Rng,
         observer: &'a mut dyn Observer<C::State>,
@@ -175,7 +175,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
             selector: &mut self.selector,
             inserter: &mut self.inserter,
             target,
-            why,
+            purpose,
             checker,
             rng,
             observer,
@@ -190,7 +190,7 @@ pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, Se, A> {
     selector: &'a mut Se,
     inserter: &'a mut A,
     target: &'a C::State,
-    why: Purpose,
+    purpose: Purpose,
     checker: &'a mut EdgeChecker<'c, C, L>,
     rng: &'a mut Rng,
     observer: &'a mut dyn Observer<C::State>,
@@ -208,7 +208,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
     /// Why the tree grows; [`Explore`](Purpose::Explore) where the selector was not used.
     #[must_use]
     pub fn purpose(&self) -> Purpose {
-        self.why
+        self.purpose
     }
 
     /// The tree.

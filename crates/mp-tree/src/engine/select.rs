@@ -23,7 +23,7 @@ pub trait Selector<C: Space> {
         space: &C,
         points: &[C::State],
         target: &C::State,
-        why: Purpose,
+        purpose: Purpose,
         rng: &mut Rng,
         out: &mut Vec<Hit>,
     );
@@ -39,7 +39,7 @@ pub trait Selector<C: Space> {
     /// Node `id` is new; `parent` is `None` for a root.
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId, parent: Option<NodeId>);
     /// Called with whether the tree grew from `id`, and for which purpose.
-    fn feedback(&mut self, _id: NodeId, _why: Purpose, _grew: bool) {}
+    fn feedback(&mut self, _id: NodeId, _purpose: Purpose, _grew: bool) {}
     /// Whether no node is left to grow from, for any target; by default never.
     fn exhausted(&self) -> bool {
         false

@@ -96,14 +96,15 @@ where
     fn grow_toward(
         &mut self,
         target: &C::State,
-        why: Purpose,
+        purpose: Purpose,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         observer.on(Event::Sampled(target));
         let before = self.tree.nodes().len();
-        let grown = self.tree.toward(target, why, &mut self.core.checker, &mut self.extender, rng, observer);
-        if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
+        let grown =
+            self.tree.toward(target, purpose, &mut self.core.checker, &mut self.extender, rng, observer);
+        if let (Purpose::Join, Grown::Reached(id)) = (purpose, grown) {
             return self.candidate(id, observer);
         }
         if self.core.goals.has_region() {
