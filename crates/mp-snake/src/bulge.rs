@@ -1,56 +1,56 @@
-//! The curve a snake begins with where the straight one is blocked.
+//! Bulges: how a straight curve is bent around what blocks it, before a snake relaxes.
 
 use crate::snake::{NODES, norm};
 use crate::{Field, Snake};
 use mp_cspace::{KnownFree, Space};
 use std::ops::Range;
 
-/// A way for some nodes to go together.
+/// How the blocked nodes of a curve move aside together.
 struct SideStep<'a> {
     /// The nodes between the ends that are blocked.
     blocked: Range<usize>,
-    /// A unit vector (scaled), whither they go.
+    /// The direction in which they move: a unit vector (scaled).
     side: &'a [f64],
-    /// The clearance they should have, where they have the least of it now, and how far they may go.
+    /// The clearance they should have, their least clearance now, and how far they may move.
     wanted: f64,
     least: f64,
     longest: f64,
 }
 
-/// How far nodes go aside at most, as part of the length of the curve. Higher bulges rarely fit.
+/// The greatest height of a bulge, as a part of the length of the curve. Higher bulges are rarely free.
 const HIGHEST: f64 = 0.5;
 
-/// How far they go at least at a time, as part of how far they may.
+/// The least increment of the height, as a part of the greatest height.
 const STRIDE: f64 = 0.125;
 
-/// What came of a [bulge](Snake::bulge).
+/// The result of a [bulge](Snake::bulge).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Bulged {
-    /// There is one that fits: the curve is its corners.
+    /// A bulge is free: the curve now consists of its corners.
     Fits,
-    /// There is one, which does not fit: the curve is laid along it.
+    /// A bulge clears the nodes, but is not free: the curve is laid along it.
     Laid,
-    /// There is no side where the blocked nodes are clear: the curve is as it was.
+    /// On no side are the blocked nodes clear: the curve is unchanged.
     Nowhere,
 }
 
 impl<C: Space> Snake<'_, C> {
-    /// Bends a straight curve out of what blocks it, all of it to one side. That may do; else it is a better place to
-    /// [begin](Self::deform) from: a curve that enters an obstacle by one face and leaves it by another is pushed
-    /// to different sides along its way, and one that meets a face squarely to no side at all.
+    /// Bends a straight curve around what blocks it, all of it to one side. If the bulge is not free, it is still a better
+    /// start for [`deform`](Self::deform): the field pushes a curve that enters an obstacle by one face and leaves it by
+    /// another to different sides along its length, and a curve perpendicular to a face to no side at all.
     ///
-    /// The nodes from the first to the last that are blocked (where none is, the one of least clearance) go together to
-    /// the side to which the field gradients them, until all have the clearance `wanted` (m); in strides of what they
-    /// lack of it, at most as far as half the curve is long. A node before the first and one after the last of them, as
-    /// far aside, are the corners of the bulge, so that its ramps do not graze. A ramp whose middle is blocked is pushed
-    /// off there, and the first piece that `blocks` where it is blocked: it gets one more corner. When the bulge
-    /// does not fit, they try the other side; where the field gradients along the curve only, the two axes most across it,
-    /// both ways.
+    /// The nodes from the first to the last blocked one (without a blocked one, the node of least clearance) move together
+    /// to the side to which the field pushes them, until all have the clearance `wanted` (m), in steps of the clearance
+    /// they lack, by at most half the length of the curve. The nodes just before and after them, moved as far, are the
+    /// corners of the bulge, so that its ramps do not graze. A ramp whose middle is blocked gets one more corner, pushed
+    /// away there, and so does the first piece that `blocks` reports, where it is blocked. When the bulge is not free, the
+    /// other side is tried; where the field pushes along the curve only, the two axes most perpendicular to the curve, in
+    /// both directions.
     ///
-    /// `blocks` is asked of each piece, with the end of it that is known to be free, at which fraction something blocks
-    /// it: `None` where it is free.
+    /// `blocks` is called for each piece, with which of its ends are known to be free, and returns the fraction at which
+    /// the piece is blocked: `None` where it is free.
     ///
-    /// Asks the field once per node, and in each stride until it meets a node that is blocked, in the middle first.
+    /// Evaluates the field once per node, and per step until a node is blocked, from the middle outward.
     pub fn bulge(
         &mut self,
         curve: &mut Vec<C::State>,
@@ -121,7 +121,7 @@ impl<C: Space> Snake<'_, C> {
         bulged
     }
 
-    /// Asks the field at each node between the ends of a straight curve.
+    /// Evaluates the field at each node between the ends of a straight curve.
     fn find_blockage(
         &mut self,
         curve: &[C::State],
@@ -142,7 +142,7 @@ impl<C: Space> Snake<'_, C> {
         }
     }
 
-    /// How far the blocked nodes go to be as clear as wanted; as clear as they get where that is not to be had.
+    /// The height of the bulge at which the blocked nodes have the clearance wanted, or the most where none has.
     fn height(
         &mut self,
         step: &SideStep<'_>,
@@ -173,28 +173,27 @@ impl<C: Space> Snake<'_, C> {
             } else if best.is_some() {
                 break;
             }
-            // Where they are clear already, little is lacking.
+            // Where all are clear already, little is lacking.
             let at_least = if least > 0.0 { 0.1 * spacing } else { stride };
             height += (step.wanted - least).max(at_least);
         }
         best.map(|b| b.1)
     }
 
-    /// Sets out to a side, for [`moved_aside`](Self::moved_aside).
+    /// Sets the direction of [`moved_aside`](Self::moved_aside).
     fn set_side(&mut self, side: &[f64]) {
         self.velocity.clear();
         self.velocity.extend(side.iter().zip(&self.scale).map(|(x, s)| x / s));
         self.unused.resize(side.len(), 0.0);
     }
 
-    /// The state `by` to the side, if it is in the space.
+    /// The state moved by `by` in that direction, if it is in the space.
     fn moved_aside(&self, q: &C::State, by: f64) -> Option<C::State> {
         self.space.moved(q, &self.velocity, by).filter(|moved| self.space.contains(moved))
     }
 
-    /// Whether no piece of the curve is blocked, as `blocks` says, with corners added where that helps: where the
-    /// field says that the middle of the first or the last piece is blocked, and at most one where something blocks a
-    /// piece.
+    /// Whether no piece of the curve is blocked, according to `blocks`. Adds corners where they help: where the field finds
+    /// the middle of the first or the last piece blocked, and at most one where `blocks` finds a piece blocked.
     fn fit(
         &mut self,
         curve: &mut Vec<C::State>,
@@ -219,7 +218,7 @@ impl<C: Space> Snake<'_, C> {
             let order = if known == KnownFree::To { [at + 1, at] } else { [at, at + 1] };
             order.iter().all(|&at| blocks(&curve[at], &curve[at + 1], known).is_none())
         };
-        // The last and the first piece first: they lead by what was in the way, and fail most.
+        // The last and the first piece first: they pass the obstacle, and fail most often.
         let (mut front, mut were) = (0, curve.len());
         if !free(self, curve, were - 2, KnownFree::To) {
             return false;
@@ -235,8 +234,8 @@ impl<C: Space> Snake<'_, C> {
         true
     }
 
-    /// Adds a corner at part `at` of piece `piece`, pushed off by the field, across the piece, until it should be as
-    /// clear as wanted. `false` where that does not clear it.
+    /// Adds a corner at fraction `at` of piece `piece`, pushed away by the field, across the piece, by the clearance it
+    /// lacks. `false` where the corner is still blocked.
     fn corner(
         &mut self,
         curve: &mut Vec<C::State>,
@@ -257,7 +256,7 @@ impl<C: Space> Snake<'_, C> {
         push.iter_mut().zip(&*scale).for_each(|(p, s)| *p /= -s);
         let along = dot(push, way) / dot(way, way).max(f64::MIN_POSITIVE);
         push.iter_mut().zip(&*way).for_each(|(p, w)| *p -= along * w);
-        // NaN is refused too.
+        // Refuses NaN too.
         if !(by > 0.0 && unit(push)) {
             return false;
         }
@@ -271,7 +270,7 @@ impl<C: Space> Snake<'_, C> {
     }
 }
 
-/// What part of the way of the blocked nodes node `i` of `inner` goes.
+/// The part of the height of the bulge by which node `i` of `inner` moves: 1 for blocked nodes, less on the ramps.
 fn part(i: usize, blocked: &Range<usize>, inner: usize) -> f64 {
     let (up, down) =
         ((i + 1) as f64 / (blocked.start + 1) as f64, (inner - i) as f64 / (inner + 1 - blocked.end) as f64);
@@ -283,15 +282,15 @@ fn from_the_middle(range: &Range<usize>) -> impl Iterator<Item = usize> + use<> 
     (middle..range.end).chain((range.start..middle).rev())
 }
 
-/// What a straight curve meets. Numbers are scaled: lengths in the metric.
+/// The field along a straight curve, and the sides to which to bend it. Numbers are scaled: lengths in the metric.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Blockage {
-    /// From end to end.
+    /// The vector from end to end.
     chord: Vec<f64>,
     /// The clearance of each node between the ends, and the gradient of the field there.
     clearances: Vec<f64>,
     gradients: Vec<f64>,
-    /// Directions (unit) to try, one after the other.
+    /// The directions (unit vectors) to try, one after the other.
     sides: Vec<f64>,
 }
 
@@ -309,7 +308,8 @@ impl Blockage {
         self.clearances.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// From the first to the last node of no clearance; the one of least where all have some; `None` where it is unknown.
+    /// From the first to the last node without clearance; the node of least clearance where all have some; `None` where
+    /// the clearance is unknown.
     fn blocked(&self) -> Option<Range<usize>> {
         let none = |c: &f64| *c <= 0.0;
         let mut clearances = self.clearances.iter();
@@ -322,8 +322,8 @@ impl Blockage {
         Some(at..at + 1)
     }
 
-    /// Finds the sides: where the field gradients the blocked nodes together, across the curve, and back; where it gradients
-    /// along the curve only, the two axes most across it, both ways.
+    /// Finds the sides: where the field pushes the blocked nodes together, across the curve, and the opposite; where it
+    /// pushes along the curve only, the two axes most perpendicular to it, in both directions.
     fn find_sides(&mut self, blocked: &Range<usize>) {
         let dim = self.chord.len();
         self.sides.clear();
@@ -359,7 +359,7 @@ impl Blockage {
         }
     }
 
-    /// Adds the side opposite to that at `begin`.
+    /// Adds the side opposite to the one at `begin`.
     fn and_back(&mut self, begin: usize) {
         let dim = self.chord.len();
         self.sides.extend_from_within(begin..begin + dim);

@@ -1,11 +1,11 @@
-//! The snake: a curve that moves until its energy is least.
+//! The snake: a curve that minimizes its energy.
 
 use crate::bulge::Blockage;
 use crate::params::scale;
 use crate::{Band, Field, Params, SnakeError};
 use mp_cspace::Space;
 
-/// The energy of a curve, by its parts.
+/// The energy of a curve, in three parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Of the curve itself: `½·∫(α·|v'|² + β·|v''|²) ds`.
@@ -17,33 +17,32 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// All of it.
+    /// The sum of the parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.internal + self.external + self.optimal
     }
 }
 
-/// Why a snake incoming to rest.
+/// Why a snake stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rest {
-    /// It hardly moves any more.
+    /// The last step was shorter than the tolerance.
     Converged,
-    /// No step along the forces lowers its energy.
+    /// No step along the forces lowers the energy.
     Stagnated,
-    /// Its steps are used up.
+    /// It has taken the most steps allowed.
     Iterations,
-    /// Whoever watched it said so.
+    /// The `watch` function stopped it.
     Stopped,
 }
 
-/// A moment in the life of a snake.
+/// The state of a snake between two steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a, S> {
     /// Its nodes, both ends included.
     pub curve: &'a [S],
-    /// The least clearance (m) at a node between the ends, as the field has it; infinite where the field knows
-    /// none.
+    /// The least clearance (m) at a node between the ends, by the field; infinite if the field has none.
     pub clearance: f64,
     /// Its energy.
     pub energy: Energy,
@@ -51,7 +50,7 @@ pub struct Moment<'a, S> {
     pub iteration: u32,
 }
 
-/// An open active contour with fixed ends, in any space that knows velocities.
+/// An open active contour with fixed ends, in any space with velocities.
 ///
 /// M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988, as modified by K. Baizid et
 /// al., *RRS: rapidly-exploring random snakes* (eq. 1 to 4). For a curve `v` of nodes `h` apart the energy is
@@ -63,13 +62,13 @@ pub struct Moment<'a, S> {
 /// - Eq. 2 prints `|v|²` and `|v'|²`; membrane and plate are `|v'|²` and `|v''|²` as in Kass et al.
 /// - Eq. 4 sums forces `γ·n̄` along the normal. The energy of which this is the direction of descent is the length;
 ///   its force is `γ·κ·n̄`, towards the inside of each bend and zero where the curve is straight.
-/// - The field acts across the curve only: along it it would move nodes, not the curve.
+/// - The field acts across the curve only: a force along the curve would move nodes, but not the curve.
 ///
 /// One step is semi-implicit: `(I + a·T + b·T²)·δ = −τ/h·∇E`, the stiff part by a [`Band`] that is factorised
 /// once for each number of nodes. The step is halved until the energy does not rise, so it never does. In spaces
 /// with rotations, differences about neighbouring nodes are taken as if in one tangent space.
 ///
-/// A step takes O(n·d) operations and one question to the field per node, for n nodes and d degrees of freedom.
+/// A step takes O(n·d) operations and one evaluation of the field per node, for n nodes and d degrees of freedom.
 ///
 /// ```
 /// use mp_cspace::Rn;
@@ -98,22 +97,22 @@ pub struct Snake<'c, C: Space> {
     bands: Vec<Option<Band>>,
     now: CurveMeasurement,
     trial: CurveMeasurement,
-    /// Where each moving node outgoing, then what a node is moved by.
+    /// The displacements of the nodes between the ends.
     step: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
-    /// Gradients nobody asked for.
+    /// A buffer for gradients that are not used.
     pub(crate) unused: Vec<f64>,
-    /// What bulges begin with.
+    /// The buffers of bulges.
     pub(crate) blockage: Blockage,
     pub(crate) next: Vec<C::State>,
     trace: Vec<Energy>,
 }
 
-/// What is known of a curve. Numbers are scaled: lengths in the metric.
+/// A curve measured: its energy and the forces on it. Numbers are scaled: lengths in the metric.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CurveMeasurement {
     pub(crate) energy: Energy,
-    /// From each node to the next.
+    /// The vectors from each node to the next.
     pub(crate) segments: Vec<f64>,
     /// Their lengths.
     lengths: Vec<f64>,
@@ -140,23 +139,23 @@ impl CurveMeasurement {
     }
 }
 
-/// There is room for so many nodes from the beginning: all that edges take.
+/// Buffers have room for this many nodes from the beginning: as many as edges need.
 pub(crate) const NODES: usize = 32;
 
-/// Curves of more nodes are not made.
+/// Most nodes of a curve.
 const MOST_NODES: usize = 10_000;
 
-/// How often a step is halved before giving up.
+/// How often a step is halved before it fails.
 const HALVINGS: u32 = 3;
 
-/// Steps that lower the energy by less than this part of it are of no use.
+/// A step that lowers the energy by less than this part of it ends the deformation.
 const LEAST_GAIN: f64 = 1e-7;
 
 impl<'c, C: Space> Snake<'c, C> {
-    /// Snakes of these parameters in `space`.
+    /// Snakes with these parameters in `space`.
     ///
     /// # Errors
-    /// When a parameter is out of range, or the space knows no velocities.
+    /// When a parameter is out of range, or the space has no velocities.
     pub fn new(space: &'c C, params: Params) -> Result<Self, SnakeError> {
         let dim = space.dim();
         Ok(Self {
@@ -181,27 +180,27 @@ impl<'c, C: Space> Snake<'c, C> {
         &self.params
     }
 
-    /// The space it lives in.
+    /// The space.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space
     }
 
-    /// The energies of the curve deformed last: before the first step and after each.
+    /// The energies of the curve deformed last: before the first step and after each step.
     #[must_use]
     pub fn trace(&self) -> &[Energy] {
         &self.trace
     }
 
-    /// The straight curve from one state to another: as many nodes as the spacing asks for, at least five and at
-    /// most ten thousand.
+    /// The straight curve from one state to another, with as many nodes as the spacing needs, at least five and at most
+    /// ten thousand.
     pub fn between(&self, from: &C::State, to: &C::State) -> Vec<C::State> {
         let mut curve = Vec::new();
         self.between_into(from, to, &mut curve);
         curve
     }
 
-    /// As [`between`](Self::between), in the place of what was in `curve`.
+    /// As [`between`](Self::between), into `curve`, which is cleared first.
     pub fn between_into(&self, from: &C::State, to: &C::State, curve: &mut Vec<C::State>) {
         let wanted = (self.space.distance(from, to) / self.params.spacing).ceil();
         let parts = wanted.clamp(4.0, (MOST_NODES - 1) as f64) as usize;
@@ -220,9 +219,9 @@ impl<'c, C: Space> Snake<'c, C> {
         self.trial.energy
     }
 
-    /// Moves the nodes between the ends until the energy is least, or `watch`, which is shown the curve before the
-    /// first step and after each, says so. A curve of less than three nodes stays as it is, and nodes do not
-    /// leave the bounds of the space.
+    /// Moves the nodes between the ends until the energy is least, or until `watch` returns true; it is called before the
+    /// first step and after each. A curve of less than three nodes stays as it is, and nodes do not leave the bounds of
+    /// the space.
     ///
     /// The energy never rises from one step to the next, but for rounding.
     pub fn deform(
@@ -305,7 +304,7 @@ impl<'c, C: Space> Snake<'c, C> {
         }
     }
 
-    /// The implicit step of all nodes, from the forces on the curve.
+    /// Computes the implicit step of all nodes, from the forces on the curve.
     fn aim(&mut self, measured: &CurveMeasurement) {
         let (dim, parts) = (self.space.dim(), measured.lengths.len());
         let Params { membrane, plate, straighten, spacing: h, pace, .. } = self.params;
@@ -332,7 +331,7 @@ impl<'c, C: Space> Snake<'c, C> {
         self.bands[rows].get_or_insert_with(|| Band::new(rows, a, b)).solve(&mut self.step, dim);
     }
 
-    /// Goes as large a part of the step as does not raise the energy: that part, `None` when there is none.
+    /// Takes the largest part of the step that does not raise the energy. Returns that part, or `None` when there is none.
     fn advance(
         &mut self,
         curve: &mut [C::State],
@@ -391,7 +390,7 @@ pub(crate) fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Takes from `push` its part along the curve: the way that comes to the node and the one that outgoing on.
+/// Removes from `push` its component along the curve, which is the sum of the segments before and after the node.
 #[inline]
 fn across(push: &mut [f64], incoming: &[f64], outgoing: &[f64]) {
     let along = || incoming.iter().zip(outgoing).map(|(c, g)| c + g);
