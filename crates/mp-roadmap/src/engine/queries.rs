@@ -124,7 +124,7 @@ where
     /// A verified path from `start` to `goal`.
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn answer(
         &mut self,
         start: &C::State,
@@ -136,7 +136,7 @@ where
     /// As [`IndexedRoadmap::alternatives`].
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn alternatives(
         &mut self,
         start: &C::State,
@@ -225,7 +225,7 @@ where
     /// A verified path from `start` to `goal`.
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn answer<C, L>(
         &mut self,
         checker: &mut EdgeChecker<'_, C, L>,
@@ -247,7 +247,7 @@ where
     /// Takes time by the size of the roadmap, and a search for each node of each path.
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn alternatives<C, L>(
         &mut self,
         checker: &mut EdgeChecker<'_, C, L>,

@@ -19,7 +19,7 @@ pub fn planners() -> &'static [PlannerInfo] {
 /// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
 ///
 /// # Errors
-/// When there is none, with the names there are.
+/// When there is no such planner; the error lists the names.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
     let found = planners().iter().find(|info| info.is_called(name));
     found.ok_or_else(|| BuildError::unknown_planner(name, planners()))

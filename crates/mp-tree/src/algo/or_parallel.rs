@@ -18,7 +18,7 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `runs`: how many independent runs, whatever the number of threads | 1, 2, … 1024 | 8 |
+//! | `runs`: how many independent runs, for any number of threads | 1, 2, … 1024 | 8 |
 //! | `slice`: iterations of each run per round; budgets are kept to within one slice | 1, 2, … 10⁶ | 32 |
 //!
 //! and those of the planner that is run. By name it is `or-` and the name of that, as in
@@ -64,7 +64,7 @@ pub const RUNS: Parameter = Parameter {
     name: "runs",
     range: "a whole number from 1 to 1024",
     default: "8",
-    doc: "independent runs, whatever the number of threads; the one with the fewest iterations wins",
+    doc: "independent runs, for any number of threads; the one with the fewest iterations wins",
 };
 
 /// How long a round is.

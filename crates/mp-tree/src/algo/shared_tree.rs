@@ -26,7 +26,7 @@
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `batch`: samples per iteration, whatever the number of threads | 1, 2, … 1024 | 8 |
+//! | `batch`: samples per iteration, for any number of threads | 1, 2, … 1024 | 8 |
 //!
 //! and those of [RRT](super::rrt). By name it is `shared-rrt`; [`build_from`](crate::build_from) makes it.
 //!
@@ -77,7 +77,7 @@ pub const BATCH: Parameter = Parameter {
     name: "batch",
     range: "a whole number from 1 to 1024",
     default: "8",
-    doc: "samples per iteration, whatever the number of threads; their motions are checked in parallel",
+    doc: "samples per iteration, for any number of threads; their motions are checked in parallel",
 };
 
 /// One sample of a batch, and the extension toward it.

@@ -6,7 +6,7 @@ use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 /// The result of growing toward a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Grown {
-    /// No node was added, and the target is not in the tree.
+    /// No node was added.
     Trapped,
     /// This node was added, nearer to the target.
     Advanced(NodeId),

@@ -84,7 +84,7 @@ impl PlannerSpec {
     /// The planner called `name`.
     ///
     /// # Errors
-    /// When there is none, with the names there are.
+    /// When there is no such planner; the error lists the names.
     pub fn new(name: &str) -> Result<Self, BuildError> {
         let mut rest = name;
         let mut meta_planners = Vec::new();

@@ -231,6 +231,8 @@ fn finitely_many_moves_make_no_duplicates_either() {
     assert!((80..=169).contains(&planner.tree().len()), "{}", planner.tree().len());
 }
 
+type Remembering<'c> = Remembers<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>;
+
 /// Straight motions that remember their ends, in forward time.
 #[derive(Clone, Debug)]
 pub(crate) struct Remembers<L>(pub(crate) L);
@@ -295,7 +297,7 @@ const REMEMBERING: [&str; 14] = [
 /// Planners by type, of a local planner that no planner by name has.
 fn remembering<'c>(
     name: &str,
-    problem: Problem<'c, Rn<2>, Remembers<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>>,
+    problem: Problem<'c, Rn<2>, Remembering<'c>>,
     boxes: &Boxes<2>,
     tuning: Tuning,
 ) -> Result<Remembered<'c>, BuildError> {

@@ -31,10 +31,10 @@ fn closed() -> Boxes<2> {
     hollow([0.9, 0.2], 0.05, 0.02, 0.0)
 }
 
-/// What a planner comes to, and what it has done.
-type Came = (Outcome<Path<Point>>, Progress);
+/// The outcome and the progress of a run.
+type RunResult = (Outcome<Path<Point>>, Progress);
 
-fn solve(planner: &mut impl Planner<Point, Edge = ()>, seed: u64, iterations: u64) -> Came {
+fn solve(planner: &mut impl Planner<Point, Edge = ()>, seed: u64, iterations: u64) -> RunResult {
     let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(iterations), &mut ());
     (outcome, planner.progress())
 }
@@ -58,7 +58,7 @@ fn the_run_with_fewest_iterations_wins_on_any_number_of_threads() {
         let (iterations, winner, path) = alone.min_by_key(|(iterations, i, _)| (*iterations, *i)).unwrap();
         winners.push(winner);
         for slice in [1, 7, 1000] {
-            let mut came: Option<Came> = None;
+            let mut first: Option<RunResult> = None;
             for threads in 1..=4 {
                 let workers = Workers::new(threads).unwrap();
                 let mut planner = OrParallel::new(6, slice, workers, run).unwrap();
@@ -66,7 +66,7 @@ fn the_run_with_fewest_iterations_wins_on_any_number_of_threads() {
                 assert_eq!(now.0, Outcome::Solved(path.clone()), "seed {seed}");
                 assert_eq!(planner.winner(), Some(winner as usize));
                 assert!(now.1.iterations >= iterations && now.1.iterations < iterations + slice);
-                assert_eq!(*came.get_or_insert(now.clone()), now, "{threads} threads");
+                assert_eq!(*first.get_or_insert(now.clone()), now, "{threads} threads");
             }
         }
     }
