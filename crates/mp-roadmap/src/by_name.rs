@@ -47,7 +47,7 @@ where
     }
 
     /// The planner with these parts.
-    pub(crate) fn made<G, K, Q, N>(
+    pub(crate) fn build<G, K, Q, N>(
         self,
         index: N,
         parts: RoadmapPlannerParts<G, K, Q>,
@@ -98,7 +98,7 @@ where
 }
 
 /// What a planner is made from by name.
-pub(crate) struct Given<'c, 's, T: Types<'c>> {
+pub(crate) struct BuildArgs<'c, 's, T: Types<'c>> {
     parallel: ParallelProblem<'c, T::Space, T::Local>,
     /// An empty index.
     index: T::Index,
@@ -110,13 +110,13 @@ pub(crate) struct Given<'c, 's, T: Types<'c>> {
 }
 
 /// The planner, or why it cannot be made.
-pub(crate) type Made<'c, T> =
+pub(crate) type BuildResult<'c, T> =
     Result<AnyPlanner<'c, <T as Types<'c>>::State, <T as Types<'c>>::Edge>, BuildError>;
 
 /// Makes one kind of planner.
-pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
+pub(crate) type BuildFn<'c, 's, T> = fn(BuildArgs<'c, 's, T>) -> BuildResult<'c, T>;
 
-impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
+impl<'c, 's, T: Types<'c>> BuildArgs<'c, 's, T> {
     /// What a planner of this problem is made from.
     pub(crate) fn new(
         mut parallel: ParallelProblem<'c, T::Space, T::Local>,
@@ -136,12 +136,12 @@ impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
     }
 
     /// The planner with these parts.
-    pub(crate) fn made<G, K, Q>(self, parts: RoadmapPlannerParts<G, K, Q>) -> Made<'c, T>
+    pub(crate) fn build<G, K, Q>(self, parts: RoadmapPlannerParts<G, K, Q>) -> BuildResult<'c, T>
     where
         G: NodeGenerator<T::Space, T::Local> + Clone + Send + Sync + 'c,
         K: Connector<T::Space, T::Local> + Send + Sync + 'c,
         Q: Query<T::Space, T::Local> + Send + 'c,
     {
-        Ok(self.parallel.made(self.index, parts))
+        Ok(self.parallel.build(self.index, parts))
     }
 }

@@ -47,7 +47,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
 use crate::{Mixing, PairRule, Pairs, PairsPlanner};
@@ -67,9 +67,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = Pairs::<BetweenObstacles>::read(given.space, given.settings, MIXING)?;
-    given.made(parts)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let parts = Pairs::<BetweenObstacles>::read(args.space, args.settings, MIXING)?;
+    args.build(parts)
 }
 
 /// Takes the middle of two states, where it is free and they are not: the rule of bridge-test PRM.

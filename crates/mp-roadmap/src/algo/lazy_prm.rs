@@ -47,7 +47,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::{
@@ -81,11 +81,11 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let count = |parameter| Ok::<_, BuildError>(given.settings.count_of(parameter)? as usize);
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let count = |parameter| Ok::<_, BuildError>(args.settings.count_of(parameter)? as usize);
     let pace = Pace { first: count(&FIRST)?, more: count(&MORE)? };
-    let parts = parts(reachable(given.space, given.settings)?, pace)?;
-    given.made(parts)
+    let parts = parts(reachable(args.space, args.settings)?, pace)?;
+    args.build(parts)
 }
 
 /// Samples that are not checked: uniform ones, and once edges were removed also around their middles.

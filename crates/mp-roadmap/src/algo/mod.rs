@@ -20,7 +20,7 @@ pub mod prm;
 pub mod prm_star;
 pub mod visibility_prm;
 
-use crate::by_name::{Maker, Types};
+use crate::by_name::{BuildFn, Types};
 use mp_cspace::PlannerInfo;
 
 /// Lists the planners that can be made by name, each with the types of its file that the crate exports. Each file has an
@@ -31,7 +31,7 @@ macro_rules! planners {
         pub(crate) const PLANNERS: &[PlannerInfo] = &[$($module::INFO),+];
 
         /// The planner called `name`, and the function that makes it.
-        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, Maker<'c, 's, T>)> {
+        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, BuildFn<'c, 's, T>)> {
             $(if $module::INFO.is_called(name) {
                 return Some((&$module::INFO, $module::make));
             })+

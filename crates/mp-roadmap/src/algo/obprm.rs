@@ -73,7 +73,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::pairs::{drew_uniform, part, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
@@ -137,7 +137,7 @@ impl Default for OnSurfaces {
             gap: Step::Fraction(0.01),
             shells: 3,
             uniform: 0.1,
-            among: NeighborSet::NearestConnector,
+            among: NeighborSet::Nearest,
             turns: 1,
         }
     }
@@ -204,7 +204,7 @@ impl OnSurfaces {
         };
         let each = NeighborSet::EachObstacle(settings.count_of(&PER_OBSTACLE)? as usize);
         let among = |word: &str| match word {
-            "nearest" => Some(NeighborSet::NearestConnector),
+            "nearest" => Some(NeighborSet::Nearest),
             "obstacles" => Some(each),
             _ => None,
         };
@@ -245,10 +245,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let (geometry, reach) = (given.geometry(INFO.name)?, reachable(given.space, given.settings)?);
-    let parts = parts(given.space, geometry, reach, OnSurfaces::read(given.settings)?)?;
-    given.made(parts)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let (geometry, reach) = (args.geometry(INFO.name)?, reachable(args.space, args.settings)?);
+    let parts = parts(args.space, geometry, reach, OnSurfaces::read(args.settings)?)?;
+    args.build(parts)
 }
 
 /// Configurations on and near the surfaces of obstacles: the generator of OBPRM.

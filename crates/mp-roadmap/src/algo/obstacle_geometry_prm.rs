@@ -65,7 +65,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
 use crate::{
@@ -121,11 +121,11 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let (geometry, settings) = (given.geometry(INFO.name)?, given.settings);
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let (geometry, settings) = (args.geometry(INFO.name)?, args.settings);
     let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
-    let parts = parts(geometry, reachable(given.space, settings)?, with)?;
-    given.made(parts)
+    let parts = parts(geometry, reachable(args.space, settings)?, with)?;
+    args.build(parts)
 }
 
 /// Far and near configurations: the generator of obstacle-geometry PRM.
@@ -252,6 +252,6 @@ pub fn parts<H: Clone>(
     with: ByGeometry,
 ) -> Result<RoadmapPlannerParts<AroundObstacles<H>, StagedConnector<H>, AStar>, BuildError> {
     let generator = AroundObstacles::new(hints.clone(), with)?;
-    let connector = StagedConnector::new(hints, reach, NeighborSet::NearestConnector, Turns::WhereFar)?;
+    let connector = StagedConnector::new(hints, reach, NeighborSet::Nearest, Turns::WhereFar)?;
     Ok(RoadmapPlannerParts::new(generator, connector))
 }

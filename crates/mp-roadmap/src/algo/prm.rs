@@ -60,7 +60,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
@@ -144,10 +144,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let reach = reachable(given.space, given.settings)?;
-    let parts = parts(given.space, reach, Learning::read(given.settings)?)?;
-    given.made(parts)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let reach = reachable(args.space, args.settings)?;
+    let parts = parts(args.space, reach, Learning::read(args.settings)?)?;
+    args.build(parts)
 }
 
 /// The two steps of the learning phase in turn: the generator of PRM.

@@ -43,7 +43,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::UNDIRECTED;
 use crate::{
@@ -72,9 +72,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = parts(given.space, given.settings.number(FACTOR.name)?.unwrap_or(1.1))?;
-    given.made(parts)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let parts = parts(args.space, args.settings.number(FACTOR.name)?.unwrap_or(1.1))?;
+    args.build(parts)
 }
 
 /// Every candidate becomes a node, and is connected to as many neighbours as shortest paths need.

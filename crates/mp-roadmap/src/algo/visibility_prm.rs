@@ -49,7 +49,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::UNDIRECTED;
 use crate::{
@@ -78,9 +78,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let parts = parts(given.space, given.settings.count_of(&FAILURES)?)?;
-    given.made(parts)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let parts = parts(args.space, args.settings.count_of(&FAILURES)?)?;
+    args.build(parts)
 }
 
 /// Only guards and connections become nodes: the connector of Visib-PRM.

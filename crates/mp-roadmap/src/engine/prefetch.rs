@@ -75,9 +75,10 @@ pub(crate) struct PrefetchJob<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> 
 }
 
 /// The prefetched attempts, in order.
-type Made<C, L> = Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
+type Prefetches<C, L> =
+    Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
 
-type Work<'c, C, L, G, K, N> = Box<dyn FnMut(PrefetchJob<'_, C, L, G, K, N>) -> Made<C, L> + Send + 'c>;
+type Work<'c, C, L, G, K, N> = Box<dyn FnMut(PrefetchJob<'_, C, L, G, K, N>) -> Prefetches<C, L> + Send + 'c>;
 
 /// Prefetches attempts on several threads, and keeps them.
 pub(crate) struct Prefetcher<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
@@ -107,7 +108,7 @@ struct PrefetchTask<'c, C: Space, L: LocalPlanner<C::State>, G> {
     checker: EdgeChecker<'c, C, L>,
     generator: Option<G>,
     attempts: Range<u64>,
-    made: Vec<PrefetchedAttempt<C::State, L::Edge>>,
+    prefetched: Vec<PrefetchedAttempt<C::State, L::Edge>>,
 }
 
 /// Attempts that one edge checker prefetches at a time.
@@ -133,7 +134,7 @@ where
             checker,
             generator: None::<G>,
             attempts: none.clone(),
-            made: Vec::new(),
+            prefetched: Vec::new(),
         });
         let mut tasks: Vec<_> = tasks.collect();
         self.prefetcher.most = SHARE * tasks.len() as u64;
@@ -146,7 +147,7 @@ where
                 next = end;
             }
             workers.each(&mut tasks, |task| task.work(&job));
-            tasks.iter_mut().flat_map(|task| task.made.drain(..)).collect()
+            tasks.iter_mut().flat_map(|task| task.prefetched.drain(..)).collect()
         }));
         self
     }
@@ -173,7 +174,7 @@ where
                 let answers = prefetching.answers;
                 (candidate, answers)
             });
-            self.made.push(prefetched.collect());
+            self.prefetched.push(prefetched.collect());
         }
     }
 }

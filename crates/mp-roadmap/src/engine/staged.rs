@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NeighborSet {
     /// The nearest.
-    NearestConnector,
+    Nearest,
     /// The nearest of all that are among this many nearest nodes of each obstacle, or of no obstacle. Costs a distance to
     /// every node.
     EachObstacle(usize),

@@ -5,7 +5,7 @@ mod state;
 pub use state::{AnyRoadmap, RoadmapState};
 
 use crate::algo;
-use crate::by_name::{AnyPlanner, Given, ParallelProblem};
+use crate::by_name::{AnyPlanner, BuildArgs, ParallelProblem};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, PlannerInfo, Problem, Reversible, Settings, Space,
 };
@@ -63,5 +63,5 @@ where
     let (info, make) =
         algo::find::<(C, L, N)>(name).ok_or_else(|| BuildError::unknown_planner(name, planners()))?;
     settings.check(info)?;
-    make(Given::new(parallel.into(), index, settings))
+    make(BuildArgs::new(parallel.into(), index, settings))
 }

@@ -304,10 +304,7 @@ fn what_cannot_be_made_says_why() {
     let each = NeighborSet::EachObstacle(0);
     let within = Reachable { neighbours: 5, radius: 1.0, cycles: false };
     assert!(StagedConnector::new(robot.clone(), within, each, Turns::WhereFar).is_err());
-    assert!(
-        StagedConnector::new(robot, within, NeighborSet::NearestConnector, Turns::At(vec![0.5, 1.5]))
-            .is_err()
-    );
+    assert!(StagedConnector::new(robot, within, NeighborSet::Nearest, Turns::At(vec![0.5, 1.5])).is_err());
     // Tables and defaults agree.
     for (info, read) in [(obprm::INFO, true), (obstacle_geometry_prm::INFO, false)] {
         let all = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));

@@ -47,7 +47,7 @@
 //! ```
 
 use super::dd_rrt::{RADIUS, TRIES};
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{DdRrt, Domain, Parameter, PlannerInfo};
 
@@ -77,9 +77,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let domain = Domain::adaptive().read(given.settings)?;
-    Ok(Box::new(DdRrt::with_index(given.problem, given.index, given.tuning, domain)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let domain = Domain::adaptive().read(args.settings)?;
+    Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))
 }
 
 impl Domain {

@@ -40,7 +40,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{Append, Extend, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees};
@@ -57,8 +57,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(BiRrt::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(BiRrt::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// Bi-RRT: see the [module](self).

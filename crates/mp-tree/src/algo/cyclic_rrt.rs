@@ -56,7 +56,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
@@ -89,9 +89,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let tolerance = given.settings.part_of(&TOLERANCE)?;
-    Ok(Box::new(CyclicRrt::with_index(given.problem, given.index, given.tuning, tolerance)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let tolerance = args.settings.part_of(&TOLERANCE)?;
+    Ok(Box::new(CyclicRrt::with_index(args.problem, args.index, args.tuning, tolerance)?))
 }
 
 /// Paths and their costs.

@@ -49,7 +49,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
@@ -84,9 +84,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let domain = Domain::fixed().read(given.settings)?;
-    Ok(Box::new(DdRrt::with_index(given.problem, given.index, given.tuning, domain)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let domain = Domain::fixed().read(args.settings)?;
+    Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))
 }
 
 /// The parameters of the dynamic domain: how near a sample must be to a node that failed.

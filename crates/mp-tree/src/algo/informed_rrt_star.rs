@@ -48,7 +48,7 @@
 //! ```
 
 use super::rrt_star::{GAMMA, NEAR, near};
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
@@ -68,9 +68,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let near = near(given.settings)?;
-    Ok(Box::new(InformedRrtStar::with_index(given.problem, given.index, given.tuning, near)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let near = near(args.settings)?;
+    Ok(Box::new(InformedRrtStar::with_index(args.problem, args.index, args.tuning, near)?))
 }
 
 /// Most uniform samples drawn to find one that could lie on a shorter path.

@@ -49,7 +49,7 @@ pub mod shared_tree;
 pub mod t_rrt;
 pub mod utility_rrt;
 
-use crate::by_name::{Maker, Types};
+use crate::by_name::{BuildFn, Types};
 use mp_cspace::PlannerInfo;
 
 /// Lists the planners that can be made by name, each with the types of its file that the crate exports. Each file has an
@@ -60,7 +60,7 @@ macro_rules! planners {
         pub(crate) const PLANNERS: &[PlannerInfo] = &[$($module::INFO),+];
 
         /// The planner called `name`, and the function that makes it.
-        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, Maker<'c, 's, T>)> {
+        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, BuildFn<'c, 's, T>)> {
             $(if $module::INFO.is_called(name) {
                 return Some((&$module::INFO, $module::make));
             })+

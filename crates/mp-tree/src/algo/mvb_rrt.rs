@@ -48,7 +48,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
@@ -76,9 +76,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let samples = given.settings.count_of(&SAMPLES)?;
-    Ok(Box::new(MvbRrt::with_index(given.problem, given.index, given.tuning, samples)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let samples = args.settings.count_of(&SAMPLES)?;
+    Ok(Box::new(MvbRrt::with_index(args.problem, args.index, args.tuning, samples)?))
 }
 
 /// Samples the mean of the samples nearest to one node: the node that is nearest to most of several samples.

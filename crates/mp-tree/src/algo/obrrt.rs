@@ -95,7 +95,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
@@ -116,10 +116,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let mut problem = given.problem;
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let mut problem = args.problem;
     let hints = problem.take_obstacles().hints.ok_or(BuildError::NoHints { planner: INFO.name })?;
-    Ok(Box::new(Obrrt::with_index(problem, given.index, hints, given.tuning, GrowthWeights::default())?))
+    Ok(Box::new(Obrrt::with_index(problem, args.index, hints, args.tuning, GrowthWeights::default())?))
 }
 
 /// States tested on a motion that failed, to find where it collides.

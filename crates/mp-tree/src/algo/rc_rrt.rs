@@ -48,7 +48,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::by_name::{BuildArgs, BuildResult, INPUTS, LEVELS, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
@@ -77,10 +77,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let apart = apart(given.problem.space(), &given.tuning, given.settings)?;
-    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
-    Ok(Box::new(RcRrt::with_index(problem, given.index, apart, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let apart = apart(args.problem.space(), &args.tuning, args.settings)?;
+    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
+    Ok(Box::new(RcRrt::with_index(problem, args.index, apart, args.tuning)?))
 }
 
 /// The setting `apart` as a distance.

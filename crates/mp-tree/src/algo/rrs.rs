@@ -64,7 +64,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, Settings, Verify};
 use mp_cspace::erased::AnyGradient;
@@ -100,23 +100,23 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let problem = bent(INFO.name, given.problem, given.settings)?;
-    Ok(Box::new(Plain(Rrs::with_index(problem, given.index, given.tuning)?)))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let problem = with_bending_edges(INFO.name, args.problem, args.settings)?;
+    Ok(Box::new(Flattened(Rrs::with_index(problem, args.index, args.tuning)?)))
 }
 
 /// RRS: see the [module](self). Made by [`Rrt::new`] of a problem with a [`SnakePlanner`].
 pub type Rrs<'c, C, M, F, N> = Rrt<'c, C, SnakePlanner<'c, C, M, F>, N>;
 
 /// A problem with a local planner that bends blocked edges.
-type Bent<'c, C, M> = Problem<'c, C, SnakePlanner<'c, C, M, AnyGradient<'c, <C as Space>::State>>>;
+type BendingProblem<'c, C, M> = Problem<'c, C, SnakePlanner<'c, C, M, AnyGradient<'c, <C as Space>::State>>>;
 
 /// `problem`, for the planner called `planner`, with a local planner that bends blocked edges by the clearance gradient.
-pub(crate) fn bent<'c, C, M>(
+pub(crate) fn with_bending_edges<'c, C, M>(
     planner: &'static str,
     mut problem: Problem<'c, C, Straight<'c, C, M>>,
     settings: &Settings,
-) -> Result<Bent<'c, C, M>, BuildError>
+) -> Result<BendingProblem<'c, C, M>, BuildError>
 where
     C: Space<State: 'c>,
     M: MotionValidity<C::State> + Send + 'c,
@@ -146,9 +146,9 @@ impl<S> MotionValidity<S> for Boxed<'_, S> {
 }
 
 /// A planner whose paths are flattened: straight edges between the nodes of the snakes.
-pub(crate) struct Plain<P>(pub(crate) P);
+pub(crate) struct Flattened<P>(pub(crate) P);
 
-impl<S: Clone, P: Planner<S, Edge = PolylineEdge<S>>> Planner<S> for Plain<P> {
+impl<S: Clone, P: Planner<S, Edge = PolylineEdge<S>>> Planner<S> for Flattened<P> {
     type Edge = ();
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S>> {
         self.0.step(rng, observer).map(|path| path.flattened())

@@ -46,8 +46,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::rrs::{Plain, RANGE, SNAKE_STEPS, bent};
-use crate::by_name::{Given, Made, Types};
+use super::rrs::{Flattened, RANGE, SNAKE_STEPS, with_bending_edges};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{BuildError, PlannerInfo, RrtConnect};
 use mp_snake::SnakePlanner;
@@ -63,12 +63,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    if !given.problem.goals().can_aim() {
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    if !args.problem.goals().can_aim() {
         return Err(BuildError::NoGoalState { planner: INFO.name });
     }
-    let problem = bent(INFO.name, given.problem, given.settings)?;
-    Ok(Box::new(Plain(RrsConnect::with_index(problem, given.index, given.tuning)?)))
+    let problem = with_bending_edges(INFO.name, args.problem, args.settings)?;
+    Ok(Box::new(Flattened(RrsConnect::with_index(problem, args.index, args.tuning)?)))
 }
 
 /// RRS-Connect: see the [module](self). Made by [`RrtConnect::new`] of a problem with a [`SnakePlanner`].

@@ -42,7 +42,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{Append, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning};
@@ -59,8 +59,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(Rrt::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(Rrt::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// RRT: see the [module](self).

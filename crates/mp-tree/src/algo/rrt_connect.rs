@@ -41,7 +41,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
@@ -60,8 +60,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(RrtConnect::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(RrtConnect::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// RRT-Connect: see the [module](self).

@@ -49,7 +49,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
@@ -58,7 +58,7 @@ use crate::{
 };
 use mp_cspace::Uniform;
 
-/// [`Near::NearestSelector`] by name.
+/// [`Near::KNearest`] by name.
 pub const NEAR: Parameter = Parameter {
     name: "near",
     range: "in (0, 1000]",
@@ -85,9 +85,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let near = near(given.settings)?;
-    Ok(Box::new(RrtStar::with_index(given.problem, given.index, given.tuning, near)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let near = near(args.settings)?;
+    Ok(Box::new(RrtStar::with_index(args.problem, args.index, args.tuning, near)?))
 }
 
 /// The nodes that count as near, from settings.
@@ -97,7 +97,7 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
 pub fn near(settings: &Settings) -> Result<Near, BuildError> {
     Ok(match (settings.number(GAMMA.name)?, settings.number(NEAR.name)?) {
         (Some(gamma), _) if gamma != 0.0 => Near::Radius { gamma },
-        (_, Some(factor)) => Near::NearestSelector { factor },
+        (_, Some(factor)) => Near::KNearest { factor },
         _ => Near::default(),
     })
 }

@@ -81,7 +81,7 @@ pub const BATCH: Parameter = Parameter {
 };
 
 /// One sample of a batch, and the extension toward it.
-struct Slot<S, L: LocalPlanner<S>> {
+struct BatchSample<S, L: LocalPlanner<S>> {
     local: L,
     rng: Rng,
     target: Option<S>,
@@ -90,7 +90,7 @@ struct Slot<S, L: LocalPlanner<S>> {
     panicked: Option<Box<dyn Any + Send>>,
 }
 
-impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
+impl<S: Clone + PartialEq, L: LocalPlanner<S>> BatchSample<S, L> {
     fn work<C: Space<State = S>, N: NearestNeighbors<C>>(
         &mut self,
         (space, step): (&C, f64),
@@ -109,9 +109,9 @@ impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
 }
 
 /// Inserts an extension found before.
-struct Found<S, E>(Option<Extension<S, E>>);
+struct FoundExtension<S, E>(Option<Extension<S, E>>);
 
-impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Found<C::State, L::Edge> {
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for FoundExtension<C::State, L::Edge> {
     fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
@@ -125,7 +125,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Found<C::State, L::
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
     tree: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
-    slots: Vec<Slot<C::State, L>>,
+    samples: Vec<BatchSample<C::State, L>>,
     workers: Workers,
     seed: Option<u64>,
     drawn: u64,
@@ -171,16 +171,16 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             return Err(BuildError::OutOfRange { name: BATCH.name, value: batch as f64, range });
         }
         let core = Core::new(make(0)?, &tuning)?;
-        let slot = |i| {
+        let sample = |i| {
             let local = make(i)?.into_parts().local;
             let purpose = Purpose::Explore;
-            Ok(Slot { local, rng: Rng::seed(0), target: None, purpose, found: None, panicked: None })
+            Ok(BatchSample { local, rng: Rng::seed(0), target: None, purpose, found: None, panicked: None })
         };
-        let slots = (1..=batch).map(slot).collect::<Result<Vec<_>, BuildError>>()?;
+        let samples = (1..=batch).map(sample).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {
             core,
             tree: SearchTree::new(0, Direction::Forward, NearestSelector(index), AppendDistinct::default()),
-            slots,
+            samples,
             workers,
             seed: None,
             drawn: 0,
@@ -213,12 +213,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     }
 
     fn draw(&mut self, seed: u64) {
-        for slot in &mut self.slots {
-            slot.rng = Rng::stream(seed, self.drawn);
+        for sample in &mut self.samples {
+            sample.rng = Rng::stream(seed, self.drawn);
             self.drawn += 1;
-            slot.found = None;
-            slot.target = self.core.aim(&mut slot.rng);
-            slot.purpose = if slot.target.is_some() { Purpose::Join } else { Purpose::Explore };
+            sample.found = None;
+            sample.target = self.core.aim(&mut sample.rng);
+            sample.purpose = if sample.target.is_some() { Purpose::Join } else { Purpose::Explore };
         }
     }
 
@@ -229,31 +229,31 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     {
         let (space, points) = (self.core.checker.space(), self.tree.nodes().states());
         let (step, index) = (self.core.checker.step(), &self.tree.selector().0);
-        self.workers.each(&mut self.slots, |slot| {
-            let work = AssertUnwindSafe(|| slot.work((space, step), points, index));
-            slot.panicked = catch_unwind(work).err();
+        self.workers.each(&mut self.samples, |sample| {
+            let work = AssertUnwindSafe(|| sample.work((space, step), points, index));
+            sample.panicked = catch_unwind(work).err();
         });
-        let lost = self.slots.iter().filter(|slot| slot.panicked.is_some()).count();
-        if lost < self.slots.len() {
-            self.panics += lost as u64;
-        } else if let Some(panic) = self.slots.iter_mut().find_map(|slot| slot.panicked.take()) {
+        let panicked = self.samples.iter().filter(|sample| sample.panicked.is_some()).count();
+        if panicked < self.samples.len() {
+            self.panics += panicked as u64;
+        } else if let Some(panic) = self.samples.iter_mut().find_map(|sample| sample.panicked.take()) {
             resume_unwind(panic);
         }
     }
 
     fn merge(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        for slot in &mut self.slots {
-            let Some(target) = slot.target.take() else { continue };
+        for sample in &mut self.samples {
+            let Some(target) = sample.target.take() else { continue };
             observer.on(Event::Sampled(&target));
-            let Some((from, extension)) = slot.found.take() else {
+            let Some((from, extension)) = sample.found.take() else {
                 observer.on(Event::Trapped { tree: 0 });
                 continue;
             };
             let new = self.tree.nodes().len();
             self.motions += u64::from(*self.tree.nodes().state(from) != target);
-            let mut found = Found(Some(extension));
+            let mut found = FoundExtension(Some(extension));
             let grown = self.tree.grow_from(from, &target, &mut self.core.checker, &mut found, rng, observer);
-            let entered = match (slot.purpose, grown) {
+            let entered = match (sample.purpose, grown) {
                 (Purpose::Join, Grown::Reached(id)) => Some(id),
                 _ => {
                     let state = self.tree.nodes().states().get(new);
@@ -322,7 +322,7 @@ where
 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SharedTree")
-            .field("batch", &self.slots.len())
+            .field("batch", &self.samples.len())
             .field("iterations", &self.core.iterations)
             .field("motions", &self.motions)
             .field("panics", &self.panics)

@@ -64,7 +64,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP, constructors};
 use crate::{
     Append, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo, Purpose,
@@ -120,8 +120,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let (mut problem, settings) = (given.problem, given.settings);
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let (mut problem, settings) = (args.problem, args.settings);
     let known = problem.take_obstacles();
     let mut field = known.gradient.ok_or(BuildError::NoGradient { planner: INFO.name })?;
     let range = settings.length_of(&RANGE, problem.space())?;
@@ -137,7 +137,7 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
         fails: settings.count_of(&FAILS)?,
         refine: settings.number(REFINE.name)?.unwrap_or(default.refine),
     };
-    Ok(Box::new(TRrt::with_index(problem, given.index, cost, given.tuning, with)?))
+    Ok(Box::new(TRrt::with_index(problem, args.index, cost, args.tuning, with)?))
 }
 
 /// The parameters of the transition test and the expansion control.

@@ -49,7 +49,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
@@ -78,9 +78,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let candidates = given.settings.count_of(&CANDIDATES)?;
-    Ok(Box::new(UtilityRrt::with_index(given.problem, given.index, given.tuning, candidates)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let candidates = args.settings.count_of(&CANDIDATES)?;
+    Ok(Box::new(UtilityRrt::with_index(args.problem, args.index, args.tuning, candidates)?))
 }
 
 /// How many failures a node remembers.

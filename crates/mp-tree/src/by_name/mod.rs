@@ -35,7 +35,7 @@ where
 pub(crate) type Local<'c, T> = Straight<'c, <T as Types<'c>>::Space, <T as Types<'c>>::Check>;
 
 /// What a planner is made from by name.
-pub(crate) struct Given<'c, 's, T: Types<'c>> {
+pub(crate) struct BuildArgs<'c, 's, T: Types<'c>> {
     /// The problem, with what is known of obstacles.
     pub(crate) problem: Problem<'c, T::Space, Local<'c, T>>,
     /// An empty index.
@@ -47,7 +47,7 @@ pub(crate) struct Given<'c, 's, T: Types<'c>> {
 }
 
 /// The planner, or why it cannot be made.
-pub(crate) type Made<'c, T> = Result<AnyPlanner<'c, <T as Types<'c>>::State, ()>, BuildError>;
+pub(crate) type BuildResult<'c, T> = Result<AnyPlanner<'c, <T as Types<'c>>::State, ()>, BuildError>;
 
 /// Makes one kind of planner.
-pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
+pub(crate) type BuildFn<'c, 's, T> = fn(BuildArgs<'c, 's, T>) -> BuildResult<'c, T>;

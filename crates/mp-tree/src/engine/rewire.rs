@@ -8,7 +8,7 @@ use mp_cspace::{BuildError, Direction, EdgeChecker, Hit, LocalPlanner, Motion, N
 pub enum Near {
     /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; with any factor above 1 the best path converges to an optimal
     /// one (k-nearest RRT*).
-    NearestSelector {
+    KNearest {
         /// In (0, 1000]; usually 1.1.
         factor: f64,
     },
@@ -23,7 +23,7 @@ pub enum Near {
 
 impl Default for Near {
     fn default() -> Self {
-        Self::NearestSelector { factor: 1.1 }
+        Self::KNearest { factor: 1.1 }
     }
 }
 
@@ -38,7 +38,7 @@ impl Near {
     ) {
         let (n, d) = (points.len() as f64 + 1.0, space.dim() as f64);
         match self {
-            Self::NearestSelector { factor } => {
+            Self::KNearest { factor } => {
                 let k = (factor * std::f64::consts::E * (1.0 + 1.0 / d) * n.ln()).ceil();
                 selector.k_nearest(space, points, q, k as usize, out);
             }
@@ -72,14 +72,14 @@ impl Rewire {
     /// When a number in `near` is out of range.
     pub fn new(near: Near) -> Result<Self, BuildError> {
         let (name, value, most) = match near {
-            Near::NearestSelector { factor } => ("near", factor, 1000.0),
+            Near::KNearest { factor } => ("near", factor, 1000.0),
             Near::Radius { gamma } => ("gamma", gamma, f64::MAX),
         };
         if value > 0.0 && value <= most {
             return Ok(Self { near, ..Self::default() });
         }
         let range = match near {
-            Near::NearestSelector { .. } => "in (0, 1000]",
+            Near::KNearest { .. } => "in (0, 1000]",
             Near::Radius { .. } => "a finite number above zero",
         };
         Err(BuildError::OutOfRange { name, value, range: range.to_owned() })

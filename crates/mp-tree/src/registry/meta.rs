@@ -2,7 +2,7 @@
 
 use crate::algo::or_parallel::{RUNS, SLICE};
 use crate::algo::restarts::{SCHEDULE, UNIT};
-use crate::algo::rrs::{self, Plain, bent};
+use crate::algo::rrs::{self, Flattened, with_bending_edges};
 use crate::algo::rrt;
 use crate::algo::shared_tree::BATCH;
 use crate::{
@@ -208,8 +208,8 @@ where
                 let tuning = Tuning::read(&settings, info)?;
                 let (batch, workers, index) = (count(BATCH)?, self.workers.clone(), self.index.clone());
                 Ok(if info.name == rrs::INFO.name {
-                    let make = |_| bent(info.name, (self.make)()?, &settings);
-                    Box::new(Plain(SharedTree::with_index(batch, workers, index, tuning, make)?))
+                    let make = |_| with_bending_edges(info.name, (self.make)()?, &settings);
+                    Box::new(Flattened(SharedTree::with_index(batch, workers, index, tuning, make)?))
                 } else {
                     Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| (self.make)())?)
                 })

@@ -7,7 +7,7 @@ pub use meta::{MetaPlanner, PlannerSpec, build_from, meta_planners};
 pub use state::{ProblemFactory, TreeState};
 
 use crate::algo;
-use crate::by_name::{AnyPlanner, Given};
+use crate::by_name::{AnyPlanner, BuildArgs};
 use crate::{BuildError, PlannerInfo, Problem, Settings, Tuning};
 use mp_cspace::{DefaultNn, MotionValidity, NearestNeighbors, Space, Straight};
 
@@ -62,7 +62,7 @@ where
     let (info, make) =
         algo::find::<(C, M, N)>(name).ok_or_else(|| BuildError::unknown_planner(name, planners()))?;
     let tuning = Tuning::read(settings, info)?;
-    make(Given { problem, index, tuning, settings })
+    make(BuildArgs { problem, index, tuning, settings })
 }
 
 #[cfg(test)]

@@ -211,7 +211,7 @@ fn goals_of_every_kind_improve() {
 #[test]
 fn what_counts_as_near_must_be_in_range() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        for near in [Near::NearestSelector { factor: bad }, Near::Radius { gamma: bad }] {
+        for near in [Near::KNearest { factor: bad }, Near::Radius { gamma: bad }] {
             assert!(matches!(Rewire::new(near), Err(BuildError::OutOfRange { .. })));
         }
     }
