@@ -66,7 +66,7 @@
 //! assert!(matches!(outcome, Outcome::Solved(_)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! The loops try the straight way to the goal first, unless the extender [declines](Extender::leaps).
+//! The loops try the straight motion to the goal first, unless the extender [declines](Extender::allows_direct).
 //!
 //! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem and traces
 //! and verifies paths; [`SearchTree`] is a tree that grows, and that prunes the subtree below an edge the verifier
@@ -91,7 +91,7 @@
 //!     ) -> Option<Path<C::State, L::Edge>> {
 //!         let Self { core, tree } = self;
 //!         core.iterations += 1;
-//!         if let Some(root) = core.plant(tree, observer) {
+//!         if let Some(root) = core.add_start(tree, observer) {
 //!             return core.path(tree, root, observer, |_| ());
 //!         }
 //!         let goal = core.aim(rng);

@@ -65,15 +65,15 @@ where
 }
 
 /// The state where a motion begins, and the motion.
-type Hop<S, E> = (S, Motion<S, E>);
+type Connection<S, E> = (S, Motion<S, E>);
 
 /// Paths and their lengths.
 pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;
 
 /// The motions that connect the ends of a path to the roadmap, and the nodes they lead to.
-struct Joined<S, E> {
-    first: Hop<S, E>,
-    last: Hop<S, E>,
+struct ConnectedEnds<S, E> {
+    first: Connection<S, E>,
+    last: Connection<S, E>,
     nodes: [NodeId; 2],
 }
 
@@ -287,13 +287,13 @@ where
             return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
         }
         loop {
-            let ends = self.join()?;
+            let ends = self.connect_ends()?;
             // Where there is no path, a lazy search has blocked what connected the ends.
             if let Some(path) = self.shortest(ends.nodes)
                 && verify(&mut self.roadmap.map, self.checker, &path)
                 && let Some(path) = self.roadmap.map.path(&path)
             {
-                return Ok(whole(&ends, path));
+                return Ok(with_ends(&ends, path));
             }
         }
     }
@@ -301,12 +301,12 @@ where
     fn alternatives(mut self, k: usize) -> Result<Listed<C::State, L::Edge>, Unanswered> {
         self.prepare()?;
         loop {
-            let ends = self.join()?;
+            let ends = self.connect_ends()?;
             if let Some(found) = self.shortest_paths(ends.nodes, k) {
                 let more = ends.first.1.cost + ends.last.1.cost;
                 let map = &self.roadmap.map;
                 let paths = found.iter().filter_map(|path| Some((map.path(path)?, path.length + more)));
-                return Ok(paths.map(|(path, length)| (whole(&ends, path), length)).collect());
+                return Ok(paths.map(|(path, length)| (with_ends(&ends, path), length)).collect());
             }
         }
     }
@@ -327,7 +327,7 @@ where
     }
 
     /// Connects both ends to the same component. Neighbours to which this fails are dropped for the rest of the query.
-    fn join(&mut self) -> Result<Joined<C::State, L::Edge>, Unanswered> {
+    fn connect_ends(&mut self) -> Result<ConnectedEnds<C::State, L::Edge>, Unanswered> {
         let mut reached = [false; 2];
         loop {
             let IndexedRoadmap { map, near: [from, to], .. } = &mut *self.roadmap;
@@ -338,15 +338,15 @@ where
             let Some(&first) = from.iter().find(shares) else {
                 return Err(self.reason(reached));
             };
-            let Some(entry) = self.hop(0, first.id) else {
+            let Some(entry) = self.connection(0, first.id) else {
                 self.roadmap.near[0].retain(|hit| hit.id != first.id);
                 continue;
             };
             reached[0] = true;
             let component = self.roadmap.map.component(first.id);
             while let Some(last) = self.last_in(component) {
-                if let Some(exit) = self.hop(1, last) {
-                    return Ok(Joined { first: entry, last: exit, nodes: [first.id, last] });
+                if let Some(exit) = self.connection(1, last) {
+                    return Ok(ConnectedEnds { first: entry, last: exit, nodes: [first.id, last] });
                 }
                 self.roadmap.near[1].retain(|hit| hit.id != last);
             }
@@ -363,7 +363,7 @@ where
     fn reason(&mut self, reached: [bool; 2]) -> Unanswered {
         for end in 0..2 {
             let near = self.roadmap.near[end].clone();
-            if !reached[end] && !near.iter().any(|hit| self.hop(end, hit.id).is_some()) {
+            if !reached[end] && !near.iter().any(|hit| self.connection(end, hit.id).is_some()) {
                 return Unanswered::Unreached(ENDPOINTS[end]);
             }
         }
@@ -371,7 +371,7 @@ where
     }
 
     /// A verified motion from the start to a node (`end` 0), or from a node to the goal (`end` 1).
-    fn hop(&mut self, end: usize, node: NodeId) -> Option<Hop<C::State, L::Edge>> {
+    fn connection(&mut self, end: usize, node: NodeId) -> Option<Connection<C::State, L::Edge>> {
         let node = self.roadmap.map.state(node).clone();
         let (from, to) = if end == 1 { (&node, self.ends[1]) } else { (self.ends[0], &node) };
         Some((from.clone(), self.verified(from, to)?))
@@ -427,7 +427,7 @@ fn shortest_edge<S, E>(map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<
 }
 
 /// A path through the roadmap, with the motions from the start and to the goal.
-fn whole<S: Clone, E: Clone>(ends: &Joined<S, E>, path: Path<S, E>) -> Path<S, E> {
+fn with_ends<S: Clone, E: Clone>(ends: &ConnectedEnds<S, E>, path: Path<S, E>) -> Path<S, E> {
     let (mut states, mut edges) = (vec![ends.first.0.clone()], vec![ends.first.1.edge.clone()]);
     states.extend(path.states);
     edges.extend(path.edges);

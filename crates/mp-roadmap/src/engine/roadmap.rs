@@ -269,7 +269,7 @@ impl<S, E> Roadmap<S, E> {
     }
 
     /// Sets the motion of an edge that was not checked before.
-    pub fn settle(&mut self, edge: EdgeId, motion: E, length: f64) {
+    pub fn set_motion(&mut self, edge: EdgeId, motion: E, length: f64) {
         let link = &mut self.graph[edge.inner()];
         if link.state == LinkState::Unchecked {
             (link.edge, link.length, link.state) = (Some(motion), length, LinkState::Free);

@@ -244,7 +244,7 @@ where
         map.tried(a, failed);
         map.tried(b, failed);
         match motion {
-            Some(motion) => map.settle(edge, motion.edge, motion.cost),
+            Some(motion) => map.set_motion(edge, motion.edge, motion.cost),
             None => {
                 map.block(edge);
                 return false;

@@ -150,7 +150,7 @@ impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Ex
                 _ => break,
             }
         }
-        growing.settle(parent, if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) })
+        growing.insert(parent, if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) })
     }
 }
 
@@ -162,7 +162,7 @@ pub struct Aorrtc<'c, C: Space, L: LocalPlanner<C::State>, N> {
     /// An empty index.
     index: N,
     informed: Informed<'c, C>,
-    planted: usize,
+    rooted: usize,
     tried: usize,
     best: f64,
     turn: usize,
@@ -183,7 +183,7 @@ constructors! {
             informed,
             trees: Self::trees_with(&index),
             index,
-            planted: 0,
+            rooted: 0,
             tried: 0,
             best: f64::INFINITY,
             turn: 0,
@@ -211,16 +211,16 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if let Some(root) = self.core.plant(&mut self.trees[0], observer)
+        if let Some(root) = self.core.add_start(&mut self.trees[0], observer)
             && self.best > 0.0
         {
             self.best = 0.0;
             return Some(self.trees[0].nodes().path(root));
         }
         let space = self.core.checker.space();
-        while let Some(goal) = self.core.goals.listed().get(self.planted) {
-            self.planted += 1;
-            if !self.trees[1].knows(space, goal) {
+        while let Some(goal) = self.core.goals.listed().get(self.rooted) {
+            self.rooted += 1;
+            if !self.trees[1].contains(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
         }
@@ -229,7 +229,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             let roots = 0..self.trees[1].nodes().len() as NodeId;
             let mut roots = roots.filter(|&id| self.trees[1].nodes().state(id) == goal);
             let root = roots.find(|&id| self.trees[1].nodes().parent(id).is_none());
-            let grown = self.trees[0].leap(0, goal, &mut self.core.checker, rng, observer);
+            let grown = self.trees[0].connect_directly(0, goal, &mut self.core.checker, rng, observer);
             if let (Grown::Reached(id), Some(root)) = (grown, root)
                 && let Some(path) = self.candidate([id, root], rng, observer)
             {
@@ -242,7 +242,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     /// Begins a search with new trees.
     fn renew(&mut self, observer: &mut dyn Observer<C::State>) {
         self.trees = Self::trees_with(&self.index);
-        self.planted = 0;
+        self.rooted = 0;
         self.since = self.core.iterations;
         for tree in 0..2 {
             observer.on(Event::Pruned { tree, survivors: &[] });

@@ -223,7 +223,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L:
                 return Grown::Trapped;
             }
         }
-        growing.settle(from, extension)
+        growing.insert(from, extension)
     }
 
     fn pruned(&mut self, _: Direction, survivors: &[NodeId]) {

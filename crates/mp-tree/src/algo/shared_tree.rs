@@ -117,7 +117,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for FoundExtension<C::S
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        self.0.take().map_or(Grown::Trapped, |extension| growing.settle(from, extension))
+        self.0.take().map_or(Grown::Trapped, |extension| growing.insert(from, extension))
     }
 }
 
@@ -204,8 +204,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
 
     /// Adds the root and tries the straight motions to the goals.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        self.arrived.extend(self.core.plant(&mut self.tree, observer));
-        while let Some(grown) = self.core.leap(&mut self.tree, rng, observer) {
+        self.arrived.extend(self.core.add_start(&mut self.tree, observer));
+        while let Some(grown) = self.core.connect_directly(&mut self.tree, rng, observer) {
             if let Grown::Reached(id) = grown {
                 return self.arrived.push(id);
             }

@@ -266,12 +266,12 @@ impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C
         if !self.passes(here, there, growing.rng()) {
             return Grown::Trapped;
         }
-        let grown = growing.settle(from, extension);
+        let grown = growing.insert(from, extension);
         self.refined += u64::from(refines && grown != Grown::Trapped);
         grown
     }
 
-    fn leaps(&self) -> bool {
+    fn allows_direct(&self) -> bool {
         false
     }
 

@@ -44,7 +44,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     }
 
     /// Adds the start as the root of the first tree, if the tree is empty. Returns the root if it is in the goal.
-    pub fn plant<Se: Selector<C>, A: Inserter<C, L>>(
+    pub fn add_start<Se: Selector<C>, A: Inserter<C, L>>(
         &self,
         tree: &mut SearchTree<C, L, Se, A>,
         observer: &mut dyn Observer<C::State>,
@@ -59,7 +59,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
 
     /// Tries one motion of any length from the start to the next listed goal state; `None` when all have been tried. A
     /// motion that a panic of the user's code interrupts is not tried again.
-    pub fn leap<Se: Selector<C>, A: Inserter<C, L>>(
+    pub fn connect_directly<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         tree: &mut SearchTree<C, L, Se, A>,
         rng: &mut Rng,
@@ -67,7 +67,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
     ) -> Option<Grown> {
         let goal = self.goals.listed().get(self.tried)?;
         self.tried += 1;
-        Some(tree.leap(0, goal, &mut self.checker, rng, observer))
+        Some(tree.connect_directly(0, goal, &mut self.checker, rng, observer))
     }
 
     /// A goal to aim at instead of exploring, with probability `goal_bias`.
@@ -87,7 +87,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         let space = self.checker.space();
         if wanted
             && let Some(goal) = self.goals.sample(rng)
-            && !tree.knows(space, &goal)
+            && !tree.contains(space, &goal)
             && self.checker.accepts(&goal)
         {
             tree.add_root(space, goal, observer);

@@ -26,7 +26,7 @@ pub trait Extender<C: Space, L: LocalPlanner<C::State>> {
     /// Whether a planner may try the straight motion from the start to a goal, of any length, before it calls this
     /// extender for the first time. Variants that must see every motion decline: those that refuse motions free of
     /// collision, and those that make none longer than a step. With two extenders both must agree.
-    fn leaps(&self) -> bool {
+    fn allows_direct(&self) -> bool {
         true
     }
     /// Nodes of the tree that grows in `direction` were removed: what is now node `i` was node `survivors[i]`.

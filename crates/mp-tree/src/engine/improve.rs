@@ -72,9 +72,9 @@ where
     /// Adds the root and tries the straight motions to the goals.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
         // `better` finds a start that is in the goal.
-        self.core.plant(&mut self.tree, observer);
-        while self.extender.leaps()
-            && let Some(grown) = self.core.leap(&mut self.tree, rng, observer)
+        self.core.add_start(&mut self.tree, observer);
+        while self.extender.allows_direct()
+            && let Some(grown) = self.core.connect_directly(&mut self.tree, rng, observer)
         {
             if !self.core.goals.has_region() {
                 self.note(grown);

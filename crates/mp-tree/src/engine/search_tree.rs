@@ -30,7 +30,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
 
     /// Whether a node has exactly this state.
     #[must_use]
-    pub fn knows(&self, space: &C, q: &C::State) -> bool {
+    pub fn contains(&self, space: &C, q: &C::State) -> bool {
         let mut near = Vec::new();
         self.selector.near(space, self.tree.states(), q, 0.0, &mut near);
         near.iter().any(|hit| self.tree.state(hit.id) == q)
@@ -111,7 +111,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     }
 
     /// Tries one motion of any length from node `from` to `target`.
-    pub fn leap(
+    pub fn connect_directly(
         &mut self,
         from: NodeId,
         target: &C::State,
@@ -123,7 +123,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
             return Grown::Reached(from);
         }
         let extension = checker.extend(self.tree.state(from), target, self.tree.direction(), Reach::Full);
-        self.growing(target, Purpose::Join, checker, rng, observer).settle(from, extension)
+        self.growing(target, Purpose::Join, checker, rng, observer).insert(from, extension)
     }
 
     /// Verifies the path between a root and `id`, edge by edge from the root; each edge is verified once. `false` when an
@@ -249,12 +249,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
     pub fn step_toward(&mut self, from: NodeId, toward: &C::State) -> Grown {
         let reach = Reach::Step(self.checker.step());
         let extension = self.checker.extend(self.tree.state(from), toward, self.tree.direction(), reach);
-        self.settle(from, extension)
+        self.insert(from, extension)
     }
 
     /// Inserts the end of an extension from a node, unless there is a node with that state already.
     #[inline]
-    pub fn settle(&mut self, from: NodeId, extension: Extension<C::State, L::Edge>) -> Grown {
+    pub fn insert(&mut self, from: NodeId, extension: Extension<C::State, L::Edge>) -> Grown {
         let reached = matches!(extension, Extension::Reached(_));
         let (Extension::Advanced(motion) | Extension::Reached(motion)) = extension else {
             return Grown::Trapped;

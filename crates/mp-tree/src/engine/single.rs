@@ -11,7 +11,7 @@ use mp_cspace::{
 /// A planner that grows one tree from the start until it enters the goal.
 ///
 /// The first iteration tries a straight motion from the start to each listed goal state, unless the extender
-/// [declines](Extender::leaps). Each iteration then samples a target (with probability
+/// [declines](Extender::allows_direct). Each iteration then samples a target (with probability
 /// [`goal_bias`](crate::Tuning::goal_bias) a goal), grows the tree toward it, and verifies the path to the first new node
 /// in the goal. Stepping on after a solution continues with the same tree; the same path may be found again.
 #[derive(Debug)]
@@ -78,11 +78,11 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if let Some(root) = self.core.plant(&mut self.tree, observer) {
+        if let Some(root) = self.core.add_start(&mut self.tree, observer) {
             return self.candidate(root, observer);
         }
-        while self.extender.leaps()
-            && let Some(grown) = self.core.leap(&mut self.tree, rng, observer)
+        while self.extender.allows_direct()
+            && let Some(grown) = self.core.connect_directly(&mut self.tree, rng, observer)
         {
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate(id, observer) {

@@ -261,17 +261,17 @@ impl<S, E> Tree<S, E> {
         if let Some(parent) = self.parent(id) {
             self.unlink(id, parent);
         }
-        let doomed = self.below(id);
+        let removed = self.below(id);
         let mut renamed = vec![0; self.len()];
         let mut survivors = Vec::new();
         for old in 0..self.len() {
-            if !doomed[old] {
+            if !removed[old] {
                 renamed[old] = survivors.len() as NodeId;
                 survivors.push(old as NodeId);
             }
         }
-        keep(&mut self.states, &doomed);
-        keep(&mut self.nodes, &doomed);
+        keep(&mut self.states, &removed);
+        keep(&mut self.nodes, &removed);
         let rename = |at: &mut NodeId| *at = if *at == NONE { NONE } else { renamed[*at as usize] };
         for node in &mut self.nodes {
             node.link.iter_mut().for_each(|link| rename(&mut link.parent));
@@ -307,11 +307,11 @@ impl<S, E> Tree<S, E> {
     }
 }
 
-fn keep<T>(items: &mut Vec<T>, doomed: &[bool]) {
+fn keep<T>(items: &mut Vec<T>, removed: &[bool]) {
     let mut at = 0;
     items.retain(|_| {
         at += 1;
-        !doomed[at - 1]
+        !removed[at - 1]
     });
 }
 

@@ -12,8 +12,8 @@ use mp_cspace::{
 /// A planner that grows one tree from the start and one from the goal until they meet.
 ///
 /// The first iteration tries a straight motion from the start to each listed goal state, unless one of the extenders
-/// [declines](Extender::leaps). Each iteration then grows one tree toward a sampled target, and the other toward the node
-/// that was added; the trees take turns. Where they meet, the path is verified. The goal tree has a root for each listed
+/// [declines](Extender::allows_direct). Each iteration then grows one tree toward a sampled target, and the other toward
+/// the node that was added; the trees take turns. Where they meet, the path is verified. The goal tree has a root for each listed
 /// goal state; where goals come from a sampler, a root is added with probability
 /// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in every iteration until there is one. Stepping on after a
 /// solution continues with the same trees.
@@ -23,7 +23,7 @@ pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
     trees: [SearchTree<C, L, Se, A>; 2],
     /// How many listed goal states were considered as roots, how many roots that gave, and to how many of those a straight
     /// motion from the start was tried.
-    planted: usize,
+    rooted: usize,
     roots: NodeId,
     tried: NodeId,
     target_sampler: P,
@@ -63,7 +63,7 @@ where
         Ok(Self {
             core: Core::new(problem, &parts.tuning)?,
             trees: [forward, backward],
-            planted: 0,
+            rooted: 0,
             roots: 0,
             tried: 0,
             target_sampler: parts.target_sampler,
@@ -86,23 +86,23 @@ where
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if let Some(root) = self.core.plant(&mut self.trees[0], observer) {
+        if let Some(root) = self.core.add_start(&mut self.trees[0], observer) {
             return Some(self.trees[0].nodes().path(root));
         }
         let space = self.core.checker.space();
-        while let Some(goal) = self.core.goals.listed().get(self.planted) {
-            self.planted += 1;
-            if !self.trees[1].knows(space, goal) {
+        while let Some(goal) = self.core.goals.listed().get(self.rooted) {
+            self.rooted += 1;
+            if !self.trees[1].contains(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
             self.roots = self.trees[1].nodes().len() as NodeId;
         }
-        while self.explore.leaps() && self.join.leaps() && self.tried < self.roots {
+        while self.explore.allows_direct() && self.join.allows_direct() && self.tried < self.roots {
             let goal_root = self.tried;
             self.tried += 1;
             let [forward, backward] = &mut self.trees;
             let goal = backward.nodes().state(goal_root);
-            let grown = forward.leap(0, goal, &mut self.core.checker, rng, observer);
+            let grown = forward.connect_directly(0, goal, &mut self.core.checker, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate([id, goal_root], observer) {
                 return Some(path);

@@ -263,7 +263,7 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for OneStep {
     ) -> Grown {
         growing.step(from)
     }
-    fn leaps(&self) -> bool {
+    fn allows_direct(&self) -> bool {
         false
     }
 }
