@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// How the coordinates of a state ([`Embed`](crate::Embed)) bound the metric.
+/// How the coordinates of a state ([`Embed`](crate::nn::Embed)) bound the metric.
 ///
 /// The coordinates fall into consecutive *groups*. For the difference Δ of the coordinates of two
 /// states, minimised over the symmetries below,

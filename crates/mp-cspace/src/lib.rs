@@ -58,6 +58,7 @@
 //! | whether your own implementation is right | `testkit`, with the feature `testkit` |
 
 pub mod angle;
+mod edge_checker;
 pub mod erased;
 mod error;
 mod goal;
@@ -85,6 +86,7 @@ mod tell;
 pub mod testkit;
 mod validity;
 
+pub use edge_checker::EdgeChecker;
 pub use error::{ParameterError, SpaceError};
 pub use goal::{Ball, Exactly, FixedFactors, Goal};
 pub use local::{

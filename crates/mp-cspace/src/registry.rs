@@ -46,6 +46,17 @@ impl PlannerInfo {
     }
 }
 
+impl BuildError {
+    /// There is no planner called `name` among `planners`; suggests the most similar name.
+    #[must_use]
+    pub fn unknown_planner(name: &str, planners: &[PlannerInfo]) -> Self {
+        let known: Vec<_> = planners.iter().map(|info| info.name).collect();
+        let aliases = planners.iter().flat_map(|info| info.aliases).copied();
+        let suggestion = closest(name, known.iter().copied().chain(aliases));
+        Self::UnknownPlanner { name: name.to_owned(), known, suggestion }
+    }
+}
+
 /// What a problem may demand that not every planner can do by its nature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]

@@ -86,7 +86,7 @@ pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{PICTURE_SIZE, PictureKind};
-pub use planners::{planners, wrappers};
+pub use planners::{meta_planners, planners};
 pub use report::{Medians, REPORT_VERSION, Report, Runs, StoppedBy, median, medians};
 pub use request::{Budget, Finish, Length, Metric, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};

@@ -5,15 +5,15 @@ use mp_cspace::registry::{PlannerInfo, Settings};
 use std::fmt;
 
 /// All planners by name, trees first. Before the name of a tree may stand `or-`, `restart-` and, before `rrt`,
-/// `shared-`: see [`wrappers`].
+/// `shared-`: see [`meta_planners`].
 pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
     mp_tree::planners().iter().chain(roadmaps::planners())
 }
 
 /// What may stand before the name of a planner.
 #[must_use]
-pub fn wrappers() -> &'static [mp_tree::MetaPlanner] {
-    mp_tree::wrappers()
+pub fn meta_planners() -> &'static [mp_tree::MetaPlanner] {
+    mp_tree::meta_planners()
 }
 
 /// A planner by name.

@@ -10,7 +10,7 @@ use crate::search::{Search, relax_if_asked};
 use crate::watch::{Events, Telling};
 use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
 use mp_cspace::{Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
-use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, RoadmapState};
+use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE, RoadmapState};
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -198,13 +198,13 @@ impl<K: RobotKind> Answering for Of<K> {
         let prepared = Prepared::new(kind, request)?;
         control.stage(Stage::Planning);
         let began = Instant::now();
-        let mut steer = AnyEdgeChecker::of(prepared.problem()?);
-        let answer = K::State::answer(&mut self.roadmap, &mut steer, &start, &goal);
+        let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
+        let answer = K::State::answer(&mut self.roadmap, &mut checker, &start, &goal);
         let time = began.elapsed();
-        let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), steer.motions());
-        progress.rejected = steer.rejected();
+        let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), checker.motions());
+        progress.rejected = checker.rejected();
         // What the checkers have counted and not told yet.
-        drop(steer);
+        drop(checker);
         let queries = prepared.queries.load(Ordering::Relaxed);
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
         let (outcome, why) = match answer {
@@ -225,8 +225,8 @@ impl<K: RobotKind> Answering for Of<K> {
     fn verify(&mut self) -> Result<usize, Error> {
         let _span = tracing::info_span!("verify", scene = self.kind.name()).entered();
         let prepared = Prepared::new(&*self.kind, &self.request)?;
-        let mut steer = AnyEdgeChecker::of(prepared.problem()?);
-        Ok(K::State::verify_roadmap(&mut self.roadmap, &mut steer))
+        let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
+        Ok(K::State::verify_roadmap(&mut self.roadmap, &mut checker))
     }
 
     fn size(&self) -> [usize; 2] {

@@ -1,7 +1,8 @@
-//! What planners by name are made from.
+//! What planners made by name are made from.
 
-use crate::engine::taken_apart;
-use crate::{Connector, EdgeChecker, HasRoadmap, NodeGenerator, Query, Recipe, RoadmapPlanner};
+use crate::{
+    Connector, EdgeChecker, HasRoadmap, NodeGenerator, PATIENCE, Query, RoadmapPlanner, RoadmapPlannerParts,
+};
 use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
 use mp_cspace::{
     BuildError, LocalPlanner, NearestNeighbors, Problem, Reversible, Space, Workers, registry::Settings,
@@ -10,18 +11,18 @@ use mp_cspace::{
 /// A planner chosen at run time.
 pub type AnyPlanner<'c, S, E> = Box<dyn HasRoadmap<S, E> + Send + 'c>;
 
-/// A problem, and as many local planners and verifiers for it beside as threads are to build the roadmap.
+/// A problem with further edge checkers for it, so that several threads can build the roadmap.
 #[derive(Debug)]
 pub struct ParallelProblem<'c, C: Space, L: LocalPlanner<C::State>> {
     problem: Problem<'c, C, L>,
     workers: Workers,
-    hands: Vec<EdgeChecker<'c, C, L>>,
+    checkers: Vec<EdgeChecker<'c, C, L>>,
 }
 
-/// How a robot moves in an erased problem.
+/// The edge checker of an erased problem.
 pub type AnyEdgeChecker<'c, S> = EdgeChecker<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
-/// A team for an erased problem.
+/// An erased problem for several threads.
 pub type AnyParallelProblem<'c, S> = ParallelProblem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
 impl<'c, C, L> ParallelProblem<'c, C, L>
@@ -29,27 +30,29 @@ where
     C: Space + 'c,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// `problem` makes the same problem again and again; `hands` is how many work at the same time, best as many as
-    /// `workers` are threads. The roadmap is the same to the bit however many there are. Only generators whose
-    /// attempts are [independent](crate::NodeGenerator::independent) use them.
+    /// A problem with `checkers` edge checkers that work at the same time, best as many as `workers` has threads.
+    /// `problem` makes the same problem on every call. The roadmap is the same to the bit for any number of checkers. Only
+    /// generators with [independent](crate::NodeGenerator::independent) attempts use them.
     ///
     /// # Errors
     /// Those of `problem`.
     pub fn new(
         workers: Workers,
-        hands: usize,
+        checkers: usize,
         problem: impl Fn() -> Result<Problem<'c, C, L>, BuildError>,
     ) -> Result<Self, BuildError> {
-        let more = if hands > 1 { hands } else { 0 };
-        let hands = (0..more).map(|_| Ok(taken_apart(problem()?).0)).collect::<Result<_, BuildError>>()?;
-        Ok(Self { problem: problem()?, workers, hands })
+        let more = if checkers > 1 { checkers } else { 0 };
+        let checkers = (0..more)
+            .map(|_| Ok(EdgeChecker::of(problem()?, PATIENCE).0))
+            .collect::<Result<_, BuildError>>()?;
+        Ok(Self { problem: problem()?, workers, checkers })
     }
 
-    /// The planner of a recipe.
-    pub(crate) fn made<G, K, Q, N>(
+    /// The planner with these parts.
+    pub(crate) fn build<G, K, Q, N>(
         self,
         index: N,
-        recipe: Recipe<G, K, Q>,
+        parts: RoadmapPlannerParts<G, K, Q>,
     ) -> AnyPlanner<'c, C::State, L::Edge>
     where
         C::State: 'c,
@@ -59,22 +62,22 @@ where
         Q: Query<C, L> + Send + 'c,
         N: NearestNeighbors<C> + Send + Sync + 'c,
     {
-        let planner = RoadmapPlanner::assemble(self.problem, index, recipe);
-        match self.hands.is_empty() {
+        let planner = RoadmapPlanner::assemble(self.problem, index, parts);
+        match self.checkers.is_empty() {
             true => Box::new(planner),
-            false => Box::new(planner.on(self.workers, self.hands)),
+            false => Box::new(planner.on(self.workers, self.checkers)),
         }
     }
 }
 
-/// On the thread of the caller.
+/// The problem for the thread of the caller alone.
 impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for ParallelProblem<'c, C, L> {
     fn from(problem: Problem<'c, C, L>) -> Self {
-        Self { problem, workers: Workers::alone(), hands: Vec::new() }
+        Self { problem, workers: Workers::alone(), checkers: Vec::new() }
     }
 }
 
-/// The types that a planner by name is made of, in one: a tuple of space, local planner and index.
+/// The types of a planner made by name: a tuple of space, local planner and index.
 pub(crate) trait Types<'c> {
     type State: Clone + PartialEq + Send + Sync + std::fmt::Debug + 'c;
     type Edge: Clone + Reversible + Send + Sync + 'c;
@@ -96,9 +99,9 @@ where
     type Index = N;
 }
 
-/// What a planner by name is made from.
-pub(crate) struct Given<'c, 's, T: Types<'c>> {
-    team: ParallelProblem<'c, T::Space, T::Local>,
+/// What a planner is made from by name.
+pub(crate) struct BuildArgs<'c, 's, T: Types<'c>> {
+    parallel: ParallelProblem<'c, T::Space, T::Local>,
     /// An empty index.
     index: T::Index,
     /// All parameters that are set; the planner has parameters of these names.
@@ -108,39 +111,39 @@ pub(crate) struct Given<'c, 's, T: Types<'c>> {
     geometry: Option<AnyGeometry<'c, T::State>>,
 }
 
-/// A planner by name, or why there is none.
-pub(crate) type Made<'c, T> =
+/// The planner, or why it cannot be made.
+pub(crate) type BuildResult<'c, T> =
     Result<AnyPlanner<'c, <T as Types<'c>>::State, <T as Types<'c>>::Edge>, BuildError>;
 
 /// Makes one kind of planner.
-pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
+pub(crate) type BuildFn<'c, 's, T> = fn(BuildArgs<'c, 's, T>) -> BuildResult<'c, T>;
 
-impl<'c, 's, T: Types<'c>> Given<'c, 's, T> {
-    /// To make a planner of.
+impl<'c, 's, T: Types<'c>> BuildArgs<'c, 's, T> {
+    /// What a planner of this problem is made from.
     pub(crate) fn new(
-        mut team: ParallelProblem<'c, T::Space, T::Local>,
+        mut parallel: ParallelProblem<'c, T::Space, T::Local>,
         index: T::Index,
         settings: &'s Settings,
     ) -> Self {
-        let (space, geometry) = (team.problem.space(), team.problem.take_obstacles().geometry);
-        Self { team, index, settings, space, geometry }
+        let (space, geometry) = (parallel.problem.space(), parallel.problem.take_obstacles().geometry);
+        Self { parallel, index, settings, space, geometry }
     }
 
-    /// What obstacles look like, for `planner`, which cannot do without.
+    /// The geometry of obstacles, for the planner called `planner`.
     ///
     /// # Errors
-    /// When the problem does not know.
+    /// When the problem does not have it.
     pub(crate) fn geometry(&self, planner: &'static str) -> Result<AnyGeometry<'c, T::State>, BuildError> {
         self.geometry.clone().ok_or(BuildError::NoGeometry { planner })
     }
 
-    /// The planner of a recipe.
-    pub(crate) fn made<G, K, Q>(self, recipe: Recipe<G, K, Q>) -> Made<'c, T>
+    /// The planner with these parts.
+    pub(crate) fn build<G, K, Q>(self, parts: RoadmapPlannerParts<G, K, Q>) -> BuildResult<'c, T>
     where
         G: NodeGenerator<T::Space, T::Local> + Clone + Send + Sync + 'c,
         K: Connector<T::Space, T::Local> + Send + Sync + 'c,
         Q: Query<T::Space, T::Local> + Send + 'c,
     {
-        Ok(self.team.made(self.index, recipe))
+        Ok(self.parallel.build(self.index, parts))
     }
 }

@@ -1,8 +1,8 @@
 //! The probabilistic roadmap family: one engine, and one file per named algorithm. [`algo`] has the table of them.
 //!
 //! A roadmap is built once and answers many queries; or it grows until one start and goal are connected.
-//! [`build`] makes planners of the second kind by name. The last two must know what obstacles look like
-//! ([`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry)).
+//! [`build`] makes planners of the second kind by name. Those by obstacles ([`Obprm`] and [`ObstacleGeometryPrm`]) need
+//! the geometry of obstacles ([`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry)).
 //!
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Problem, Resolution, Rn, Rng, Straight, registry::Settings};
@@ -25,26 +25,26 @@
 //! ```
 //!
 //! # The engine
-//! Every attempt of every variant is: generate candidates, connect each to the [`Roadmap`] or refuse it.
-//! Queries look for a way through it. Each verb is a slot:
+//! Every attempt of every variant generates candidates and connects each to the [`Roadmap`], or refuses it. Queries
+//! search for a path in the roadmap. Each of these verbs is a slot:
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | what is tried as a node | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
-//! | what becomes a node, with which edges | [`Connector`] | [`NearestConnector`], [`Star`], [`Visibility`], [`StagedConnector`] |
-//! | how a way is looked for | [`Query`] | [`AStar`] |
-//! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
+//! | which configurations are tried as nodes | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
+//! | which of them become nodes, with which edges | [`Connector`] | [`NearestConnector`], [`Star`], [`Visibility`], [`StagedConnector`] |
+//! | how a path is searched for | [`Query`] | [`AStar`] |
+//! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
 //!
-//! A variant is a [`Recipe`] for the two loops: [`Builder`] builds until stopped, [`RoadmapPlanner`] until
+//! A variant is a set of [`RoadmapPlannerParts`] for two loops: [`Builder`] builds until stopped, [`RoadmapPlanner`] until
 //! start and goal are connected.
 //!
-//! # What is promised
-//! - A path is returned only after the verifier has passed each of its edges, in the direction in which it
-//!   is run. An edge that fails is blocked, and planning goes on. Edges that passed are not verified again.
+//! # Guarantees
+//! - A path is returned only after the verifier has passed each of its edges, in the direction of the path. An edge that
+//!   fails is blocked, and planning goes on. Edges that passed are not verified again.
 //! - On several threads ([`Builder::on`], [`ParallelProblem`]) the roadmap is the same to the bit as on one.
 //! - Bad input is a [`BuildError`] before planning begins.
-//! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping
-//!   and going on changes nothing.
+//! - The same problem, parameters and random numbers give the same roadmap and path, bit for bit. Stopping and continuing
+//!   changes nothing.
 
 pub mod algo;
 mod by_name;
@@ -55,10 +55,10 @@ pub use algo::types::*;
 pub use by_name::{AnyEdgeChecker, AnyParallelProblem, AnyPlanner, ParallelProblem};
 pub use engine::{
     AStar, Builder, CYCLES, Candidate, Connector, EdgeChecker, EdgeId, Entry, Free, GraphPath, Growing,
-    HasRoadmap, IndexedRoadmap, Kind, Link, LinkState, Listed, Mixing, NEIGHBOURS, NearestConnector,
-    NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, ParentMotion, Prefetching, Query, RADIUS,
-    Reachable, Recipe, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapQueries,
-    StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
+    HasRoadmap, IndexedRoadmap, Link, LinkState, Listed, MilestoneKind, Mixing, NEIGHBOURS, NearestConnector,
+    NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, PairsPlanner, ParentMotion, Prefetching,
+    Query, RADIUS, Reachable, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts,
+    RoadmapQueries, StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Path, registry::Settings};

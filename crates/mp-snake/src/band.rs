@@ -29,11 +29,11 @@ impl Band {
         let mut band = Self { inverse: Vec::with_capacity(n), below: Vec::with_capacity(n) };
         let mut diagonal: Vec<f64> = Vec::with_capacity(n);
         for i in 0..n {
-            // T² has 5 in its corners and 6 elsewhere; of a single row only 4 is left.
+            // The diagonal of T² is 5 in the corners and 6 elsewhere, but 4 for a single row.
             let beside = f64::from(u8::from(i > 0) + u8::from(i + 1 < n));
             let mut d = 1.0 + 2.0 * a + (4.0 + beside) * b;
             let mut first = -a - 4.0 * b;
-            // What the columns before leave of the three numbers of this column.
+            // Subtracts the contributions of the columns before.
             if let Some(j) = i.checked_sub(2) {
                 d -= diagonal[j] * band.below[j][1] * band.below[j][1];
             }

@@ -4,7 +4,7 @@ use crate::Grid;
 use crate::image::by_lines;
 
 /// The squared distance (m²), from the middle of each cell, to the nearest middle of a cell whose number is above one
-/// half; infinite where there is none.
+/// half; infinite where there is no such cell.
 ///
 /// P. Felzenszwalb and D. Huttenlocher, *Distance transforms of sampled functions*, Theory of Computing 8, 2012: the
 /// lower envelope of parabolas, row by row and column by column. Exact, O(cells).
@@ -22,7 +22,7 @@ fn envelope(from: &[f64], to: &mut [f64], roots: &mut Vec<usize>, bounds: &mut V
     bounds.clear();
     let height = |j: usize| from[j] + (j * j) as f64;
     for j in (0..from.len()).filter(|&j| from[j].is_finite()) {
-        // Where the parabola at j gets below the last one of the envelope.
+        // Where the parabola at j falls below the last one of the envelope.
         let mut begins = f64::NEG_INFINITY;
         while let Some(&last) = roots.last() {
             begins = (height(j) - height(last)) / (2 * (j - last)) as f64;
@@ -47,9 +47,9 @@ fn envelope(from: &[f64], to: &mut [f64], roots: &mut Vec<usize>, bounds: &mut V
 
 /// The signed distance (m) of the middle of each cell to the boundary of the occupied region, cells whose number is
 /// above one half: positive outside, negative inside, exact between middles and half a cell less. At most `far` (m),
-/// which is what a map with nothing on it has everywhere.
+/// as everywhere on an empty map.
 ///
-/// As a [clearance gradient](mp_cspace::obstacles::ClearanceGradient) it is that of a point; that of a disc by
+/// Used as a [clearance gradient](mp_cspace::obstacles::ClearanceGradient) it is that of a point robot; for a disc use
 /// `map(|d| d - radius)`.
 #[must_use]
 pub fn signed_distance(mask: &Grid, far: f64) -> Grid {

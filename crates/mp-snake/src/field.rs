@@ -1,23 +1,22 @@
-//! External energies: what pushes a snake.
+//! External energies, which push snakes.
 
-use crate::error::{not_negative, positive};
+use crate::params::{not_negative, positive};
 use mp_cspace::{ParameterError, obstacles::ClearanceGradient};
 
 /// An energy of states, which a snake lowers by moving.
 ///
-/// Closures are fields: an energy and a gradient that a user wrote down will do.
+/// Closures that return the energy and write the gradient are fields too.
 pub trait Field<S> {
     /// The energy (no unit) at `q`; its gradient is written to `gradient`, one number per degree of freedom, as
     /// the velocities of [`Space::moved`](mp_cspace::Space::moved). Both finite.
     fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64;
 
-    /// The signed clearance (m) that was found on the way to the last energy, where there is such a thing.
+    /// The signed clearance (m) that was computed with the last energy, if the field has one.
     fn clearance(&self) -> Option<f64> {
         None
     }
 
-    /// The signed clearance (m) at `q`, infinite where there is no such thing; what is in `gradient` afterwards is
-    /// of no meaning.
+    /// The signed clearance (m) at `q`, infinite if the field has none. Leaves meaningless numbers in `gradient`.
     #[inline]
     fn clearance_at(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
         self.energy(q, gradient);
@@ -32,7 +31,7 @@ impl<S, F: FnMut(&S, &mut [f64]) -> f64> Field<S> for F {
     }
 }
 
-/// No force at all.
+/// A field without force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Nothing;
 
@@ -43,9 +42,9 @@ impl<S> Field<S> for Nothing {
     }
 }
 
-/// The repulsion of obstacles: `½·(1 − c/range)²` where the clearance `c` is below `range`, else nothing.
+/// The repulsion of obstacles: `½·(1 − c/range)²` where the clearance `c` is below `range`, and 0 elsewhere.
 ///
-/// Inside obstacles `c` is minus the depth, so the way out is downhill everywhere the clearance gradient knows it.
+/// Inside obstacles `c` is minus the depth, so the energy falls toward the outside wherever the clearance gradient is known.
 #[derive(Clone, Debug)]
 pub struct Repulsion<F> {
     /// The clearance and its gradient.
@@ -63,7 +62,7 @@ impl<F> Repulsion<F> {
         Ok(Self { clearance, range: positive("the range of repulsion", range)?, last: f64::INFINITY })
     }
 
-    /// How far it reaches (m).
+    /// The range of the repulsion (m).
     #[must_use]
     pub fn range(&self) -> f64 {
         self.range
@@ -92,12 +91,12 @@ impl<S, F: ClearanceGradient<S>> Field<S> for Repulsion<F> {
     }
 }
 
-/// A field and a weighted second one: the constraint energy of the paper, or a risk beside a repulsion.
+/// A field plus a second one with a weight: the constraint energy of the paper, or a risk beside a repulsion.
 #[derive(Clone, Debug)]
 pub struct With<A, B> {
-    /// The first, whose clearance counts.
+    /// The first field, which gives the clearance.
     pub first: A,
-    /// The second.
+    /// The second field.
     pub second: B,
     weight: f64,
     scratch: Vec<f64>,

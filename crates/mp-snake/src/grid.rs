@@ -1,12 +1,12 @@
 //! Scalar maps of the plane.
 
 use crate::Field;
-use crate::error::positive;
+use crate::params::positive;
 use mp_cspace::{ParameterError, obstacles::ClearanceGradient};
 use nalgebra::Vector2;
 
-/// Numbers at the middles of square cells, row after row: an image with a place and a scale. Row 0 is the lowest
-/// (the smallest y): turn images, whose first row is the top one.
+/// Numbers at the middles of square cells, row after row: an image with a position and a scale. Row 0 is the lowest
+/// (the smallest y): flip images, whose first row is the top one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
     origin: Vector2<f64>,
@@ -15,7 +15,7 @@ pub struct Grid {
     per_metre: f64,
     width: usize,
     height: usize,
-    /// The last column and row but one.
+    /// The last column but one, and the last row but one.
     last: [u32; 2],
     values: Vec<f64>,
 }
@@ -99,13 +99,13 @@ impl Grid {
         self
     }
 
-    /// The same place and scale, with other numbers, as many.
+    /// The same position and scale, with as many other numbers.
     pub(crate) fn with_values(&self, values: Vec<f64>) -> Self {
         Self { values, ..*self }
     }
 
-    /// The number at a place, bilinear between the middles of cells, and its gradient. Beyond the outermost middles
-    /// that of the nearest place within, with a gradient of zero in that direction.
+    /// The number at a point, bilinear between the middles of cells, and its gradient. Beyond the outermost middles the
+    /// number at the nearest point within, with a gradient of zero in that direction.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, p: &Vector2<f64>) -> (f64, Vector2<f64>) {
@@ -147,7 +147,7 @@ impl ClearanceGradient<Vector2<f64>> for Grid {
     }
 }
 
-/// As that of the map, which may be shared.
+/// The same for a shared map.
 impl ClearanceGradient<Vector2<f64>> for &Grid {
     #[inline(always)]
     fn clearance_gradient(&mut self, q: &Vector2<f64>, _reach: f64, gradient: &mut [f64]) -> f64 {

@@ -1,10 +1,10 @@
 //! Operations on maps: blur, Laplacian, and the image energy of the paper.
 
 use crate::Grid;
-use crate::error::positive;
+use crate::params::positive;
 use mp_cspace::ParameterError;
 
-/// Applies `line` to every row, then to every column: `line(from, to)` makes one of the other.
+/// Applies `line` to every row, then to every column: `line(from, to)` computes `to` from `from`.
 pub(crate) fn by_lines(grid: &Grid, mut line: impl FnMut(&[f64], &mut [f64])) -> Grid {
     let (width, height) = grid.size();
     let mut values = vec![0.0; width * height];
@@ -20,8 +20,8 @@ pub(crate) fn by_lines(grid: &Grid, mut line: impl FnMut(&[f64], &mut [f64])) ->
     grid.with_values(values)
 }
 
-/// The map convolved with a Gaussian of standard deviation `sigma` (m): `G_σ ∗ I`. What lies beyond the border is as
-/// on it. The kernel is cut at four deviations and sums to one.
+/// The map convolved with a Gaussian of standard deviation `sigma` (m): `G_σ ∗ I`. The border is continued outward. The
+/// kernel is cut at four deviations and sums to one.
 ///
 /// # Errors
 /// When `sigma` is not positive and finite, or takes a kernel of more than a million cells.
@@ -44,7 +44,7 @@ pub fn blurred(grid: &Grid, sigma: f64) -> Result<Grid, ParameterError> {
     }))
 }
 
-/// `∇²I` (1/m²) by the five-point formula. What lies beyond the border is as on it.
+/// `∇²I` (1/m²) by the five-point formula. The border is continued outward.
 #[must_use]
 pub fn laplacian(grid: &Grid) -> Grid {
     let (width, height) = grid.size();
@@ -63,10 +63,10 @@ pub fn laplacian(grid: &Grid) -> Grid {
 /// The external energy of eq. 3 of the paper, of the image of a world: `weight · (G_σ ∗ ∇²I)² / max (G_σ ∗ ∇²I)²`, so
 /// from 0 to `weight`.
 ///
-/// As printed, `1 − (G_σ ∗ ∇²I)²` is least on the outlines of obstacles, and a snake that lowers it is drawn to them,
-/// as snakes in pictures should be; the text wants to be pushed away. So the sign is turned, and the constant, which
-/// has no force, left out. The energy is a ridge about two `sigma` wide along each outline. Deep inside an obstacle
-/// larger than that it is flat: there use a [`Repulsion`](crate::Repulsion) by [`signed_distance`].
+/// As printed, `1 − (G_σ ∗ ∇²I)²` is least on the outlines of obstacles and attracts snakes, as in image segmentation;
+/// the text wants repulsion. So the sign is inverted here, and the constant, which has no force, left out. The energy is a
+/// ridge about two `sigma` wide along each outline. Deep inside an obstacle larger than that it is flat: use a
+/// [`Repulsion`](crate::Repulsion) by [`signed_distance`] there.
 ///
 /// # Errors
 /// When `sigma` or `weight` is not positive and finite.

@@ -1,4 +1,4 @@
-//! Active contours for motion planning: curves with fixed ends that move until their energy is least, away from
+//! Active contours for motion planning: curves with fixed ends that minimize an energy, which keeps them away from
 //! obstacles and straight otherwise.
 //!
 //! M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988; for paths as by K. Baizid et
@@ -9,12 +9,12 @@
 //! | deform a curve in any space | [`Snake`], with [`Params`] |
 //! | push it | a [`Field`]: [`Repulsion`] by a clearance gradient, a [`Grid`], a closure, two of them [`With`] each other |
 //! | make fields of pictures | [`Grid`], [`outline_energy`] (eq. 3), [`signed_distance`], [`blurred`], [`laplacian`] |
-//! | judge risk | [`risk`]: motion noise times range noise, a field and a path cost |
+//! | estimate risk | [`risk`]: motion noise times range noise, a field and a path cost |
 //! | plan with edges that bend | [`SnakePlanner`], whose edges are [`PolylineEdge`](mp_cspace::PolylineEdge)s |
 //! | relax a whole path | [`relax`] |
 //!
-//! A snake guides, and promises nothing about collisions: [`SnakePlanner`] and [`relax`] accept what the motion check
-//! of the space has found free, piece by piece.
+//! A snake only guides and does not guarantee freedom of collision: [`SnakePlanner`] and [`relax`] accept curves that the
+//! motion check has found free, piece by piece.
 //!
 //! A motion that is blocked by a disc goes around it:
 //! ```
@@ -49,12 +49,10 @@
 mod band;
 mod bulge;
 mod distance;
-mod error;
 mod field;
 mod grid;
 mod image;
 mod local;
-mod mend;
 mod params;
 mod relax;
 pub mod risk;

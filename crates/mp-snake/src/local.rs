@@ -1,4 +1,4 @@
-//! The local planner whose edges bend.
+//! The local planner whose edges bend around obstacles.
 
 use crate::snake::NODES;
 use crate::{Bulged, Params, Repulsion, Rest, Snake, SnakeError};
@@ -7,47 +7,48 @@ use mp_cspace::{
     Space, obstacles::ClearanceGradient,
 };
 
-/// What a [`SnakePlanner`] did so far.
+/// Counts of what a [`SnakePlanner`] has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SnakeCounters {
-    /// Motions that were free as they were, straight.
+    /// Motions that were free when straight.
     pub straight: u64,
-    /// Motions that were bent free.
+    /// Motions that were bent until they were free.
     pub bent: u64,
-    /// Motions given up at once: their end is not free, they are too long, or too many were lost.
+    /// Motions that were not bent: their end is not free, they are too long, or too many failed before.
     pub not_tried: u64,
     /// Motions that could not be bent free.
     pub not_bent: u64,
-    /// Those of them for which a snake relaxed.
+    /// Of these, the motions for which a snake relaxed.
     pub relaxed_in_vain: u64,
     /// Steps of all snakes.
     pub iterations: u64,
 }
 
 impl SnakeCounters {
-    /// All motions.
+    /// The number of all motions.
     #[must_use]
     pub fn motions(&self) -> u64 {
         self.straight + self.bent + self.not_tried + self.not_bent
     }
 }
 
-/// Goes straight, and where that is blocked sends a snake around what blocks it.
+/// A local planner of straight motions that bends blocked ones around obstacles.
 ///
-/// A motion whose end is not free is given up at once. Else it is [bulged](Snake::bulge) out of what blocks it: where a
-/// bulge is free it is the edge, with one to five states between the ends. Where it is not, but its top is clear, a snake
-/// relaxes from there, a few steps (none where it begins deep in an obstacle). That costs many times as much and saves few: it is done for the first motion of
-/// which no bulge fits, and on while at most one in fifty bent ones was relaxed in vain. And where there is nothing
-/// to bend around snakes are tried less: so that at most a third of all motions, and sixteen, are lost.
+/// A motion whose end is not free fails at once. Otherwise a blocked motion is [bulged](Snake::bulge): where a bulge is
+/// free it is the edge, with one to five states between the ends. Where the bulge is not free, but its top is clear, a
+/// snake relaxes from there for a few steps (not if it begins deep in an obstacle). That costs many times as much and
+/// saves few motions: it is done for the first motion without a free bulge, and then only while at most one snake has
+/// relaxed in vain per fifty bent motions. Where bending mostly fails it is tried less: at most a third of all motions,
+/// and sixteen more, fail after bending was tried.
 ///
-/// A motion ends where the straight one would. Each piece of a bent one has been found free by `check`; the field
-/// only guides. Its cost is its length in the metric of the space. Motions of more than 24 nodes are not bent. Paths are
-/// made plain by [`Path::flattened`](mp_cspace::Path::flattened).
+/// A motion ends where the straight one would. Each piece of a bent motion has been found free by `check`; the field only
+/// guides. Its cost is its length in the metric of the space. Motions of more than 24 nodes are not bent.
+/// [`Path::flattened`](mp_cspace::Path::flattened) turns paths of such edges into straight ones.
 #[derive(Clone, Debug)]
 pub struct SnakePlanner<'c, C: Space, M, F> {
-    /// The motion check: discrete, certified or a user's own.
+    /// The motion check: discrete, certified or your own.
     pub check: M,
-    /// What pushes.
+    /// The field that pushes.
     pub field: Repulsion<F>,
     snake: Snake<'c, C>,
     wanted: f64,
@@ -56,20 +57,20 @@ pub struct SnakePlanner<'c, C: Space, M, F> {
     curve: Vec<C::State>,
 }
 
-/// A snake is checked as soon as all its nodes are this part of the range away from obstacles, and given up when one
-/// is as deep in them: few of those come out.
+/// A snake is checked as soon as all its nodes are this part of the range away from obstacles, and abandoned when a node
+/// is as deep inside an obstacle: few of those become free.
 const WANTED: f64 = 0.5;
 
-/// A snake in collision that for this many steps does not get less deep, by this part of the range, is given up.
+/// A snake in collision is abandoned when for this many steps its depth does not shrink by this part of the range.
 const PATIENCE: u32 = 3;
 const GAIN: f64 = 0.05;
 
-/// One snake may relax in vain for so many motions that were bent.
-const VAIN: u64 = 50;
+/// One snake may relax in vain per this many motions that were bent.
+const BENT_PER_VAIN_RELAXATION: u64 = 50;
 
-/// One motion in so many may be lost, and a few at first.
-const LOST: u64 = 3;
-const FIRST: u64 = 16;
+/// Bending may fail for one motion in this many, and for this many more.
+const MOTIONS_PER_FAILURE: u64 = 3;
+const FREE_FAILURES: u64 = 16;
 
 /// Motions that take more nodes are not bent.
 const LONGEST: f64 = 24.0;
@@ -80,8 +81,8 @@ where
     M: MotionValidity<C::State>,
     F: ClearanceGradient<C::State>,
 {
-    /// Motions in `space` checked by `check`, bent by `field`, of obstacles that repel within `range` (m), with the
-    /// [parameters](Params::for_edges) for edges of that range.
+    /// Motions in `space`, checked by `check` and bent by the clearance gradient `field` of obstacles that repel within
+    /// `range` (m), with the [parameters](Params::for_edges) for edges of that range.
     ///
     /// # Errors
     /// When the range is not positive and finite, or the space knows no velocities.
@@ -89,7 +90,7 @@ where
         Self::with_params(space, check, Repulsion::new(field, range)?, Params::for_edges(range)?)
     }
 
-    /// The same with parameters of your own.
+    /// The same with your own parameters.
     ///
     /// # Errors
     /// When one is out of range, or the space knows no velocities.
@@ -111,13 +112,13 @@ where
         })
     }
 
-    /// What was done so far.
+    /// The counts so far.
     #[must_use]
     pub fn counters(&self) -> SnakeCounters {
         self.counters
     }
 
-    /// Bends the motion: whether `curve` is one in forward time now, its ends included, every piece checked.
+    /// Bends a motion. Returns whether `curve` is now a free curve in forward time, with its ends, every piece checked.
     fn bend(&mut self, from: &C::State, to: &C::State) -> bool {
         let Self { check, field, snake, wanted, counters, curve } = self;
         snake.between_into(from, to, curve);
@@ -130,7 +131,7 @@ where
             Bulged::Nowhere => return false,
             Bulged::Laid => {}
         }
-        if counters.relaxed_in_vain > counters.bent / VAIN {
+        if counters.relaxed_in_vain > counters.bent / BENT_PER_VAIN_RELAXATION {
             return false;
         }
         let gain = GAIN * field.range();
@@ -153,7 +154,7 @@ where
     }
 }
 
-/// Whether every piece is free. The middle is looked at first: there a snake is tightest.
+/// Whether every piece is free. Checks the middle first, where a snake is closest to the obstacle.
 fn all_free<S>(check: &mut impl MotionValidity<S>, curve: &[S]) -> bool {
     let middle = curve.len() / 2;
     let mut free = |i: usize, known| check.check_extension(&curve[i], &curve[i + 1], known).is_free();
@@ -193,7 +194,7 @@ where
             Direction::Forward => (from, &end, KnownFree::From),
             Direction::Backward => (&end, from, KnownFree::To),
         };
-        // The end first: one question, and where it is not free nothing can be saved.
+        // The end first: one check, and bending cannot help if it is not free.
         if !self.check.check_motion(&end, &end).is_free() {
             self.counters.not_tried += 1;
             return Extension::Trapped;
@@ -203,7 +204,10 @@ where
             return found(PolylineEdge::straight(), length);
         }
         let long = length > LONGEST * self.snake.params().spacing;
-        if length <= 0.0 || long || self.counters.not_bent > FIRST + self.counters.motions() / LOST {
+        if length <= 0.0
+            || long
+            || self.counters.not_bent > FREE_FAILURES + self.counters.motions() / MOTIONS_PER_FAILURE
+        {
             self.counters.not_tried += 1;
             return Extension::Trapped;
         }

@@ -1,17 +1,16 @@
-//! What a snake is made of.
+//! The parameters of snakes, and their ranges.
 
-use crate::error::{not_negative, positive, within};
 use mp_cspace::{ParameterError, Space};
 use thiserror::Error;
 
-/// Why there is no snake.
+/// Why a snake cannot be made.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SnakeError {
     /// A parameter outside its range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// The space does not say what velocities are.
+    /// The space does not implement velocities.
     #[error("the space knows no velocities: `Space::moved` and `Space::velocity_into` must answer")]
     NoVelocities,
 }
@@ -37,7 +36,7 @@ pub struct Params {
     pub plate: f64,
     /// γ, the weight of the length, whose force is along the normal and straightens.
     pub straighten: f64,
-    /// Distance between nodes (m): curves are resampled to at most this.
+    /// Distance between nodes (m): curves are resampled to at most this distance.
     pub spacing: f64,
     /// Length of an implicit step (m²). Steps of more than a curvature radius of the external energy overshoot, and
     /// are halved.
@@ -66,7 +65,7 @@ impl Params {
         })
     }
 
-    /// The same for edges of a tree, where a snake must be cheap: nodes a whole range apart, at most 4 steps, four times
+    /// The same for edges of a tree, where a snake must be cheap: nodes a full range apart, at most 4 steps, four times
     /// the membrane stiffness, and converged at a tenth of the spacing.
     ///
     /// # Errors
@@ -76,7 +75,7 @@ impl Params {
         Ok(Self { membrane: 4.0 * whole.membrane, spacing: range, iterations: 4, tolerance: 0.1, ..whole })
     }
 
-    /// These, if all are within their range.
+    /// These parameters, if all are within their ranges.
     ///
     /// # Errors
     /// When one is not.
@@ -91,8 +90,8 @@ impl Params {
         Ok(self)
     }
 
-    /// The two coefficients of the [matrix](crate::Band) of a step. The length counts with the membrane: for a
-    /// curve of even spacing they vary alike across it.
+    /// The two coefficients of the [matrix](crate::Band) of a step. The weight of the length is added to that of the
+    /// membrane: for a curve of even spacing both vary alike across it.
     pub(crate) fn stiffness(&self) -> [f64; 2] {
         let square = self.spacing * self.spacing;
         let first = self.pace * (self.membrane + self.straighten) / square;
@@ -117,4 +116,25 @@ pub(crate) fn scale<C: Space>(space: &C) -> Result<Vec<f64>, SnakeError> {
         Ok(positive("the length of a motion", length)?)
     };
     (0..dim).map(along).collect()
+}
+
+/// `value` when it is positive and finite.
+pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+    within(name, value, f64::MIN_POSITIVE, f64::MAX, "positive and finite")
+}
+
+/// `value` when it is finite and not negative.
+pub(crate) fn not_negative(name: &'static str, value: f64) -> Result<f64, ParameterError> {
+    within(name, value, 0.0, f64::MAX, "finite and not negative")
+}
+
+/// `value` when it is from `least` to `most`.
+pub(crate) fn within(
+    name: &'static str,
+    value: f64,
+    least: f64,
+    most: f64,
+    expected: &'static str,
+) -> Result<f64, ParameterError> {
+    if (least..=most).contains(&value) { Ok(value) } else { Err(ParameterError { name, expected, value }) }
 }

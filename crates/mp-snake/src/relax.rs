@@ -1,23 +1,23 @@
-//! Whole paths relaxed.
+//! Relaxation of whole paths.
 
 use crate::{Params, Repulsion, Snake, SnakeError};
 use mp_cspace::{MotionValidity, Path, Space, obstacles::ClearanceGradient};
 
-/// A path that was relaxed.
+/// The result of relaxing a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Relaxed<S> {
-    /// The path; as it was when nothing better was found.
+    /// The relaxed path, or the original one when nothing better was found.
     pub path: Path<S>,
-    /// Its length and that of the path it was made of, in the metric of the space.
+    /// The length of this path and of the original, in the metric of the space.
     pub length: [f64; 2],
-    /// The energy of both, of the snake.
+    /// The energy of both as snakes.
     pub energy: [f64; 2],
     /// Steps of the snake.
     pub iterations: u32,
 }
 
 impl<S> Relaxed<S> {
-    /// Whether it is another path.
+    /// Whether the path is better than the original.
     #[must_use]
     pub fn is_better(&self) -> bool {
         self.energy[0] < self.energy[1]
@@ -27,15 +27,15 @@ impl<S> Relaxed<S> {
 /// Lays a snake along a whole path and lets it relax: away from obstacles, and straighter (Fig. 2 d of the
 /// paper).
 ///
-/// What comes back has the same ends, and either is the path itself or
+/// The result has the same ends, and is either the path itself, or a path such that
 /// - every piece of it has been found free by `check`, and
-/// - it has less energy than the path, which says that it is safer, smoother or shorter, and
-/// - it is no longer than the path times `stretch` (at least 1): at 1 safety is only taken where it costs no length.
+/// - it has less energy than the original: it is safer, smoother or shorter, and
+/// - its length is at most that of the original times `stretch` (at least 1): with 1 it never gets longer.
 ///
-/// After each step of the snake, nodes beside a piece that is not free go back to where they were, so that the curve is
-/// free all the time and only what is tight stays behind. It ends when a step gains nothing. A path that takes more
-/// than ten thousand nodes stays as it is. Give a `check` you trust: nothing else is asked. Per step one check for
-/// each piece that moved, and three questions to the field per node.
+/// After each step of the snake, the ends of every piece that is not free move back to where they were. So the curve is
+/// always free, and only nodes in tight places stay behind. It ends when a step gains nothing. A path that needs more than
+/// ten thousand nodes is returned unchanged. Use a `check` you trust, as nothing else is checked. Each step costs one
+/// check per piece that moved, and three evaluations of the field per node.
 ///
 /// # Errors
 /// When a parameter is out of range, or the space knows no velocities.
@@ -47,7 +47,7 @@ pub fn relax<C: Space>(
     params: Params,
     stretch: f64,
 ) -> Result<Relaxed<C::State>, SnakeError> {
-    crate::error::within("the stretch", stretch, 1.0, f64::MAX, "at least 1 and finite")?;
+    crate::params::within("the stretch", stretch, 1.0, f64::MAX, "at least 1 and finite")?;
     let mut snake = Snake::new(space, Params { iterations: 1, ..params })?;
     params.checked()?;
     let before = path.length(space);
@@ -85,8 +85,8 @@ pub fn relax<C: Space>(
 /// Steps that lower the energy by less than this part of it end the relaxation.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// Puts the ends of each piece of `next` that is not free where they were in `curve`, until all are free, as those of
-/// `curve` are.
+/// Moves the ends of each piece of `next` that is not free back to where they were in `curve`, until all pieces are free,
+/// as those of `curve` are.
 fn go_back_where_blocked<S: Clone + PartialEq>(
     check: &mut impl MotionValidity<S>,
     curve: &[S],

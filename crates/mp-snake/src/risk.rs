@@ -1,31 +1,31 @@
-//! The risk landscape: where a robot that misses its way may hit an obstacle that is not quite where it seems.
+//! The risk landscape: where a robot that moves inexactly may hit an obstacle that was measured inexactly.
 //!
 //! After Fig. 1 and §3.1 of K. Baizid et al., *RRS: rapidly-exploring random snakes*: a step that turns and goes
-//! straight ends in a banana-shaped cloud, the product of two Gaussians; a range sensor sees obstacles in the wrong
-//! distance; the product of both probabilities is the risk. Models as of S. Thrun, W. Burgard and D. Fox,
+//! straight ends in a banana-shaped cloud, the product of two Gaussians; a range sensor measures the distance of obstacles
+//! with noise; the product of both probabilities is the risk. Models of S. Thrun, W. Burgard and D. Fox,
 //! *Probabilistic robotics*, 2005.
 
-use crate::error::{not_negative, positive};
+use crate::params::{not_negative, positive};
 use crate::{Grid, blurred};
 use mp_cspace::{ParameterError, Path, angle::wrap_angle};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 
-/// How badly a robot executes a step: turn, then go straight. Deviations grow with what is done.
+/// The noise of a robot that executes a step: turn, then go straight. Deviations grow with the turn and the distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionNoise {
-    /// Deviation of the heading (rad) whatever the turn.
+    /// Constant deviation of the heading (rad).
     pub turn: f64,
-    /// More of it per radian turned.
+    /// Further deviation of the heading per radian turned.
     pub turn_per_turn: f64,
-    /// Deviation of the distance (m), however far.
+    /// Constant deviation of the distance (m).
     pub way: f64,
-    /// More of it per metre gone.
+    /// Further deviation of the distance per metre.
     pub way_per_way: f64,
 }
 
 impl MotionNoise {
-    /// This noise, if its numbers are possible.
+    /// This noise, if its numbers are in range.
     ///
     /// # Errors
     /// When one is not finite or negative, or one of the two constant deviations is not positive.
@@ -37,8 +37,8 @@ impl MotionNoise {
         Ok(self)
     }
 
-    /// The density (1/m²) at `p` of where the robot is after a step from `from` at `heading` (rad): it turns by `turn`
-    /// (rad), then goes `way` (m). In polar coordinates about `from` both are Gaussian.
+    /// The probability density (1/m²) that the robot is at `p` after a step from `from` at `heading` (rad) that turns by
+    /// `turn` (rad), then goes `way` (m). In polar coordinates about `from` both are Gaussian.
     #[must_use]
     pub fn density(
         &self,
@@ -59,9 +59,8 @@ impl MotionNoise {
         gauss(angle, turns) * gauss(far - way, ways) / far
     }
 
-    /// The probability of passing within half a cell of each cell's middle in executing a path, step by step, of
-    /// those places where steps end: `1 − Π(1 − pᵢ)`. Long steps should be [resampled](Path::resampled) first. The
-    /// first step needs no turn; each later one starts from where it should.
+    /// The probability that a step of the path ends in each cell, `1 − Π(1 − pᵢ)` over all steps. Long steps should be
+    /// [resampled](Path::resampled) first. The first step needs no turn; each later one starts exactly at its state.
     #[must_use]
     pub fn envelope(&self, path: &Path<Vector2<f64>>, of: &Grid) -> Grid {
         let (width, _) = of.size();
@@ -85,12 +84,12 @@ impl MotionNoise {
     }
 }
 
-/// How badly a range sensor measures: the deviation of a distance (m), and more of it per metre.
+/// The noise of a range sensor: the deviation of a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RangeNoise {
-    /// However far (m).
+    /// Constant deviation (m).
     pub constant: f64,
-    /// More of it per metre.
+    /// Further deviation per metre of distance.
     pub per_metre: f64,
 }
 
@@ -107,8 +106,8 @@ impl RangeNoise {
     }
 }
 
-/// The product of two maps of the same cells, such as the probability that the robot passes and that there is
-/// something: the landscape of Fig. 1 d. As a [`Field`](crate::Field) it pushes snakes out of the risk.
+/// The product of two maps of the same cells, such as the probability that the robot passes and that the cell is
+/// occupied: the landscape of Fig. 1 d. As a [`Field`](crate::Field) it pushes snakes out of the risk.
 ///
 /// # Errors
 /// When the maps differ in place, scale or size.
@@ -153,7 +152,7 @@ mod tests {
         Grid::from_fn([-2.0, -2.0], 0.02, (200, 200), f).unwrap()
     }
 
-    /// All of the probability is somewhere, along an arc about the start: a banana.
+    /// The density integrates to 1 along an arc about the start: a banana.
     #[test]
     fn the_cloud_after_a_step_is_a_banana() {
         let from = Vector2::new(-0.5, -0.5);

@@ -1,11 +1,11 @@
-//! The snake: a curve that moves until its energy is least.
+//! The snake: a curve that minimizes its energy.
 
-use crate::bulge::Sight;
+use crate::bulge::Blockage;
 use crate::params::scale;
 use crate::{Band, Field, Params, SnakeError};
 use mp_cspace::Space;
 
-/// The energy of a curve, by its parts.
+/// The energy of a curve, in three parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
     /// Of the curve itself: `½·∫(α·|v'|² + β·|v''|²) ds`.
@@ -17,33 +17,32 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// All of it.
+    /// The sum of the parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.internal + self.external + self.optimal
     }
 }
 
-/// Why a snake came to rest.
+/// Why a snake stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Rest {
-    /// It hardly moves any more.
+    /// The last step was shorter than the tolerance.
     Converged,
-    /// No step along the forces lowers its energy.
+    /// No step along the forces lowers the energy.
     Stagnated,
-    /// Its steps are used up.
+    /// It has taken the most steps allowed.
     Iterations,
-    /// Whoever watched it said so.
+    /// The `watch` function stopped it.
     Stopped,
 }
 
-/// A moment in the life of a snake.
+/// The state of a snake between two steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<'a, S> {
     /// Its nodes, both ends included.
     pub curve: &'a [S],
-    /// The least clearance (m) at a node between the ends, as the field has it; infinite where the field knows
-    /// none.
+    /// The least clearance (m) at a node between the ends, by the field; infinite if the field has none.
     pub clearance: f64,
     /// Its energy.
     pub energy: Energy,
@@ -51,7 +50,7 @@ pub struct Moment<'a, S> {
     pub iteration: u32,
 }
 
-/// An open active contour with fixed ends, in any space that knows velocities.
+/// An open active contour with fixed ends, in any space with velocities.
 ///
 /// M. Kass, A. Witkin and D. Terzopoulos, *Snakes: active contour models*, IJCV 1, 1988, as modified by K. Baizid et
 /// al., *RRS: rapidly-exploring random snakes* (eq. 1 to 4). For a curve `v` of nodes `h` apart the energy is
@@ -63,13 +62,13 @@ pub struct Moment<'a, S> {
 /// - Eq. 2 prints `|v|²` and `|v'|²`; membrane and plate are `|v'|²` and `|v''|²` as in Kass et al.
 /// - Eq. 4 sums forces `γ·n̄` along the normal. The energy of which this is the direction of descent is the length;
 ///   its force is `γ·κ·n̄`, towards the inside of each bend and zero where the curve is straight.
-/// - The field acts across the curve only: along it it would move nodes, not the curve.
+/// - The field acts across the curve only: a force along the curve would move nodes, but not the curve.
 ///
 /// One step is semi-implicit: `(I + a·T + b·T²)·δ = −τ/h·∇E`, the stiff part by a [`Band`] that is factorised
 /// once for each number of nodes. The step is halved until the energy does not rise, so it never does. In spaces
 /// with rotations, differences about neighbouring nodes are taken as if in one tangent space.
 ///
-/// A step takes O(n·d) operations and one question to the field per node, for n nodes and d degrees of freedom.
+/// A step takes O(n·d) operations and one evaluation of the field per node, for n nodes and d degrees of freedom.
 ///
 /// ```
 /// use mp_cspace::Rn;
@@ -96,40 +95,40 @@ pub struct Snake<'c, C: Space> {
     pub(crate) scale: Vec<f64>,
     /// By the number of nodes that move.
     bands: Vec<Option<Band>>,
-    now: Shape,
-    trial: Shape,
-    /// Where each moving node goes, then what a node is moved by.
+    now: CurveMeasurement,
+    trial: CurveMeasurement,
+    /// The displacements of the nodes between the ends.
     step: Vec<f64>,
     pub(crate) velocity: Vec<f64>,
-    /// Gradients nobody asked for.
+    /// A buffer for gradients that are not used.
     pub(crate) unused: Vec<f64>,
-    /// What bulges begin with.
-    pub(crate) sight: Sight,
+    /// The buffers of bulges.
+    pub(crate) blockage: Blockage,
     pub(crate) next: Vec<C::State>,
     trace: Vec<Energy>,
 }
 
-/// What is known of a curve. Numbers are scaled: lengths in the metric.
+/// A curve measured: its energy and the forces on it. Numbers are scaled: lengths in the metric.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Shape {
+pub(crate) struct CurveMeasurement {
     pub(crate) energy: Energy,
-    /// From each node to the next.
-    pub(crate) ways: Vec<f64>,
+    /// The vectors from each node to the next.
+    pub(crate) segments: Vec<f64>,
     /// Their lengths.
     lengths: Vec<f64>,
     /// The gradient of the field at each node between the ends, across the curve.
-    pub(crate) pushes: Vec<f64>,
+    pub(crate) gradients: Vec<f64>,
     /// The clearance of those nodes.
     pub(crate) clearances: Vec<f64>,
 }
 
-impl Shape {
+impl CurveMeasurement {
     fn with_room(dim: usize) -> Self {
         Self {
             energy: Energy::default(),
-            ways: Vec::with_capacity(NODES * dim),
+            segments: Vec::with_capacity(NODES * dim),
             lengths: Vec::with_capacity(NODES),
-            pushes: Vec::with_capacity(NODES * dim),
+            gradients: Vec::with_capacity(NODES * dim),
             clearances: Vec::with_capacity(NODES),
         }
     }
@@ -140,23 +139,23 @@ impl Shape {
     }
 }
 
-/// There is room for so many nodes from the beginning: all that edges take.
+/// Buffers have room for this many nodes from the beginning: as many as edges need.
 pub(crate) const NODES: usize = 32;
 
-/// Curves of more nodes are not made.
+/// Most nodes of a curve.
 const MOST_NODES: usize = 10_000;
 
-/// How often a step is halved before giving up.
+/// How often a step is halved before it fails.
 const HALVINGS: u32 = 3;
 
-/// Steps that lower the energy by less than this part of it are of no use.
+/// A step that lowers the energy by less than this part of it ends the deformation.
 const LEAST_GAIN: f64 = 1e-7;
 
 impl<'c, C: Space> Snake<'c, C> {
-    /// Snakes of these parameters in `space`.
+    /// Snakes with these parameters in `space`.
     ///
     /// # Errors
-    /// When a parameter is out of range, or the space knows no velocities.
+    /// When a parameter is out of range, or the space has no velocities.
     pub fn new(space: &'c C, params: Params) -> Result<Self, SnakeError> {
         let dim = space.dim();
         Ok(Self {
@@ -164,12 +163,12 @@ impl<'c, C: Space> Snake<'c, C> {
             params: params.checked()?,
             scale: scale(space)?,
             bands: Vec::new(),
-            now: Shape::with_room(dim),
-            trial: Shape::with_room(dim),
+            now: CurveMeasurement::with_room(dim),
+            trial: CurveMeasurement::with_room(dim),
             step: Vec::with_capacity(NODES * dim),
             velocity: Vec::with_capacity(dim),
             unused: Vec::with_capacity(dim),
-            sight: Sight::with_room(dim),
+            blockage: Blockage::with_room(dim),
             next: Vec::with_capacity(NODES),
             trace: Vec::new(),
         })
@@ -181,27 +180,27 @@ impl<'c, C: Space> Snake<'c, C> {
         &self.params
     }
 
-    /// The space it lives in.
+    /// The space.
     #[must_use]
     pub fn space(&self) -> &'c C {
         self.space
     }
 
-    /// The energies of the curve deformed last: before the first step and after each.
+    /// The energies of the curve deformed last: before the first step and after each step.
     #[must_use]
     pub fn trace(&self) -> &[Energy] {
         &self.trace
     }
 
-    /// The straight curve from one state to another: as many nodes as the spacing asks for, at least five and at
-    /// most ten thousand.
+    /// The straight curve from one state to another, with as many nodes as the spacing needs, at least five and at most
+    /// ten thousand.
     pub fn between(&self, from: &C::State, to: &C::State) -> Vec<C::State> {
         let mut curve = Vec::new();
         self.between_into(from, to, &mut curve);
         curve
     }
 
-    /// As [`between`](Self::between), in the place of what was in `curve`.
+    /// As [`between`](Self::between), into `curve`, which is cleared first.
     pub fn between_into(&self, from: &C::State, to: &C::State, curve: &mut Vec<C::State>) {
         let wanted = (self.space.distance(from, to) / self.params.spacing).ceil();
         let parts = wanted.clamp(4.0, (MOST_NODES - 1) as f64) as usize;
@@ -214,15 +213,15 @@ impl<'c, C: Space> Snake<'c, C> {
 
     /// The energy of a curve.
     pub fn energy(&mut self, curve: &[C::State], field: &mut impl Field<C::State>) -> Energy {
-        let mut shape = std::mem::take(&mut self.trial);
-        self.measure(curve, field, &mut shape);
-        self.trial = shape;
+        let mut measured = std::mem::take(&mut self.trial);
+        self.measure(curve, field, &mut measured);
+        self.trial = measured;
         self.trial.energy
     }
 
-    /// Moves the nodes between the ends until the energy is least, or `watch`, which is shown the curve before the
-    /// first step and after each, says so. A curve of less than three nodes stays as it is, and nodes do not
-    /// leave the bounds of the space.
+    /// Moves the nodes between the ends until the energy is least, or until `watch` returns true; it is called before the
+    /// first step and after each. A curve of less than three nodes stays as it is, and nodes do not leave the bounds of
+    /// the space.
     ///
     /// The energy never rises from one step to the next, but for rounding.
     pub fn deform(
@@ -264,55 +263,63 @@ impl<'c, C: Space> Snake<'c, C> {
         rest
     }
 
-    /// Measures a curve: its energy, its ways and the forces on it.
-    fn measure(&mut self, curve: &[C::State], field: &mut impl Field<C::State>, shape: &mut Shape) {
+    /// Measures a curve: its energy, its segments and the forces on it.
+    fn measure(
+        &mut self,
+        curve: &[C::State],
+        field: &mut impl Field<C::State>,
+        measured: &mut CurveMeasurement,
+    ) {
         let (dim, h) = (self.space.dim(), self.params.spacing);
         let parts = curve.len().saturating_sub(1);
-        shape.ways.resize(parts * dim, 0.0);
-        shape.lengths.clear();
-        for (pair, way) in curve.windows(2).zip(shape.ways.chunks_exact_mut(dim)) {
-            self.space.velocity_into(&pair[0], &pair[1], way);
-            way.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-            shape.lengths.push(norm(way));
+        measured.segments.resize(parts * dim, 0.0);
+        measured.lengths.clear();
+        for (pair, segment) in curve.windows(2).zip(measured.segments.chunks_exact_mut(dim)) {
+            self.space.velocity_into(&pair[0], &pair[1], segment);
+            segment.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
+            measured.lengths.push(norm(segment));
         }
-        let ways = &shape.ways;
-        let bends: f64 =
-            ways.iter().zip(ways.iter().skip(dim)).map(|(came, goes)| (goes - came).powi(2)).sum();
-        let stretched: f64 = ways.iter().map(|x| x * x).sum();
-        let length: f64 = shape.lengths.iter().sum();
+        let segments = &measured.segments;
+        let bends: f64 = segments
+            .iter()
+            .zip(segments.iter().skip(dim))
+            .map(|(incoming, outgoing)| (outgoing - incoming).powi(2))
+            .sum();
+        let stretched: f64 = segments.iter().map(|x| x * x).sum();
+        let length: f64 = measured.lengths.iter().sum();
         let Params { membrane, plate, straighten, .. } = self.params;
-        shape.energy.internal = 0.5 * (membrane * stretched / h + plate * bends / (h * h * h));
-        shape.energy.optimal = straighten * length;
-        shape.energy.external = 0.0;
+        measured.energy.internal = 0.5 * (membrane * stretched / h + plate * bends / (h * h * h));
+        measured.energy.optimal = straighten * length;
+        measured.energy.external = 0.0;
         let inner = parts.saturating_sub(1);
-        shape.pushes.resize(inner * dim, 0.0);
-        shape.clearances.clear();
-        let pairs = shape.ways.chunks_exact(dim).zip(shape.ways.chunks_exact(dim).skip(1));
-        let pushes = shape.pushes.chunks_exact_mut(dim);
-        for (q, (push, (came, goes))) in curve.iter().skip(1).zip(pushes.zip(pairs)) {
-            shape.energy.external += h * field.energy(q, push);
-            shape.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
+        measured.gradients.resize(inner * dim, 0.0);
+        measured.clearances.clear();
+        let pairs = measured.segments.chunks_exact(dim).zip(measured.segments.chunks_exact(dim).skip(1));
+        let gradients = measured.gradients.chunks_exact_mut(dim);
+        for (q, (push, (incoming, outgoing))) in curve.iter().skip(1).zip(gradients.zip(pairs)) {
+            measured.energy.external += h * field.energy(q, push);
+            measured.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
             push.iter_mut().zip(&self.scale).for_each(|(x, s)| *x /= s);
-            across(push, came, goes);
+            across(push, incoming, outgoing);
         }
     }
 
-    /// The implicit step of all nodes, from the forces on the curve.
-    fn aim(&mut self, shape: &Shape) {
-        let (dim, parts) = (self.space.dim(), shape.lengths.len());
+    /// Computes the implicit step of all nodes, from the forces on the curve.
+    fn aim(&mut self, measured: &CurveMeasurement) {
+        let (dim, parts) = (self.space.dim(), measured.lengths.len());
         let Params { membrane, plate, straighten, spacing: h, pace, .. } = self.params;
         let bent = |i: usize, k: usize| {
-            if i == 0 || i >= parts { 0.0 } else { bend(&shape.ways, dim, i, k) }
+            if i == 0 || i >= parts { 0.0 } else { bend(&measured.segments, dim, i, k) }
         };
         self.step.clear();
         for i in 1..parts {
-            let [before, after] = [i - 1, i].map(|j| (j * dim, straighten / shape.lengths[j].max(1e-300)));
+            let [before, after] = [i - 1, i].map(|j| (j * dim, straighten / measured.lengths[j].max(1e-300)));
             for k in 0..dim {
-                let (came, goes) = (shape.ways[before.0 + k], shape.ways[after.0 + k]);
-                let stretch = membrane / h * (came - goes);
+                let (incoming, outgoing) = (measured.segments[before.0 + k], measured.segments[after.0 + k]);
+                let stretch = membrane / h * (incoming - outgoing);
                 let curl = plate / (h * h * h) * (bent(i - 1, k) - 2.0 * bent(i, k) + bent(i + 1, k));
-                let slack = before.1 * came - after.1 * goes;
-                let push = h * shape.pushes[(i - 1) * dim + k];
+                let slack = before.1 * incoming - after.1 * outgoing;
+                let push = h * measured.gradients[(i - 1) * dim + k];
                 self.step.push(-pace / h * (stretch + curl + slack + push));
             }
         }
@@ -324,12 +331,12 @@ impl<'c, C: Space> Snake<'c, C> {
         self.bands[rows].get_or_insert_with(|| Band::new(rows, a, b)).solve(&mut self.step, dim);
     }
 
-    /// Goes as large a part of the step as does not raise the energy: that part, `None` when there is none.
+    /// Takes the largest part of the step that does not raise the energy. Returns that part, or `None` when there is none.
     fn advance(
         &mut self,
         curve: &mut [C::State],
         field: &mut impl Field<C::State>,
-        now: &mut Shape,
+        now: &mut CurveMeasurement,
     ) -> Option<f64> {
         let most = now.energy.total() * (1.0 + 1e-12) + 1e-300;
         let mut next = std::mem::take(&mut self.next);
@@ -374,8 +381,8 @@ impl<'c, C: Space> Snake<'c, C> {
 
 /// The second difference of a curve at node `i`.
 #[inline]
-fn bend(ways: &[f64], dim: usize, i: usize, k: usize) -> f64 {
-    ways[i * dim + k] - ways[(i - 1) * dim + k]
+fn bend(segments: &[f64], dim: usize, i: usize, k: usize) -> f64 {
+    segments[i * dim + k] - segments[(i - 1) * dim + k]
 }
 
 #[inline]
@@ -383,10 +390,10 @@ pub(crate) fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Takes from `push` its part along the curve: the way that comes to the node and the one that goes on.
+/// Removes from `push` its component along the curve, which is the sum of the segments before and after the node.
 #[inline]
-fn across(push: &mut [f64], came: &[f64], goes: &[f64]) {
-    let along = || came.iter().zip(goes).map(|(c, g)| c + g);
+fn across(push: &mut [f64], incoming: &[f64], outgoing: &[f64]) {
+    let along = || incoming.iter().zip(outgoing).map(|(c, g)| c + g);
     let square: f64 = along().map(|a| a * a).sum();
     if square > 0.0 {
         let part: f64 = push.iter().zip(along()).map(|(p, a)| p * a).sum::<f64>() / square;

@@ -1,12 +1,11 @@
 //! The rapidly-exploring random tree family: one engine, and one file per named algorithm. [`algo`] has the table of them.
 //!
 //! [`SharedTree`] ([`algo::shared_tree`]) is RRT on several threads, which grow one tree together.
-//! Two run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
+//! Two meta-planners run other planners: [`OrParallel`] ([`algo::or_parallel`]) several at once, [`Restarts`]
 //! ([`algo::restarts`]) one after the other. [`build_from`] makes them by name.
 //!
-//! A planner is made from a checked [`Problem`] and works through the trait
-//! [`Planner`](mp_cspace::Planner): one step at a time, or until a stop says so. [`build`] makes
-//! one by name.
+//! A planner is made from a checked [`Problem`] and is run through the trait [`Planner`](mp_cspace::Planner): one step
+//! at a time, or until a stop ends it. [`build`] makes one by name.
 //!
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Rng, Straight};
@@ -29,8 +28,8 @@
 //! ```
 //!
 //! # The engine
-//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant is: sample a
-//! target, select nodes, extend them toward it, insert what came of it. Each verb is a slot:
+//! A [`SearchTree`] is a [`Tree`] with its policies. Every iteration of every variant samples a target, selects nodes,
+//! extends them toward the target and inserts the motions. Each of these verbs is a slot:
 //!
 //! | slot | trait | here |
 //! |---|---|---|
@@ -38,14 +37,14 @@
 //! | which nodes to grow from | [`Selector`] | [`NearestSelector`], [`DynamicDomain`], [`LeastViolated`], [`Unexhausted`] |
 //! | how far | [`Extender`] | [`Extend`], [`Connect`], [`UtilityGuided`], [`ObstacleGuided`], [`Untried`], [`Cyclic`] |
 //! | how a motion joins the tree | [`Inserter`] | [`Append`], [`AppendDistinct`], [`AppendApart`], [`Rewire`] |
-//! | how one state reaches for another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
+//! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you |
 //!
-//! A variant is a [`Recipe`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
-//! the loop of anytime planners, which go on for better paths.
+//! A variant is a set of [`TreePlannerParts`] for one of three loops: [`SingleTree`], [`TwoTrees`], and [`Improving`],
+//! the loop of anytime planners.
 //!
 //! # Writing your own planner
-//! A variant of the family is made of slots, those here or your own. RRT whose tree is as greedy as those of
-//! [`RrtConCon`]:
+//! A variant of the family fills the slots with policies, those here or your own. RRT whose tree is as greedy as those
+//! of [`RrtConCon`]:
 //! ```
 //! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
 //! # use mp_tree::Problem;
@@ -57,21 +56,21 @@
 //! # let (start, goal) = (Vector2::new(0.1, 0.5), Vector2::new(0.9, 0.5));
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //! use mp_cspace::{Linear, Uniform};
-//! use mp_tree::{Append, Connect, NearestSelector, Recipe, Samples, SingleTree, Tuning};
+//! use mp_tree::{Append, Connect, NearestSelector, Samples, SingleTree, TreePlannerParts, Tuning};
 //!
-//! let propose = Samples(Uniform(&space));
-//! let (select, grow) = (NearestSelector(Linear::new()), Connect::default());
-//! let recipe = Recipe { propose, select, grow, attach: Append, tuning: Tuning::default() };
-//! let mut planner = SingleTree::assemble(problem, recipe)?;
+//! let target_sampler = Samples(Uniform(&space));
+//! let (selector, extender) = (NearestSelector(Linear::new()), Connect::default());
+//! let parts = TreePlannerParts { target_sampler, selector, extender, inserter: Append, tuning: Tuning::default() };
+//! let mut planner = SingleTree::assemble(problem, parts)?;
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! assert!(matches!(outcome, Outcome::Solved(_)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! The loops try the straight way to the goal first, unless the growth [declines](Extender::leaps).
+//! The loops try the straight motion to the goal first, unless the extender [declines](Extender::allows_direct).
 //!
 //! A planner with a loop of its own takes from the engine what it needs: [`Core`] has the ends of the problem and traces
-//! and verifies paths, [`SearchTree`] is a tree that grows, and forgets what hangs on an edge the verifier refuses. A tree
-//! that grows from random nodes:
+//! and verifies paths; [`SearchTree`] is a tree that grows, and that prunes the subtree below an edge the verifier
+//! rejects. A tree that grows from random nodes:
 //! ```
 //! use mp_cspace::{Direction, Linear, LocalPlanner, NodeId, Observer, Path, Planner, Progress, Rng, Space};
 //! use mp_tree::{AppendDistinct, SearchTree, Core, Extend, Grown, NearestSelector};
@@ -79,7 +78,7 @@
 //!
 //! struct RandomTree<'c, C: Space, L: LocalPlanner<C::State>> {
 //!     core: Core<'c, C, L>,
-//!     branch: SearchTree<C, L, NearestSelector<Linear>, AppendDistinct>,
+//!     tree: SearchTree<C, L, NearestSelector<Linear>, AppendDistinct>,
 //! }
 //!
 //! impl<C: Space, L: LocalPlanner<C::State>> Planner<C::State> for RandomTree<'_, C, L> {
@@ -90,23 +89,23 @@
 //!         rng: &mut Rng,
 //!         observer: &mut dyn Observer<C::State>,
 //!     ) -> Option<Path<C::State, L::Edge>> {
-//!         let Self { core, branch } = self;
+//!         let Self { core, tree } = self;
 //!         core.iterations += 1;
-//!         if let Some(root) = core.plant(branch, observer) {
-//!             return core.path(branch, root, observer, |_| ());
+//!         if let Some(root) = core.add_start(tree, observer) {
+//!             return core.path(tree, root, observer, |_| ());
 //!         }
 //!         let goal = core.aim(rng);
-//!         let target = goal.clone().unwrap_or_else(|| core.steer.space().sample_uniform(rng));
-//!         let from = rng.random_range(0..branch.tree().len()) as NodeId;
-//!         let grown = branch.grow_from(from, &target, &mut core.steer, &mut Extend, rng, observer);
+//!         let target = goal.clone().unwrap_or_else(|| core.checker.space().sample_uniform(rng));
+//!         let from = rng.random_range(0..tree.nodes().len()) as NodeId;
+//!         let grown = tree.grow_from(from, &target, &mut core.checker, &mut Extend, rng, observer);
 //!         match grown {
-//!             Grown::Reached(id) if goal.is_some() => core.path(branch, id, observer, |_| ()),
+//!             Grown::Reached(id) if goal.is_some() => core.path(tree, id, observer, |_| ()),
 //!             _ => None,
 //!         }
 //!     }
 //!
 //!     fn progress(&self) -> Progress {
-//!         self.core.progress(self.branch.tree().len())
+//!         self.core.progress(self.tree.nodes().len())
 //!     }
 //! }
 //! # use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Resolution, Rn, Straight};
@@ -120,22 +119,22 @@
 //! # let problem = Problem::new(&space, local, verifier, start, goal)?;
 //!
 //! let tuning = Tuning { step: Step::Fraction(0.2), goal_bias: 0.2, ..Tuning::default() };
-//! let branch = SearchTree::new(0, Direction::Forward, NearestSelector(Linear::new()), AppendDistinct::default());
-//! let mut planner = RandomTree { core: Core::new(problem, &tuning)?, branch };
+//! let tree = SearchTree::new(0, Direction::Forward, NearestSelector(Linear::new()), AppendDistinct::default());
+//! let mut planner = RandomTree { core: Core::new(problem, &tuning)?, tree };
 //! let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 //! assert!(matches!(outcome, Outcome::Solved(_)));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # What is promised
-//! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that
-//!   fails is removed from the tree with all that hangs on it, and planning goes on.
+//! # Guarantees
+//! - A path is returned only after a [verifier](Verify) has passed each of its edges. An edge that fails is removed from
+//!   the tree with the subtree below it, and planning goes on.
 //! - Bad input is a [`BuildError`] before planning begins.
-//! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping
-//!   and going on changes nothing.
+//! - The same problem, parameters and random numbers give the same path, bit for bit. Stopping and continuing changes
+//!   nothing.
 //! - No tree has two nodes with the same state.
-//! - A panic in a local planner, verifier, goal or observer leaves the planner as it was but for the
-//!   step it interrupts: whoever catches it may look at the trees and step on.
+//! - A panic in a local planner, verifier, goal or observer loses only the step it interrupts: a caller that catches it
+//!   may inspect the trees and continue.
 
 pub mod algo;
 mod by_name;
@@ -149,17 +148,17 @@ pub use algo::types::*;
 pub use by_name::{AnyPlanner, INPUTS, LEVELS};
 pub use engine::{
     Acceptable, Append, AppendApart, AppendDistinct, Connect, Core, Extend, Extender, GOAL_BIAS, Growing,
-    Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Recipe,
-    Rewire, STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, TreeEdgeChecker, Tuning,
-    TwoTrees, Untried, improve,
+    Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Rewire,
+    STEP, Samples, SearchTree, Selector, SingleTree, TargetSampler, Tree, TreePlannerParts, Tuning, TwoTrees,
+    Untried, improve,
 };
 pub use mp_cspace::AnyProblem;
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{
-    BuildError, Endpoint, Goals, Problem, Step, Verify, Workers,
+    BuildError, EdgeChecker, Endpoint, Goals, Problem, Step, Verify, Workers,
     registry::{Demand, Parameter, PlannerInfo, Settings, closest},
 };
 pub use registry::{
-    MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, planner, planners,
-    wrappers,
+    MetaPlanner, PlannerSpec, ProblemFactory, TreeState, build, build_from, build_with, meta_planners,
+    planner, planners,
 };

@@ -7,7 +7,8 @@ use mp::cspace::{
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};
 use mp::tree::{
-    Append, Connect, Goals, NearestSelector, Problem, Recipe, Rrt, Samples, SingleTree, Step, Tuning,
+    Append, Connect, Goals, NearestSelector, Problem, Rrt, Samples, SingleTree, Step, TreePlannerParts,
+    Tuning,
 };
 use nalgebra::Isometry3;
 
@@ -36,9 +37,15 @@ fn through(gate: &[(f64, f64)], connect: bool, iterations: u64) -> Option<Path<S
     let tuning = Tuning { step: Step::Length(2.0), ..Tuning::default() };
     let (mut rng, mut stop) = (Rng::seed(1), Iterations(iterations));
     let outcome = if connect {
-        let (propose, select) = (Samples(Uniform(&space)), NearestSelector::<KdTree>::default());
-        let recipe = Recipe { propose, select, grow: Connect::default(), attach: Append, tuning };
-        SingleTree::assemble(problem, recipe).unwrap().solve(&mut rng, &mut stop, &mut ())
+        let (target_sampler, selector) = (Samples(Uniform(&space)), NearestSelector::<KdTree>::default());
+        let parts = TreePlannerParts {
+            target_sampler,
+            selector,
+            extender: Connect::default(),
+            inserter: Append,
+            tuning,
+        };
+        SingleTree::assemble(problem, parts).unwrap().solve(&mut rng, &mut stop, &mut ())
     } else {
         Rrt::new(problem, tuning).unwrap().solve(&mut rng, &mut stop, &mut ())
     };

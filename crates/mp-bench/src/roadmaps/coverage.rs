@@ -1,6 +1,6 @@
 //! How many nodes cover the same part of the free space: Visib-PRM against PRM.
 
-use super::queries::{local, steer};
+use super::queries::{checker, local};
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Group, Lab, Median, Table, short};
@@ -144,21 +144,21 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, seed: u64) -> Result<Measured> {
         }
     }
     let index = <M::Space as DefaultNn>::Nn::default();
-    let recipe = visibility_prm::recipe(space, FAILURES).into_error()?;
-    let mut few = Builder::new(steer(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
+    let parts = visibility_prm::parts(space, FAILURES).into_error()?;
+    let mut few = Builder::new(checker(scene, verifier.clone())?, parts.generator, parts.connector, index);
     let began = nanoseconds();
     few.build(&mut Rng::seed(seed), &mut Iterations(10_000_000), &mut ());
     let seconds = seconds_since(began);
-    let guards = few.map().tags().filter(|tag| tag.kind == mp_roadmap::Kind::Guard);
+    let guards = few.map().tags().filter(|tag| tag.kind == mp_roadmap::MilestoneKind::Guard);
     let (guards, estimate) = (guards.count() as f64, few.connector().coverage());
     let aim = seen(scene, few.map_mut(), &mut fresh(&samples))?;
     let (nodes, components) = (few.map().len() as f64, few.map_mut().components() as f64);
 
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
     let learning = Learning { expand: 0.0, ..Learning::default() };
-    let recipe = prm::recipe(space, reach, learning).into_error()?;
+    let parts = prm::parts(space, reach, learning).into_error()?;
     let index = <M::Space as DefaultNn>::Nn::default();
-    let mut many = Builder::new(steer(scene, verifier)?, recipe.generate, recipe.connect, index);
+    let mut many = Builder::new(checker(scene, verifier)?, parts.generator, parts.connector, index);
     let (mut size, mut spent, mut rng) = (4, 0.0, Rng::seed(seed));
     let mut needed: [Option<Needed>; 2] = [None; 2];
     let mut samples = fresh(&samples);

@@ -1,6 +1,6 @@
 //! The time to build a roadmap, against its number of nodes.
 
-use super::queries::steer;
+use super::queries::checker;
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Table, short};
@@ -21,10 +21,10 @@ pub(super) fn measure(quick: bool) -> Result<Table> {
 fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
     let learning = Learning { expand: 0.0, ..Learning::default() };
-    let recipe = prm::recipe(scene.space(), reach, learning).into_error()?;
+    let parts = prm::parts(scene.space(), reach, learning).into_error()?;
     let index = <M::Space as DefaultNn>::Nn::default();
-    let steer = steer(scene, scene.verifier()?)?;
-    let mut builder = Builder::new(steer, recipe.generate, recipe.connect, index);
+    let checker = checker(scene, scene.verifier()?)?;
+    let mut builder = Builder::new(checker, parts.generator, parts.connector, index);
     let mut table = Table::new([
         "nodes",
         "build s",

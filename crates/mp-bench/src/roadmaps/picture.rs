@@ -1,7 +1,7 @@
 //! Pictures of roadmaps, as SVG: the coverage of whole scenes; the roadmap with which each algorithm solved a corridor; and
 //! the configurations around an obstacle that obstacle-geometry PRM and OBPRM propose.
 
-use super::queries::{Local, steer};
+use super::queries::{Local, checker};
 use super::scenes::CORRIDORS;
 use super::svg_drawing::{Projection, SvgDrawing};
 use crate::error::{IntoError, Result};
@@ -15,8 +15,8 @@ use mp_io::{Body, PlacedBody, RigidProblem, SpaceKind};
 use mp_plan::{Control, Error, RigidScene, RigidSpace, RobotKind, search};
 use mp_roadmap::algo::{prm, visibility_prm};
 use mp_roadmap::{
-    AroundObstacles, Builder, ByGeometry, Candidate, Connector, Kind, Learning, LinkState, NodeGenerator,
-    OnObstacles, OnSurfaces, Reachable, Roadmap, Strategy,
+    AroundObstacles, Builder, ByGeometry, Candidate, Connector, Learning, LinkState, MilestoneKind,
+    NodeGenerator, OnObstacles, OnSurfaces, Reachable, Roadmap, Strategy,
 };
 use mp_robot::Spatial;
 use nalgebra::{Isometry3, Point3, Vector3};
@@ -36,14 +36,14 @@ const PURPLE: &str = "#8f5bb8";
 const ORANGE: &str = "#e6892d";
 
 /// The colour of nodes of a kind; guards are black and connections white.
-fn colour(kind: Kind) -> &'static str {
+fn colour(kind: MilestoneKind) -> &'static str {
     match kind {
-        Kind::Guard | Kind::End => "#000",
-        Kind::Connection => "#fff",
-        Kind::Expanded => ORANGE,
-        Kind::Near | Kind::Contact => RED,
-        Kind::Far => GREEN,
-        Kind::Salvaged => PURPLE,
+        MilestoneKind::Guard | MilestoneKind::End => "#000",
+        MilestoneKind::Connection => "#fff",
+        MilestoneKind::Expanded => ORANGE,
+        MilestoneKind::Near | MilestoneKind::Contact => RED,
+        MilestoneKind::Far => GREEN,
+        MilestoneKind::Salvaged => PURPLE,
         _ => BLUE,
     }
 }
@@ -72,10 +72,10 @@ fn covered<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let (space, name) = (scene.space(), &scene.problem().name);
     let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
     let learning = Learning { learn: NODES * 2 / 3, ..Learning::default() };
-    let recipe = prm::recipe(space, reach, learning).into_error()?;
-    let prm = built(scene, recipe.generate, recipe.connect, Nodes(NODES))?;
-    let recipe = visibility_prm::recipe(space, 1_000).into_error()?;
-    let visible = built(scene, recipe.generate, recipe.connect, Iterations(1_000_000))?;
+    let parts = prm::parts(space, reach, learning).into_error()?;
+    let prm = built(scene, parts.generator, parts.connector, Nodes(NODES))?;
+    let parts = visibility_prm::parts(space, 1_000).into_error()?;
+    let visible = built(scene, parts.generator, parts.connector, Iterations(1_000_000))?;
     for (planner, map) in [("prm", prm), ("visibility-prm", visible)] {
         let mut drawing = SvgDrawing::new(&scene.problem().position_bounds(), Projection::Above, 900.0, &[]);
         obstacles(&mut drawing, scene.problem());
@@ -87,8 +87,8 @@ fn covered<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
 
 fn built<'c, M: RigidSpace, G, K>(
     scene: &'c RigidScene<M>,
-    generate: G,
-    connect: K,
+    generator: G,
+    connector: K,
     mut stop: impl Stop,
 ) -> Result<Roadmap<M::State>>
 where
@@ -96,7 +96,7 @@ where
     K: Connector<M::Space, Local<'c, M>>,
 {
     let index = <M::Space as DefaultNn>::Nn::default();
-    let mut builder = Builder::new(steer(scene, scene.verifier()?)?, generate, connect, index);
+    let mut builder = Builder::new(checker(scene, scene.verifier()?)?, generator, connector, index);
     builder.build(&mut Rng::seed(1), &mut stop, &mut ());
     Ok(builder.into_map())
 }
@@ -116,10 +116,14 @@ fn roadmap<M: RigidSpace>(drawing: &mut SvgDrawing, map: &Roadmap<M::State>, rad
         let ends = edges.map(|(_, ends, _)| ends.map(|end| place::<M>(map.state(end))));
         drawing.lines(ends, colour, 0.8);
     }
-    for kind in Kind::ALL {
+    for kind in MilestoneKind::ALL {
         let tagged = map.states().iter().zip(map.tags());
         let places: Vec<_> = tagged.filter(|(_, tag)| tag.kind == kind).map(|(q, _)| place::<M>(q)).collect();
-        let radius = if matches!(kind, Kind::Guard | Kind::Connection) { radius * 1.7 } else { radius };
+        let radius = if matches!(kind, MilestoneKind::Guard | MilestoneKind::Connection) {
+            radius * 1.7
+        } else {
+            radius
+        };
         if !places.is_empty() {
             drawing.dots(places.iter().copied(), "#000", radius + 0.7);
             drawing.dots(places, colour(kind), radius);
@@ -180,7 +184,7 @@ fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
     let geometry = |far| AroundObstacles::new(robot.clone(), ByGeometry { far, bands: 20 }).into_error();
     let far = candidates(scene, geometry(1_000)?, 0..60)?;
     let near = candidates(scene, geometry(0)?, 0..60)?;
-    let near: Vec<_> = near.into_iter().filter(|c| c.kind == Kind::Near).collect();
+    let near: Vec<_> = near.into_iter().filter(|c| c.kind == MilestoneKind::Near).collect();
     let (parallel, across): (Vec<_>, Vec<_>) = near.into_iter().map(|c| c.state).partition(along);
     let far = far.into_iter().map(|c| c.state).collect::<Vec<_>>();
     let caption = format!("far, by spheres alone: {} green; near, by the elastic band:", far.len());
@@ -211,13 +215,13 @@ fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
 
 fn candidates<'c, M: RigidSpace, G: NodeGenerator<M::Space, Local<'c, M>>>(
     scene: &'c RigidScene<M>,
-    mut generate: G,
+    mut generator: G,
     attempts: std::ops::Range<u64>,
 ) -> Result<Vec<Candidate<M::State, ()>>> {
-    let mut steer = steer(scene, scene.verifier()?)?;
+    let mut checker = checker(scene, scene.verifier()?)?;
     let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
     for attempt in attempts {
-        generate.generate(attempt, &map, &mut steer, &mut Rng::stream(1, attempt), &mut out);
+        generator.generate(attempt, &map, &mut checker, &mut Rng::stream(1, attempt), &mut out);
         all.append(&mut out);
     }
     Ok(all)

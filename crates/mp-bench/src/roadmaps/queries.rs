@@ -30,7 +30,7 @@ pub(super) fn local<M: RigidSpace>(scene: &RigidScene<M>) -> Result<Local<'_, M>
 }
 
 /// The edge checker of roadmaps in a scene.
-pub(super) fn steer<'c, M: RigidSpace>(
+pub(super) fn checker<'c, M: RigidSpace>(
     scene: &'c RigidScene<M>,
     verifier: Verifier<'c, M::Space, M>,
 ) -> Result<EdgeChecker<'c, M::Space, Local<'c, M>>> {
@@ -107,10 +107,10 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
     row("RRT-Connect", [const { String::new() }; 3], &alone);
     for &size in sizes {
         let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles: false };
-        let recipe = prm::recipe(space, reach, Learning::default()).into_error()?;
+        let parts = prm::parts(space, reach, Learning::default()).into_error()?;
         let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
         let mut builder =
-            Builder::new(steer(scene, verifier.clone())?, recipe.generate, recipe.connect, index);
+            Builder::new(checker(scene, verifier.clone())?, parts.generator, parts.connector, index);
         let began = nanoseconds();
         builder.build(&mut Rng::seed(1), &mut Nodes(size), &mut ());
         let build = seconds_since(began);
@@ -129,7 +129,7 @@ fn on<M: RigidSpace>(scene: &RigidScene<M>, quick: bool) -> Result<Table> {
         ask("roadmap", build, &mut builder.into_answers(NEIGHBOURS));
         let index = <M::Space as mp_cspace::DefaultNn>::Nn::default();
         let mut answers =
-            RoadmapQueries::new(steer(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
+            RoadmapQueries::new(checker(scene, verifier.clone())?, map, index, NEIGHBOURS).into_error()?;
         let began = nanoseconds();
         answers.verify();
         let verified = seconds_since(began);

@@ -1,6 +1,6 @@
 //! Runs of all planners on all scenes, each with the same budget of collision queries.
 
-use super::queries::steer;
+use super::queries::checker;
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Log};
@@ -146,8 +146,8 @@ fn one<M: RigidSpace>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel)
     };
     if let (true, Some(map)) = (run.solved, done.roadmap) {
         let index = <<M as RigidSpace>::Space as DefaultNn>::Nn::default();
-        let steer = steer(scene, scene.verifier()?)?;
-        let mut answers = RoadmapQueries::new(steer, map, index, NEIGHBOURS).into_error()?;
+        let checker = checker(scene, scene.verifier()?)?;
+        let mut answers = RoadmapQueries::new(checker, map, index, NEIGHBOURS).into_error()?;
         let began = nanoseconds();
         let answer = answers.answer(scene.start(), &scene.goals()[0]);
         run.again = answer.is_ok().then(|| seconds_since(began));

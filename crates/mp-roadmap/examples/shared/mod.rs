@@ -1,4 +1,4 @@
-//! A bug trap in the plane, and how to tell what a planner made of it.
+//! A bug trap and a narrow gap in the plane, and how to print what a planner made of them.
 #![allow(clippy::print_stdout, dead_code, unreachable_pub)] // examples talk, and use their part
 
 use mp_cspace::{
@@ -24,9 +24,23 @@ pub fn square() -> Result<Rn<2>> {
 
 /// From the middle of the ring to a place outside, on the side away from the opening.
 pub fn bug_trap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Local<'_>>> {
-    let check = Discrete::new(space, free as fn(&Point) -> bool, Resolution::Fraction(0.005))?;
+    problem(space, free, 0.005, [Point::new(0.5, 0.5), Point::new(0.05, 0.5)])
+}
+
+/// Through a narrow gap in a thick wall.
+pub fn gap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Local<'_>>> {
+    let free = |q: &Point| (q.x - 0.5).abs() > 0.2 || (q.y - 0.7).abs() < 0.01;
+    problem(space, free, 0.002, [Point::new(0.1, 0.2), Point::new(0.9, 0.2)])
+}
+
+fn problem(
+    space: &Rn<2>,
+    free: fn(&Point) -> bool,
+    resolution: f64,
+    [start, goal]: [Point; 2],
+) -> Result<Problem<'_, Rn<2>, Local<'_>>> {
+    let check = Discrete::new(space, free, Resolution::Fraction(resolution))?;
     let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?;
-    let (start, goal) = (Point::new(0.5, 0.5), Point::new(0.05, 0.5));
     Ok(Problem::new(space, Straight::new(space, check), verifier, start, goal)?)
 }
 
@@ -37,7 +51,7 @@ pub fn rng() -> Result<Rng> {
 
 /// Plans, and prints the path.
 pub fn run(planner: &mut impl Planner<Point>) -> Result {
-    match planner.solve(&mut rng()?, &mut Iterations(50_000), &mut ()) {
+    match planner.solve(&mut rng()?, &mut Iterations(100_000), &mut ()) {
         Outcome::Solved(path) => path.states.iter().for_each(|q| println!("{:8.3} {:8.3}", q.x, q.y)),
         Outcome::Stopped(reason) => println!("no path: {reason:?}"),
     }

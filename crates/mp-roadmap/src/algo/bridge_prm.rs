@@ -4,27 +4,27 @@
 //! planners*, ICRA 2003.
 //!
 //! Repeat:
-//! 1. draw a sample, uniform in the space; go on when it is not free;
-//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation `sigma`: here on
-//!    the way to a third sample, and no farther than that;
-//! 3. if that is not free either, but the state in their middle is, take that one;
+//! 1. draw a sample, uniform in the space; continue if it is not free;
+//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation `sigma`: here
+//!    toward a third sample, and no farther than that;
+//! 3. if that is not free either, but the state in the middle between them is, take that state;
 //! 4. connect it to the nearest nodes, as [PRM](super::prm) does;
-//! 5. a part `uniform` of the attempts are plain samples of PRM instead.
+//! 5. a part `uniform` of the attempts are uniform samples, as of PRM, instead.
 //!
 //! The path found is verified; an edge that fails is blocked.
 //!
-//! **When to use it.** Narrow passages, above all: most attempts fail, at the price of one or two tests each, and what is found is
-//! in passages. Half of the attempts are uniform, for the rest of the space.
+//! **When to use it.** For narrow passages: most attempts fail, at the cost of one or two tests each, and the samples found
+//! are in passages. Half of the attempts are uniform, for the rest of the space.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `sigma`: standard deviation of the distance, in the metric of the space or with % of its extent | positive | 10% |
 //! | `uniform`: part of the attempts that are uniform samples | \[0, 1\] | 0.5 |
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //!
-//! The authors mix as well, by weights that depend on the scene.
+//! The authors mix in uniform samples too, by weights that depend on the scene.
 //!
 //! A point goes through a gap in a wall:
 //! ```
@@ -47,10 +47,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
-use crate::engine::mixed::{sigma, uniform};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
-use crate::{AStar, Mixing, NearestConnector, PairRule, Pairs, RoadmapPlanner};
+use crate::{Mixing, PairRule, Pairs, PairsPlanner};
 use mp_cspace::{Bridge, Rng, Space, Step, registry::PlannerInfo};
 
 /// The defaults.
@@ -67,12 +67,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = Pairs::<BetweenObstacles>::read(given.space, given.settings, MIXING)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let parts = Pairs::<BetweenObstacles>::read(args.space, args.settings, MIXING)?;
+    args.build(parts)
 }
 
-/// The free middle of two states that are not: the rule of bridge-test PRM.
+/// Takes the middle of two states, where it is free and they are not: the rule of bridge-test PRM.
 #[derive(Clone, Copy, Debug)]
 pub struct BetweenObstacles;
 
@@ -88,5 +88,4 @@ impl PairRule for BetweenObstacles {
 }
 
 /// Bridge-test PRM: see the [module](self).
-pub type BridgePrm<'c, C, L, N> =
-    RoadmapPlanner<'c, C, L, Pairs<BetweenObstacles>, NearestConnector, AStar, N>;
+pub type BridgePrm<'c, C, L, N> = PairsPlanner<'c, C, L, N, BetweenObstacles>;

@@ -5,24 +5,24 @@
 //!
 //! Repeat:
 //! 1. draw a sample, uniform in the space;
-//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation `sigma`: here on
-//!    the way to a third sample, and no farther than that;
+//! 2. draw another at a distance from it that is normally distributed about zero with standard deviation `sigma`: here
+//!    toward a third sample, and no farther than that;
 //! 3. if exactly one of the two is free, take that one;
 //! 4. connect it to the nearest nodes, as [PRM](super::prm) does;
-//! 5. a part `uniform` of the attempts are plain samples of PRM instead.
+//! 5. a part `uniform` of the attempts are uniform samples, as of PRM, instead.
 //!
 //! The path found is verified; an edge that fails is blocked.
 //!
-//! **When to use it.** Narrow passages between large obstacles, in scenes with much open space: few nodes are spent there. `sigma`
-//! should be about the size of the robot.
+//! **When to use it.** For narrow passages between large obstacles, in scenes with much open space, which gets few nodes.
+//! `sigma` should be about the size of the robot.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `sigma`: standard deviation of the distance, in the metric of the space or with % of its extent | positive | 5% |
 //! | `uniform`: part of the attempts that are uniform samples | \[0, 1\] | 0.1 |
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //!
 //! The authors add no uniform samples; set `uniform` to 0 for that.
 //!
@@ -47,10 +47,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
-use crate::engine::mixed::{sigma, uniform};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
-use crate::{AStar, Mixing, NearestConnector, PairRule, Pairs, RoadmapPlanner};
+use crate::{Mixing, PairRule, Pairs, PairsPlanner};
 use mp_cspace::{Gaussian, Rng, Space, Step, registry::PlannerInfo};
 
 /// The defaults.
@@ -67,12 +67,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = Pairs::<NearObstacles>::read(given.space, given.settings, MIXING)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let parts = Pairs::<NearObstacles>::read(args.space, args.settings, MIXING)?;
+    args.build(parts)
 }
 
-/// Of two states, the free one where the other is not: the rule of Gaussian PRM.
+/// Takes the free one of two states, where the other is not free: the rule of Gaussian PRM.
 #[derive(Clone, Copy, Debug)]
 pub struct NearObstacles;
 
@@ -88,5 +88,4 @@ impl PairRule for NearObstacles {
 }
 
 /// Gaussian PRM: see the [module](self).
-pub type GaussianPrm<'c, C, L, N> =
-    RoadmapPlanner<'c, C, L, Pairs<NearObstacles>, NearestConnector, AStar, N>;
+pub type GaussianPrm<'c, C, L, N> = PairsPlanner<'c, C, L, N, NearObstacles>;

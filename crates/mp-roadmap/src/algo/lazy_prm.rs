@@ -1,30 +1,30 @@
-//! LazyPRM: nothing is checked before a path leads along it.
+//! LazyPRM: nodes and edges are only checked when a path leads along them.
 //!
 //! R. Bohlin and L. E. Kavraki, *Path planning using lazy PRM*, ICRA 2000.
 //!
-//! 1. Take in start, goal and `first` samples, uniform in the space, as nodes, free or not;
+//! 1. add start, goal and `first` samples, uniform in the space, as nodes, free or not;
 //! 2. give each an edge to its nearest neighbours, at most `neighbours`, none farther than `radius`,
 //!    unchecked;
-//! 3. find the shortest way from start to goal;
+//! 3. find the shortest path from start to goal;
 //! 4. check its nodes that are not known to be free, alternately from both ends toward the middle; remove
 //!    the first that is not free with all its edges, and go to 3;
 //! 5. check its edges the same way; remove the first that is not free, and go to 3;
 //! 6. when no edge is removed, verify the path and return it;
-//! 7. when there is no way, add `more` nodes: half of them uniform, half about the middle of edges that were
-//!    removed, as there is something difficult; go to 2.
+//! 7. when there is no path, add `more` nodes: half of them uniform, half around the middle of edges that were
+//!    removed, where the space is difficult; go to 2.
 //!
-//! (The paper checks the edges of a way at coarse resolution first, then at finer ones. The checks of this
-//! library test in an order that finds obstacles of any size soon, and certified ones have no resolution;
-//! so edges are checked one after the other. Nodes about an edge are drawn from its middle, as far toward a
-//! uniform sample as a random part of its length.)
+//! (The paper checks the edges of a path at coarse resolution first, then at finer ones. The checks of this
+//! library test in an order that finds obstacles of any size early, and certified ones have no resolution;
+//! so edges are checked one after the other. Nodes around an edge are drawn from its middle toward a uniform sample, at a
+//! random part of the length of the edge.)
 //!
-//! **When to use it.** When checks are dear and the scene is not crowded: it checks little but what lies on
-//! a shortest path. Where most edges collide, each search finds another that does.
+//! **When to use it.** When checks are expensive and the scene is not crowded: it checks little beside the shortest paths.
+//! Where most edges collide, each search finds another that does.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `first`: nodes before the first search | 1, 2, … 10⁹ | 500 |
-//! | `more`: nodes added when there is no way | 1, 2, … 10⁹ | 100 |
+//! | `more`: nodes added when there is no path | 1, 2, … 10⁹ | 100 |
 //! | `neighbours`, `radius` | as of [PRM](super::prm) | 15, 100% |
 //!
 //! A point goes around a disc in the unit square, with few motions checked:
@@ -47,15 +47,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::constructors;
 use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, EdgeId, Kind, LinkState, NearestConnector, NodeGenerator, Pace, Reachable,
-    Recipe, Roadmap, RoadmapPlanner,
+    AStar, Candidate, EdgeChecker, EdgeId, LinkState, MilestoneKind, NearestConnector, NodeGenerator, Pace,
+    Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space,
-    registry::{Parameter, PlannerInfo, Settings},
+    BuildError, LocalPlanner, Reversible, Rng, Space,
+    registry::{Parameter, PlannerInfo},
 };
 use rand::RngExt;
 
@@ -69,13 +70,13 @@ const MORE: Parameter = Parameter {
     name: "more",
     range: "a whole number, 1 to 10⁹",
     default: "100",
-    doc: "nodes added when there is no way",
+    doc: "nodes added when there is no path",
 };
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "lazy-prm",
-    summary: "a roadmap of which only what a path leads along is checked; when checks are dear",
+    summary: "a roadmap that is checked only along possible paths; when checks are expensive",
     citation: "Bohlin and Kavraki 2000",
     parameters: &[FIRST, MORE, NEIGHBOURS, RADIUS],
     aliases: &[],
@@ -83,19 +84,21 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let count = |parameter| Ok::<_, BuildError>(args.settings.count_of(parameter)? as usize);
+    let pace = Pace { first: count(&FIRST)?, more: count(&MORE)? };
+    let parts = parts(reachable(args.space, args.settings)?, pace)?;
+    args.build(parts)
 }
 
-/// Samples that are not checked: uniform ones, and once edges were removed also about their middles.
+/// Samples that are not checked: uniform ones, and once edges were removed also around their middles.
 #[derive(Clone, Debug)]
 pub struct Unchecked {
-    /// Uniform ones only, up to so many nodes.
+    /// Up to this many nodes there are only uniform samples.
     first: usize,
 }
 
-/// So many edges are looked at for one that was removed.
+/// How many random edges are tried to find one that was removed.
 const LOOKS: usize = 16;
 
 impl<C, L> NodeGenerator<C, L> for Unchecked
@@ -108,11 +111,11 @@ where
         &mut self,
         _: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
-        let space = steer.space();
+        let space = checker.space();
         let mut q = space.sample_uniform(rng);
         let edges = map.all_edges().len();
         if map.len() >= self.first && edges > 0 && rng.random::<bool>() {
@@ -130,7 +133,7 @@ where
             }
         }
         if space.contains(&q) {
-            out.push(Candidate::new(q, Kind::Plain));
+            out.push(Candidate::new(q, MilestoneKind::Plain));
         }
     }
 }
@@ -138,48 +141,22 @@ where
 /// LazyPRM: see the [module](self).
 pub type LazyPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Unchecked, NearestConnector, AStar, N>;
 
-impl<'c, C, L, N> LazyPrm<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// LazyPRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, pace: Pace) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Ok(Self::assemble(problem, N::default(), recipe(reach, pace)?))
-    }
+constructors! {
+    "LazyPRM" LazyPrm<C, L, N>,
+    |_, reach: Reachable, pace: Pace| parts(reach, pace)
 }
 
-/// The recipe of LazyPRM.
+/// The parts of LazyPRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe(
+pub fn parts(
     reach: Reachable,
     pace: Pace,
-) -> Result<Recipe<Unchecked, NearestConnector, AStar>, BuildError> {
+) -> Result<RoadmapPlannerParts<Unchecked, NearestConnector, AStar>, BuildError> {
     BuildError::count_within(FIRST.name, pace.first as u64, 1, 1_000_000_000)?;
     BuildError::count_within(MORE.name, pace.more as u64, 1, 1_000_000_000)?;
-    Ok(Recipe {
-        generate: Unchecked { first: pace.first },
-        connect: NearestConnector::unchecked(reach)?,
-        query: AStar::new(),
-        pace,
-        improves: false,
-    })
-}
-
-fn read<C: Space>(
-    space: &C,
-    settings: &Settings,
-) -> Result<Recipe<Unchecked, NearestConnector, AStar>, BuildError> {
-    let pace = Pace { first: settings.count_of(&FIRST)? as usize, more: settings.count_of(&MORE)? as usize };
-    recipe(reachable(space, settings)?, pace)
+    let generator = Unchecked { first: pace.first };
+    let parts = RoadmapPlannerParts::new(generator, NearestConnector::unchecked(reach)?);
+    Ok(RoadmapPlannerParts { pace, ..parts })
 }

@@ -1,10 +1,10 @@
-//! The named algorithms, one file each, and the list of those that are made by name.
+//! The algorithms, one file each, and the list of those that can be made by name.
 //!
 //! | algorithm | | nodes | edges |
 //! |---|---|---|---|
 //! | [`Prm`](crate::Prm) | [`prm`] | uniform, then more where connecting is difficult | to near nodes of other components |
-//! | [`PrmStar`](crate::PrmStar) | [`prm_star`] | uniform | to ever more near nodes; ever better paths |
-//! | [`LazyPrm`](crate::LazyPrm) | [`lazy_prm`] | uniform, not checked | to near nodes, checked when a way leads along them |
+//! | [`PrmStar`](crate::PrmStar) | [`prm_star`] | uniform | to a growing number of near nodes; anytime |
+//! | [`LazyPrm`](crate::LazyPrm) | [`lazy_prm`] | uniform, not checked | to near nodes, checked when a path leads along them |
 //! | [`VisibilityPrm`](crate::VisibilityPrm) | [`visibility_prm`] | guards that see no other guard; connections that see two components | from connections to guards |
 //! | [`GaussianPrm`](crate::GaussianPrm) | [`gaussian_prm`] | near obstacles | as PRM |
 //! | [`BridgePrm`](crate::BridgePrm) | [`bridge_prm`] | between obstacles, and uniform | as PRM |
@@ -20,25 +20,25 @@ pub mod prm;
 pub mod prm_star;
 pub mod visibility_prm;
 
-use crate::by_name::{Maker, Types};
+use crate::by_name::{BuildFn, Types};
 use mp_cspace::registry::PlannerInfo;
 
-/// Lists the planners made by name, each with the types of its file that stand at the root of the crate. Each file has an
+/// Lists the planners that can be made by name, each with the types of its file that the crate exports. Each file has an
 /// `INFO` and a `make`.
 macro_rules! planners {
     ($($module:ident: $($kind:ident),*;)+) => {
-        /// All of them.
+        /// All planners that can be made by name.
         pub(crate) const PLANNERS: &[PlannerInfo] = &[$($module::INFO),+];
 
-        /// The planner called `name`, and what makes it.
-        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, Maker<'c, 's, T>)> {
+        /// The planner called `name`, and the function that makes it.
+        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, BuildFn<'c, 's, T>)> {
             $(if $module::INFO.is_called(name) {
                 return Some((&$module::INFO, $module::make));
             })+
             None
         }
 
-        /// Their types.
+        /// The types that the crate exports.
         pub(crate) mod types {
             $($(pub use super::$module::$kind;)*)+
         }

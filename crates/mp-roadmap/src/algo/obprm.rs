@@ -7,36 +7,37 @@
 //! For one obstacle after the other, by `nodes`:
 //!
 //! `prototype` (PROTOTYPE NODE GENERATION)
-//! 1. C_in: the robot with its centre in that of the obstacle, turned at random until it collides;
+//! 1. C_in: the robot with its centre in that of the obstacle, rotated at random until it collides;
 //! 2. D: `directions` random directions from there: toward uniform samples;
 //! 3. for each, look for a free C_out, in equal steps as far as the surrounding spheres of robot and obstacle overlap;
 //! 4. find where contact ends between C_in and C_out by binary search: a *contact* configuration.
 //!
 //! `contact` (GENERATE CONTACT CONFIGURATION)
 //! 1. p_rob, a point of the robot, and p_obs, a point of the obstacle, both by `points`;
-//! 2. C_in: the robot with the one in the other, turned at random until it collides;
+//! 2. C_in: the robot with p_rob in p_obs, rotated at random until it collides;
 //! 3. d: one random direction; C_out and contact as above.
 //!
-//! `free`: from a contact configuration as in `contact`, on in the same direction for a random length of at most `gap`.
+//! `free`: from a contact configuration as in `contact`, a random length of at most `gap` farther in the same direction.
 //!
 //! `shells`: a contact configuration, and `shells` more behind it, `gap` apart.
 //!
-//! A part `uniform` of the attempts are uniform samples; the papers have none, and would leave scenes without obstacles
-//! without nodes. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the `per-obstacle` nearest of
-//! each obstacle (`obstacles`); in stages: first by the local planner, then, to what is still apart, by
-//! rotate-at-s at `turns` fractions of the way: 1/2, 0 and 1, in this order (see [`StagedConnector`]).
+//! A part `uniform` of the attempts are uniform samples; the papers have none, and so no nodes in scenes without
+//! obstacles. Each node is connected, by `connect`, to its nearest nodes (`nearest`), or to the `per-obstacle` nearest of
+//! each obstacle (`obstacles`); in stages: first by the local planner, then, to nodes still in other components, by
+//! rotate-at-s at `turns` fractions of the motion: 1/2, 0 and 1, in this order (see [`StagedConnector`]).
 //!
-//! The path found is verified; an edge that fails is blocked. Obstacles here are what hangs together
-//! ([`ObstacleGeometry`]); where the centre of one is outside of the space, or does not collide, points of surfaces stand in.
+//! The path found is verified; an edge that fails is blocked. An obstacle here is a connected part of the scene
+//! ([`ObstacleGeometry`]); where its centre is outside of the space, or does not collide, points of its surface are used.
 //!
-//! **When to use it.** Narrow passages that obstacles of moderate size leave between them. It needs
-//! [`ObstacleGeometry`], which rigid bodies among meshes have. With certified motions take `free`: nodes in contact have next to no
-//! clearance, so motions between them cost much to check, and mostly fail. A rod of 0.8 m by 0.1 m before a corridor 0.175 m wide, 20 seeds
-//! of 100,000 collision queries, certified: `free` 20 solved, `shells` 3, `contact` and `prototype` none, PRM 14; 0.1375 m wide: `free` 10, PRM 1.
+//! **When to use it.** For narrow passages between obstacles of moderate size. It needs [`ObstacleGeometry`], which rigid
+//! bodies among meshes have. With certified motions use `free`: nodes in contact have almost no clearance, so motions
+//! between them are expensive to check, and mostly fail. A rod of 0.8 m by 0.1 m before a corridor 0.175 m wide, 20 seeds
+//! of 100,000 collision queries, certified: `free` 20 solved, `shells` 3, `contact` and `prototype` none, PRM 14; 0.1375 m
+//! wide: `free` 10, PRM 1.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `nodes`: how they are made | prototype, contact, free, shells | free |
+//! | `nodes`: how nodes are generated | prototype, contact, free, shells | free |
 //! | `points`: of robot and obstacle | centers, vertices, surface | surface |
 //! | `directions`: of `prototype`, m | 1, 2, … 1000 | 10 |
 //! | `gap`: of `free` and `shells`, in the metric of the space or with % of its extent | positive | 1% |
@@ -46,8 +47,8 @@
 //! | `per-obstacle`: most of each obstacle, k | 1, 2, … 10⁶ | 3 |
 //! | `turns`: fractions tried in the second stage | 0, 1, 2, 3 | 1 |
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //!
 //! A disc goes between two boxes:
 //! ```
@@ -72,50 +73,51 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
-use crate::engine::mixed::{drew_uniform, part, uniform};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::constructors;
+use crate::engine::pairs::{drew_uniform, part, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, Kind, NeighborSet, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner, StagedConnector, Turns,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Reachable, Roadmap,
+    RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space, Step,
+    BuildError, LocalPlanner, Reversible, Rng, Space, Step,
     obstacles::{ObstacleGeometry, PointOf},
     registry::{Parameter, PlannerInfo, Settings},
 };
 use rand::RngExt;
 
-/// States looked at for one that is free.
+/// States tested to find one that is free.
 const LOOKS: u32 = 16;
 /// Halvings of the binary search.
 const HALVINGS: u32 = 12;
-/// Turns tried for one that collides.
+/// Rotations tried to find one that collides.
 const TRIES: usize = 10;
 
-/// How nodes are made.
+/// How nodes are generated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Strategy {
     /// Contact configurations in many directions from the centre of the obstacle.
     Prototype,
-    /// Contact configurations from a point of the robot in a point of the obstacle.
+    /// Contact configurations with a point of the robot in a point of the obstacle.
     Contact,
     /// Free configurations behind contact.
     Free,
-    /// Contact configurations with more behind them.
+    /// Contact configurations with further ones behind them.
     Shells,
 }
 
 /// The parameters of OBPRM.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OnSurfaces {
-    /// How nodes are made.
+    /// How nodes are generated.
     pub strategy: Strategy,
     /// Which points of robot and obstacle are put into each other.
     pub points: PointOf,
     /// Directions of [`Strategy::Prototype`]; 1 or more.
     pub directions: usize,
-    /// How far behind contact free nodes are at most, and shells from each other.
+    /// The greatest distance of free nodes from contact, and the distance between shells.
     pub gap: Step,
     /// Shells behind contact; 1 or more.
     pub shells: usize,
@@ -123,7 +125,7 @@ pub struct OnSurfaces {
     pub uniform: f64,
     /// To which nodes a new one is connected.
     pub among: NeighborSet,
-    /// How many fractions of the way are tried for a turn in place: at most 3.
+    /// At how many fractions of the motion a turn in place is tried: at most 3.
     pub turns: usize,
 }
 
@@ -136,7 +138,7 @@ impl Default for OnSurfaces {
             gap: Step::Fraction(0.01),
             shells: 3,
             uniform: 0.1,
-            among: NeighborSet::NearestConnector,
+            among: NeighborSet::Nearest,
             turns: 1,
         }
     }
@@ -154,7 +156,7 @@ const fn parameter(
     Parameter { name, range, default, doc }
 }
 const NODES: Parameter =
-    parameter("nodes", "prototype, contact, free or shells", "free", "how nodes are made");
+    parameter("nodes", "prototype, contact, free or shells", "free", "how nodes are generated");
 const POINTS: Parameter =
     parameter("points", "centers, vertices or surface", "surface", "which points are put into each other");
 const DIRECTIONS: Parameter =
@@ -163,14 +165,14 @@ const GAP: Parameter = parameter(
     "gap",
     "in (0, extent of the space], or with % in (0%, 100%] of the extent",
     "1%",
-    "how far behind contact `free` nodes are at most, and `shells` from each other",
+    "greatest distance of `free` nodes from contact, and distance between `shells`",
 );
 const SHELLS: Parameter = parameter("shells", "a whole number, 1 to 100", "3", "shells behind contact");
 const CONNECT: Parameter = parameter(
     "connect",
     "nearest or obstacles",
     "nearest",
-    "to the nearest nodes, or those of each obstacle",
+    "to the nearest nodes, or to the nearest of each obstacle",
 );
 const PER_OBSTACLE: Parameter =
     parameter("per-obstacle", "a whole number, 1 to 10⁶", "3", "most nodes of each obstacle (k)");
@@ -178,7 +180,7 @@ const TURNS: Parameter = parameter(
     "turns",
     "a whole number, 0 to 3",
     "1",
-    "fractions of the way (1/2, 0, 1) at which rotate-at-s is tried where the straight line fails",
+    "fractions of a motion (1/2, 0, 1) at which rotate-at-s is tried where the straight motion fails",
 );
 
 impl OnSurfaces {
@@ -203,7 +205,7 @@ impl OnSurfaces {
         };
         let each = NeighborSet::EachObstacle(settings.count_of(&PER_OBSTACLE)? as usize);
         let among = |word: &str| match word {
-            "nearest" => Some(NeighborSet::NearestConnector),
+            "nearest" => Some(NeighborSet::Nearest),
             "obstacles" => Some(each),
             _ => None,
         };
@@ -244,9 +246,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.geometry(INFO.name)?, given.settings)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let (geometry, reach) = (args.geometry(INFO.name)?, reachable(args.space, args.settings)?);
+    let parts = parts(args.space, geometry, reach, OnSurfaces::read(args.settings)?)?;
+    args.build(parts)
 }
 
 /// Configurations on and near the surfaces of obstacles: the generator of OBPRM.
@@ -271,7 +274,7 @@ impl<H> OnObstacles<H> {
     fn inside<C, L>(
         &self,
         obstacle: usize,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
     ) -> Option<C::State>
     where
@@ -279,38 +282,38 @@ impl<H> OnObstacles<H> {
         L: LocalPlanner<C::State, Edge: Reversible>,
         H: ObstacleGeometry<C::State>,
     {
-        let space = steer.space();
+        let space = checker.space();
         let asked =
             if self.with.strategy == Strategy::Prototype { PointOf::Center } else { self.with.points };
         (0..TRIES).find_map(|i| {
-            // Where what is asked for does not do, as with the centre of a ring, the surface does.
+            // Where such points do not collide, as the centre of a ring, points of the surface are used.
             let of = if i < TRIES / 2 { asked } else { PointOf::Surface };
             let turned = space.sample_uniform(rng);
             let point = self.hints.robot_point(of, rng);
             let place = self.hints.obstacle_point(obstacle, of, rng)?;
             let q = self.hints.brought(&turned, &point, &place);
-            (space.contains(&q) && !steer.admits(&q)).then_some(q)
+            (space.contains(&q) && !checker.admits(&q)).then_some(q)
         })
     }
 
-    /// The fraction of the way from `inside` to `toward` at which contact ends, if it does before the robot is
-    /// clear of the obstacle.
+    /// The fraction of the motion from `inside` to `toward` at which contact ends, if it ends before the robot is past the
+    /// obstacle.
     fn contact<C, L>(
         &self,
         obstacle: usize,
         [inside, toward]: [&C::State; 2],
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
     ) -> Option<f64>
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
         H: ObstacleGeometry<C::State>,
     {
-        let (space, robot) = (steer.space(), self.hints.robot());
+        let (space, robot) = (checker.space(), self.hints.robot());
         let places = [inside, toward].map(|q| self.hints.place_of(q, &robot.center));
         let reach = 2.0 * (self.hints.obstacles().get(obstacle)?.radius + robot.radius);
         let most = (reach / (places[1] - places[0]).norm()).min(1.0);
-        let mut admits = |at: f64| steer.admits(&space.interpolate(inside, toward, at));
+        let mut admits = |at: f64| checker.admits(&space.interpolate(inside, toward, at));
         let step = most / f64::from(LOOKS);
         let (mut free, mut low) = (0.0, 0.0);
         for i in 1..=LOOKS {
@@ -342,36 +345,36 @@ where
         &mut self,
         attempt: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
         let obstacles = self.hints.obstacles().len() as u64;
         let OnSurfaces { strategy, directions, shells, uniform, .. } = self.with;
-        if drew_uniform(if obstacles == 0 { 1.0 } else { uniform }, steer, rng, out) {
+        if drew_uniform(if obstacles == 0 { 1.0 } else { uniform }, checker, rng, out) {
             return;
         }
         let obstacle = (attempt % obstacles) as usize;
-        let Some(inside) = self.inside(obstacle, steer, rng) else { return };
-        let space = steer.space();
+        let Some(inside) = self.inside(obstacle, checker, rng) else { return };
+        let space = checker.space();
         for _ in 0..if strategy == Strategy::Prototype { directions } else { 1 } {
             let toward = space.sample_uniform(rng);
-            let Some(contact) = self.contact(obstacle, [&inside, &toward], steer) else { continue };
+            let Some(contact) = self.contact(obstacle, [&inside, &toward], checker) else { continue };
             let gap = self.gap / space.distance(&inside, &toward);
-            let mut take = |at: f64, kind: Kind, steer: &mut EdgeChecker<'_, C, L>| {
+            let mut take = |at: f64, kind: MilestoneKind, checker: &mut EdgeChecker<'_, C, L>| {
                 let q = space.interpolate(&inside, &toward, at);
-                // In contact it was found free already.
-                if at <= 1.0 && (kind == Kind::Contact || steer.admits(&q)) {
+                // Contact configurations were tested before.
+                if at <= 1.0 && (kind == MilestoneKind::Contact || checker.admits(&q)) {
                     out.push(Candidate::new(q, kind).of(obstacle as u32));
                 }
             };
             match strategy {
-                Strategy::Prototype | Strategy::Contact => take(contact, Kind::Contact, steer),
-                Strategy::Free => take(contact + gap * rng.random::<f64>(), Kind::Near, steer),
+                Strategy::Prototype | Strategy::Contact => take(contact, MilestoneKind::Contact, checker),
+                Strategy::Free => take(contact + gap * rng.random::<f64>(), MilestoneKind::Near, checker),
                 Strategy::Shells => {
-                    take(contact, Kind::Contact, steer);
+                    take(contact, MilestoneKind::Contact, checker);
                     for shell in 1..=shells {
-                        take(contact + gap * shell as f64, Kind::Near, steer);
+                        take(contact + gap * shell as f64, MilestoneKind::Near, checker);
                     }
                 }
             }
@@ -386,57 +389,23 @@ where
 /// OBPRM: see the [module](self).
 pub type Obprm<'c, C, L, N, H> = RoadmapPlanner<'c, C, L, OnObstacles<H>, StagedConnector, AStar, N>;
 
-impl<'c, C, L, N, H> Obprm<'c, C, L, N, H>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-    H: ObstacleGeometry<C::State> + Clone,
-{
-    /// OBPRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(
-        problem: Problem<'c, C, L>,
-        hints: H,
-        reach: Reachable,
-        with: OnSurfaces,
-    ) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let recipe = recipe(problem.space(), hints, reach, with)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
-    }
+constructors! {
+    "OBPRM" Obprm<C, L, N, H> where [H: ObstacleGeometry<C::State> + Clone],
+    |space, hints: H, reach: Reachable, with: OnSurfaces| parts(space, hints, reach, with)
 }
 
-/// The recipe of OBPRM.
+/// The parts of OBPRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<C: Space, H>(
+pub fn parts<C: Space, H: Clone>(
     space: &C,
     hints: H,
     reach: Reachable,
     with: OnSurfaces,
-) -> Result<Recipe<OnObstacles<H>, StagedConnector, AStar>, BuildError> {
+) -> Result<RoadmapPlannerParts<OnObstacles<H>, StagedConnector, AStar>, BuildError> {
     BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
     let turns = Turns::At(AT[..with.turns].to_vec());
-    Ok(Recipe {
-        generate: OnObstacles::new(space, hints, with)?,
-        connect: StagedConnector::new(reach, with.among, turns)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<C: Space, H>(
-    space: &C,
-    hints: H,
-    settings: &Settings,
-) -> Result<Recipe<OnObstacles<H>, StagedConnector, AStar>, BuildError> {
-    recipe(space, hints, reachable(space, settings)?, OnSurfaces::read(settings)?)
+    let generator = OnObstacles::new(space, hints.clone(), with)?;
+    Ok(RoadmapPlannerParts::new(generator, StagedConnector::new(reach, with.among, turns)?))
 }

@@ -6,41 +6,41 @@
 //!
 //! First approximation, for `far` attempts:
 //! 1. draw a sample, uniform in the space;
-//! 2. where the surrounding sphere of the robot touches that of no obstacle, take it as a *far* configuration. Nothing else is
-//!    tested: the robot is free there, however it is turned.
+//! 2. where the bounding sphere of the robot touches that of no obstacle, take the sample as a *far* configuration. Nothing
+//!    else is tested: the robot is free there in every rotation.
 //!
-//! Expansion, attempts in turn:
+//! Expansion, by two kinds of attempts in turn:
 //! - around one obstacle B after the other, from a uniform sample q: an elastic band, for *near* configurations;
 //! - a uniform sample: taken where it is free; *salvaged* where it is not, by an elastic band around the obstacle B it touches.
 //!
 //! Elastic band around B, once for each of two kinds of configuration, from q:
 //! 1. d: the direction from the centre of B to that of the robot at q;
-//! 2. MIN and MAX, from the *volume*: what the radii of robot and obstacle add up to, of balls of the same volume as they,
-//!    and of their surrounding spheres;
-//! 3. a *parallel* configuration has the *straightness* of the robot along that of B, a *perpendicular* one across it
-//!    (any way across);
-//! 4. for k = 0, …, `bands` (CTE): put the robot at the distance MIN + (MAX − MIN)·k / `bands` from B along d, turned about its own
-//!    straightness by one golden angle more each time; take the first configuration that is free.
+//! 2. MIN and MAX, from the *volume*: the sum of the radii of balls of the same volume as robot and obstacle, and the sum
+//!    of the radii of their bounding spheres;
+//! 3. a *parallel* configuration has the long axis (*straightness*) of the robot along that of B, a *perpendicular* one in
+//!    any direction across it;
+//! 4. for k = 0, …, `bands` (CTE): put the robot at the distance MIN + (MAX − MIN)·k / `bands` from B along d, rotated
+//!    about its own long axis by one golden angle more each time; take the first configuration that is free.
 //!
 //! Each node is connected to its nearest nodes by the local planner; where that fails and one of the two is far, by turning
 //! in place there (see [`StagedConnector`]).
 //!
-//! The paper is followed where it speaks. Left open there, and decided here: how MIN and MAX depend on the
-//! volume, in which steps the vector is scaled (the listing sets `scalar` to MIN and never changes it), and how far the robot is
-//! rotated at a time. The path found is verified; an edge that fails is blocked.
+//! The paper leaves open, and this implementation decides: how MIN and MAX depend on the volume, in which steps the vector
+//! is scaled (the listing sets `scalar` to MIN and never changes it), and by which angle the robot is rotated each time.
+//! The path found is verified; an edge that fails is blocked.
 //!
-//! **When to use it.** Scenes of separate, compact obstacles, with long robots. Where one obstacle encloses the scene, as
-//! the walls of a room in one piece do, no configuration is far, and what is left is mostly plain PRM. It needs
-//! [`ObstacleGeometry`], which rigid bodies among meshes have. In the corridors told of at [OBPRM](super::obprm) it solved 20 and 9 of 20; in
-//! one 0.25 m wide it took 3,000 collision queries, where PRM took 12,000 to 19,000 (medians).
+//! **When to use it.** For scenes of separate, compact obstacles, with long robots. Where one obstacle encloses the scene,
+//! as the walls of a room in one piece do, no configuration is far, and the planner behaves mostly like PRM. It needs
+//! [`ObstacleGeometry`], which rigid bodies among meshes have. In the corridors described at [OBPRM](super::obprm) it
+//! solved 20 and 9 of 20; in one 0.25 m wide it took 3,000 collision queries, where PRM took 12,000 to 19,000 (medians).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `far`: attempts of the first approximation | 0, 1, … 10⁹ | 100 |
 //! | `bands`: steps of the elastic band, CTE | 1, 2, … 10⁶ | 20 |
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //!
 //! A rod goes around a block:
 //! ```
@@ -65,22 +65,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, Kind, NeighborSet, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner, StagedConnector, Turns,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Reachable, Roadmap,
+    RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space,
+    BuildError, LocalPlanner, Reversible, Rng, Space,
     obstacles::{BodyFeatures, ObstacleGeometry},
-    registry::{Parameter, PlannerInfo, Settings},
+    registry::{Parameter, PlannerInfo},
 };
 use nalgebra::Vector3;
 use rand::RngExt;
 use std::f64::consts::TAU;
 
-/// The golden angle (rad): multiples of it are spread evenly, however many.
+/// The golden angle (rad): any number of its multiples are spread evenly.
 const GOLDEN: f64 = 2.399_963_229_728_653;
 
 /// The parameters of obstacle-geometry PRM.
@@ -114,7 +115,7 @@ const BANDS: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "obstacle-geometry-prm",
-    summary: "a roadmap of samples far from obstacles, by spheres, and near them, by their direction and volume",
+    summary: "a roadmap of samples far from obstacles, by bounding spheres, and near them, by their axis and volume",
     citation: "Benitez and Vallejo 2004",
     parameters: &[FAR, BANDS, NEIGHBOURS, RADIUS, CYCLES],
     aliases: &["geometry-prm"],
@@ -122,9 +123,11 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.geometry(INFO.name)?, given.settings)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let (geometry, settings) = (args.geometry(INFO.name)?, args.settings);
+    let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
+    let parts = parts(geometry, reachable(args.space, settings)?, with)?;
+    args.build(parts)
 }
 
 /// Far and near configurations: the generator of obstacle-geometry PRM.
@@ -140,7 +143,7 @@ fn limits(robot: &BodyFeatures, obstacle: &BodyFeatures) -> [f64; 2] {
     [equal(robot) + equal(obstacle), robot.radius + obstacle.radius]
 }
 
-/// A unit vector in a random direction; across `axis`, if there is one.
+/// A unit vector in a random direction, perpendicular to `axis` if given.
 fn random_unit(axis: Option<&Vector3<f64>>, rng: &mut Rng) -> Vector3<f64> {
     let (z, angle) = (2.0 * rng.random::<f64>() - 1.0, TAU * rng.random::<f64>());
     let round = (1.0 - z * z).sqrt();
@@ -168,8 +171,8 @@ impl<H> AroundObstacles<H> {
     fn band<C, L>(
         &self,
         obstacle: usize,
-        (q, kind): (&C::State, Kind),
-        steer: &mut EdgeChecker<'_, C, L>,
+        (q, kind): (&C::State, MilestoneKind),
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) where
@@ -189,7 +192,7 @@ impl<H> AroundObstacles<H> {
                 let scalar = min + (max - min) * (k as f64 / self.with.bands as f64);
                 let place = body.center + away * scalar;
                 let q = self.hints.aligned(&place, &direction, first + GOLDEN * k as f64);
-                steer.admits(&q).then_some(q)
+                checker.admits(&q).then_some(q)
             });
             out.extend(found.map(|q| Candidate::new(q, kind).of(obstacle as u32)));
         }
@@ -206,24 +209,24 @@ where
         &mut self,
         attempt: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
-        let q = steer.space().sample_uniform(rng);
+        let q = checker.space().sample_uniform(rng);
         let obstacles = self.hints.obstacles().len() as u64;
         if attempt < self.with.far {
             if self.hints.is_far(&q) {
-                out.push(Candidate::new(q, Kind::Far));
+                out.push(Candidate::new(q, MilestoneKind::Far));
             }
         } else if obstacles > 0 && attempt.is_multiple_of(2) {
             let obstacle = (attempt / 2 % obstacles) as usize;
-            self.band(obstacle, (&q, Kind::Near), steer, rng, out);
-        } else if steer.admits(&q) {
-            let kind = if self.hints.is_far(&q) { Kind::Far } else { Kind::Plain };
+            self.band(obstacle, (&q, MilestoneKind::Near), checker, rng, out);
+        } else if checker.admits(&q) {
+            let kind = if self.hints.is_far(&q) { MilestoneKind::Far } else { MilestoneKind::Plain };
             out.push(Candidate::new(q, kind));
         } else if let Some(obstacle) = self.hints.touched(&q) {
-            self.band(obstacle, (&q, Kind::Salvaged), steer, rng, out);
+            self.band(obstacle, (&q, MilestoneKind::Salvaged), checker, rng, out);
         }
     }
 
@@ -236,55 +239,21 @@ where
 pub type ObstacleGeometryPrm<'c, C, L, N, H> =
     RoadmapPlanner<'c, C, L, AroundObstacles<H>, StagedConnector, AStar, N>;
 
-impl<'c, C, L, N, H> ObstacleGeometryPrm<'c, C, L, N, H>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-    H: ObstacleGeometry<C::State> + Clone,
-{
-    /// Obstacle-geometry PRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(
-        problem: Problem<'c, C, L>,
-        hints: H,
-        reach: Reachable,
-        with: ByGeometry,
-    ) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let recipe = recipe(hints, reach, with)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
-    }
+constructors! {
+    "Obstacle-geometry PRM" ObstacleGeometryPrm<C, L, N, H> where [H: ObstacleGeometry<C::State> + Clone],
+    |_, hints: H, reach: Reachable, with: ByGeometry| parts(hints, reach, with)
 }
 
-/// The recipe of obstacle-geometry PRM.
+/// The parts of obstacle-geometry PRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<H>(
+pub fn parts<H: Clone>(
     hints: H,
     reach: Reachable,
     with: ByGeometry,
-) -> Result<Recipe<AroundObstacles<H>, StagedConnector, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: AroundObstacles::new(hints, with)?,
-        connect: StagedConnector::new(reach, NeighborSet::NearestConnector, Turns::WhereFar)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<C: Space, H>(
-    space: &C,
-    hints: H,
-    settings: &Settings,
-) -> Result<Recipe<AroundObstacles<H>, StagedConnector, AStar>, BuildError> {
-    let with = ByGeometry { far: settings.count_of(&FAR)?, bands: settings.count_of(&BANDS)? };
-    recipe(hints, reachable(space, settings)?, with)
+) -> Result<RoadmapPlannerParts<AroundObstacles<H>, StagedConnector, AStar>, BuildError> {
+    let generator = AroundObstacles::new(hints.clone(), with)?;
+    let connector = StagedConnector::new(reach, NeighborSet::Nearest, Turns::WhereFar)?;
+    Ok(RoadmapPlannerParts::new(generator, connector))
 }

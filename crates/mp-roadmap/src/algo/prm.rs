@@ -1,28 +1,28 @@
-//! PRM: the probabilistic roadmap, with its expansion where connecting is difficult.
+//! PRM: the probabilistic roadmap, expanded where connecting is difficult.
 //!
 //! L. E. Kavraki, P. Švestka, J.-C. Latombe and M. H. Overmars, *Probabilistic roadmaps for path planning
 //! in high-dimensional configuration spaces*, IEEE Transactions on Robotics and Automation 12, 1996. As in
 //! §3.1 of A. Benitez, I. Huitzil, D. Vallejo, J. de la Calleja and M. A. Medina, *Key elements for motion
 //! planning algorithms*, 2010.
 //!
-//! The learning phase repeats two steps. Construction, until `learn` more nodes are there:
-//! 1. draw a sample, uniform in the space; go on when it is free;
+//! The learning phase repeats two steps. Construction, until there are `learn` more nodes:
+//! 1. draw a sample, uniform in the space; continue if it is free;
 //! 2. add it as a node q;
 //! 3. N_q: the nodes within `radius` (MAXDIST) of q, at most `neighbours` (K) of them;
 //! 4. in order of distance, ask the local planner for a motion from each to q, unless both are in the same
 //!    component by now; where there is one, it becomes an edge.
 //!
-//! Expansion, until `expand` times as many nodes more are there:
-//! 1. when it begins, weigh each node c by its failure ratio f(c) / (n(c) + 1), of n(c) attempts to connect
-//!    it to others f(c) failed;
+//! Expansion, until there are `expand` times as many nodes more:
+//! 1. at the beginning, weight each node c by its failure ratio f(c) / (n(c) + 1), where f(c) of n(c) attempts to connect
+//!    it to others failed;
 //! 2. draw a node by these weights;
-//! 3. go on a random-bounce walk from there: `bounces` times, move toward a uniform sample, as far as a
-//!    random length of at most `walk`, halved up to four times where something is in the way;
-//! 4. take in where each of its motions ends as a node, with that motion as an edge, and connect it as above.
+//! 3. make a random-bounce walk from there: `bounces` times, move toward a uniform sample by a random length of at most
+//!    `walk`, halved up to four times where the motion is blocked;
+//! 4. add the end of each of its motions as a node, with that motion as an edge, and connect it as above.
 //!
 //! (The paper keeps only the end of the walk, and the walk as its edge. Here its corners are nodes, so that
-//! each edge is one motion.) A query takes start and goal in as nodes; as long as they are in different
-//! components learning goes on, so that roadmaps grow during queries. The path found is verified; an edge
+//! each edge is one motion.) A query adds start and goal as nodes; as long as they are in different
+//! components learning continues, so that roadmaps grow during queries. The path found is verified; an edge
 //! that fails is blocked.
 //!
 //! **When to use it.** To answer many queries in one scene. For a single one RRT-Connect is faster.
@@ -30,15 +30,14 @@
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `neighbours`: most neighbours tried per node, K | 1, 2, … 10⁶ | 15 |
-//! | `radius`: none farther than this, MAXDIST, in the metric of the space or with % of its extent | positive | 100% |
-//! | `cycles`: also connects what is connected already: shorter paths, for more motions | yes, no | no |
+//! | `radius`: longest distance of neighbours, MAXDIST, in the metric of the space or with % of its extent | positive | 100% |
+//! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //! | `learn`: nodes of a construction step | 1, 2, … 10⁹ | 500 |
-//! | `expand`: nodes of an expansion step, as a part of those | \[0, 10\] | 0.5 |
+//! | `expand`: nodes of an expansion step, as a part of those of a construction step | \[0, 10\] | 0.5 |
 //! | `bounces`: motions of a random-bounce walk | 1, 2, … 100 | 3 |
 //! | `walk`: longest motion of such a walk, in the metric of the space or with % of its extent | positive | 10% |
 //!
-//! K and MAXDIST are the paper's to choose for each problem; twice as many nodes are constructed as are
-//! added by expansion, as there.
+//! The paper chooses K and MAXDIST for each problem. As in the paper, construction adds twice as many nodes as expansion.
 //!
 //! A point goes around a disc in the unit square:
 //! ```
@@ -61,25 +60,25 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::{
-    AStar, Candidate, EdgeChecker, Free, Kind, NearestConnector, NodeGenerator, Pace, ParentMotion,
-    Reachable, Recipe, Roadmap, RoadmapPlanner,
+    AStar, Candidate, EdgeChecker, Free, MilestoneKind, NearestConnector, NodeGenerator, ParentMotion,
+    Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, Extension, LocalPlanner, NearestNeighbors, NodeId, Problem, Reach, Reversible,
-    Rng, Space, Step, Uniform,
+    BuildError, Direction, Extension, LocalPlanner, NodeId, Reach, Reversible, Rng, Space, Step, Uniform,
     registry::{Parameter, PlannerInfo, Settings},
 };
 use rand::RngExt;
 
-/// How the learning phase goes.
+/// The parameters of the learning phase.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Learning {
     /// Nodes of a construction step; 1 or more.
     pub learn: usize,
-    /// Nodes of an expansion step, as a part of those; 0 for none.
+    /// Nodes of an expansion step, as a part of those of a construction step; 0 for no expansion.
     pub expand: f64,
     /// Motions of a random-bounce walk; 1 or more.
     pub bounces: usize,
@@ -145,9 +144,10 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let reach = reachable(args.space, args.settings)?;
+    let parts = parts(args.space, reach, Learning::read(args.settings)?)?;
+    args.build(parts)
 }
 
 /// The two steps of the learning phase in turn: the generator of PRM.
@@ -156,9 +156,9 @@ pub struct Learn<'c, C> {
     free: Free<Uniform<'c, C>>,
     learning: Learning,
     walk: f64,
-    /// The roadmap has so many nodes when this step ends.
+    /// The step ends when the roadmap has this many nodes.
     until: usize,
-    /// In an expansion step: the sums of the weights of nodes up to each.
+    /// In an expansion step: the cumulative sums of the weights of nodes.
     weights: Option<Vec<f64>>,
 }
 
@@ -213,36 +213,36 @@ where
         &mut self,
         attempt: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
         self.turn(map);
-        // Where no connection failed nowhere is difficult.
+        // Without failed connections there is nothing to expand.
         let Some(sums) = self.weights.as_ref().filter(|sums| sums.last().is_some_and(|sum| *sum > 0.0))
         else {
-            return self.free.generate(attempt, map, steer, rng, out);
+            return self.free.generate(attempt, map, checker, rng, out);
         };
         let at = rng.random::<f64>() * sums.last().copied().unwrap_or_default();
         let first = sums.partition_point(|sum| *sum <= at).min(sums.len() - 1) as NodeId;
-        let (space, mut here) = (steer.space(), map.state(first).clone());
+        let (space, mut here) = (checker.space(), map.state(first).clone());
         for bounce in 0..self.learning.bounces {
             let toward = space.sample_uniform(rng);
             let mut length = self.walk * rng.random::<f64>();
             for _ in 0..=4 {
-                let step = steer.extend(&here, &toward, Reach::Step(length));
+                let step = checker.extend(&here, &toward, Direction::Forward, Reach::Step(length));
                 let (Extension::Advanced(motion) | Extension::Reached(motion)) = step else {
                     length /= 2.0;
                     continue;
                 };
-                // A step that is lost in rounding is none.
+                // A step may vanish in rounding.
                 if motion.end == here {
                     break;
                 }
                 here = motion.end.clone();
                 let from = (bounce == 0 || out.is_empty()).then_some(first);
-                let mut candidate = Candidate::new(here.clone(), Kind::Expanded);
-                candidate.came = Some(ParentMotion { from, motion });
+                let mut candidate = Candidate::new(here.clone(), MilestoneKind::Expanded);
+                candidate.parent = Some(ParentMotion { from, motion });
                 out.push(candidate);
                 break;
             }
@@ -261,60 +261,19 @@ where
 /// PRM: see the [module](self).
 pub type Prm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Learn<'c, C>, NearestConnector, AStar, N>;
 
-impl<'c, C, L, N> Prm<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// PRM with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, learning: Learning) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), reach, learning)
-    }
-
-    /// PRM with an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        reach: Reachable,
-        learning: Learning,
-    ) -> Result<Self, BuildError> {
-        let recipe = recipe(problem.space(), reach, learning)?;
-        Ok(Self::assemble(problem, index, recipe))
-    }
+constructors! {
+    "PRM" Prm<C, L, N>,
+    |space, reach: Reachable, learning: Learning| parts(space, reach, learning)
 }
 
-/// The recipe of PRM.
+/// The parts of PRM.
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn recipe<C: Space>(
+pub fn parts<C: Space>(
     space: &C,
     reach: Reachable,
     learning: Learning,
-) -> Result<Recipe<Learn<'_, C>, NearestConnector, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: Learn::new(space, learning)?,
-        connect: NearestConnector::new(reach)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<'c, C: Space>(
-    space: &'c C,
-    settings: &Settings,
-) -> Result<Recipe<Learn<'c, C>, NearestConnector, AStar>, BuildError> {
-    recipe(space, reachable(space, settings)?, Learning::read(settings)?)
+) -> Result<RoadmapPlannerParts<Learn<'_, C>, NearestConnector, AStar>, BuildError> {
+    Ok(RoadmapPlannerParts::new(Learn::new(space, learning)?, NearestConnector::new(reach)?))
 }

@@ -1,28 +1,28 @@
-//! PRM*: a roadmap in which paths get ever better.
+//! PRM*: a roadmap whose shortest paths become optimal as it grows.
 //!
 //! S. Karaman and E. Frazzoli, *Sampling-based algorithms for optimal motion planning*, International
 //! Journal of Robotics Research 30, 2011, Algorithm 4, in its variant k-nearest PRM*.
 //!
 //! Repeat:
-//! 1. draw a sample, uniform in the space; go on when it is free;
+//! 1. draw a sample, uniform in the space; continue if it is free;
 //! 2. add it as a node q, the n-th;
 //! 3. ask the local planner for a motion from each of its k(n) nearest neighbours, k(n) = ⌈k₀ ln n⌉ with
-//!    k₀ = `factor` · e (1 + 1/d) in d dimensions; each that there is becomes an edge, whether it closes a
+//!    k₀ = `factor` · e (1 + 1/d) in d dimensions; each motion becomes an edge, whether it closes a
 //!    cycle or not.
 //!
 //! (The paper draws all n samples first and then connects each to k(n) neighbours; here the n-th is
-//! connected when it comes, so that the roadmap can grow on. As many neighbours are tried in the limit.)
-//! With `factor` above 1 the length of the shortest path tends to the least there is as n grows. A path is
-//! looked for whenever there are a tenth more nodes; stepping on returns shorter ones only.
+//! connected when it is added, so that the roadmap can keep growing. In the limit as many neighbours are tried.)
+//! With `factor` above 1 the length of the shortest path converges to the optimum as n grows. A path is
+//! searched for whenever there are a tenth more nodes; stepping on returns shorter paths only.
 //!
-//! **When to use it.** For short paths, to many queries in one scene. For one query
-//! RRT* or AORRTC spend less on regions that are of no use to it.
+//! **When to use it.** For short paths for many queries in one scene. For one query
+//! RRT* or AORRTC spend less time on regions that do not matter to it.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `factor`: neighbours, as a multiple of what is needed | \[1, 100\] | 1.1 |
 //!
-//! Around a disc, ever better:
+//! A point goes around a disc, on ever shorter paths:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Planner, Problem, Resolution, Rn, Rng, Straight};
 //! use mp_roadmap::PrmStar;
@@ -43,15 +43,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::constructors;
 use crate::engine::settings::UNDIRECTED;
 use crate::{
-    AStar, Candidate, Connector, Free, Growing, NearestConnector, Pace, Prefetching, Reachable, Recipe,
-    RoadmapPlanner,
+    AStar, Candidate, Connector, Free, Growing, NearestConnector, Prefetching, Reachable, RoadmapPlanner,
+    RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, NodeId, Problem, Reversible, Space, Uniform,
-    registry::{Parameter, PlannerInfo, Settings},
+    BuildError, LocalPlanner, NearestNeighbors, NodeId, Reversible, Space, Uniform,
+    registry::{Parameter, PlannerInfo},
 };
 
 const FACTOR: Parameter = Parameter {
@@ -64,7 +65,7 @@ const FACTOR: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "prm-star",
-    summary: "a roadmap with ever better paths; to answer many queries shortly",
+    summary: "a roadmap with ever shorter paths; for short paths for many queries",
     citation: "Karaman and Frazzoli 2011",
     parameters: &[FACTOR],
     aliases: &["prm*"],
@@ -72,9 +73,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let parts = parts(args.space, args.settings.number(FACTOR.name)?.unwrap_or(1.1))?;
+    args.build(parts)
 }
 
 /// Every candidate becomes a node, and is connected to as many neighbours as shortest paths need.
@@ -119,10 +120,10 @@ where
         Some(self.adopt(candidate, growing))
     }
 
-    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Prefetching<'_, '_, C, L, N>) {
-        let k = self.neighbours(ahead.nodes() + 1);
-        ahead.near(k, f64::INFINITY).iter().for_each(|hit| {
-            ahead.reach(hit.id);
+    fn prefetch<N: NearestNeighbors<C>>(&self, prefetching: &mut Prefetching<'_, '_, C, L, N>) {
+        let k = self.neighbours(prefetching.nodes() + 1);
+        prefetching.near(k, f64::INFINITY).iter().for_each(|hit| {
+            prefetching.reach(hit.id);
         });
     }
 
@@ -139,46 +140,19 @@ where
 /// PRM*: see the [module](self).
 pub type PrmStar<'c, C, L, N> = RoadmapPlanner<'c, C, L, Free<Uniform<'c, C>>, Star, AStar, N>;
 
-impl<'c, C, L, N> PrmStar<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// PRM* with the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When the factor is not in \[1, 100\].
-    pub fn new(problem: Problem<'c, C, L>, factor: f64) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let recipe = recipe(problem.space(), factor)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
-    }
+constructors! {
+    "PRM*" PrmStar<C, L, N>,
+    |space, factor: f64| parts(space, factor)
 }
 
-/// The recipe of PRM*.
+/// The parts of PRM*.
 ///
 /// # Errors
 /// When the factor is not in \[1, 100\].
-pub fn recipe<C: Space>(
+pub fn parts<C: Space>(
     space: &C,
     factor: f64,
-) -> Result<Recipe<Free<Uniform<'_, C>>, Star, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: Free::uniform(space),
-        connect: Star::new(space.dim(), factor)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: true,
-    })
-}
-
-fn read<'c, C: Space>(
-    space: &'c C,
-    settings: &Settings,
-) -> Result<Recipe<Free<Uniform<'c, C>>, Star, AStar>, BuildError> {
-    recipe(space, settings.number(FACTOR.name)?.unwrap_or(1.1))
+) -> Result<RoadmapPlannerParts<Free<Uniform<'_, C>>, Star, AStar>, BuildError> {
+    let parts = RoadmapPlannerParts::new(Free::uniform(space), Star::new(space.dim(), factor)?);
+    Ok(RoadmapPlannerParts { improves: true, ..parts })
 }

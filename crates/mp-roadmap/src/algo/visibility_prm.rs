@@ -15,15 +15,15 @@
 //! 4. when none saw q, it is a guard: add it to Guard, and set ntry to 0;
 //! 5. otherwise add 1 to ntry, whether q is a connection or of no use.
 //!
-//! (In which order the nodes of a component are tried is left open: here by distance.) After M samples in
-//! a row that were no guards, the guards see the part 1 − 1/M of the free space, as an estimate:
+//! (The paper does not say in which order the nodes of a component are tried: here by distance.) After M samples in
+//! a row that are no guards, the guards see an estimated part 1 − 1/M of the free space:
 //! [`Visibility::coverage`]. The planner then stops as exhausted.
 //!
 //! Start and goal must be nodes: each is a guard if no guard sees it; otherwise it gets an edge to a guard
 //! of each component that sees it.
 //!
-//! **When to use it.** For a small roadmap: it has far fewer nodes than PRM's and says when it is complete
-//! enough. It tries many motions to get there. A narrow passage needs a sample that sees both sides.
+//! **When to use it.** For a small roadmap: it has far fewer nodes than that of PRM and an estimate of its coverage. It
+//! tries many motions to get there. A narrow passage needs a sample that sees both sides.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -31,7 +31,7 @@
 //!
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Problem, Resolution, Rn, Rng, StopReason, Straight};
-//! use mp_roadmap::{Kind, VisibilityPrm};
+//! use mp_roadmap::{MilestoneKind, VisibilityPrm};
 //! use nalgebra::Vector2;
 //!
 //! let space = Rn::<2>::new([0.0, 0.0], [1.0, 1.0])?;
@@ -44,18 +44,20 @@
 //! let reason = builder.build(&mut Rng::seed(1), &mut mp_cspace::Iterations(100_000), &mut ());
 //! assert_eq!((reason, builder.connector().coverage()), (StopReason::Exhausted, 1.0 - 1.0 / 200.0));
 //! let map = builder.map();
-//! let guards = (0..map.len() as u32).filter(|&id| map.tag(id).kind == Kind::Guard).count();
+//! let guards = (0..map.len() as u32).filter(|&id| map.tag(id).kind == MilestoneKind::Guard).count();
 //! assert!((2..10).contains(&guards) && map.len() < 20);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
+use crate::engine::constructors;
 use crate::engine::settings::UNDIRECTED;
-use crate::{AStar, Candidate, Connector, Free, Growing, Kind, Pace, Recipe, Roadmap, RoadmapPlanner};
+use crate::{
+    AStar, Candidate, Connector, Free, Growing, MilestoneKind, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
+};
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, Motion, NearestNeighbors, NodeId, Problem, Reversible, Space,
-    Uniform,
-    registry::{Parameter, PlannerInfo, Settings},
+    BuildError, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Space, Uniform,
+    registry::{Parameter, PlannerInfo},
 };
 
 const FAILURES: Parameter = Parameter {
@@ -68,7 +70,7 @@ const FAILURES: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "visibility-prm",
-    summary: "a small roadmap of guards that do not see each other, and connections; says when it is complete",
+    summary: "a small roadmap of guards that do not see each other, and connections; estimates its coverage",
     citation: "Laumond and Siméon 2000",
     parameters: &[FAILURES],
     aliases: &["visib-prm"],
@@ -76,9 +78,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let recipe = read(given.space, given.settings)?;
-    given.made(recipe)
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let parts = parts(args.space, args.settings.count_of(&FAILURES)?)?;
+    args.build(parts)
 }
 
 /// Only guards and connections become nodes: the connector of Visib-PRM.
@@ -88,9 +90,9 @@ pub struct Visibility {
     most: u64,
     /// ntry.
     failures: u64,
-    /// The guards of each component, in the order of their first.
-    parts: Vec<Vec<NodeId>>,
-    /// How many edges were blocked when these were the components.
+    /// The guards of each component, the components in the order of their first guards.
+    components: Vec<Vec<NodeId>>,
+    /// How many edges were blocked when the components were computed.
     blocked: Option<usize>,
 }
 
@@ -104,11 +106,11 @@ impl Visibility {
     /// When that is not from 1 to 10⁹.
     pub fn new(failures: u64) -> Result<Self, BuildError> {
         let most = BuildError::count_within(FAILURES.name, failures, 1, 1_000_000_000)?;
-        Ok(Self { most, failures: 0, parts: Vec::new(), blocked: Some(0) })
+        Ok(Self { most, failures: 0, components: Vec::new(), blocked: Some(0) })
     }
 
-    /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry
-    /// samples were no guards; 0 before there was one.
+    /// An estimate of the part of the free space that the guards see: 1 − 1/ntry, where the last ntry samples were no
+    /// guards; 0 before there is such a sample.
     #[must_use]
     pub fn coverage(&self) -> f64 {
         1.0 - 1.0 / self.failures.max(1) as f64
@@ -120,28 +122,28 @@ impl Visibility {
         self.failures
     }
 
-    /// Works the components of guards out anew when edges were blocked.
+    /// Recomputes the components of guards if edges were blocked.
     fn regroup<S, E>(&mut self, map: &mut Roadmap<S, E>) {
         if self.blocked == Some(map.blocked()) {
             return;
         }
         self.blocked = Some(map.blocked());
-        let mut guards: Vec<NodeId> = std::mem::take(&mut self.parts).concat();
+        let mut guards: Vec<NodeId> = std::mem::take(&mut self.components).concat();
         guards.sort_unstable();
         let mut names: Vec<NodeId> = Vec::new();
         for guard in guards {
             let name = map.component(guard);
             match names.iter().position(|known| *known == name) {
-                Some(part) => self.parts[part].push(guard),
+                Some(component) => self.components[component].push(guard),
                 None => {
                     names.push(name);
-                    self.parts.push(vec![guard]);
+                    self.components.push(vec![guard]);
                 }
             }
         }
     }
 
-    /// Of every component the guard that is found first to see the candidate.
+    /// For every component the first guard found that sees the candidate.
     fn seen<C, L, N>(
         &mut self,
         q: &C::State,
@@ -155,19 +157,19 @@ impl Visibility {
         self.regroup(growing.map());
         let mut order: Vec<(f64, NodeId)> = Vec::new();
         let mut seen = Vec::new();
-        for (part, guards) in self.parts.iter().enumerate() {
+        for (component, guards) in self.components.iter().enumerate() {
             let space = growing.space();
             let map = growing.map();
             order.clear();
             order.extend(guards.iter().map(|&g| (space.distance(map.state(g), q), g)));
             order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            let found = order.iter().find_map(|&(_, g)| Some((part, g, growing.reach(g, q)?)));
+            let found = order.iter().find_map(|&(_, g)| Some((component, g, growing.reach(g, q)?)));
             seen.extend(found);
         }
         seen
     }
 
-    /// Adds a node with the edges of what sees it, and merges their components.
+    /// Adds a node with edges to the guards that see it, and merges their components.
     fn join<C, L, N>(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,
@@ -180,18 +182,18 @@ impl Visibility {
         N: NearestNeighbors<C>,
     {
         let id = growing.add(candidate);
-        let first = seen.first().map(|(part, ..)| *part);
+        let first = seen.first().map(|(component, ..)| *component);
         let mut merged = Vec::new();
-        for (part, guard, motion) in seen {
+        for (component, guard, motion) in seen {
             growing.link(guard, id, motion);
-            if Some(part) != first {
-                merged.push(part);
+            if Some(component) != first {
+                merged.push(component);
             }
         }
         if let Some(first) = first {
-            for &part in merged.iter().rev() {
-                let guards = self.parts.remove(part);
-                self.parts[first].extend(guards);
+            for &component in merged.iter().rev() {
+                let guards = self.components.remove(component);
+                self.components[first].extend(guards);
             }
         }
         id
@@ -208,8 +210,8 @@ impl Visibility {
         L: LocalPlanner<C::State, Edge: Reversible>,
         N: NearestNeighbors<C>,
     {
-        let id = growing.add(Candidate { kind: Kind::Guard, ..candidate });
-        self.parts.push(vec![id]);
+        let id = growing.add(Candidate { kind: MilestoneKind::Guard, ..candidate });
+        self.components.push(vec![id]);
         id
     }
 }
@@ -230,7 +232,7 @@ where
             return Some(self.guard(candidate, growing));
         }
         self.failures += 1;
-        let connection = Candidate { kind: Kind::Connection, ..candidate };
+        let connection = Candidate { kind: MilestoneKind::Connection, ..candidate };
         (seen.len() > 1).then(|| self.join(connection, seen, growing))
     }
 
@@ -247,8 +249,8 @@ where
     }
 
     fn resumed(&mut self, map: &Roadmap<C::State, L::Edge>) {
-        let guards = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == Kind::Guard);
-        (self.parts, self.blocked, self.failures) = (vec![guards.collect()], None, 0);
+        let guards = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == MilestoneKind::Guard);
+        (self.components, self.blocked, self.failures) = (vec![guards.collect()], None, 0);
     }
 
     fn exhausted(&self) -> bool {
@@ -259,46 +261,18 @@ where
 /// Visib-PRM: see the [module](self).
 pub type VisibilityPrm<'c, C, L, N> = RoadmapPlanner<'c, C, L, Free<Uniform<'c, C>>, Visibility, AStar, N>;
 
-impl<'c, C, L, N> VisibilityPrm<'c, C, L, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    N: NearestNeighbors<C>,
-{
-    /// Visib-PRM, which ends after `failures` samples in a row that were no guards.
-    ///
-    /// # Errors
-    /// When that is not from 1 to 10⁹.
-    pub fn new(problem: Problem<'c, C, L>, failures: u64) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        let recipe = recipe(problem.space(), failures)?;
-        Ok(Self::assemble(problem, N::default(), recipe))
-    }
+constructors! {
+    "Visib-PRM, which ends after `failures` samples in a row that are no guards," VisibilityPrm<C, L, N>,
+    |space, failures: u64| parts(space, failures)
 }
 
-/// The recipe of Visib-PRM.
+/// The parts of Visib-PRM.
 ///
 /// # Errors
 /// When the number of failures is not from 1 to 10⁹.
-pub fn recipe<C: Space>(
+pub fn parts<C: Space>(
     space: &C,
     failures: u64,
-) -> Result<Recipe<Free<Uniform<'_, C>>, Visibility, AStar>, BuildError> {
-    Ok(Recipe {
-        generate: Free::uniform(space),
-        connect: Visibility::new(failures)?,
-        query: AStar::new(),
-        pace: Pace::default(),
-        improves: false,
-    })
-}
-
-fn read<'c, C: Space>(
-    space: &'c C,
-    settings: &Settings,
-) -> Result<Recipe<Free<Uniform<'c, C>>, Visibility, AStar>, BuildError> {
-    recipe(space, settings.count_of(&FAILURES)?)
+) -> Result<RoadmapPlannerParts<Free<Uniform<'_, C>>, Visibility, AStar>, BuildError> {
+    Ok(RoadmapPlannerParts::new(Free::uniform(space), Visibility::new(failures)?))
 }

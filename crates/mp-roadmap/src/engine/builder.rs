@@ -1,6 +1,6 @@
 //! The one loop that builds roadmaps.
 
-use super::prefetch::{Look, Prefetched, Prefetcher};
+use super::prefetch::{PrefetchJob, Prefetched, Prefetcher};
 use super::{Candidate, Connector, EdgeChecker, Growing, NodeGenerator, Roadmap};
 use mp_cspace::{
     BuildError, Event, LocalPlanner, NearestNeighbors, NodeId, Observer, Progress, Reversible, Rng, Space,
@@ -9,45 +9,21 @@ use mp_cspace::{
 use rand::RngExt;
 use std::ops::Range;
 
-/// One variant of the family: a policy for each slot.
-#[derive(Clone, Copy, Debug)]
-pub struct Recipe<G, K, Q> {
-    /// What configurations are tried as nodes.
-    pub generate: G,
-    /// Which become nodes, and with which edges.
-    pub connect: K,
-    /// How ways are looked for.
-    pub query: Q,
-    /// When ways are looked for.
-    pub pace: Pace,
-    /// Whether stepping on after a path is found pays: only better ones are returned then.
-    pub improves: bool,
-}
-
-/// When a planner looks for a way, once start and goal are in the same component.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Pace {
-    /// Not before there are so many nodes; but straight from start to goal at once.
-    pub first: usize,
-    /// Then whenever there are so many more.
-    pub more: usize,
-}
-
-/// Builds a roadmap: attempt after attempt, generate and connect.
+/// Builds a roadmap: each attempt generates candidates and connects them.
 ///
-/// Attempt i draws from stream (seed, i), where the seed is the first number drawn from the generator of
+/// Attempt i draws from stream (seed, i), where the seed is the first number drawn from the random numbers of
 /// the first step.
 #[derive(Debug)]
 pub struct Builder<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
-    pub(crate) steer: EdgeChecker<'c, C, L>,
+    pub(crate) checker: EdgeChecker<'c, C, L>,
     pub(crate) map: Roadmap<C::State, L::Edge>,
     pub(crate) index: N,
-    generate: G,
-    connect: K,
+    generator: G,
+    connector: K,
     seed: Option<u64>,
     attempts: u64,
     candidates: Vec<Candidate<C::State, L::Edge>>,
-    pub(crate) ahead: Prefetcher<'c, C, L, G, K, N>,
+    pub(crate) prefetcher: Prefetcher<'c, C, L, G, K, N>,
 }
 
 impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
@@ -58,23 +34,23 @@ where
     K: Connector<C, L>,
     N: NearestNeighbors<C>,
 {
-    /// With no nodes yet; `index` is empty.
-    pub fn new(steer: EdgeChecker<'c, C, L>, generate: G, connect: K, index: N) -> Self {
+    /// A builder of a roadmap without nodes; `index` is empty.
+    pub fn new(checker: EdgeChecker<'c, C, L>, generator: G, connector: K, index: N) -> Self {
         let map = Roadmap::new();
         Self {
-            steer,
+            checker,
             map,
             index,
-            generate,
-            connect,
+            generator,
+            connector,
             seed: None,
             attempts: 0,
             candidates: Vec::new(),
-            ahead: Prefetcher::default(),
+            prefetcher: Prefetcher::default(),
         }
     }
 
-    /// Goes on with a roadmap there is already, instead of none.
+    /// Continues a roadmap that was built before.
     ///
     /// # Errors
     /// When a state of it is outside the space.
@@ -84,16 +60,16 @@ where
     }
 
     pub(crate) fn replace(&mut self, map: Roadmap<C::State, L::Edge>) -> Result<(), BuildError> {
-        map.fill(self.steer.space(), &mut self.index)?;
+        map.fill(self.checker.space(), &mut self.index)?;
         self.map = map;
-        self.connect.resumed(&self.map);
-        self.ahead.ready.clear();
+        self.connector.resumed(&self.map);
+        self.prefetcher.ready.clear();
         Ok(())
     }
 
-    /// Takes in another roadmap of the same space and scene: its nodes and edges as they are, and then an
-    /// edge from each of its nodes to the nearest of the `neighbours` nearest that is in another component
-    /// and can be connected. What was verified of it is verified again when it is used.
+    /// Adds another roadmap of the same space and scene: its nodes and edges as they are, and then an edge from each of
+    /// its nodes to the nearest node that is in another component and can be connected, among its `neighbours` nearest.
+    /// Edges that were verified before are verified again when a path uses them.
     ///
     /// # Errors
     /// When a state of it is outside the space.
@@ -103,32 +79,26 @@ where
         neighbours: usize,
         observer: &mut dyn Observer<C::State>,
     ) -> Result<(), BuildError> {
-        other.check_within(self.steer.space())?;
+        other.check_within(self.checker.space())?;
         let before = self.map.len() as NodeId;
         self.map.append(other);
         for id in before..self.map.len() as NodeId {
-            self.index.inserted(self.steer.space(), self.map.states(), id);
+            self.index.inserted(self.checker.space(), self.map.states(), id);
             observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
         }
         let mut near = Vec::new();
-        let mut growing = Growing {
-            map: &mut self.map,
-            index: &mut self.index,
-            steer: &mut self.steer,
-            observer,
-            answers: Vec::new(),
-        };
+        let (_, mut growing) = self.growing(Vec::new(), observer);
         for id in before..growing.map.len() as NodeId {
             let q = growing.map.state(id).clone();
             growing.near(&q, neighbours.saturating_add(1), f64::INFINITY, &mut near);
-            // At most one edge for each: enough to join all components that can be.
+            // One edge per node is enough to join all components that can be joined.
             for hit in near.iter().filter(|hit| hit.id != id) {
                 if !growing.map.connected(hit.id, id) && growing.try_link(hit.id, id) {
                     break;
                 }
             }
         }
-        self.connect.resumed(&self.map);
+        self.connector.resumed(&self.map);
         Ok(())
     }
 
@@ -138,7 +108,7 @@ where
         &self.map
     }
 
-    /// The roadmap, to ask for its components.
+    /// The roadmap, mutable to compute its components.
     pub fn map_mut(&mut self) -> &mut Roadmap<C::State, L::Edge> {
         &mut self.map
     }
@@ -146,24 +116,24 @@ where
     /// The connector.
     #[must_use]
     pub fn connector(&self) -> &K {
-        &self.connect
+        &self.connector
     }
 
-    /// The roadmap alone.
+    /// The roadmap, without the builder.
     #[must_use]
     pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
         self.map
     }
 
-    /// One attempt: generate, and connect what comes of it. The ids of the nodes that were added.
+    /// One attempt: generates candidates and connects them. Returns the ids of the nodes that were added.
     pub fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) -> Range<NodeId> {
         let seed = *self.seed.get_or_insert_with(|| rng.random());
         let before = self.map.len() as NodeId;
-        self.look_ahead(seed);
-        if let Some(foreseen) = self.ahead.ready.pop_front() {
+        self.prefetch(seed);
+        if let Some(prefetched) = self.prefetcher.ready.pop_front() {
             self.attempts += 1;
             let mut last = None;
-            for (candidate, answers) in foreseen {
+            for (candidate, answers) in prefetched {
                 observer.on(Event::Sampled(&candidate.state));
                 last = self.take(candidate, answers, last, observer);
             }
@@ -171,7 +141,7 @@ where
         }
         let mut candidates = std::mem::take(&mut self.candidates);
         let mut stream = Rng::stream(seed, self.attempts);
-        self.generate.generate(self.attempts, &self.map, &mut self.steer, &mut stream, &mut candidates);
+        self.generator.generate(self.attempts, &self.map, &mut self.checker, &mut stream, &mut candidates);
         self.attempts += 1;
         let mut last = None;
         for candidate in candidates.drain(..) {
@@ -182,21 +152,28 @@ where
         before..self.map.len() as NodeId
     }
 
-    /// Has the threads make the next attempts, where there are any and none is left from before.
-    fn look_ahead(&mut self, seed: u64) {
-        let Some(work) = &mut self.ahead.work else { return };
-        let most = self.generate.independent(&self.map).min(self.ahead.most);
-        if !self.ahead.ready.is_empty() || most < 2 {
+    /// Lets the threads prefetch the next attempts, where there are threads and no attempt is prefetched already.
+    fn prefetch(&mut self, seed: u64) {
+        let Some(work) = &mut self.prefetcher.work else { return };
+        let most = self.generator.independent(&self.map).min(self.prefetcher.most);
+        if !self.prefetcher.ready.is_empty() || most < 2 {
             return;
         }
         self.map.refresh();
         let attempts = self.attempts..self.attempts + most;
         let (map, index) = (&self.map, &self.index);
-        let look = Look { map, index, generate: &self.generate, connect: &self.connect, seed, attempts };
-        self.ahead.ready = work(look).into();
+        let job = PrefetchJob {
+            map,
+            index,
+            generator: &self.generator,
+            connector: &self.connector,
+            seed,
+            attempts,
+        };
+        self.prefetcher.ready = work(job).into();
     }
 
-    /// Connects a candidate, of which the local planner has answered some questions already.
+    /// Connects a candidate; `answers` are motions to it that were prefetched.
     fn take(
         &mut self,
         mut candidate: Candidate<C::State, L::Edge>,
@@ -204,28 +181,31 @@ where
         last: Option<NodeId>,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<NodeId> {
-        if let Some(came) = &mut candidate.came {
-            came.from = Some(came.from.or(last)?);
+        if let Some(parent) = &mut candidate.parent {
+            parent.from = Some(parent.from.or(last)?);
         }
-        let mut growing =
-            Growing { map: &mut self.map, index: &mut self.index, steer: &mut self.steer, observer, answers };
-        self.connect.connect(candidate, &mut growing)
+        let (connector, mut growing) = self.growing(answers, observer);
+        connector.connect(candidate, &mut growing)
     }
 
-    /// Adds a configuration whatever the connector thinks of it: an end of a path.
+    /// The connector, and what it works with.
+    fn growing<'a>(
+        &'a mut self,
+        answers: Prefetched<C::State, L::Edge>,
+        observer: &'a mut dyn Observer<C::State>,
+    ) -> (&'a mut K, Growing<'a, 'c, C, L, N>) {
+        let Self { checker, map, index, connector, .. } = self;
+        (connector, Growing { map, index, checker, observer, answers })
+    }
+
+    /// Adds a configuration that the connector may not refuse: an end of a path.
     pub fn adopt(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,
         observer: &mut dyn Observer<C::State>,
     ) -> NodeId {
-        let mut growing = Growing {
-            map: &mut self.map,
-            index: &mut self.index,
-            steer: &mut self.steer,
-            observer,
-            answers: Vec::new(),
-        };
-        self.connect.adopt(candidate, &mut growing)
+        let (connector, mut growing) = self.growing(Vec::new(), observer);
+        connector.adopt(candidate, &mut growing)
     }
 
     /// Builds until stopped. Call again to go on.
@@ -247,16 +227,16 @@ where
         }
     }
 
-    /// What has been done so far.
+    /// The progress so far.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        let mut progress = Progress::new(self.attempts, self.map.len(), self.steer.motions);
-        (progress.rejected, progress.exhausted) = (self.steer.rejected, self.connect.exhausted());
+        let mut progress = Progress::new(self.attempts, self.map.len(), self.checker.motions());
+        (progress.rejected, progress.exhausted) = (self.checker.rejected(), self.connector.exhausted());
         progress
     }
 }
 
-/// Tells that building has ended: a function that is compiled once.
+/// Logs that building has ended. Not generic, so that it is compiled once.
 fn built(progress: &Progress, edges: usize, reason: StopReason) {
     tracing::debug!(attempts = progress.iterations, nodes = progress.nodes, edges, ?reason, "built");
 }

@@ -3,7 +3,8 @@
 use super::prefetch::{Prefetched, Prefetching};
 use super::{Candidate, EdgeChecker, ParentMotion, Roadmap, Tag};
 use mp_cspace::{
-    BuildError, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible, Space,
+    BuildError, Direction, Event, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Observer, Reversible,
+    Space,
 };
 
 /// What a connector works with: the roadmap, the neighbours of a configuration, the local planner.
@@ -11,9 +12,9 @@ use mp_cspace::{
 pub struct Growing<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     pub(crate) map: &'a mut Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a mut N,
-    pub(crate) steer: &'a mut EdgeChecker<'c, C, L>,
+    pub(crate) checker: &'a mut EdgeChecker<'c, C, L>,
     pub(crate) observer: &'a mut dyn Observer<C::State>,
-    /// Motions to the candidate that were asked for ahead.
+    /// Motions to the candidate that were prefetched.
     pub(crate) answers: Prefetched<C::State, L::Edge>,
 }
 
@@ -26,7 +27,7 @@ where
     /// The space.
     #[must_use]
     pub fn space(&self) -> &'c C {
-        self.steer.space()
+        self.checker.space()
     }
 
     /// The roadmap.
@@ -34,14 +35,14 @@ where
         self.map
     }
 
-    /// How it moves.
-    pub fn steer(&mut self) -> &mut EdgeChecker<'c, C, L> {
-        self.steer
+    /// Makes and verifies motions.
+    pub fn checker(&mut self) -> &mut EdgeChecker<'c, C, L> {
+        self.checker
     }
 
-    /// The `k` nodes nearest to `q` in order of distance, none farther than `radius`, into `out`.
+    /// Writes the `k` nodes nearest to `q` in order of distance, none farther than `radius`, to `out`.
     pub fn near(&self, q: &C::State, k: usize, radius: f64, out: &mut Vec<Hit>) {
-        let (space, states) = (self.steer.space(), self.map.states());
+        let (space, states) = (self.checker.space(), self.map.states());
         self.index.k_nearest(space, states, q, k, out);
         out.retain(|hit| hit.distance <= radius);
     }
@@ -53,24 +54,24 @@ where
         motion
     }
 
-    /// What the local planner says of the motion from a node to the candidate, now or ahead.
+    /// The motion from a node to the candidate, prefetched or made now.
     fn ask(&mut self, from: NodeId, q: &C::State) -> Option<Motion<C::State, L::Edge>> {
         match self.answers.iter_mut().find(|(node, _)| *node == from) {
             Some((_, answer)) => {
                 let motion = answer.take();
-                self.steer.answered(self.map.state(from), motion, q)
+                self.checker.replay(self.map.state(from), motion, q)
             }
-            None => self.steer.reach(self.map.state(from), q),
+            None => self.checker.reach(self.map.state(from), q, Direction::Forward),
         }
     }
 
-    /// Adds a candidate as a node, with no edge but the one it was [come to](Candidate::came) by.
+    /// Adds a candidate as a node, without edges but the one from its [parent](Candidate::parent).
     pub fn add(&mut self, candidate: Candidate<C::State, L::Edge>) -> NodeId {
         let tag = Tag { kind: candidate.kind, obstacle: candidate.obstacle, ..Tag::default() };
         let id = self.map.add(candidate.state, tag);
-        self.index.inserted(self.steer.space(), self.map.states(), id);
+        self.index.inserted(self.checker.space(), self.map.states(), id);
         self.observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
-        if let Some(ParentMotion { from: Some(from), motion }) = candidate.came {
+        if let Some(ParentMotion { from: Some(from), motion }) = candidate.parent {
             self.link(from, id, motion);
         }
         id
@@ -82,13 +83,13 @@ where
         self.observer.on(Event::Linked { from, to });
     }
 
-    /// Adds an edge between two nodes without asking the local planner.
+    /// Adds an edge between two nodes that is not checked yet.
     pub fn guess(&mut self, from: NodeId, to: NodeId, length: f64) {
         self.map.guess(from, to, length);
         self.observer.on(Event::Linked { from, to });
     }
 
-    /// Tries to connect a node to another: counts as an attempt of both. Whether there is an edge now.
+    /// Tries to connect a node to another; counts as an attempt of both. Returns whether there is an edge now.
     pub fn try_link(&mut self, from: NodeId, to: NodeId) -> bool {
         let q = self.map.state(to).clone();
         let motion = self.ask(from, &q);
@@ -102,43 +103,43 @@ where
     }
 }
 
-/// A slot: which candidates become nodes, and with which edges. It may refuse.
+/// Slot: which candidates become nodes, and with which edges. It may refuse candidates.
 pub trait Connector<C: Space, L: LocalPlanner<C::State>> {
-    /// Takes a candidate in by [`Growing::add`], or refuses it.
+    /// Adds a candidate by [`Growing::add`], or refuses it.
     fn connect<N: NearestNeighbors<C>>(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> Option<NodeId>;
 
-    /// Takes in what must not be refused: an end of the path.
+    /// Adds a candidate that must not be refused: an end of the path.
     fn adopt<N: NearestNeighbors<C>>(
         &mut self,
         candidate: Candidate<C::State, L::Edge>,
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId;
 
-    /// Asks for the motions that connecting a candidate will probably ask for. What it does not ask for
-    /// ahead is asked for later; so nothing depends on it but the time.
-    fn foresee<N: NearestNeighbors<C>>(&self, _ahead: &mut Prefetching<'_, '_, C, L, N>) {}
+    /// Prefetches the motions that connecting a candidate will probably need. Motions that are not prefetched are made
+    /// later, so only the time depends on this.
+    fn prefetch<N: NearestNeighbors<C>>(&self, _prefetching: &mut Prefetching<'_, '_, C, L, N>) {}
 
-    /// Goes on with a roadmap that it did not connect, or not all of it.
+    /// Continues with a roadmap that this connector did not make, or not all of it.
     fn resumed(&mut self, _map: &Roadmap<C::State, L::Edge>) {}
 
-    /// Whether nothing more is to be gained.
+    /// Whether further attempts cannot improve the roadmap.
     fn exhausted(&self) -> bool {
         false
     }
 }
 
-/// How far and how many neighbours are tried.
+/// How many neighbours of a node are tried, and how far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reachable {
-    /// At most so many; 1 or more.
+    /// At most this many; 1 or more.
     pub neighbours: usize,
-    /// None farther, in the metric of the space; infinite for no limit.
+    /// None farther than this, in the metric of the space; infinite for no limit.
     pub radius: f64,
-    /// Also those already connected, which makes cycles: shorter paths, for more motions.
+    /// Also neighbours in the same component, which makes cycles: shorter paths, for more motions.
     pub cycles: bool,
 }
 
@@ -171,7 +172,7 @@ impl NearestConnector {
         Ok(Self { within: within.check()?, near: Vec::new(), lazy: false })
     }
 
-    /// The same, but edges are not checked before a way leads along them, and cycles are kept.
+    /// The same, but edges are only checked when a path leads along them, and cycles are kept.
     ///
     /// # Errors
     /// When there are no neighbours, or the radius is not positive.
@@ -194,15 +195,15 @@ where
         Some(self.adopt(candidate, growing))
     }
 
-    fn foresee<N: NearestNeighbors<C>>(&self, ahead: &mut Prefetching<'_, '_, C, L, N>) {
+    fn prefetch<N: NearestNeighbors<C>>(&self, prefetching: &mut Prefetching<'_, '_, C, L, N>) {
         if self.lazy {
             return;
         }
         let mut joined = Vec::new();
-        for hit in ahead.near(self.within.neighbours, self.within.radius) {
-            let part = ahead.component(hit.id);
-            if (self.within.cycles || !joined.contains(&part)) && ahead.reach(hit.id) {
-                joined.push(part);
+        for hit in prefetching.near(self.within.neighbours, self.within.radius) {
+            let component = prefetching.component(hit.id);
+            if (self.within.cycles || !joined.contains(&component)) && prefetching.reach(hit.id) {
+                joined.push(component);
             }
         }
     }

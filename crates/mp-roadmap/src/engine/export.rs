@@ -5,7 +5,7 @@ use mp_cspace::StateVector;
 use std::fmt::Write;
 
 impl<S: StateVector, E> Roadmap<S, E> {
-    /// The numbers of a state with a space between them.
+    /// The numbers of a state, separated by spaces.
     fn written(&self, index: usize) -> String {
         let mut numbers = Vec::new();
         self.states()[index].write(&mut numbers);

@@ -1,6 +1,6 @@
 //! Roadmaps in files. `docs/formats/roadmap.md` describes them.
 
-use super::{Kind, Link, LinkState, Roadmap, Tag};
+use super::{Link, LinkState, MilestoneKind, Roadmap, Tag};
 use mp_cspace::{NodeId, StateVector};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -8,19 +8,19 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 const MAGIC: [u8; 8] = *b"\x89MPR\r\n\x1a\n";
 const VERSION: u32 = 1;
-/// Where there is no obstacle, or no motion.
+/// Stands for no obstacle or no motion.
 const NONE: u32 = u32::MAX;
 const CHECKSUM: usize = 8;
 
-/// A hash of all numbers that a scene and a robot consist of, the same on any machine: XXH3-64 of them as
-/// little-endian doubles. Meant to notice that something has changed, not to resist forgery.
+/// A hash of all numbers of a scene and a robot, the same on any machine: XXH3-64 of them as little-endian doubles. It
+/// detects changes, but does not resist forgery.
 pub fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let mut hash = Xxh3::new();
     numbers.into_iter().for_each(|x| hash.update(&x.to_le_bytes()));
     hash.digest()
 }
 
-/// Why bytes are no roadmap, or not the one wanted.
+/// Why bytes are not a roadmap, or not the one for this scene.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RoadmapError {
@@ -47,20 +47,20 @@ pub enum RoadmapError {
         /// The one in the file.
         found: u64,
     },
-    /// The bytes end too soon, or are not those that were written.
+    /// The bytes are cut off or damaged.
     #[error("cut off or damaged: expected the checksum {expected:016x}, found {found:016x}")]
     Damaged {
         /// The checksum of the bytes.
         expected: u64,
-        /// The checksum there is.
+        /// The checksum in the file.
         found: u64,
     },
-    /// The checksum is right, but no roadmap of such states was ever written so.
+    /// The checksum is right, but the bytes are not a roadmap of such states.
     #[error("byte {at}: expected {expected}")]
     Invalid {
-        /// Where.
+        /// The place in the file, bytes.
         at: usize,
-        /// What would have been right.
+        /// What was expected there.
         expected: &'static str,
     },
 }
@@ -71,14 +71,13 @@ pub enum RoadmapError {
 pub struct RoadmapFileError {
     /// The file.
     pub path: PathBuf,
-    /// Why.
+    /// What went wrong.
     pub error: RoadmapError,
 }
 
 /// Roadmaps in files.
 impl<S: StateVector, E: StateVector> Roadmap<S, E> {
-    /// The roadmap as bytes, with the fingerprint of the scene and robot it was made for: the same bytes for
-    /// the same roadmap.
+    /// The roadmap as bytes, with the fingerprint of its scene and robot. The same roadmap gives the same bytes.
     #[must_use]
     pub fn to_bytes(&self, fingerprint: u64) -> Vec<u8> {
         let mut numbers = Vec::new();
@@ -98,7 +97,7 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
             numbers.clear();
             state.write(&mut numbers);
             put(&mut bytes, &numbers);
-            let kind = Kind::ALL.iter().position(|kind| *kind == tag.kind).unwrap_or(0);
+            let kind = MilestoneKind::ALL.iter().position(|kind| *kind == tag.kind).unwrap_or(0);
             bytes.push(kind as u8);
             for number in [tag.obstacle.unwrap_or(NONE), tag.tried, tag.failed] {
                 bytes.extend(number.to_le_bytes());
@@ -124,12 +123,11 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         bytes
     }
 
-    /// The roadmap from what [`Roadmap::to_bytes`] gave, for the same scene and robot. Which edges the
-    /// verifier passed is not kept: they are verified again when a path leads along them.
+    /// The roadmap from the bytes of [`Roadmap::to_bytes`], for the same scene and robot. Which edges were verified is not
+    /// stored: they are verified again when a path leads along them.
     ///
     /// # Errors
-    /// When it was made for another fingerprint, or the bytes are cut off, damaged or no roadmap of
-    /// such states.
+    /// When it was made for another fingerprint, or the bytes are cut off, damaged or not a roadmap of such states.
     pub fn from_bytes(bytes: &[u8], fingerprint: u64) -> Result<Self, RoadmapError> {
         if !bytes.starts_with(&MAGIC) {
             return Err(RoadmapError::NotARoadmap);
@@ -156,7 +154,7 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
             let at = reader.at;
             let state = S::read(&reader.f64s(width)?);
             let state = state.ok_or(RoadmapError::Invalid { at, expected: "a state of this space" })?;
-            let kind = Kind::ALL.get(usize::from(reader.u8()?)).copied();
+            let kind = MilestoneKind::ALL.get(usize::from(reader.u8()?)).copied();
             let kind = kind.ok_or(RoadmapError::Invalid { at: reader.at - 1, expected: "a kind of node" })?;
             let obstacle = Some(reader.u32()?).filter(|obstacle| *obstacle != NONE);
             map.add(state, Tag { kind, obstacle, tried: reader.u32()?, failed: reader.u32()? });
@@ -171,18 +169,17 @@ impl<S: StateVector, E: StateVector> Roadmap<S, E> {
         }
     }
 
-    /// Writes [`Roadmap::to_bytes`] to a file, in one step: to a temporary file in the same folder, then
-    /// renamed, so that nobody ever reads half of it.
+    /// Writes [`Roadmap::to_bytes`] to a file atomically: to a temporary file in the same folder, which is then renamed.
     ///
     /// # Errors
-    /// When that cannot be done.
+    /// When the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>, fingerprint: u64) -> Result<(), RoadmapFileError> {
         let path = path.as_ref();
         write(path, &self.to_bytes(fingerprint))
             .map_err(|error| RoadmapFileError { path: path.to_owned(), error: error.into() })
     }
 
-    /// Reads what [`Roadmap::save`] wrote for the same fingerprint.
+    /// Reads a file that [`Roadmap::save`] wrote for the same fingerprint.
     ///
     /// # Errors
     /// As [`Roadmap::from_bytes`]; [`RoadmapError::Io`] when the file cannot be read.
@@ -233,7 +230,7 @@ impl Reader<'_> {
     }
 
     fn f64s(&mut self, count: u32) -> Result<Vec<f64>, RoadmapError> {
-        // No more is set aside than the bytes that are left can fill.
+        // A damaged count reserves no more memory than the remaining bytes can fill.
         let left = (self.bytes.len() - self.at) / 8;
         let mut numbers = Vec::with_capacity((count as usize).min(left));
         for _ in 0..count {

@@ -1,13 +1,13 @@
-//! The only way between two nodes of a roadmap without cycles.
+//! The only path between two nodes of a roadmap without cycles.
 
 use super::{EdgeId, GraphPath, Roadmap};
 use mp_cspace::NodeId;
 
-/// How the trees of a roadmap hang, so that the way between two nodes is found in time by their depth, where A* would
-/// visit much of the tree: it has one way, however long, and distances do not tell which.
+/// The parents of the nodes in the trees of a roadmap without cycles, by which the path between two nodes is found in
+/// time linear in their depth. A* would visit much of the tree, as distances say little about the only path.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Forest {
-    /// Nodes, edges and blocked edges of the roadmap this was made of.
+    /// How many nodes, edges and blocked edges the roadmap had when this was computed.
     of: Option<[usize; 3]>,
     cycles: bool,
     /// The edge to the parent, and the parent.
@@ -16,21 +16,21 @@ pub(crate) struct Forest {
 }
 
 impl Forest {
-    /// Looks at the roadmap again where it has changed. Whether it is a forest.
+    /// Updates this where the roadmap has changed. Returns whether the roadmap is a forest.
     pub(crate) fn holds<S, E>(&mut self, map: &mut Roadmap<S, E>) -> bool {
         let now = [map.len(), map.edges(), map.blocked()];
         if self.of != Some(now) {
             self.of = Some(now);
             self.cycles = map.edges() + map.components() != map.len();
             if !self.cycles {
-                self.hang(map);
+                self.root_trees(map);
             }
         }
         !self.cycles
     }
 
-    /// Hangs each tree by its first node.
-    fn hang<S, E>(&mut self, map: &Roadmap<S, E>) {
+    /// Makes the first node of each tree its root.
+    fn root_trees<S, E>(&mut self, map: &Roadmap<S, E>) {
         self.up = vec![None; map.len()];
         self.depth = vec![u32::MAX; map.len()];
         let mut next = Vec::new();
@@ -52,9 +52,9 @@ impl Forest {
         }
     }
 
-    /// The way from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in
-    /// different trees. Time by the depth of the nodes.
-    pub(crate) fn way<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<GraphPath> {
+    /// The path from one node to another of a roadmap that this [holds](Self::holds); `None` when they are in different
+    /// trees. Linear in the depth of the nodes.
+    pub(crate) fn path<S, E>(&self, map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<GraphPath> {
         let (mut a, mut b) = (from, to);
         let (mut head, mut tail) = (Vec::new(), Vec::new());
         while a != b {
@@ -80,7 +80,7 @@ mod tests {
     use mp_cspace::{Rn, Rng, Space};
     use rand::RngExt;
 
-    /// The same ways as A* finds, before and after an edge is blocked; none where there are cycles.
+    /// The same paths as A* finds, before and after an edge is blocked; none where there are cycles.
     #[test]
     fn ways_are_those_of_a_star() {
         let space = Rn::<2>::new([0.0; 2], [1.0; 2]).unwrap();
@@ -101,10 +101,10 @@ mod tests {
                 for _ in 0..20 {
                     let (a, b) = (rng.random_range(0..n), rng.random_range(0..n));
                     let star = AStar::new().shortest(map, &space, &[(a, 0.0)], &[(b, 0.0)]);
-                    let way = forest.way(map, a, b);
-                    let parts = |way: &GraphPath| (way.nodes.clone(), way.edges.clone());
-                    assert_eq!(way.as_ref().map(parts), star.as_ref().map(parts));
-                    let lengths = way.zip(star).map(|(w, s)| (w.length - s.length).abs());
+                    let path = forest.path(map, a, b);
+                    let parts = |path: &GraphPath| (path.nodes.clone(), path.edges.clone());
+                    assert_eq!(path.as_ref().map(parts), star.as_ref().map(parts));
+                    let lengths = path.zip(star).map(|(w, s)| (w.length - s.length).abs());
                     assert!(lengths.is_none_or(|off| off < 1e-12));
                 }
             };

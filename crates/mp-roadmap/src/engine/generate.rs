@@ -1,6 +1,6 @@
-//! Where nodes come from.
+//! Slot: which configurations are tried as nodes.
 
-use super::{EdgeChecker, Kind, Roadmap};
+use super::{EdgeChecker, MilestoneKind, Roadmap};
 use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, Uniform};
 
 /// A configuration that may become a node.
@@ -8,59 +8,59 @@ use mp_cspace::{LocalPlanner, Motion, NodeId, Reversible, Rng, Sampler, Space, U
 pub struct Candidate<S, E> {
     /// The configuration: free, by [`EdgeChecker::admits`].
     pub state: S,
-    /// What it is there for.
-    pub kind: Kind,
+    /// Its kind.
+    pub kind: MilestoneKind,
     /// The obstacle it belongs to, if any.
     pub obstacle: Option<u32>,
-    /// How it was come to, when from a node; that edge is kept.
-    pub came: Option<ParentMotion<S, E>>,
+    /// The motion to it from another node, if it was found by one; the edge is kept.
+    pub parent: Option<ParentMotion<S, E>>,
 }
 
-/// How a candidate was come to.
+/// The motion by which a candidate was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParentMotion<S, E> {
-    /// From which node; `None`: from the candidate before it.
+    /// The node where the motion begins; `None` for the candidate before.
     pub from: Option<NodeId>,
-    /// By which motion, which ends in the candidate.
+    /// The motion, which ends in the candidate.
     pub motion: Motion<S, E>,
 }
 
 impl<S, E> Candidate<S, E> {
-    /// A configuration, come to by itself.
-    pub fn new(state: S, kind: Kind) -> Self {
-        Self { state, kind, obstacle: None, came: None }
+    /// A candidate without a parent.
+    pub fn new(state: S, kind: MilestoneKind) -> Self {
+        Self { state, kind, obstacle: None, parent: None }
     }
 
-    /// The same, belonging to an obstacle.
+    /// The same candidate, belonging to an obstacle.
     #[must_use]
     pub fn of(self, obstacle: u32) -> Self {
         Self { obstacle: Some(obstacle), ..self }
     }
 }
 
-/// A slot: what configurations are tried as nodes.
+/// Slot: which configurations are tried as nodes.
 pub trait NodeGenerator<C: Space, L: LocalPlanner<C::State>> {
-    /// The candidates of attempt number `attempt`, in order, into `out`, which is empty: none when the
-    /// attempt misses. Each must be [admitted](EdgeChecker::admits).
+    /// Writes the candidates of attempt number `attempt`, in order, to `out`, which is empty: none when the attempt
+    /// fails. Each must be [admitted](EdgeChecker::admits).
     ///
     /// `rng` is the stream of this attempt.
     fn generate(
         &mut self,
         attempt: u64,
         map: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     );
 
-    /// How many attempts from now on neither look at the roadmap nor change the generator, so that they
-    /// may be made ahead of their turn and at the same time by clones of it.
+    /// How many of the next attempts neither depend on the roadmap nor change the generator, so that clones of it may make
+    /// them beforehand and at the same time.
     fn independent(&self, _map: &Roadmap<C::State, L::Edge>) -> u64 {
         0
     }
 }
 
-/// Free samples: what a sampler yields and the local planner admits.
+/// Free samples: those of a sampler that the local planner admits.
 #[derive(Clone, Copy, Debug)]
 pub struct Free<T> {
     sampler: T,
@@ -75,8 +75,8 @@ impl<'c, C: Space> Free<Uniform<'c, C>> {
 }
 
 impl<T> Free<T> {
-    /// Samples of any sampler, one after the other: what it remembers from one to the next (low-discrepancy
-    /// sequences do) is kept.
+    /// Samples of any sampler, one after the other. State that the sampler keeps from one to the next, as low-discrepancy
+    /// sequences do, is kept.
     pub fn of(sampler: T) -> Self {
         Self { sampler, memory: true }
     }
@@ -92,13 +92,13 @@ where
         &mut self,
         _: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
         let state = self.sampler.sample(rng);
-        if steer.admits(&state) {
-            out.push(Candidate::new(state, Kind::Plain));
+        if checker.admits(&state) {
+            out.push(Candidate::new(state, MilestoneKind::Plain));
         }
     }
 

@@ -1,14 +1,15 @@
-//! The engine: the roadmap, the loops that grow it, and a slot for each thing in which variants differ. It knows no
-//! variant.
+//! The engine: the roadmap, the loops that grow it, and a slot for each policy in which variants differ. It does not
+//! depend on any variant.
 
 mod builder;
 mod connect;
-mod edge_checker;
+mod constructors;
 mod export;
 mod file;
 mod forest;
 mod generate;
-pub(crate) mod mixed;
+pub(crate) mod pairs;
+mod parts;
 mod planner;
 mod prefetch;
 mod queries;
@@ -17,18 +18,19 @@ mod search;
 pub(crate) mod settings;
 mod staged;
 
-pub(crate) use planner::taken_apart;
+pub(crate) use constructors::constructors;
 
-pub use builder::{Builder, Pace, Recipe};
+pub use builder::Builder;
 pub use connect::{Connector, Growing, NearestConnector, Reachable};
-pub use edge_checker::EdgeChecker;
 pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Candidate, Free, NodeGenerator, ParentMotion};
-pub use mixed::{Mixing, PairRule, Pairs};
+pub use mp_cspace::EdgeChecker;
+pub use pairs::{Mixing, PairRule, Pairs, PairsPlanner};
+pub use parts::{Pace, RoadmapPlannerParts};
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
 pub use prefetch::Prefetching;
 pub use queries::{IndexedRoadmap, Listed, RoadmapQueries, Unanswered};
-pub use roadmap::{EdgeId, GraphPath, Kind, Link, LinkState, Roadmap, Tag};
+pub use roadmap::{EdgeId, GraphPath, Link, LinkState, MilestoneKind, Roadmap, Tag};
 pub use search::{AStar, Entry, Query};
 pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
 pub use staged::{NeighborSet, StagedConnector, Turns};

@@ -1,23 +1,24 @@
-//! Roadmaps as planners of one path: they grow until start and goal are connected.
+//! The loop that plans one path: the roadmap grows until start and goal are connected.
 
 use super::{
-    Builder, Candidate, Connector, EdgeChecker, GraphPath, Kind, NodeGenerator, Pace, Query, Recipe, Roadmap,
+    Builder, Candidate, Connector, EdgeChecker, GraphPath, MilestoneKind, NodeGenerator, Pace, Query,
+    Roadmap, RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner, Problem,
-    ProblemParts, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
+    BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
+    Problem, Progress, Reversible, Rng, Space, Stop, StopReason, Workers,
 };
 
 /// Rejected paths after which each new motion is verified.
 pub const PATIENCE: u64 = 10;
 
-/// Every so many iterations a new goal is drawn, where there is a sampler.
+/// Every this many iterations a new goal is drawn, where there is a sampler.
 const GOAL_EVERY: u64 = 16;
 
 /// A planner that grows a roadmap until it connects start and goal.
 ///
-/// The first step takes the start and the listed goals in as nodes. Each one makes one attempt of the
-/// generator, and where start and a goal are in the same component looks for a way and verifies it.
+/// The first step adds the start and the listed goals as nodes. Each step makes one attempt of the generator; where start
+/// and a goal are in the same component it searches for a path and verifies it.
 #[derive(Debug)]
 pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
     builder: Builder<'c, C, L, G, K, N>,
@@ -29,7 +30,7 @@ pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
     /// The node of the start, and those of goals.
     ends: Option<(NodeId, Vec<NodeId>)>,
     iterations: u64,
-    /// The length of the last path returned, and how many nodes there were when one was last looked for.
+    /// The length of the path returned last, and the number of nodes at the last search.
     best: f64,
     looked: usize,
 }
@@ -43,14 +44,14 @@ where
     Q: Query<C, L>,
     N: NearestNeighbors<C>,
 {
-    /// The planner made by a recipe, with an empty index.
-    pub fn assemble(problem: Problem<'c, C, L>, index: N, recipe: Recipe<G, K, Q>) -> Self {
-        let (steer, start, goals) = taken_apart(problem);
+    /// A planner for a problem, with an empty index.
+    pub fn assemble(problem: Problem<'c, C, L>, index: N, parts: RoadmapPlannerParts<G, K, Q>) -> Self {
+        let (checker, start, goals) = EdgeChecker::of(problem, PATIENCE);
         Self {
-            builder: Builder::new(steer, recipe.generate, recipe.connect, index),
-            query: recipe.query,
-            pace: recipe.pace,
-            improves: recipe.improves,
+            builder: Builder::new(checker, parts.generator, parts.connector, index),
+            query: parts.query,
+            pace: parts.pace,
+            improves: parts.improves,
             start,
             goals,
             ends: None,
@@ -62,7 +63,7 @@ where
 
     /// Builds on several threads: see [`Builder::on`].
     #[must_use]
-    pub fn on(self, workers: Workers, hands: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self
+    pub fn on(self, workers: Workers, checkers: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self
     where
         C::State: 'c,
         L: Send + 'c,
@@ -71,29 +72,29 @@ where
         K: Sync,
         N: Sync,
     {
-        Self { builder: self.builder.on(workers, hands), ..self }
+        Self { builder: self.builder.on(workers, checkers), ..self }
     }
 
-    /// The roadmap; before the first step without start and goal.
+    /// The roadmap; without start and goal before the first step.
     #[must_use]
     pub fn map(&self) -> &Roadmap<C::State, L::Edge> {
         self.builder.map()
     }
 
-    /// What grows the roadmap.
+    /// The builder of the roadmap.
     #[must_use]
     pub fn builder(&self) -> &Builder<'c, C, L, G, K, N> {
         &self.builder
     }
 
-    /// The same, to go on with alone.
+    /// The builder of the roadmap, without the planner.
     #[must_use]
     pub fn into_builder(self) -> Builder<'c, C, L, G, K, N> {
         self.builder
     }
 
     fn begin(&mut self, observer: &mut dyn Observer<C::State>) {
-        let start = self.builder.adopt(Candidate::new(self.start.clone(), Kind::End), observer);
+        let start = self.builder.adopt(Candidate::new(self.start.clone(), MilestoneKind::End), observer);
         let mut goals = Vec::new();
         if self.goals.reached(&self.start) {
             goals.push(start);
@@ -103,19 +104,19 @@ where
             goals.push(if same {
                 start
             } else {
-                self.builder.adopt(Candidate::new(goal.clone(), Kind::End), observer)
+                self.builder.adopt(Candidate::new(goal.clone(), MilestoneKind::End), observer)
             });
         }
         self.ends = Some((start, goals));
     }
 
-    /// Draws a goal and takes it in, if it may be one.
+    /// Draws a goal and adds it, if it may be an end of a path.
     fn draw_goal(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
         let Some(goal) = self.goals.sample(rng) else { return };
-        if !self.builder.steer.accepts(&goal) {
+        if !self.builder.checker.accepts(&goal) {
             return;
         }
-        let id = self.builder.adopt(Candidate::new(goal, Kind::End), observer);
+        let id = self.builder.adopt(Candidate::new(goal, MilestoneKind::End), observer);
         self.add_goals([id]);
     }
 
@@ -131,26 +132,25 @@ where
         let (start, goals) = (*start, goals.clone());
         self.looked = self.builder.map.len();
         loop {
-            let Builder { map, steer, .. } = &mut self.builder;
+            let Builder { map, checker, .. } = &mut self.builder;
             let near: Vec<_> =
                 goals.iter().filter(|&&goal| map.connected(start, goal)).map(|&goal| (goal, 0.0)).collect();
             if near.is_empty() {
                 return None;
             }
-            let way = self.query.search(map, steer, &[(start, 0.0)], &near)?;
-            if self.improves && way.length >= self.best * (1.0 - 1e-9) {
+            let path = self.query.search(map, checker, &[(start, 0.0)], &near)?;
+            if self.improves && path.length >= self.best * (1.0 - 1e-9) {
                 return None;
             }
-            if verify(map, steer, &way) {
-                self.best = way.length;
-                return map.path(&way);
+            if verify(map, checker, &path) {
+                self.best = path.length;
+                return map.path(&path);
             }
             observer.on(Event::Rejected);
         }
     }
 
-    /// Whether it is time to look for a way. When a better path is wanted, whenever there are a tenth more
-    /// nodes.
+    /// Whether it is time to search for a path. A better path is searched for whenever there are a tenth more nodes.
     fn due(&self) -> bool {
         let nodes = self.builder.map.len();
         let better = if self.best.is_finite() && self.improves { self.looked / 10 } else { 0 };
@@ -158,40 +158,28 @@ where
     }
 }
 
-/// How a problem is moved in, and from where to where.
-pub(crate) fn taken_apart<'c, C, L>(
-    problem: Problem<'c, C, L>,
-) -> (EdgeChecker<'c, C, L>, C::State, Goals<'c, C::State>)
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-{
-    let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
-    (EdgeChecker::boxed(space, local, verify, PATIENCE), start, goals)
-}
-
-/// Verifies the edges of a way that have not passed yet, in the direction in which they are run. Blocks
-/// the first that fails; whether none did.
+/// Verifies the edges of a path that have not passed yet, in the direction of the path. Blocks the first that fails.
+/// Returns whether none did.
 pub(crate) fn verify<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
-    steer: &mut EdgeChecker<'_, C, L>,
-    way: &GraphPath,
+    checker: &mut EdgeChecker<'_, C, L>,
+    path: &GraphPath,
 ) -> bool
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    for (&edge, ends) in way.edges.iter().zip(way.nodes.windows(2)) {
+    for (&edge, ends) in path.edges.iter().zip(path.nodes.windows(2)) {
         let backward = map.ends(edge)[0] != ends[0];
         if map.edge(edge).verified[usize::from(backward)] {
             continue;
         }
-        let passes = map
-            .motion(edge, ends[0])
-            .is_some_and(|motion| steer.passes(map.state(ends[0]), &motion.edge, &motion.end));
+        let passes = map.motion(edge, ends[0]).is_some_and(|motion| {
+            checker.passes(map.state(ends[0]), &motion.edge, &motion.end, Direction::Forward)
+        });
         if !passes {
             map.block(edge);
-            steer.rejected += 1;
+            checker.count_rejected();
             return false;
         }
         map.passed(edge, backward);
@@ -199,22 +187,21 @@ where
     true
 }
 
-/// A planner whose roadmap can be looked at, kept, and gone on with.
+/// A planner whose roadmap can be inspected, saved and continued.
 pub trait HasRoadmap<S, E>: Planner<S, Edge = E>
 where
     E: Clone,
 {
-    /// The roadmap; before the first step without start and goal.
+    /// The roadmap; without start and goal before the first step.
     fn map(&self) -> &Roadmap<S, E>;
-    /// The roadmap, to ask for its components.
+    /// The roadmap, mutable to compute its components.
     fn map_mut(&mut self) -> &mut Roadmap<S, E>;
-    /// Goes on with a roadmap there is already, made by a planner of the same kind, instead of its own. Before
-    /// the first step.
+    /// Continues with a roadmap made by a planner of the same kind, instead of its own. To be called before the first step.
     ///
     /// # Errors
     /// When a state of it is outside the space.
     fn resume(&mut self, map: Roadmap<S, E>) -> Result<(), BuildError>;
-    /// Grows the roadmap until stopped, whether or not it connects start and goal: for many queries later.
+    /// Grows the roadmap until stopped, whether or not it connects start and goal, for many queries later.
     fn build(&mut self, rng: &mut Rng, stop: &mut dyn Stop, observer: &mut dyn Observer<S>) -> StopReason;
 }
 

@@ -1,27 +1,29 @@
-//! Attempts made ahead of their turn, on several threads, without changing what comes of them.
+//! Prefetching: several threads make attempts beforehand, without changing the result.
 //!
-//! What takes time is asking the local planner. Its answers do not depend on when it is asked; so threads ask
-//! what the attempts to come will probably ask, of the roadmap as it is, and keep the answers. The attempts are
-//! then made one after the other as ever, and take the answers that are there.
+//! Most time goes into motions of the local planner, and its answers do not depend on when they are made. So threads make
+//! the motions that the next attempts will probably need, given the roadmap as it is, and keep them. The attempts are
+//! then made one after the other as usual, and use the motions that were prefetched.
 
 use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Roadmap};
-use mp_cspace::{Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers};
+use mp_cspace::{
+    Direction, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers,
+};
 use std::collections::VecDeque;
 use std::fmt;
 use std::ops::Range;
 
-/// What the local planner answered, by the node that a motion leads from.
+/// The answers of the local planner, with the node where each motion begins.
 pub(crate) type Prefetched<S, E> = Vec<(NodeId, Option<Motion<S, E>>)>;
 
-/// The candidates of an attempt, and what was asked about each.
+/// The candidates of an attempt, with the motions prefetched for each.
 pub(crate) type PrefetchedAttempt<S, E> = Vec<(Candidate<S, E>, Prefetched<S, E>)>;
 
-/// What a connector has to look ahead with: the roadmap as it is, to which candidates are not added.
+/// What a connector prefetches with: the roadmap as it is, to which candidates are not added.
 #[allow(missing_debug_implementations)] // verifiers need not have any
 pub struct Prefetching<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
     map: &'a Roadmap<C::State, L::Edge>,
     index: &'a N,
-    steer: &'a mut EdgeChecker<'c, C, L>,
+    checker: &'a mut EdgeChecker<'c, C, L>,
     q: &'a C::State,
     answers: Prefetched<C::State, L::Edge>,
 }
@@ -36,7 +38,7 @@ where
     #[must_use]
     pub fn near(&self, k: usize, radius: f64) -> Vec<Hit> {
         let mut near = Vec::new();
-        self.index.k_nearest(self.steer.space(), self.map.states(), self.q, k, &mut near);
+        self.index.k_nearest(self.checker.space(), self.map.states(), self.q, k, &mut near);
         near.retain(|hit| hit.distance <= radius);
         near
     }
@@ -53,35 +55,36 @@ where
         self.map.len()
     }
 
-    /// Asks for the motion from a node to the candidate, and keeps the answer. Whether there is one.
+    /// Prefetches the motion from a node to the candidate. Returns whether there is one.
     pub fn reach(&mut self, from: NodeId) -> bool {
-        let motion = self.steer.reach(self.map.state(from), self.q);
+        let motion = self.checker.reach(self.map.state(from), self.q, Direction::Forward);
         let found = motion.is_some();
         self.answers.push((from, motion));
         found
     }
 }
 
-/// What the threads look at: the roadmap and its neighbours, the policies, the seed, and which attempts.
-pub(crate) struct Look<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
+/// What the threads prefetch from: the roadmap and its index, the policies, the seed, and the range of attempts.
+pub(crate) struct PrefetchJob<'a, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) map: &'a Roadmap<C::State, L::Edge>,
     pub(crate) index: &'a N,
-    pub(crate) generate: &'a G,
-    pub(crate) connect: &'a K,
+    pub(crate) generator: &'a G,
+    pub(crate) connector: &'a K,
     pub(crate) seed: u64,
     pub(crate) attempts: Range<u64>,
 }
 
-/// What was made of some attempts, in order.
-type Made<C, L> = Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
+/// The prefetched attempts, in order.
+type Prefetches<C, L> =
+    Vec<PrefetchedAttempt<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>>;
 
-type Work<'c, C, L, G, K, N> = Box<dyn FnMut(Look<'_, C, L, G, K, N>) -> Made<C, L> + Send + 'c>;
+type Work<'c, C, L, G, K, N> = Box<dyn FnMut(PrefetchJob<'_, C, L, G, K, N>) -> Prefetches<C, L> + Send + 'c>;
 
-/// Threads that make attempts ahead, and what they have made.
+/// Prefetches attempts on several threads, and keeps them.
 pub(crate) struct Prefetcher<'c, C: Space, L: LocalPlanner<C::State>, G, K, N> {
     pub(crate) ready: VecDeque<PrefetchedAttempt<C::State, L::Edge>>,
     pub(crate) work: Option<Work<'c, C, L, G, K, N>>,
-    /// Most attempts made ahead.
+    /// Most attempts prefetched at a time.
     pub(crate) most: u64,
 }
 
@@ -100,15 +103,15 @@ impl<C: Space, L: LocalPlanner<C::State>, G, K, N> fmt::Debug for Prefetcher<'_,
     }
 }
 
-/// One thread's part of the work.
-struct Hand<'c, C: Space, L: LocalPlanner<C::State>, G> {
-    steer: EdgeChecker<'c, C, L>,
-    generate: Option<G>,
+/// The attempts that one edge checker prefetches.
+struct PrefetchTask<'c, C: Space, L: LocalPlanner<C::State>, G> {
+    checker: EdgeChecker<'c, C, L>,
+    generator: Option<G>,
     attempts: Range<u64>,
-    made: Vec<PrefetchedAttempt<C::State, L::Edge>>,
+    prefetched: Vec<PrefetchedAttempt<C::State, L::Edge>>,
 }
 
-/// Attempts that one hand makes at a time.
+/// Attempts that one edge checker prefetches at a time.
 const SHARE: u64 = 16;
 
 impl<'c, C, L, G, K, N> Builder<'c, C, L, G, K, N>
@@ -121,57 +124,57 @@ where
     K: Connector<C, L> + Sync,
     N: NearestNeighbors<C> + Sync,
 {
-    /// Builds on several threads, where the generator has [independent](NodeGenerator::independent) attempts.
-    /// Each of `hands`, which are like the one that the builder was made with, makes some attempts at a
-    /// time; give at least as many as there are threads. The roadmap is the same to the bit as without,
-    /// whatever their number and that of the threads.
+    /// Builds on several threads, where the generator has [independent](NodeGenerator::independent) attempts. Each of
+    /// `checkers`, which must equal the checker of the builder, prefetches some attempts at a time; give at least as many as
+    /// there are threads. The roadmap is the same to the bit for any number of checkers and threads.
     #[must_use]
-    pub fn on(mut self, workers: Workers, hands: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
+    pub fn on(mut self, workers: Workers, checkers: impl IntoIterator<Item = EdgeChecker<'c, C, L>>) -> Self {
         let none = 0..0;
-        let hands = hands.into_iter().map(|steer| Hand {
-            steer,
-            generate: None::<G>,
+        let tasks = checkers.into_iter().map(|checker| PrefetchTask {
+            checker,
+            generator: None::<G>,
             attempts: none.clone(),
-            made: Vec::new(),
+            prefetched: Vec::new(),
         });
-        let mut hands: Vec<_> = hands.collect();
-        self.ahead.most = SHARE * hands.len() as u64;
-        self.ahead.work = Some(Box::new(move |look: Look<'_, C, L, G, K, N>| {
-            let mut next = look.attempts.start;
-            for hand in &mut hands {
-                let end = (next + SHARE).min(look.attempts.end);
-                hand.attempts = next..end;
-                hand.generate = Some(look.generate.clone());
+        let mut tasks: Vec<_> = tasks.collect();
+        self.prefetcher.most = SHARE * tasks.len() as u64;
+        self.prefetcher.work = Some(Box::new(move |job: PrefetchJob<'_, C, L, G, K, N>| {
+            let mut next = job.attempts.start;
+            for task in &mut tasks {
+                let end = (next + SHARE).min(job.attempts.end);
+                task.attempts = next..end;
+                task.generator = Some(job.generator.clone());
                 next = end;
             }
-            workers.each(&mut hands, |hand| hand.work(&look));
-            hands.iter_mut().flat_map(|hand| hand.made.drain(..)).collect()
+            workers.each(&mut tasks, |task| task.work(&job));
+            tasks.iter_mut().flat_map(|task| task.prefetched.drain(..)).collect()
         }));
         self
     }
 }
 
-impl<C, L, G> Hand<'_, C, L, G>
+impl<C, L, G> PrefetchTask<'_, C, L, G>
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
     G: NodeGenerator<C, L>,
 {
-    fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, look: &Look<'_, C, L, G, K, N>) {
-        let Some(generate) = &mut self.generate else { return };
+    fn work<K: Connector<C, L>, N: NearestNeighbors<C>>(&mut self, job: &PrefetchJob<'_, C, L, G, K, N>) {
+        let Some(generator) = &mut self.generator else { return };
         for attempt in self.attempts.clone() {
-            let mut rng = Rng::stream(look.seed, attempt);
+            let mut rng = Rng::stream(job.seed, attempt);
             let mut candidates = Vec::new();
-            generate.generate(attempt, look.map, &mut self.steer, &mut rng, &mut candidates);
-            let foreseen = candidates.into_iter().map(|candidate| {
-                let (map, index) = (look.map, look.index);
+            generator.generate(attempt, job.map, &mut self.checker, &mut rng, &mut candidates);
+            let prefetched = candidates.into_iter().map(|candidate| {
+                let (map, index) = (job.map, job.index);
                 let q = &candidate.state;
-                let mut ahead = Prefetching { map, index, steer: &mut self.steer, q, answers: Vec::new() };
-                look.connect.foresee(&mut ahead);
-                let answers = ahead.answers;
+                let mut prefetching =
+                    Prefetching { map, index, checker: &mut self.checker, q, answers: Vec::new() };
+                job.connector.prefetch(&mut prefetching);
+                let answers = prefetching.answers;
                 (candidate, answers)
             });
-            self.made.push(foreseen.collect());
+            self.prefetched.push(prefetched.collect());
         }
     }
 }

@@ -1,11 +1,12 @@
-//! Many queries to one roadmap.
+//! Many queries on one roadmap.
 
 use super::forest::Forest;
 use super::planner::verify;
 use super::{AStar, Builder, EdgeChecker, EdgeId, GraphPath, LinkState, Query, Roadmap};
 use mp_cspace::shortest::shortest_paths;
 use mp_cspace::{
-    BuildError, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible, Space,
+    BuildError, Direction, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible,
+    Space,
 };
 
 /// Why a query has no answer.
@@ -15,31 +16,31 @@ pub enum Unanswered {
     /// An end is outside the space.
     #[error("the {0} is outside the space")]
     Outside(Endpoint),
-    /// An end is not free, or too close to something for the local planner.
+    /// An end is not free, or too close to an obstacle for the local planner.
     #[error("the {0} is not free")]
     NotFree(Endpoint),
     /// No node near an end can be connected to it: the roadmap needs more nodes there.
     #[error("no node of the roadmap near the {0} can be connected to it")]
     Unreached(Endpoint),
-    /// Both ends are connected, to different components: the roadmap needs more nodes between.
+    /// The ends are connected to different components: the roadmap needs more nodes between them.
     #[error("start and goal are connected to different components of the roadmap")]
     Apart,
 }
 
 /// A roadmap that answers queries; it does not grow by them.
 ///
-/// To answer, start and goal are connected to one of the nodes nearest to them, in order of distance, such
-/// that both are in one component, and a shortest way between is looked for. The path is verified; edges
-/// that passed once are not verified again, and one that fails is blocked for good. A direct motion from
-/// start to goal is tried first.
+/// A query first tries a direct motion from start to goal. Then start and goal are each connected to one of their nearest
+/// nodes, in order of distance, such that both are in one component, and a shortest path between these nodes is searched
+/// for. The path is verified; edges that passed once are not verified again, and an edge that fails is blocked
+/// permanently.
 #[derive(Debug)]
 pub struct RoadmapQueries<'c, C: Space, L: LocalPlanner<C::State>, N> {
-    steer: EdgeChecker<'c, C, L>,
+    checker: EdgeChecker<'c, C, L>,
     indexed: IndexedRoadmap<C::State, L::Edge, N>,
 }
 
-/// A roadmap, an index of its nodes and what searches have learnt: what of [`RoadmapQueries`] outlives a local planner. It
-/// answers the same queries to whoever brings one, always for the same space and scene.
+/// A roadmap, an index of its nodes and the memory of searches: [`RoadmapQueries`] without the edge checker, which each
+/// query brings along, always for the same space and scene.
 #[derive(Clone, Debug)]
 pub struct IndexedRoadmap<S, E, N> {
     map: Roadmap<S, E>,
@@ -55,24 +56,24 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// What was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
+    /// The roadmap that was built, to answer queries; each end is connected to one of its `neighbours` nearest nodes.
     #[must_use]
     pub fn into_answers(self, neighbours: usize) -> RoadmapQueries<'c, C, L, N> {
-        let Self { steer, map, index, .. } = self;
-        RoadmapQueries { steer, indexed: IndexedRoadmap::filled(map, index, neighbours) }
+        let Self { checker, map, index, .. } = self;
+        RoadmapQueries { checker, indexed: IndexedRoadmap::filled(map, index, neighbours) }
     }
 }
 
-/// A motion from one state to another, and the states.
-type Hop<S, E> = (S, Motion<S, E>);
+/// The state where a motion begins, and the motion.
+type Connection<S, E> = (S, Motion<S, E>);
 
 /// Paths and their lengths.
 pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;
 
-/// How the ends of a path hang on the roadmap.
-struct Joined<S, E> {
-    first: Hop<S, E>,
-    last: Hop<S, E>,
+/// The motions that connect the ends of a path to the roadmap, and the nodes they lead to.
+struct ConnectedEnds<S, E> {
+    first: Connection<S, E>,
+    last: Connection<S, E>,
     nodes: [NodeId; 2],
 }
 
@@ -82,24 +83,24 @@ where
     L: LocalPlanner<C::State, Edge: Reversible>,
     N: NearestNeighbors<C>,
 {
-    /// Of a roadmap made before, with an empty index. Each end of a query is connected to one of its
-    /// `neighbours` nearest nodes.
+    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its `neighbours` nearest
+    /// nodes.
     ///
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
     pub fn new(
-        steer: EdgeChecker<'c, C, L>,
+        checker: EdgeChecker<'c, C, L>,
         map: Roadmap<C::State, L::Edge>,
         index: N,
         neighbours: usize,
     ) -> Result<Self, BuildError> {
-        let indexed = IndexedRoadmap::new(steer.space(), map, index, neighbours)?;
-        Ok(Self { steer, indexed })
+        let indexed = IndexedRoadmap::new(checker.space(), map, index, neighbours)?;
+        Ok(Self { checker, indexed })
     }
 
     /// As [`IndexedRoadmap::verify`].
     pub fn verify(&mut self) -> usize {
-        self.indexed.verify(&mut self.steer)
+        self.indexed.verify(&mut self.checker)
     }
 
     /// The roadmap.
@@ -108,46 +109,46 @@ where
         &self.indexed.map
     }
 
-    /// The roadmap alone, with what was learnt about its edges.
+    /// The roadmap, with the states of its edges as queries have found them.
     #[must_use]
     pub fn into_map(self) -> Roadmap<C::State, L::Edge> {
         self.indexed.map
     }
 
-    /// Motions asked of the local planner so far.
+    /// How many motions the local planner was asked for.
     #[must_use]
     pub fn motions(&self) -> u64 {
-        self.steer.motions
+        self.checker.motions()
     }
 
     /// A verified path from `start` to `goal`.
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn answer(
         &mut self,
         start: &C::State,
         goal: &C::State,
     ) -> Result<Path<C::State, L::Edge>, Unanswered> {
-        self.indexed.answer(&mut self.steer, start, goal)
+        self.indexed.answer(&mut self.checker, start, goal)
     }
 
     /// As [`IndexedRoadmap::alternatives`].
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn alternatives(
         &mut self,
         start: &C::State,
         goal: &C::State,
         k: usize,
     ) -> Result<Listed<C::State, L::Edge>, Unanswered> {
-        self.indexed.alternatives(&mut self.steer, start, goal, k)
+        self.indexed.alternatives(&mut self.checker, start, goal, k)
     }
 }
 
 impl<S, E, N> IndexedRoadmap<S, E, N> {
-    /// Of a roadmap whose nodes the index holds already.
+    /// A roadmap whose nodes are in the index already.
     fn filled(map: Roadmap<S, E>, index: N, neighbours: usize) -> Self {
         let (star, forest) = (AStar::new(), Forest::default());
         Self { map, index, star, forest, neighbours, near: Default::default() }
@@ -159,12 +160,12 @@ impl<S, E, N> IndexedRoadmap<S, E, N> {
         &self.map
     }
 
-    /// The roadmap, to ask for its components.
+    /// The roadmap, mutable to compute its components.
     pub fn map_mut(&mut self) -> &mut Roadmap<S, E> {
         &mut self.map
     }
 
-    /// The roadmap alone, with what was learnt about its edges.
+    /// The roadmap, with the states of its edges as queries have found them.
     #[must_use]
     pub fn into_map(self) -> Roadmap<S, E> {
         self.map
@@ -176,8 +177,8 @@ where
     S: Clone + PartialEq + std::fmt::Debug + Send + Sync,
     E: Clone + Reversible,
 {
-    /// Of a roadmap made before, with an empty index. Each end of a query is connected to one of its `neighbours`
-    /// nearest nodes.
+    /// A roadmap built before, with an empty index. Each end of a query is connected to one of its `neighbours` nearest
+    /// nodes.
     ///
     /// # Errors
     /// When a node is outside the space, as of a roadmap for another one.
@@ -194,12 +195,12 @@ where
         Ok(Self::filled(map, index, neighbours))
     }
 
-    /// Verifies all edges now, in both directions, so that no query waits for it; those that fail are blocked. How many
-    /// did. Edges that were only guessed are checked first.
+    /// Verifies all edges now, in both directions, so that no query waits for it. Edges that were only guessed are
+    /// checked first; edges that fail are blocked. Returns how many were blocked.
     ///
-    /// A planner of one path is better off with the verification of that path; of thousands each edge is on
-    /// many, and until it has been on one the query pays. Takes time by the number of edges not verified yet.
-    pub fn verify<C, L>(&mut self, steer: &mut EdgeChecker<'_, C, L>) -> usize
+    /// Pays off for thousands of queries, where each edge is on many paths; for a single path verify only that path.
+    /// Takes time by the number of edges not verified yet.
+    pub fn verify<C, L>(&mut self, checker: &mut EdgeChecker<'_, C, L>) -> usize
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -212,8 +213,8 @@ where
             }
             let [a, b] = self.map.ends(edge);
             for nodes in [vec![a, b], vec![b, a]] {
-                let way = GraphPath { nodes, edges: vec![edge], length: self.map.edge(edge).length };
-                if !self.star.check(&mut self.map, steer, &way) || !verify(&mut self.map, steer, &way) {
+                let path = GraphPath { nodes, edges: vec![edge], length: self.map.edge(edge).length };
+                if !self.star.check(&mut self.map, checker, &path) || !verify(&mut self.map, checker, &path) {
                     break;
                 }
             }
@@ -224,10 +225,10 @@ where
     /// A verified path from `start` to `goal`.
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn answer<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
     ) -> Result<Path<S, E>, Unanswered>
@@ -236,37 +237,7 @@ where
         L: LocalPlanner<S, Edge = E>,
         N: NearestNeighbors<C>,
     {
-        self.prepare(steer, start, goal)?;
-        if let Some(motion) = steer.reach(start, goal)
-            && steer.passes(start, &motion.edge, goal)
-        {
-            return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
-        }
-        loop {
-            let ends = self.join(steer, start, goal)?;
-            let way = self.way(steer, ends.nodes);
-            // Without a way a lazy search has blocked what connected the ends.
-            if let Some(way) = way
-                && verify(&mut self.map, steer, &way)
-                && let Some(path) = self.map.path(&way)
-            {
-                return Ok(whole(&ends, path));
-            }
-        }
-    }
-
-    /// A shortest way between two nodes, all of whose edges have motions.
-    fn way<C, L>(&mut self, steer: &mut EdgeChecker<'_, C, L>, [from, to]: [NodeId; 2]) -> Option<GraphPath>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        if !self.forest.holds(&mut self.map) {
-            return self.star.search(&mut self.map, steer, &[(from, 0.0)], &[(to, 0.0)]);
-        }
-        let way = self.forest.way(&self.map, from, to)?;
-        self.star.check(&mut self.map, steer, &way).then_some(way)
+        RunningQuery { roadmap: self, checker, ends: [start, goal] }.answer()
     }
 
     /// At most `k` verified paths from `start` to `goal` with their lengths, the shortest first. They begin and
@@ -276,10 +247,10 @@ where
     /// Takes time by the size of the roadmap, and a search for each node of each path.
     ///
     /// # Errors
-    /// When there is none in the roadmap, with the reason.
+    /// When the roadmap has no such path, with the reason.
     pub fn alternatives<C, L>(
         &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         start: &S,
         goal: &S,
         k: usize,
@@ -289,167 +260,174 @@ where
         L: LocalPlanner<S, Edge = E>,
         N: NearestNeighbors<C>,
     {
-        self.prepare(steer, start, goal)?;
+        RunningQuery { roadmap: self, checker, ends: [start, goal] }.alternatives(k)
+    }
+}
+
+/// A query that is being answered: the roadmap, how motions are checked, start and goal.
+struct RunningQuery<'a, 'c, C: Space, L: LocalPlanner<C::State>, N> {
+    roadmap: &'a mut IndexedRoadmap<C::State, L::Edge, N>,
+    checker: &'a mut EdgeChecker<'c, C, L>,
+    ends: [&'a C::State; 2],
+}
+
+/// What [`RunningQuery::ends`] are called in errors.
+const ENDPOINTS: [Endpoint; 2] = [Endpoint::Start, Endpoint::Goal];
+
+impl<C, L, N> RunningQuery<'_, '_, C, L, N>
+where
+    C: Space,
+    L: LocalPlanner<C::State, Edge: Reversible>,
+    N: NearestNeighbors<C>,
+{
+    fn answer(mut self) -> Result<Path<C::State, L::Edge>, Unanswered> {
+        self.prepare()?;
+        let [start, goal] = self.ends;
+        if let Some(motion) = self.verified(start, goal) {
+            return Ok(Path { states: vec![start.clone(), goal.clone()], edges: vec![motion.edge] });
+        }
         loop {
-            let ends = self.join(steer, start, goal)?;
-            if let Some(ways) = self.ways(steer, ends.nodes, k) {
+            let ends = self.connect_ends()?;
+            // Where there is no path, a lazy search has blocked what connected the ends.
+            if let Some(path) = self.shortest(ends.nodes)
+                && verify(&mut self.roadmap.map, self.checker, &path)
+                && let Some(path) = self.roadmap.map.path(&path)
+            {
+                return Ok(with_ends(&ends, path));
+            }
+        }
+    }
+
+    fn alternatives(mut self, k: usize) -> Result<Listed<C::State, L::Edge>, Unanswered> {
+        self.prepare()?;
+        loop {
+            let ends = self.connect_ends()?;
+            if let Some(found) = self.shortest_paths(ends.nodes, k) {
                 let more = ends.first.1.cost + ends.last.1.cost;
-                let paths = ways.iter().filter_map(|way| Some((self.map.path(way)?, way.length + more)));
-                return Ok(paths.map(|(path, length)| (whole(&ends, path), length)).collect());
+                let map = &self.roadmap.map;
+                let paths = found.iter().filter_map(|path| Some((map.path(path)?, path.length + more)));
+                return Ok(paths.map(|(path, length)| (with_ends(&ends, path), length)).collect());
             }
         }
     }
 
-    /// The shortest ways between two nodes, all of whose edges are verified; `None` when some edge had to be
-    /// blocked on the way.
-    fn ways<C, L>(
-        &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
-        [from, to]: [NodeId; 2],
-        k: usize,
-    ) -> Option<Vec<GraphPath>>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        let part = self.map.component(from);
-        let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); self.map.len()];
-        for node in 0..self.map.len() as NodeId {
-            if self.map.component(node) == part {
-                let out = &mut arcs[node as usize];
-                out.extend(self.map.links(node).map(|(_, end, link)| (end, link.length)));
-                out.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-                out.dedup_by_key(|arc| arc.0);
+    /// Checks the ends, and finds the nodes nearest to them.
+    fn prepare(&mut self) -> Result<(), Unanswered> {
+        for (i, q) in self.ends.into_iter().enumerate() {
+            if !self.checker.space().contains(q) {
+                return Err(Unanswered::Outside(ENDPOINTS[i]));
             }
-        }
-        let mut ways = Vec::new();
-        for (length, nodes) in shortest_paths(&arcs, from, to, k) {
-            let edges =
-                nodes.windows(2).map(|pair| self.shortest_edge(pair[0], pair[1])).collect::<Option<_>>()?;
-            let way = GraphPath { nodes, edges, length };
-            if !self.star.check(&mut self.map, steer, &way) {
-                return None;
+            if !self.checker.admits(q) {
+                return Err(Unanswered::NotFree(ENDPOINTS[i]));
             }
-            if !verify(&mut self.map, steer, &way) {
-                return None;
-            }
-            ways.push(way);
-        }
-        Some(ways)
-    }
-
-    fn shortest_edge(&self, from: NodeId, to: NodeId) -> Option<EdgeId> {
-        let between = self.map.links(from).filter(|(_, end, _)| *end == to);
-        let shortest = between.min_by(|a, b| a.2.length.total_cmp(&b.2.length).then(a.0.cmp(&b.0)));
-        shortest.map(|(edge, ..)| edge)
-    }
-
-    /// Looks at the ends, and for the nodes nearest to them.
-    fn prepare<C, L>(
-        &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
-        start: &S,
-        goal: &S,
-    ) -> Result<(), Unanswered>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
-            if !steer.space().contains(q) {
-                return Err(Unanswered::Outside(endpoint));
-            }
-            if !steer.admits(q) {
-                return Err(Unanswered::NotFree(endpoint));
-            }
-            let (space, states) = (steer.space(), self.map.states());
-            self.index.k_nearest(space, states, q, self.neighbours, &mut self.near[i]);
+            let IndexedRoadmap { map, index, neighbours, near, .. } = &mut *self.roadmap;
+            index.k_nearest(self.checker.space(), map.states(), q, *neighbours, &mut near[i]);
         }
         Ok(())
     }
 
-    /// Connects both ends to the same component. Neighbours that do not do are dropped for the rest of
-    /// the query.
-    fn join<C, L>(
-        &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
-        start: &S,
-        goal: &S,
-    ) -> Result<Joined<S, E>, Unanswered>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
+    /// Connects both ends to the same component. Neighbours to which this fails are dropped for the rest of the query.
+    fn connect_ends(&mut self) -> Result<ConnectedEnds<C::State, L::Edge>, Unanswered> {
         let mut reached = [false; 2];
         loop {
-            let [from, to] = &self.near;
-            let shares = |hit: &&Hit, map: &mut Roadmap<_, _>| {
-                let part = map.component(hit.id);
-                to.iter().any(|other| map.component(other.id) == part)
+            let IndexedRoadmap { map, near: [from, to], .. } = &mut *self.roadmap;
+            let shares = |hit: &&Hit| {
+                let component = map.component(hit.id);
+                to.iter().any(|other| map.component(other.id) == component)
             };
-            let Some(&first) = from.iter().find(|hit| shares(hit, &mut self.map)) else {
-                return Err(self.why(steer, start, goal, reached));
+            let Some(&first) = from.iter().find(shares) else {
+                return Err(self.reason(reached));
             };
-            let Some(ahead) = self.hop(steer, start, first.id, false) else {
-                self.near[0].retain(|hit| hit.id != first.id);
+            let Some(entry) = self.connection(0, first.id) else {
+                self.roadmap.near[0].retain(|hit| hit.id != first.id);
                 continue;
             };
             reached[0] = true;
-            let part = self.map.component(first.id);
-            while let Some(&last) = self.near[1].iter().find(|hit| self.map.component(hit.id) == part) {
-                if let Some(behind) = self.hop(steer, goal, last.id, true) {
-                    return Ok(Joined { first: ahead, last: behind, nodes: [first.id, last.id] });
+            let component = self.roadmap.map.component(first.id);
+            while let Some(last) = self.last_in(component) {
+                if let Some(exit) = self.connection(1, last) {
+                    return Ok(ConnectedEnds { first: entry, last: exit, nodes: [first.id, last] });
                 }
-                self.near[1].retain(|hit| hit.id != last.id);
+                self.roadmap.near[1].retain(|hit| hit.id != last);
             }
         }
     }
 
+    /// The node of a component that is nearest to the goal, of those left to try.
+    fn last_in(&mut self, component: NodeId) -> Option<NodeId> {
+        let IndexedRoadmap { map, near, .. } = &mut *self.roadmap;
+        near[1].iter().map(|hit| hit.id).find(|&id| map.component(id) == component)
+    }
+
     /// Why the ends cannot be joined.
-    fn why<C, L>(
-        &mut self,
-        steer: &mut EdgeChecker<'_, C, L>,
-        start: &S,
-        goal: &S,
-        reached: [bool; 2],
-    ) -> Unanswered
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-        N: NearestNeighbors<C>,
-    {
-        for (i, (endpoint, q)) in [(Endpoint::Start, start), (Endpoint::Goal, goal)].into_iter().enumerate() {
-            let near = self.near[i].clone();
-            if !reached[i] && !near.iter().any(|hit| self.hop(steer, q, hit.id, i == 1).is_some()) {
-                return Unanswered::Unreached(endpoint);
+    fn reason(&mut self, reached: [bool; 2]) -> Unanswered {
+        for end in 0..2 {
+            let near = self.roadmap.near[end].clone();
+            if !reached[end] && !near.iter().any(|hit| self.connection(end, hit.id).is_some()) {
+                return Unanswered::Unreached(ENDPOINTS[end]);
             }
         }
         Unanswered::Apart
     }
 
-    /// A verified motion from an end to a node, or with `back` from the node to it.
-    fn hop<C, L>(
-        &self,
-        steer: &mut EdgeChecker<'_, C, L>,
-        q: &S,
-        node: NodeId,
-        back: bool,
-    ) -> Option<Hop<S, E>>
-    where
-        C: Space<State = S>,
-        L: LocalPlanner<S, Edge = E>,
-    {
-        let (from, to) = if back { (self.map.state(node), q) } else { (q, self.map.state(node)) };
-        let motion = steer.reach(from, to)?;
-        steer.passes(from, &motion.edge, to).then(|| (from.clone(), motion))
+    /// A verified motion from the start to a node (`end` 0), or from a node to the goal (`end` 1).
+    fn connection(&mut self, end: usize, node: NodeId) -> Option<Connection<C::State, L::Edge>> {
+        let node = self.roadmap.map.state(node).clone();
+        let (from, to) = if end == 1 { (&node, self.ends[1]) } else { (self.ends[0], &node) };
+        Some((from.clone(), self.verified(from, to)?))
+    }
+
+    /// A motion that the local planner has and the verifier passes.
+    fn verified(&mut self, from: &C::State, to: &C::State) -> Option<Motion<C::State, L::Edge>> {
+        let motion = self.checker.reach(from, to, Direction::Forward)?;
+        self.checker.passes(from, &motion.edge, to, Direction::Forward).then_some(motion)
+    }
+
+    /// A shortest path between two nodes, all of whose edges have motions.
+    fn shortest(&mut self, [from, to]: [NodeId; 2]) -> Option<GraphPath> {
+        let IndexedRoadmap { map, star, forest, .. } = &mut *self.roadmap;
+        if !forest.holds(map) {
+            return star.search(map, self.checker, &[(from, 0.0)], &[(to, 0.0)]);
+        }
+        let path = forest.path(map, from, to)?;
+        star.check(map, self.checker, &path).then_some(path)
+    }
+
+    /// The shortest paths between two nodes, all of whose edges are verified; `None` when an edge had to be blocked.
+    fn shortest_paths(&mut self, [from, to]: [NodeId; 2], k: usize) -> Option<Vec<GraphPath>> {
+        let IndexedRoadmap { map, star, .. } = &mut *self.roadmap;
+        let component = map.component(from);
+        let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); map.len()];
+        for node in 0..map.len() as NodeId {
+            if map.component(node) == component {
+                let out = &mut arcs[node as usize];
+                out.extend(map.links(node).map(|(_, end, link)| (end, link.length)));
+                out.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+                out.dedup_by_key(|arc| arc.0);
+            }
+        }
+        let mut paths = Vec::new();
+        for (length, nodes) in shortest_paths(&arcs, from, to, k) {
+            let edges =
+                nodes.windows(2).map(|pair| shortest_edge(map, pair[0], pair[1])).collect::<Option<_>>()?;
+            let path = GraphPath { nodes, edges, length };
+            if !star.check(map, self.checker, &path) || !verify(map, self.checker, &path) {
+                return None;
+            }
+            paths.push(path);
+        }
+        Some(paths)
     }
 }
 
-/// A path with what leads to its beginning and on from its end.
-fn whole<S: Clone, E: Clone>(ends: &Joined<S, E>, path: Path<S, E>) -> Path<S, E> {
+fn shortest_edge<S, E>(map: &Roadmap<S, E>, from: NodeId, to: NodeId) -> Option<EdgeId> {
+    let between = map.links(from).filter(|(_, end, _)| *end == to);
+    let shortest = between.min_by(|a, b| a.2.length.total_cmp(&b.2.length).then(a.0.cmp(&b.0)));
+    shortest.map(|(edge, ..)| edge)
+}
+
+/// A path through the roadmap, with the motions from the start and to the goal.
+fn with_ends<S: Clone, E: Clone>(ends: &ConnectedEnds<S, E>, path: Path<S, E>) -> Path<S, E> {
     let (mut states, mut edges) = (vec![ends.first.0.clone()], vec![ends.first.1.edge.clone()]);
     states.extend(path.states);
     edges.extend(path.edges);

@@ -5,33 +5,33 @@ use petgraph::graph::{EdgeIndex, NodeIndex, UnGraph};
 use petgraph::unionfind::UnionFind;
 use petgraph::visit::EdgeRef;
 
-/// What a node is there for.
+/// The kind of a node: how or why it was added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
-pub enum Kind {
-    /// Nothing in particular.
+pub enum MilestoneKind {
+    /// A sample without further meaning.
     #[default]
     Plain,
-    /// Where a path is to begin or end.
+    /// The start or a goal of a path.
     End,
     /// Added where connecting is difficult.
     Expanded,
-    /// Sees what no other guard did.
+    /// A guard: no other guard sees it.
     Guard,
-    /// Sees guards of several components.
+    /// A connection: it sees guards of several components.
     Connection,
     /// In contact with an obstacle, up to a tolerance.
     Contact,
     /// Close to an obstacle.
     Near,
-    /// Away from all obstacles, free to turn any way.
+    /// Away from all obstacles: free in every rotation.
     Far,
-    /// Was in collision, and was moved until free.
+    /// Was in collision, and was moved until it was free.
     Salvaged,
 }
 
-impl Kind {
-    /// All kinds, each at the place of its number in files.
+impl MilestoneKind {
+    /// All kinds, each at the index that stands for it in files.
     pub const ALL: [Self; 9] = [
         Self::Plain,
         Self::End,
@@ -61,11 +61,11 @@ impl Kind {
     }
 }
 
-/// What is known of a node beside its state.
+/// What a node has beside its state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tag {
-    /// What it is there for.
-    pub kind: Kind,
+    /// Its kind.
+    pub kind: MilestoneKind,
     /// The obstacle it belongs to, if any.
     pub obstacle: Option<u32>,
     /// How often a connection to another node was tried.
@@ -74,18 +74,18 @@ pub struct Tag {
     pub failed: u32,
 }
 
-/// What is known of an edge.
+/// Whether an edge was checked, and the result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LinkState {
-    /// Nothing: the local planner was not asked.
+    /// Not checked by the local planner yet.
     Unchecked,
     /// The local planner has a motion.
     Free,
-    /// It has none, or the verifier did not pass it: as if the edge were not there.
+    /// The local planner has no motion, or the verifier rejected it: searches ignore the edge.
     Blocked,
 }
 
-/// The number of an edge: edges are counted from 0 in the order in which they came, and stay.
+/// The number of an edge: edges are numbered from 0 in the order in which they were added, and never renumbered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct EdgeId(pub u32);
 
@@ -102,21 +102,20 @@ impl EdgeId {
 /// An edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link<E> {
-    /// How to get from the source of the edge to its target; `None` while nobody knows.
+    /// The motion from the source of the edge to its target; `None` while it is not checked.
     pub edge: Option<E>,
     /// Its length, not negative.
     pub length: f64,
-    /// What is known of it.
+    /// Whether it was checked.
     pub state: LinkState,
     /// Whether the verifier has passed it, from source to target and from target to source.
     pub verified: [bool; 2],
 }
 
-/// A roadmap: configurations as nodes and motions as edges that can be run either way.
+/// A roadmap: configurations as nodes and motions as edges, which can be run in both directions.
 ///
-/// Nodes are numbered in the order in which they came, and stay; edges are blocked rather than removed.
-/// Components are kept up to date; blocking an edge costs a sweep over all edges when they are next asked
-/// for.
+/// Nodes are numbered in the order in which they were added, and never renumbered; edges are blocked rather than removed.
+/// Components are kept up to date; after an edge was blocked, the next query of components visits all edges.
 #[derive(Clone, Debug)]
 pub struct Roadmap<S, E = ()> {
     states: Vec<S>,
@@ -135,7 +134,7 @@ impl<S, E> Default for Roadmap<S, E> {
 }
 
 impl<S, E> Roadmap<S, E> {
-    /// Without nodes.
+    /// A roadmap without nodes.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -168,13 +167,13 @@ impl<S, E> Roadmap<S, E> {
         &self.states[id as usize]
     }
 
-    /// What else is known of a node.
+    /// What a node has beside its state.
     #[must_use]
     pub fn tag(&self, id: NodeId) -> &Tag {
         &self.graph[NodeIndex::from(id)]
     }
 
-    /// What else is known of all nodes, in order.
+    /// What the nodes have beside their states, in order.
     pub fn tags(&self) -> impl ExactSizeIterator<Item = &Tag> {
         self.graph.raw_nodes().iter().map(|node| &node.weight)
     }
@@ -188,7 +187,7 @@ impl<S, E> Roadmap<S, E> {
         &self.graph[id.inner()]
     }
 
-    /// All edges in order, blocked ones too, each with its two ends, source first.
+    /// All edges in order, including blocked ones, each with its two ends, source first.
     pub fn all_edges(&self) -> impl ExactSizeIterator<Item = (EdgeId, [NodeId; 2], &Link<E>)> {
         let edges = self.graph.raw_edges().iter().enumerate();
         edges.map(|(i, edge)| {
@@ -217,7 +216,7 @@ impl<S, E> Roadmap<S, E> {
             .map(|edge| (EdgeId::of(edge.id()), edge.target().index() as NodeId, edge.weight()))
     }
 
-    /// Adds a node, a component of its own.
+    /// Adds a node, which is a component of its own.
     pub fn add(&mut self, state: S, tag: Tag) -> NodeId {
         self.states.push(state);
         self.graph.add_node(tag);
@@ -231,7 +230,7 @@ impl<S, E> Roadmap<S, E> {
         self.insert(from, to, Link { edge: Some(edge), length, state: LinkState::Free, verified: [false; 2] })
     }
 
-    /// Adds an edge of which nothing is known but how long it will be.
+    /// Adds an edge that is not checked yet, with the length it will have.
     pub fn guess(&mut self, from: NodeId, to: NodeId, length: f64) -> EdgeId {
         self.insert(from, to, Link { edge: None, length, state: LinkState::Unchecked, verified: [false; 2] })
     }
@@ -259,7 +258,7 @@ impl<S, E> Roadmap<S, E> {
         [a.index() as NodeId, b.index() as NodeId]
     }
 
-    /// Marks an edge as leading nowhere.
+    /// Marks an edge as blocked.
     pub fn block(&mut self, edge: EdgeId) {
         let link = &mut self.graph[edge.inner()];
         if link.state != LinkState::Blocked {
@@ -269,8 +268,8 @@ impl<S, E> Roadmap<S, E> {
         }
     }
 
-    /// Notes the motion of an edge that was only guessed.
-    pub fn settle(&mut self, edge: EdgeId, motion: E, length: f64) {
+    /// Sets the motion of an edge that was not checked before.
+    pub fn set_motion(&mut self, edge: EdgeId, motion: E, length: f64) {
         let link = &mut self.graph[edge.inner()];
         if link.state == LinkState::Unchecked {
             (link.edge, link.length, link.state) = (Some(motion), length, LinkState::Free);
@@ -288,7 +287,7 @@ impl<S, E> Roadmap<S, E> {
         tag.failed = tag.failed.saturating_add(u32::from(failed));
     }
 
-    /// Works the components out anew, when an edge was blocked.
+    /// Recomputes the components, if an edge was blocked.
     pub(crate) fn refresh(&mut self) {
         if !self.stale {
             return;
@@ -304,13 +303,13 @@ impl<S, E> Roadmap<S, E> {
         self.stale = false;
     }
 
-    /// The component of a node: the number of one of its nodes.
+    /// The component of a node, named by one of its nodes.
     pub fn component(&mut self, id: NodeId) -> NodeId {
         self.refresh();
         self.sets.find_mut(id)
     }
 
-    /// The same of a roadmap that is [refreshed](Self::refresh).
+    /// The component of a node, in a roadmap that is [refreshed](Self::refresh).
     pub(crate) fn component_now(&self, id: NodeId) -> NodeId {
         self.sets.find(id)
     }
@@ -355,7 +354,7 @@ impl<S, E> Roadmap<S, E> {
         }
     }
 
-    /// Tells an index of all nodes, and nothing else.
+    /// Clears an index and fills it with all nodes.
     ///
     /// # Errors
     /// When a node is outside the space.
@@ -389,7 +388,7 @@ impl<S, E> Roadmap<S, E> {
     }
 }
 
-/// A way through a roadmap: the nodes it visits and the edges between them.
+/// A path in the graph: the nodes it visits and the edges between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GraphPath {
     /// The nodes, one more than edges.
@@ -411,12 +410,12 @@ impl<S: Clone, E: Clone + Reversible> Roadmap<S, E> {
         Some(Motion { end: self.state(end).clone(), edge, cost: link.length })
     }
 
-    /// The path along a way; `None` when some edge of it has no motion.
+    /// The path of states along a path in the graph; `None` when one of its edges has no motion.
     #[must_use]
-    pub fn path(&self, way: &GraphPath) -> Option<Path<S, E>> {
-        let mut states = vec![self.state(*way.nodes.first()?).clone()];
-        let mut edges = Vec::with_capacity(way.edges.len());
-        for (&edge, &from) in way.edges.iter().zip(&way.nodes) {
+    pub fn path(&self, path: &GraphPath) -> Option<Path<S, E>> {
+        let mut states = vec![self.state(*path.nodes.first()?).clone()];
+        let mut edges = Vec::with_capacity(path.edges.len());
+        for (&edge, &from) in path.edges.iter().zip(&path.nodes) {
             let motion = self.motion(edge, from)?;
             states.push(motion.end);
             edges.push(motion.edge);

@@ -1,27 +1,27 @@
-//! Shortest ways through a roadmap.
+//! Shortest paths in a roadmap.
 
 use super::{EdgeChecker, EdgeId, GraphPath, LinkState, Roadmap};
-use mp_cspace::{LocalPlanner, NodeId, Reversible, Space};
+use mp_cspace::{Direction, LocalPlanner, NodeId, Reversible, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// A node that a way may begin or end with, and how long it is to there from outside of the roadmap.
+/// A node where a path may begin or end, and the length of the motion between it and the start or goal.
 pub type Entry = (NodeId, f64);
 
-/// A slot: how a way through the roadmap is looked for.
+/// Slot: how a path in the roadmap is searched for.
 pub trait Query<C: Space, L: LocalPlanner<C::State>> {
-    /// A shortest way from one of `from` to one of `to`, all of whose edges have motions of the local
-    /// planner. It may block edges that turn out to have none.
+    /// A shortest path from one of `from` to one of `to`, all of whose edges have motions of the local planner. May block
+    /// edges that turn out to have none.
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         from: &[Entry],
         to: &[Entry],
     ) -> Option<GraphPath>;
 }
 
-/// A place in the queue: the least estimate first, ties by node.
+/// An entry of the queue: the least estimate first, ties by node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Open {
     estimate: f64,
@@ -41,24 +41,24 @@ impl PartialOrd for Open {
     }
 }
 
-/// What is known of a node in the search numbered `search`.
+/// The state of a node in the search numbered `search`.
 #[derive(Clone, Copy, Debug)]
 struct Mark {
     search: u32,
     length: f64,
     rest: f64,
-    came: Option<EdgeId>,
+    via: Option<EdgeId>,
 }
 
-const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, came: None };
+const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, via: None };
 
 /// A* (Hart, Nilsson and Raphael 1968, *A formal basis for the heuristic determination of minimum cost
-/// paths*), with the distance to the ends as estimate. A value of it keeps its memory from search to
-/// search, so that a search costs only what it visits.
+/// paths*), with the distance to the ends as heuristic. Memory is reused from search to search, so that the cost of a
+/// search depends only on the nodes it visits.
 ///
-/// One value goes with one roadmap, as it remembers which of its nodes are free. Ways are shortest where edges are no shorter than the distance of their ends, as those of a metric are. Under a
-/// distance that breaks the triangle inequality nodes are visited again when a shorter way to them shows
-/// up.
+/// Use one `AStar` per roadmap, as it caches which nodes are free. Paths are shortest where no edge is shorter than the
+/// distance between its ends. Under a distance that violates the triangle inequality, nodes are visited again when a
+/// shorter path to them is found.
 #[derive(Clone, Debug, Default)]
 pub struct AStar {
     marks: Vec<Mark>,
@@ -68,18 +68,18 @@ pub struct AStar {
     free: Vec<bool>,
 }
 
-/// More ends than this, and the estimate is not worth its cost.
+/// With more ends than this the heuristic costs more than it saves.
 const FEW: usize = 8;
 
 impl AStar {
-    /// With nothing remembered.
+    /// A search without memory.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A shortest way from one of `from` to one of `to`, each with the length that is added there;
-    /// `None` when there is none. Ties by node.
+    /// A shortest path from one of `from` to one of `to`, each with the length that is added there; `None` when there is
+    /// none. Ties by node.
     pub fn shortest<C: Space, E>(
         &mut self,
         map: &Roadmap<C::State, E>,
@@ -122,29 +122,29 @@ impl AStar {
             }
         }
         let (length, end) = best?;
-        let mut way = GraphPath { nodes: vec![end], edges: Vec::new(), length };
+        let mut path = GraphPath { nodes: vec![end], edges: Vec::new(), length };
         let mut at = end;
-        while let Some(edge) = self.marks[at as usize].came {
+        while let Some(edge) = self.marks[at as usize].via {
             let [a, b] = map.ends(edge);
             at = if at == a { b } else { a };
-            way.nodes.push(at);
-            way.edges.push(edge);
+            path.nodes.push(at);
+            path.edges.push(edge);
         }
-        way.nodes.reverse();
-        way.edges.reverse();
-        Some(way)
+        path.nodes.reverse();
+        path.edges.reverse();
+        Some(path)
     }
 
     #[inline]
-    fn push(&mut self, node: NodeId, length: f64, came: Option<EdgeId>, estimate: impl Fn(NodeId) -> f64) {
+    fn push(&mut self, node: NodeId, length: f64, via: Option<EdgeId>, estimate: impl Fn(NodeId) -> f64) {
         let mark = &mut self.marks[node as usize];
         if mark.search == self.search {
             if length >= mark.length {
                 return;
             }
-            (mark.length, mark.came) = (length, came);
+            (mark.length, mark.via) = (length, via);
         } else {
-            *mark = Mark { search: self.search, length, rest: estimate(node), came };
+            *mark = Mark { search: self.search, length, rest: estimate(node), via };
         }
         self.open.push(Open { estimate: length + mark.rest, length, node });
     }
@@ -155,65 +155,65 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// Edges not yet checked are checked on the way found, and the search repeated when one is blocked.
+    /// Checks the unchecked edges of the path found, and searches again when one is blocked.
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         from: &[Entry],
         to: &[Entry],
     ) -> Option<GraphPath> {
         loop {
-            let way = self.shortest(map, steer.space(), from, to)?;
-            if self.check(map, steer, &way) {
-                return Some(way);
+            let path = self.shortest(map, checker.space(), from, to)?;
+            if self.check(map, checker, &path) {
+                return Some(path);
             }
         }
     }
 }
 
-/// The numbers below `n` from both ends inward.
+/// The numbers below `n`, alternately from both ends to the middle.
 fn inward(n: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
 }
 
 impl AStar {
-    /// Checks what is unchecked of a way. Blocks what fails first; whether nothing did.
+    /// Checks the unchecked nodes and edges of a path. Blocks the first that fails. Returns whether none did.
     pub(crate) fn check<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
-        way: &GraphPath,
+        checker: &mut EdgeChecker<'_, C, L>,
+        path: &GraphPath,
     ) -> bool
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
     {
-        self.nodes_pass(map, steer, way) && edges_pass(map, steer, way)
+        self.nodes_pass(map, checker, path) && edges_pass(map, checker, path)
     }
 
-    /// Checks the nodes at the ends of unchecked edges of a way. Blocks all edges of the first that is not
-    /// admitted; whether there was none.
+    /// Checks the nodes of a path with unchecked edges. Blocks all edges of the first that is not admitted. Returns whether
+    /// there was none.
     fn nodes_pass<C, L>(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
-        way: &GraphPath,
+        checker: &mut EdgeChecker<'_, C, L>,
+        path: &GraphPath,
     ) -> bool
     where
         C: Space,
         L: LocalPlanner<C::State, Edge: Reversible>,
     {
         let unchecked = |edge: &EdgeId| map.edge(*edge).state == LinkState::Unchecked;
-        if !way.edges.iter().any(unchecked) {
+        if !path.edges.iter().any(unchecked) {
             return true;
         }
         self.free.resize(self.free.len().max(map.len()), false);
-        for node in inward(way.nodes.len()).map(|i| way.nodes[i]) {
+        for node in inward(path.nodes.len()).map(|i| path.nodes[i]) {
             if self.free[node as usize] {
                 continue;
             }
-            if !steer.admits(map.state(node)) {
+            if !checker.admits(map.state(node)) {
                 let edges: Vec<EdgeId> = map.links(node).map(|(edge, ..)| edge).collect();
                 edges.into_iter().for_each(|edge| map.block(edge));
                 return false;
@@ -224,27 +224,27 @@ impl AStar {
     }
 }
 
-/// Checks the unchecked edges of a way, whose nodes are free. Blocks the first that fails; whether none did.
+/// Checks the unchecked edges of a path, whose nodes are free. Blocks the first that fails. Returns whether none did.
 fn edges_pass<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
-    steer: &mut EdgeChecker<'_, C, L>,
-    way: &GraphPath,
+    checker: &mut EdgeChecker<'_, C, L>,
+    path: &GraphPath,
 ) -> bool
 where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    for edge in inward(way.edges.len()).map(|i| way.edges[i]) {
+    for edge in inward(path.edges.len()).map(|i| path.edges[i]) {
         if map.edge(edge).state != LinkState::Unchecked {
             continue;
         }
         let [a, b] = map.ends(edge);
-        let motion = steer.reach(map.state(a), map.state(b));
+        let motion = checker.reach(map.state(a), map.state(b), Direction::Forward);
         let failed = motion.is_none();
         map.tried(a, failed);
         map.tried(b, failed);
         match motion {
-            Some(motion) => map.settle(edge, motion.edge, motion.cost),
+            Some(motion) => map.set_motion(edge, motion.edge, motion.cost),
             None => {
                 map.block(edge);
                 return false;

@@ -8,7 +8,7 @@ use mp_cspace::{
 
 /// [`PlannerInfo::cannot`](mp_cspace::registry::PlannerInfo::cannot) of roadmaps.
 pub const UNDIRECTED: &[(Demand, &str)] =
-    &[(Demand::OneWay, "its edges are used both ways, so motions must run backward too")];
+    &[(Demand::OneWay, "its edges are used in both directions, so motions must run backward too")];
 
 /// [`Reachable::neighbours`].
 pub const NEIGHBOURS: Parameter = Parameter {
@@ -23,7 +23,7 @@ pub const RADIUS: Parameter = Parameter {
     name: "radius",
     range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
     default: "100%",
-    doc: "none farther than this is connected (MAXDIST)",
+    doc: "longest distance of neighbours that are connected (MAXDIST)",
 };
 
 /// [`Reachable::cycles`].
@@ -31,10 +31,10 @@ pub const CYCLES: Parameter = Parameter {
     name: "cycles",
     range: "yes or no",
     default: "no",
-    doc: "also connects what is connected already: shorter paths, for more motions",
+    doc: "also connects nodes of one component: shorter paths, for more motions",
 };
 
-/// Whether `parameter` is set to yes, by default as its table says.
+/// Whether `parameter` is set to yes, or is yes by default.
 ///
 /// # Errors
 /// When it is neither yes nor no.

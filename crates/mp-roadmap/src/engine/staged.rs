@@ -1,34 +1,35 @@
-//! Connecting in stages: cheap motions first, then some that turn in place.
+//! Connecting in stages: first by the local planner, then by motions that turn in place.
 
-use super::{Candidate, Connector, Growing, Kind, Reachable};
-use mp_cspace::{BuildError, Hit, LocalPlanner, NearestNeighbors, NodeId, Reversible, Space};
+use super::{Candidate, Connector, Growing, MilestoneKind, Reachable};
+use mp_cspace::{BuildError, Direction, Hit, LocalPlanner, NearestNeighbors, NodeId, Reversible, Space};
 use std::collections::BTreeMap;
 
 /// To which nodes a candidate is connected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NeighborSet {
     /// The nearest.
-    NearestConnector,
-    /// The nearest of each obstacle, so many of each (and of those of none); of all these the nearest.
-    /// Costs a distance to every node.
+    Nearest,
+    /// The nearest of all that are among this many nearest nodes of each obstacle, or of no obstacle. Costs a distance to
+    /// every node.
     EachObstacle(usize),
 }
 
 /// Where a second stage turns in place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Turns {
-    /// At these fractions of the way, one after the other. None: there is no second stage.
+    /// At these fractions of the motion, one after the other. Without fractions there is no second stage.
     At(Vec<f64>),
-    /// At the ends that are far from all obstacles, where the robot may turn any way.
+    /// At the ends that are far from all obstacles, where the robot is free in every rotation.
     WhereFar,
 }
 
 /// Every candidate becomes a node and is connected to others in stages (Amato, Bayazit, Dale, Jones and Vallejo
 /// 1998, *OBPRM: an obstacle-based PRM for 3D workspaces*): first by the local planner; then, to
-/// those that are still in other components, by rotate-at-s. Where the robot turns there are two nodes more, so that
+/// those that are still in other components, by rotate-at-s. Where the robot turns there are two more nodes, so that
 /// each edge is one motion of the local planner.
 ///
-/// Each node goes through the stages as it comes, rather than all through one after the other.
+/// Each node goes through both stages when it is added; in the paper all nodes go through the first stage before the
+/// second.
 #[derive(Clone, Debug)]
 pub struct StagedConnector {
     within: Reachable,
@@ -36,7 +37,7 @@ pub struct StagedConnector {
     turns: Turns,
     near: Vec<Hit>,
     scratch: Vec<(f64, NodeId)>,
-    /// The nodes of each obstacle, of all nodes up to `grouped`.
+    /// The nodes of each obstacle, among the nodes below `grouped`.
     groups: BTreeMap<Option<u32>, Vec<NodeId>>,
     grouped: NodeId,
 }
@@ -50,14 +51,14 @@ impl StagedConnector {
         }
         if let Turns::At(fractions) = &turns {
             for &at in fractions {
-                super::mixed::part("where to turn", at)?;
+                super::pairs::part("where to turn", at)?;
             }
         }
         let (near, scratch, groups) = (Vec::new(), Vec::new(), BTreeMap::new());
         Ok(Self { within: within.check()?, among, turns, near, scratch, groups, grouped: 0 })
     }
 
-    /// What there is to try from `q`, in order of distance, ties by node, into `self.near`.
+    /// Writes the nodes to try from `q`, in order of distance, ties by node, to `self.near`.
     fn look<C, L, N>(&mut self, q: &C::State, growing: &mut Growing<'_, '_, C, L, N>)
     where
         C: Space,
@@ -89,7 +90,7 @@ impl StagedConnector {
         self.near.truncate(neighbours);
     }
 
-    /// Tries to connect two nodes by a turn in place at a fraction of the way.
+    /// Tries to connect two nodes by a turn in place at a fraction of the motion.
     fn turn<C, L, N>(&self, from: NodeId, to: NodeId, at: f64, growing: &mut Growing<'_, '_, C, L, N>)
     where
         C: Space,
@@ -106,20 +107,20 @@ impl StagedConnector {
         if at < 1.0 {
             corners.push(space.with_rotation_of(&middle, &end));
         }
-        if !corners.iter().all(|q| growing.steer().admits(q)) {
+        if !corners.iter().all(|q| growing.checker().admits(q)) {
             return;
         }
         let mut motions = Vec::with_capacity(3);
         let mut here = &start;
         for next in corners.iter().chain([&end]) {
-            let Some(motion) = growing.steer().reach(here, next) else { return };
+            let Some(motion) = growing.checker().reach(here, next, Direction::Forward) else { return };
             motions.push(motion);
             here = next;
         }
         let mut last = from;
         for (i, motion) in motions.into_iter().enumerate() {
             let next = match corners.get(i) {
-                Some(q) => growing.add(Candidate::new(q.clone(), Kind::Expanded)),
+                Some(q) => growing.add(Candidate::new(q.clone(), MilestoneKind::Expanded)),
                 None => to,
             };
             growing.link(last, next, motion);
@@ -147,7 +148,7 @@ where
         growing: &mut Growing<'_, '_, C, L, N>,
     ) -> NodeId {
         self.look(&candidate.state, growing);
-        let far = candidate.kind == Kind::Far;
+        let far = candidate.kind == MilestoneKind::Far;
         let id = growing.add(candidate);
         for hit in &self.near {
             if self.within.cycles || !growing.map().connected(hit.id, id) {
@@ -165,8 +166,10 @@ where
                 }
                 let at = match &self.turns {
                     Turns::At(fractions) => fractions[round],
-                    // At the one end, then at the other.
-                    Turns::WhereFar if round == 0 && growing.map().tag(hit.id).kind == Kind::Far => 0.0,
+                    // First at one end, then at the other.
+                    Turns::WhereFar if round == 0 && growing.map().tag(hit.id).kind == MilestoneKind::Far => {
+                        0.0
+                    }
                     Turns::WhereFar if round == 1 && far => 1.0,
                     Turns::WhereFar => continue,
                 };

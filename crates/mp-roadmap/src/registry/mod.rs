@@ -5,10 +5,10 @@ mod state;
 pub use state::{AnyRoadmap, RoadmapState};
 
 use crate::algo;
-use crate::by_name::{AnyPlanner, Given, ParallelProblem};
+use crate::by_name::{AnyPlanner, BuildArgs, ParallelProblem};
 use mp_cspace::{
     BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Space,
-    registry::{PlannerInfo, Settings, closest},
+    registry::{PlannerInfo, Settings},
 };
 
 /// All planners of the crate.
@@ -20,24 +20,18 @@ pub fn planners() -> &'static [PlannerInfo] {
 /// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
 ///
 /// # Errors
-/// When there is none, with the names there are.
+/// When there is no such planner; the error lists the names.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
+    let found = planners().iter().find(|info| info.is_called(name));
+    found.ok_or_else(|| BuildError::unknown_planner(name, planners()))
 }
 
-fn unknown(name: &str) -> BuildError {
-    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
-    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
-    let suggestion = closest(name, known.iter().copied().chain(aliases));
-    BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
-}
-
-/// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
-/// from the [problem](Problem::with_obstacles).
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. The geometry of obstacles comes from
+/// the [problem](Problem::with_obstacles).
 ///
 /// # Errors
-/// When there is no such planner, it has no such parameters, or refuses their values; when the problem does not know
-/// of obstacles what the planner asks.
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem lacks the
+/// knowledge of obstacles that the planner needs.
 pub fn build<'c, C, L>(
     name: &str,
     problem: Problem<'c, C, L>,
@@ -58,7 +52,7 @@ where
 /// As [`build`].
 pub fn build_with<'c, C, L, N>(
     name: &str,
-    team: impl Into<ParallelProblem<'c, C, L>>,
+    parallel: impl Into<ParallelProblem<'c, C, L>>,
     index: N,
     settings: &Settings,
 ) -> Result<AnyPlanner<'c, C::State, L::Edge>, BuildError>
@@ -67,7 +61,8 @@ where
     L: LocalPlanner<C::State, Edge: Reversible + 'c> + Send + 'c,
     N: NearestNeighbors<C> + Send + Sync + 'c,
 {
-    let (info, make) = algo::find::<(C, L, N)>(name).ok_or_else(|| unknown(name))?;
+    let (info, make) =
+        algo::find::<(C, L, N)>(name).ok_or_else(|| BuildError::unknown_planner(name, planners()))?;
     settings.check(info)?;
-    make(Given::new(team.into(), index, settings))
+    make(BuildArgs::new(parallel.into(), index, settings))
 }

@@ -1,4 +1,4 @@
-//! Planners by name of erased problems: compiled here, for the kinds of state that robots have.
+//! Planners of erased problems, made by name: compiled here for the kinds of state that robots have.
 
 use crate::{
     AnyEdgeChecker, AnyIndex, AnyParallelProblem, AnyPlanner, BuildError, IndexedRoadmap, Settings,
@@ -10,8 +10,8 @@ use std::fmt::Debug;
 /// A roadmap of an erased problem, ready to answer queries.
 pub type AnyRoadmap<S> = IndexedRoadmap<S, (), AnyIndex<S>>;
 
-/// A kind of state for which the planners by name are compiled: those of SE(3), SE(2), the plane, and joints, here;
-/// others where [`compile_for`](crate::compile_for) names them. Whoever calls the method compiles no planner.
+/// A kind of state for which the planners are compiled: here those of SE(3), SE(2), the plane, and joints; others where
+/// [`compile_for`](crate::compile_for) is called. Calling the methods compiles no planner.
 ///
 /// ```
 /// use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
@@ -44,7 +44,7 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// As [`build`](crate::build).
     fn roadmap_planner<'c>(
         name: &str,
-        team: AnyParallelProblem<'c, Self>,
+        parallel: AnyParallelProblem<'c, Self>,
         index: AnyIndex<Self>,
         settings: &Settings,
     ) -> Result<AnyPlanner<'c, Self, ()>, BuildError>
@@ -57,16 +57,16 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
     /// When the roadmap has no path, with the reason.
     fn answer(
         roadmap: &mut AnyRoadmap<Self>,
-        steer: &mut AnyEdgeChecker<'_, Self>,
+        checker: &mut AnyEdgeChecker<'_, Self>,
         start: &Self,
         goal: &Self,
     ) -> Result<Path<Self>, Unanswered>;
 
     /// As [`IndexedRoadmap::verify`].
-    fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, steer: &mut AnyEdgeChecker<'_, Self>) -> usize;
+    fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, checker: &mut AnyEdgeChecker<'_, Self>) -> usize;
 }
 
-/// Compiles the planners by name for states of your own: implements [`RoadmapState`] for them.
+/// Compiles the planners for states of your own: implements [`RoadmapState`] for them.
 ///
 /// ```
 /// #[derive(Clone, Debug, PartialEq)]
@@ -79,33 +79,33 @@ macro_rules! compile_for {
         impl $crate::RoadmapState for $state {
             fn roadmap_planner<'c>(
                 name: &str,
-                team: $crate::AnyParallelProblem<'c, Self>,
+                parallel: $crate::AnyParallelProblem<'c, Self>,
                 index: $crate::AnyIndex<Self>,
                 settings: &$crate::Settings,
             ) -> ::core::result::Result<$crate::AnyPlanner<'c, Self, ()>, $crate::BuildError>
             where
                 Self: 'c,
             {
-                $crate::build_with(name, team, index, settings)
+                $crate::build_with(name, parallel, index, settings)
             }
             fn answer(
                 roadmap: &mut $crate::AnyRoadmap<Self>,
-                steer: &mut $crate::AnyEdgeChecker<'_, Self>,
+                checker: &mut $crate::AnyEdgeChecker<'_, Self>,
                 start: &Self,
                 goal: &Self,
             ) -> ::core::result::Result<$crate::Path<Self>, $crate::Unanswered> {
-                roadmap.answer(steer, start, goal)
+                roadmap.answer(checker, start, goal)
             }
             fn verify_roadmap(
                 roadmap: &mut $crate::AnyRoadmap<Self>,
-                steer: &mut $crate::AnyEdgeChecker<'_, Self>,
+                checker: &mut $crate::AnyEdgeChecker<'_, Self>,
             ) -> usize {
-                roadmap.verify(steer)
+                roadmap.verify(checker)
             }
         }
     )+};
 }
 
-// Unit tests do not ask for them: they would compile all of them once more.
+// Not in unit tests, which do not need them and would compile all of them again.
 #[cfg(not(test))]
 compile_for!(nalgebra::Isometry3<f64>, mp_cspace::Se2State, nalgebra::Vector2<f64>, nalgebra::DVector<f64>,);

@@ -105,11 +105,11 @@ fn a_rod_goes_through_a_corridor() {
 fn a_team_finds_what_one_finds() {
     let (space, robot) = (plane(), corridor(0.3));
     for name in ["prm", "obprm", "geometry-prm"] {
-        let found = |hands: usize| {
-            let workers = Workers::new(hands).unwrap();
-            let team = ParallelProblem::new(workers, hands, || Ok(problem(&space, &robot))).unwrap();
+        let found = |checkers: usize| {
+            let workers = Workers::new(checkers).unwrap();
+            let parallel = ParallelProblem::new(workers, checkers, || Ok(problem(&space, &robot))).unwrap();
             let index = <Se2 as DefaultNn>::Nn::default();
-            let mut planner = build_with(name, team, index, &Settings::default()).unwrap();
+            let mut planner = build_with(name, parallel, index, &Settings::default()).unwrap();
             let outcome = planner.solve(&mut Rng::seed(5), &mut Iterations(20_000), &mut ());
             (outcome, planner.map().states().to_vec(), planner.map().edges())
         };
@@ -148,9 +148,9 @@ fn a_bar_goes_through_a_window() {
             Box::new(Certified::new(&space, robot.clone(), robot.tolerance()).unwrap());
         let verifier = Verifier::new(&space, &robot).unwrap();
         let problem = Problem::new(&any, Straight::new(&any, check), verifier, start, goal).unwrap();
-        let team = AnyParallelProblem::from(knowing(problem, &robot));
+        let parallel = AnyParallelProblem::from(knowing(problem, &robot));
         let (index, settings) = (AnyIndex::of(&space), Settings::default());
-        let mut planner = Isometry3::roadmap_planner(name, team, index, &settings).unwrap();
+        let mut planner = Isometry3::roadmap_planner(name, parallel, index, &settings).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(40_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("{name}: {:?}", planner.progress()) };
         assert!(verify_path(&space, &path, &mut Verifier::new(&space, &robot).unwrap()).is_free());
@@ -160,19 +160,19 @@ fn a_bar_goes_through_a_window() {
 fn candidates<'c, G: NodeGenerator<Se2, Local<'c>>>(
     space: &'c Se2,
     robot: &PlanarFlyer,
-    mut generate: G,
+    mut generator: G,
     attempts: std::ops::Range<u64>,
 ) -> Vec<Candidate<Se2State, ()>> {
     let check = Certified::new(space, robot.clone(), TOLERANCE).unwrap();
     let verifier = Verifier::new(space, robot).unwrap();
-    let mut steer = EdgeChecker::new(space, Straight::new(space, check), verifier, 10);
+    let mut checker = EdgeChecker::new(space, Straight::new(space, check), verifier, 10);
     let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
     for attempt in attempts {
         let mut rng = Rng::stream(7, attempt);
-        generate.generate(attempt, &map, &mut steer, &mut rng, &mut out);
+        generator.generate(attempt, &map, &mut checker, &mut rng, &mut out);
         all.append(&mut out);
     }
-    assert!(all.iter().all(|c| steer.admits(&c.state)), "all that is proposed is free");
+    assert!(all.iter().all(|c| checker.admits(&c.state)), "all that is proposed is free");
     all
 }
 
@@ -182,18 +182,18 @@ fn nodes_of_obprm_are_on_surfaces() {
     let gap = 0.01 * space.extent();
     for strategy in [Strategy::Prototype, Strategy::Contact, Strategy::Free, Strategy::Shells] {
         let with = OnSurfaces { strategy, gap: Step::Fraction(0.01), uniform: 0.0, ..OnSurfaces::default() };
-        let generate = OnObstacles::new(&space, robot.clone(), with).unwrap();
-        let all = candidates(&space, &robot, generate, 0..200);
+        let generator = OnObstacles::new(&space, robot.clone(), with).unwrap();
+        let all = candidates(&space, &robot, generator, 0..200);
         let of = |kind| all.iter().filter(move |c| c.kind == kind);
         let contacts = matches!(strategy, Strategy::Prototype | Strategy::Contact | Strategy::Shells);
-        assert_eq!(of(Kind::Contact).count() > 100, contacts, "{strategy:?}");
+        assert_eq!(of(MilestoneKind::Contact).count() > 100, contacts, "{strategy:?}");
         let near = matches!(strategy, Strategy::Free | Strategy::Shells);
-        assert_eq!(of(Kind::Near).count() > 100, near, "{strategy:?}");
-        for c in of(Kind::Contact) {
+        assert_eq!(of(MilestoneKind::Near).count() > 100, near, "{strategy:?}");
+        for c in of(MilestoneKind::Contact) {
             assert!(robot.clearance(&c.state, 1.0) < 0.5 * TOLERANCE + 2e-3, "{strategy:?} {c:?}");
         }
         // Half an extent turns by no more than its share, so this bounds how far the robot moved.
-        for c in of(Kind::Near) {
+        for c in of(MilestoneKind::Near) {
             assert!(robot.clearance(&c.state, 1.0) < TOLERANCE + 4.0 * gap, "{strategy:?} {c:?}");
         }
         assert!(all.iter().any(|c| c.obstacle == Some(0)) && all.iter().any(|c| c.obstacle == Some(1)));
@@ -203,7 +203,7 @@ fn nodes_of_obprm_are_on_surfaces() {
 #[test]
 fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
     let (space, robot) = (plane(), corridor(0.25));
-    let generate = || AroundObstacles::new(robot.clone(), ByGeometry { far: 400, bands: 20 }).unwrap();
+    let generator = || AroundObstacles::new(robot.clone(), ByGeometry { far: 400, bands: 20 }).unwrap();
 
     // No state is tested in the first approximation.
     let tests = Cell::new(0);
@@ -212,24 +212,24 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
         true
     };
     let check = || Discrete::new(&space, counts, Resolution::Fraction(0.1)).unwrap();
-    let mut steer =
+    let mut checker =
         EdgeChecker::new(&space, Straight::new(&space, check()), Verifier::new(&space, &robot).unwrap(), 10);
-    let (map, mut out, mut first) = (Roadmap::new(), Vec::new(), generate());
+    let (map, mut out, mut first) = (Roadmap::new(), Vec::new(), generator());
     for attempt in 0..400 {
-        first.generate(attempt, &map, &mut steer, &mut Rng::stream(7, attempt), &mut out);
+        first.generate(attempt, &map, &mut checker, &mut Rng::stream(7, attempt), &mut out);
     }
-    drop(steer);
+    drop(checker);
     assert_eq!(tests.get(), 0);
-    assert!(out.len() > 10 && out.iter().all(|c| c.kind == Kind::Far && robot.is_far(&c.state)));
+    assert!(out.len() > 10 && out.iter().all(|c| c.kind == MilestoneKind::Far && robot.is_far(&c.state)));
 
-    let all = candidates(&space, &robot, generate(), 400..800);
+    let all = candidates(&space, &robot, generator(), 400..800);
     let mut count = [0; 4];
     for c in &all {
         match c.kind {
-            Kind::Far => assert!(robot.is_far(&c.state)),
-            Kind::Near => count[0] += 1,
-            Kind::Salvaged => count[1] += 1,
-            Kind::Plain => count[2] += 1,
+            MilestoneKind::Far => assert!(robot.is_far(&c.state)),
+            MilestoneKind::Near => count[0] += 1,
+            MilestoneKind::Salvaged => count[1] += 1,
+            MilestoneKind::Plain => count[2] += 1,
             _ => count[3] += 1,
         }
     }
@@ -239,12 +239,12 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
     let rod = FreeFlyer::new(&cuboid(0.8, 0.1, 0.1).unwrap(), [pillar]).unwrap();
     let space = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
     let check = Certified::new(&space, rod.clone(), rod.tolerance()).unwrap();
-    let mut steer =
+    let mut checker =
         EdgeChecker::new(&space, Straight::new(&space, check), Verifier::new(&space, &rod).unwrap(), 10);
-    let mut generate = AroundObstacles::new(rod.clone(), ByGeometry { far: 0, bands: 20 }).unwrap();
+    let mut generator = AroundObstacles::new(rod.clone(), ByGeometry { far: 0, bands: 20 }).unwrap();
     let (map, mut pairs) = (Roadmap::new(), 0);
     for attempt in (0..200).step_by(2) {
-        out_of(&mut generate, attempt, &map, &mut steer, &mut pairs);
+        out_of(&mut generator, attempt, &map, &mut checker, &mut pairs);
     }
     assert!(pairs > 80, "{pairs}");
 }
@@ -252,14 +252,14 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
 type Rod<'c> = Straight<'c, Se3, Certified<'c, Se3, FreeFlyer>>;
 
 fn out_of(
-    generate: &mut AroundObstacles<FreeFlyer>,
+    generator: &mut AroundObstacles<FreeFlyer>,
     attempt: u64,
     map: &Roadmap<Isometry3<f64>>,
-    steer: &mut EdgeChecker<'_, Se3, Rod<'_>>,
+    checker: &mut EdgeChecker<'_, Se3, Rod<'_>>,
     pairs: &mut u32,
 ) {
     let mut out = Vec::new();
-    generate.generate(attempt, map, steer, &mut Rng::stream(3, attempt), &mut out);
+    generator.generate(attempt, map, checker, &mut Rng::stream(3, attempt), &mut out);
     let axes: Vec<Vector3<f64>> = out.iter().map(|c| c.state.rotation * Vector3::x()).collect();
     if let [parallel, across] = axes[..] {
         assert!(parallel.z.abs() > 1.0 - 1e-9 && across.z.abs() < 1e-9);
@@ -306,7 +306,7 @@ fn what_cannot_be_made_says_why() {
     let each = NeighborSet::EachObstacle(0);
     let within = Reachable { neighbours: 5, radius: 1.0, cycles: false };
     assert!(StagedConnector::new(within, each, Turns::WhereFar).is_err());
-    assert!(StagedConnector::new(within, NeighborSet::NearestConnector, Turns::At(vec![0.5, 1.5])).is_err());
+    assert!(StagedConnector::new(within, NeighborSet::Nearest, Turns::At(vec![0.5, 1.5])).is_err());
     // Tables and defaults agree.
     for (info, read) in [(obprm::INFO, true), (obstacle_geometry_prm::INFO, false)] {
         let all = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));
@@ -328,19 +328,20 @@ fn erased_problems_are_planned_the_same() {
         Ok(knowing(Problem::new(&any, Straight::new(&any, check), verifier, start, goal)?, &robot))
     };
     for info in planners() {
-        for hands in [1, 2] {
-            let workers = || Workers::new(hands).unwrap();
+        for checkers in [1, 2] {
+            let workers = || Workers::new(checkers).unwrap();
             let settings = Settings::default();
-            let team = ParallelProblem::new(workers(), hands, || Ok(problem(&space, &robot))).unwrap();
-            let mut one = build_with(info.name, team, <Se2 as DefaultNn>::Nn::default(), &settings).unwrap();
-            let team = ParallelProblem::new(workers(), hands, erased).unwrap();
+            let parallel = ParallelProblem::new(workers(), checkers, || Ok(problem(&space, &robot))).unwrap();
+            let mut one =
+                build_with(info.name, parallel, <Se2 as DefaultNn>::Nn::default(), &settings).unwrap();
+            let parallel = ParallelProblem::new(workers(), checkers, erased).unwrap();
             let mut other =
-                Se2State::roadmap_planner(info.name, team, AnyIndex::of(&space), &settings).unwrap();
+                Se2State::roadmap_planner(info.name, parallel, AnyIndex::of(&space), &settings).unwrap();
             let found = [&mut one, &mut other].map(|planner| {
                 let outcome = planner.solve(&mut Rng::seed(5), &mut Iterations(3_000), &mut ());
                 (outcome, planner.progress(), planner.map().states().to_vec(), planner.map().edges())
             });
-            assert!(found[0] == found[1], "{} {hands}", info.name);
+            assert!(found[0] == found[1], "{} {checkers}", info.name);
         }
     }
 }

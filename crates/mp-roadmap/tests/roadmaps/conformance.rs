@@ -55,9 +55,9 @@ where
         };
         let [start, goal] = self.ends.clone();
         let local = Straight::new(&self.erased, check);
-        let team =
+        let parallel =
             AnyParallelProblem::from(Problem::new(&self.erased, local, verifier, start, goal).unwrap());
-        C::State::roadmap_planner(name, team, AnyIndex::of(self.space), &settings(name)).unwrap()
+        C::State::roadmap_planner(name, parallel, AnyIndex::of(self.space), &settings(name)).unwrap()
     }
 
     /// Every planner finds a way, whatever the seed, and on some seeds with a discrete check as well.

@@ -61,7 +61,7 @@ fn without_cycles_the_roadmap_is_a_forest() {
         space.distance(map.state(a), map.state(b)) <= 0.4 && !boxes.hit(map.state(a), map.state(b))
     });
     assert!(near);
-    let expanded = (0..500).filter(|&id| map.tag(id).kind == Kind::Expanded).count();
+    let expanded = (0..500).filter(|&id| map.tag(id).kind == MilestoneKind::Expanded).count();
     assert!((100..250).contains(&expanded), "{expanded} of 500 by expansion");
 }
 
@@ -72,14 +72,19 @@ fn expansion_is_where_it_is_difficult() {
     let mut builder = prm(&space, &boxes, false).into_builder();
     builder.build(&mut Rng::seed(3), &mut Nodes(3_000), &mut ());
     let map = builder.map();
-    let near = |kind: Kind| {
+    let near = |kind: MilestoneKind| {
         let of = (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == kind);
         let (all, near) = of.fold((0, 0), |(all, near), id| {
             (all + 1, near + usize::from((map.state(id).x - 0.5).abs() < 0.15))
         });
         f64::from(near as u32) / f64::from(all)
     };
-    assert!(near(Kind::Expanded) > 1.5 * near(Kind::Plain), "{} {}", near(Kind::Expanded), near(Kind::Plain));
+    assert!(
+        near(MilestoneKind::Expanded) > 1.5 * near(MilestoneKind::Plain),
+        "{} {}",
+        near(MilestoneKind::Expanded),
+        near(MilestoneKind::Plain)
+    );
 }
 
 #[test]
@@ -169,13 +174,13 @@ fn guards_do_not_see_each_other_and_connections_join_components() {
         assert_eq!((reason, builder.connector().failures()), (StopReason::Exhausted, 500));
         let map = builder.map_mut();
         let (guards, others): (Vec<NodeId>, Vec<NodeId>) =
-            (0..map.len() as NodeId).partition(|&id| map.tag(id).kind == Kind::Guard);
+            (0..map.len() as NodeId).partition(|&id| map.tag(id).kind == MilestoneKind::Guard);
         assert!(guards.len() >= 2, "both sides of the wall have one");
         for (i, &a) in guards.iter().enumerate() {
             assert!(guards[..i].iter().all(|&b| boxes.hit(map.state(a), map.state(b))));
         }
         for &id in &others {
-            assert_eq!(map.tag(id).kind, Kind::Connection);
+            assert_eq!(map.tag(id).kind, MilestoneKind::Connection);
             let ends: Vec<NodeId> = map.links(id).map(|(_, end, _)| end).collect();
             assert!(ends.len() >= 2 && ends.iter().all(|end| guards.contains(end)));
         }

@@ -13,7 +13,7 @@ type Local<'c> = Straight<'c, Rn<2>, erased::AnyCheck<'c, Point>>;
 
 const PRINT: u64 = 0x1234;
 
-fn steer<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> EdgeChecker<'c, Rn<2>, Local<'c>> {
+fn checker<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> EdgeChecker<'c, Rn<2>, Local<'c>> {
     EdgeChecker::new(
         space,
         Straight::new(space, Box::new(Exact(boxes.clone()))),
@@ -27,13 +27,14 @@ fn answers<'c>(
     boxes: &Boxes<2>,
     map: Map,
 ) -> RoadmapQueries<'c, Rn<2>, Local<'c>, KdTree<2>> {
-    RoadmapQueries::new(steer(space, boxes), map, KdTree::new(), 10).unwrap()
+    RoadmapQueries::new(checker(space, boxes), map, KdTree::new(), 10).unwrap()
 }
 
 /// A roadmap with cycles of so many nodes.
 fn map(space: &Rn<2>, boxes: &Boxes<2>, nodes: usize, seed: u64) -> Map {
-    let connect = Star::new(2, 1.1).unwrap();
-    let mut builder = Builder::new(steer(space, boxes), Free::uniform(space), connect, KdTree::<2>::new());
+    let connector = Star::new(2, 1.1).unwrap();
+    let mut builder =
+        Builder::new(checker(space, boxes), Free::uniform(space), connector, KdTree::<2>::new());
     builder.build(&mut Rng::seed(seed), &mut Nodes(nodes), &mut ());
     builder.into_map()
 }
@@ -85,7 +86,7 @@ fn unanswered_queries_say_why() {
     assert_eq!(ask(&mut none, [0.1, 0.1], [0.9, 0.1]), Unanswered::Unreached(Endpoint::Start));
     let small = Rn::<2>::new([0.0; 2], [0.5; 2]).unwrap();
     let foreign = map(&space, &boxes, 50, 1);
-    assert!(RoadmapQueries::new(steer(&small, &boxes), foreign, KdTree::<2>::new(), 10).is_err());
+    assert!(RoadmapQueries::new(checker(&small, &boxes), foreign, KdTree::<2>::new(), 10).is_err());
 }
 
 #[test]
@@ -186,10 +187,11 @@ fn two_roadmaps_become_one() {
         map(&Rn::new(bounds.0, bounds.1).unwrap(), &boxes, 150, seed)
     };
     let (left, right) = (half(true, 1), half(false, 2));
-    let connect = Star::new(2, 1.1).unwrap();
-    let mut builder = Builder::new(steer(&space, &boxes), Free::uniform(&space), connect, KdTree::<2>::new())
-        .resume(left.clone())
-        .unwrap();
+    let connector = Star::new(2, 1.1).unwrap();
+    let mut builder =
+        Builder::new(checker(&space, &boxes), Free::uniform(&space), connector, KdTree::<2>::new())
+            .resume(left.clone())
+            .unwrap();
     builder.merge(&right, 10, &mut ()).unwrap();
     let edges = left.edges() + right.edges();
     let mut apart = [left, right].map(|mut map| map.components());
@@ -225,19 +227,19 @@ fn threads_change_nothing() {
     fn built<'c, K>(
         space: &'c Rn<2>,
         boxes: &Boxes<2>,
-        connect: K,
-        hands: usize,
+        connector: K,
+        checkers: usize,
         threads: usize,
     ) -> (Vec<u8>, Progress)
     where
         K: Connector<Rn<2>, Local<'c>> + Sync,
     {
         let learning = Learning { learn: 150, ..Learning::default() };
-        let generate = Learn::new(space, learning).unwrap();
-        let mut builder = Builder::new(steer(space, boxes), generate, connect, KdTree::<2>::new());
-        if hands > 0 {
-            let hands = (0..hands).map(|_| steer(space, boxes));
-            builder = builder.on(Workers::new(threads).unwrap(), hands);
+        let generator = Learn::new(space, learning).unwrap();
+        let mut builder = Builder::new(checker(space, boxes), generator, connector, KdTree::<2>::new());
+        if checkers > 0 {
+            let checkers = (0..checkers).map(|_| checker(space, boxes));
+            builder = builder.on(Workers::new(threads).unwrap(), checkers);
         }
         let mut rng = Rng::seed(4);
         for nodes in [37, 600] {
@@ -249,9 +251,9 @@ fn threads_change_nothing() {
     let nearest = || NearestConnector::new(reach).unwrap();
     let star = || Star::new(2, 1.1).unwrap();
     let alone = (built(&space, &boxes, nearest(), 0, 1), built(&space, &boxes, star(), 0, 1));
-    for (hands, threads) in [(1, 1), (2, 2), (5, 3)] {
-        assert!(built(&space, &boxes, nearest(), hands, threads) == alone.0, "{hands} {threads}");
-        assert!(built(&space, &boxes, star(), hands, threads) == alone.1, "{hands} {threads}");
+    for (checkers, threads) in [(1, 1), (2, 2), (5, 3)] {
+        assert!(built(&space, &boxes, nearest(), checkers, threads) == alone.0, "{checkers} {threads}");
+        assert!(built(&space, &boxes, star(), checkers, threads) == alone.1, "{checkers} {threads}");
     }
 }
 

@@ -1,14 +1,15 @@
-//! A bug trap in the plane, and how to tell what a planner made of it.
+//! A bug trap and walls in the plane, and how to print what a planner made of them.
 #![allow(clippy::print_stdout, dead_code, unreachable_pub)] // examples talk, and use their part
 
 use mp_control::{
     ControlSegment, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, OnPosition, ReplayFinely,
 };
 use mp_cspace::{
-    Discrete, EventCounts, FineDiscrete, Iterations, Outcome, Planner, Product, Resolution, Rn, Rng, Straight,
+    Discrete, EventCounts, FineDiscrete, Iterations, KdTree, Outcome, ParameterError, Planner, Product,
+    Resolution, Rn, Rng, Straight,
 };
 use mp_snake::SnakePlanner;
-use mp_tree::{Goals, Problem, Step, Tuning};
+use mp_tree::{BuildError, Goals, Problem, RrtConnect, Step, Tuning, improve};
 use nalgebra::Vector2;
 
 pub type Point = Vector2<f64>;
@@ -28,10 +29,33 @@ pub fn square() -> Result<Rn<2>> {
 
 /// From the middle of the ring to a place outside, on the side away from the opening.
 pub fn bug_trap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Local<'_>>> {
-    let check = Discrete::new(space, free as fn(&Point) -> bool, Resolution::Fraction(0.005))?;
-    let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005))?;
-    let (start, goal) = (Point::new(0.5, 0.5), Point::new(0.05, 0.5));
-    Ok(Problem::new(space, Straight::new(space, check), verifier, start, goal)?)
+    Ok(problem(space, free, [Point::new(0.5, 0.5), Point::new(0.05, 0.5)])?)
+}
+
+/// Around the end of a wall.
+pub fn wall(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Local<'_>>> {
+    let free = |q: &Point| (q.x - 0.5).abs() > 0.05 || q.y > 0.6;
+    Ok(problem(space, free, [Point::new(0.1, 0.2), Point::new(0.9, 0.2)])?)
+}
+
+/// A planning problem from start to goal among what `free` leaves free.
+pub fn problem(
+    space: &Rn<2>,
+    free: fn(&Point) -> bool,
+    [start, goal]: [Point; 2],
+) -> std::result::Result<Problem<'_, Rn<2>, Local<'_>>, BuildError> {
+    let unmade = |error: ParameterError| BuildError::Unmade { reason: error.to_string() };
+    let check = Discrete::new(space, free, Resolution::Fraction(0.005)).map_err(unmade)?;
+    let verifier = FineDiscrete::new(space, free, Resolution::Fraction(0.0005)).map_err(unmade)?;
+    Problem::new(space, Straight::new(space, check), verifier, start, goal)
+}
+
+/// RRT-Connect through a narrow gap in a wall.
+pub fn through_gap(
+    space: &Rn<2>,
+) -> std::result::Result<RrtConnect<'_, Rn<2>, Local<'_>, KdTree<2>>, BuildError> {
+    let free = |q: &Point| (q.x - 0.5).abs() > 0.1 || (q.y - 0.8).abs() < 0.01;
+    RrtConnect::new(problem(space, free, [Point::new(0.1, 0.2), Point::new(0.9, 0.2)])?, tuning())
 }
 
 type Field = fn(&Point, f64, &mut [f64]) -> f64;
@@ -56,11 +80,23 @@ pub fn tuning() -> Tuning {
     Tuning { step: Step::Length(0.1), ..Tuning::default() }
 }
 
-/// Plans with the seed given as the first argument, and prints the path.
+/// The seed given as the first argument.
+pub fn rng() -> Result<Rng> {
+    Ok(Rng::seed(std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?))
+}
+
+/// Plans for ever shorter paths, and prints their lengths.
+pub fn run_improving(mut planner: impl Planner<Point, Edge = ()>, space: &Rn<2>) -> Result {
+    improve(&mut planner, &mut rng()?, &mut Iterations(5_000), &mut (), |path, progress| {
+        println!("after {:5} iterations: {:.4}", progress.iterations, path.length(space));
+    });
+    Ok(())
+}
+
+/// Plans, and prints the path.
 pub fn run(mut planner: impl Planner<Point>) -> Result {
-    let seed = std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?;
     let mut seen = EventCounts::default();
-    match planner.solve(&mut Rng::seed(seed), &mut Iterations(50_000), &mut seen) {
+    match planner.solve(&mut rng()?, &mut Iterations(50_000), &mut seen) {
         Outcome::Solved(path) => {
             for q in &path.states {
                 println!("{:8.3} {:8.3}", q.x, q.y);
@@ -95,10 +131,9 @@ pub fn moving_trap(space: &Moving) -> Result<Problem<'_, Moving, ByInputs<'_>>> 
     Ok(Problem::new(space, local, verifier, (Point::new(0.5, 0.5), Point::zeros()), beyond)?)
 }
 
-/// Plans with the seed given as the first argument, and prints the path with its inputs.
+/// Plans, and prints the path with its inputs.
 pub fn run_legs(mut planner: impl Planner<State, Edge = ControlSegment<Point>>) -> Result {
-    let seed = std::env::args().nth(1).map_or(Ok(1), |text| text.parse())?;
-    match planner.solve(&mut Rng::seed(seed), &mut Iterations(500_000), &mut ()) {
+    match planner.solve(&mut rng()?, &mut Iterations(500_000), &mut ()) {
         Outcome::Solved(path) => {
             println!("       x        y       vx       vy       ax       ay   for");
             for ((q, v), leg) in path.states.iter().zip(&path.edges) {

@@ -1,4 +1,4 @@
-//! Adaptive dynamic-domain RRT: the radius of each node is tuned by what becomes of it.
+//! Adaptive dynamic-domain RRT: the radius of each node adapts to its successes and failures.
 //!
 //! L. Jaillet, A. Yershova, S. M. LaValle and T. Siméon, *Adaptive tuning of the sampling domain for
 //! dynamic-domain RRTs*, IROS 2005: [dynamic-domain RRT](super::dd_rrt) whose radii are not fixed.
@@ -10,7 +10,7 @@
 //! 2. extend the tree from that node, one step at most, toward it. Where that fails, an infinite
 //!    radius becomes `radius`, another is multiplied by 1 - `adapt` but not below `least`; where
 //!    it succeeds, a finite radius is multiplied by 1 + `adapt`;
-//! 3. if that added a node, connect the other tree to it, whatever the radii;
+//! 3. if that added a node, connect the other tree to it, regardless of radii;
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
@@ -22,7 +22,7 @@
 //! | `radius`: of nodes that failed for the first time, in steps | (0, ∞) | 2 |
 //! | `adapt`: part by which a radius grows and shrinks | \[0, 1) | 0.05 |
 //! | `least`: smallest radius, in steps | (0, `radius`\] | 0.5 |
-//! | `tries`: samples refused in a row before one is taken as it is | 0, 1, 2, … | 100 |
+//! | `tries`: samples refused in a row before one is taken regardless | 0, 1, 2, … | 100 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
@@ -47,7 +47,7 @@
 //! ```
 
 use super::dd_rrt::{RADIUS, TRIES};
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{DdRrt, Domain, Parameter, PlannerInfo};
 
@@ -63,7 +63,7 @@ const LEAST: Parameter = Parameter {
     name: "least",
     range: "in (0, radius], in steps",
     default: "0.5",
-    doc: "below this no radius shrinks",
+    doc: "smallest radius of a node",
 };
 
 /// The entry of [`planners`](crate::planners).
@@ -77,9 +77,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let domain = Domain::adaptive().read(given.settings)?;
-    Ok(Box::new(DdRrt::with_index(given.problem, given.index, given.tuning, domain)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let domain = Domain::adaptive().read(args.settings)?;
+    Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))
 }
 
 impl Domain {

@@ -1,5 +1,4 @@
-//! AORRTC: RRT-Connect over and over in the space of states and costs, so that its paths become
-//! optimal.
+//! AORRTC: RRT-Connect again and again in the space of states and costs, so that its paths become optimal.
 //!
 //! T. S. Wilson, W. Thomason, Z. Kingston and J. D. Gammell, *AORRTC: almost-surely asymptotically
 //! optimal planning with RRT-Connect*, IEEE Robotics and Automation Letters 10(12), 2025; an
@@ -13,22 +12,20 @@
 //!    b between ĝ(x) and c − ĥ(x);
 //! 2. of the nodes v with g(v) + d(v, x) ≤ b find that nearest to (x, b) in states and costs, the one with
 //!    the least d(v, x)² + (b − g(v))²; move from there one step toward x;
-//! 3. draw a smaller cost for the new state, between ĝ and what it would have, and find its nearest
-//!    node likewise: where that is cheaper and the motion free it becomes the parent; again until it is
-//!    not;
+//! 3. draw a smaller cost for the new state, between ĝ and its present cost, and find its nearest node likewise: where
+//!    that node is cheaper and the motion free it becomes the parent; repeat until it does not;
 //! 4. connect the other tree to the new state, from the node nearest to it in states and costs by which
 //!    the path would cost less than c;
 //! 5. where the trees have met, verify the path, replace parts of it by single motions where these are
 //!    free and cheaper, return it, and begin the next search with its cost;
-//! 6. the other tree has the next turn. A search without success ends after 10 000 iterations, the
-//!    next one after 10 000 more than that.
+//! 6. the other tree has the next turn. A search without success ends after 10 000 iterations, and each search after it
+//!    may take 10 000 iterations more.
 //!
-//! The paper also smooths paths by B-splines; this is left out, being possible only for straight motions.
+//! The paper also smooths paths by B-splines. That is possible for straight motions only, and left out here.
 //!
-//! **When to use it.** First, when the length of the path matters: there is a path as soon as
-//! RRT-Connect has one, and it gets better from then on. Both ends must be known states (or the goal a
-//! sampler), motions must run backward as well as forward, and the metric should be a true one that
-//! no motion costs less than.
+//! **When to use it.** Try it first when the length of the path matters: it has a path as soon as RRT-Connect has one, and
+//! improves it from then on. Both ends must be known states (or the goal a sampler), motions must run backward as well as
+//! forward, the metric should satisfy the triangle inequality, and no motion should cost less than its distance.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -36,7 +33,7 @@
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
-//! A point goes around a disc, by ever shorter ways:
+//! A point goes around a disc, on ever shorter paths:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Aorrtc, Problem, Tuning, improve};
@@ -57,7 +54,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::engine::{constructors, joined};
 use crate::{
@@ -73,7 +70,7 @@ use rand::RngExt;
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "aorrtc",
-    summary: "RRT-Connect for ever shorter paths until it is stopped; the first to try for short ones",
+    summary: "RRT-Connect for ever shorter paths until it is stopped; the first to try for short paths",
     citation: "Wilson, Thomason, Kingston and Gammell 2025",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -81,8 +78,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(Aorrtc::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(Aorrtc::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// A search without success ends after this many iterations more than the one before.
@@ -96,13 +93,13 @@ const GAIN: f64 = 1e-9;
 fn nearest_within<C: Space, E, Se: Selector<C>>(
     space: &C,
     tree: &Tree<C::State, E>,
-    select: &Se,
+    selector: &Se,
     q: &C::State,
     bound: f64,
 ) -> Option<NodeId> {
     let (mut hits, mut k): (Vec<Hit>, usize) = (Vec::new(), 8);
     loop {
-        select.k_nearest(space, tree.states(), q, k, &mut hits);
+        selector.k_nearest(space, tree.states(), q, k, &mut hits);
         let fit = hits.iter().filter(|hit| tree.cost(hit.id) + hit.distance <= bound);
         let both = fit.map(|hit| (hit.distance.hypot(bound - tree.cost(hit.id)), hit.id));
         let best = both.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -115,21 +112,21 @@ fn nearest_within<C: Space, E, Se: Selector<C>>(
     }
 }
 
-/// One step, whose end is hung on ever cheaper parents.
+/// One step, whose end is given ever cheaper parents.
 struct Resampled<F>(F);
 
 impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Extender<C, L>
     for Resampled<F>
 {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
         let direction = growing.tree().direction();
         let (origin, target) = (growing.tree().state(from).clone(), growing.target().clone());
-        let reach = Reach::Step(growing.steer().step());
-        let extension = growing.steer().extend(&origin, &target, direction, reach);
+        let reach = Reach::Step(growing.checker().step());
+        let extension = growing.checker().extend(&origin, &target, direction, reach);
         let (mut parent, mut motion, reached) = match extension {
             Extension::Trapped => return Grown::Trapped,
             Extension::Advanced(motion) => (from, motion, false),
@@ -142,16 +139,18 @@ impl<C: Space, L: LocalPlanner<C::State>, F: Fn(Direction, &C::State) -> f64> Ex
                 break;
             }
             let bound = least + (cost - least) * growing.rng().random::<f64>();
-            let space = growing.steer().space();
+            let space = growing.checker().space();
             let nearest = nearest_within(space, growing.tree(), growing.selector(), &motion.end, bound);
             let Some(id) = nearest.filter(|&id| id != parent) else { break };
             let state = growing.tree().state(id).clone();
-            match growing.steer().reach(&state, &motion.end, direction) {
-                Some(way) if growing.tree().cost(id) + way.cost < cost => (parent, motion) = (id, way),
+            match growing.checker().reach(&state, &motion.end, direction) {
+                Some(cheaper) if growing.tree().cost(id) + cheaper.cost < cost => {
+                    (parent, motion) = (id, cheaper)
+                }
                 _ => break,
             }
         }
-        growing.settle(parent, if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) })
+        growing.insert(parent, if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) })
     }
 }
 
@@ -163,11 +162,11 @@ pub struct Aorrtc<'c, C: Space, L: LocalPlanner<C::State>, N> {
     /// An empty index.
     index: N,
     informed: Informed<'c, C>,
-    planted: usize,
+    rooted: usize,
     tried: usize,
     best: f64,
     turn: usize,
-    /// The iteration with which the search began, and how many it may take.
+    /// The iteration in which the search began, and how many iterations it may take.
     since: u64,
     allowed: u64,
 }
@@ -184,7 +183,7 @@ constructors! {
             informed,
             trees: Self::trees_with(&index),
             index,
-            planted: 0,
+            rooted: 0,
             tried: 0,
             best: f64::INFINITY,
             turn: 0,
@@ -203,34 +202,34 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
     /// The trees of the current search, from the start and from the goal.
     #[must_use]
     pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
-        [self.trees[0].tree(), self.trees[1].tree()]
+        [self.trees[0].nodes(), self.trees[1].nodes()]
     }
 
-    /// Plants what is not planted yet, and tries the straight ways that were not tried yet.
+    /// Adds the roots that are missing, and tries the straight motions to goals that were not tried yet.
     fn begin(
         &mut self,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if let Some(root) = self.core.plant(&mut self.trees[0], observer)
+        if let Some(root) = self.core.add_start(&mut self.trees[0], observer)
             && self.best > 0.0
         {
             self.best = 0.0;
-            return Some(self.trees[0].tree().path(root));
+            return Some(self.trees[0].nodes().path(root));
         }
-        let space = self.core.steer.space();
-        while let Some(goal) = self.core.goals.listed().get(self.planted) {
-            self.planted += 1;
-            if !self.trees[1].knows(space, goal) {
+        let space = self.core.checker.space();
+        while let Some(goal) = self.core.goals.listed().get(self.rooted) {
+            self.rooted += 1;
+            if !self.trees[1].contains(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
         }
         while let Some(goal) = self.core.goals.listed().get(self.tried) {
             self.tried += 1;
-            let roots = 0..self.trees[1].tree().len() as NodeId;
-            let mut roots = roots.filter(|&id| self.trees[1].tree().state(id) == goal);
-            let root = roots.find(|&id| self.trees[1].tree().parent(id).is_none());
-            let grown = self.trees[0].leap(0, goal, &mut self.core.steer, rng, observer);
+            let roots = 0..self.trees[1].nodes().len() as NodeId;
+            let mut roots = roots.filter(|&id| self.trees[1].nodes().state(id) == goal);
+            let root = roots.find(|&id| self.trees[1].nodes().parent(id).is_none());
+            let grown = self.trees[0].connect_directly(0, goal, &mut self.core.checker, rng, observer);
             if let (Grown::Reached(id), Some(root)) = (grown, root)
                 && let Some(path) = self.candidate([id, root], rng, observer)
             {
@@ -240,10 +239,10 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         None
     }
 
-    /// New trees.
+    /// Begins a search with new trees.
     fn renew(&mut self, observer: &mut dyn Observer<C::State>) {
         self.trees = Self::trees_with(&self.index);
-        self.planted = 0;
+        self.rooted = 0;
         self.since = self.core.iterations;
         for tree in 0..2 {
             observer.on(Event::Pruned { tree, survivors: &[] });
@@ -252,18 +251,18 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
 
     /// The node of a tree to grow from toward `q`, at a cost of at most `bound`.
     fn choose(&mut self, tree: usize, q: &C::State, bound: f64) -> Option<NodeId> {
-        let space = self.core.steer.space();
-        let branch = &mut self.trees[tree];
+        let space = self.core.checker.space();
+        let tree = &mut self.trees[tree];
         if bound < f64::INFINITY {
-            return nearest_within(space, branch.tree(), branch.selector(), q, bound);
+            return nearest_within(space, tree.nodes(), tree.selector(), q, bound);
         }
         let mut hits = Vec::new();
-        branch.selector().k_nearest(space, branch.tree().states(), q, 1, &mut hits);
+        tree.selector().k_nearest(space, tree.nodes().states(), q, 1, &mut hits);
         hits.first().map(|hit| hit.id)
     }
 
-    /// The path through two nodes with the same state, shortened, if it is better and passes
-    /// verification; what fails is pruned.
+    /// The path through two nodes with the same state, shortened, if it is better than the last and passes verification;
+    /// the part from a failed edge on is pruned.
     fn candidate(
         &mut self,
         meeting: [NodeId; 2],
@@ -271,11 +270,11 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
-            if !tree.verify(id, &mut self.core.steer, observer, |_| ()) {
+            if !tree.verify(id, &mut self.core.checker, observer, |_| ()) {
                 return None;
             }
         }
-        let [a, b] = [0, 1].map(|i| self.trees[i].tree());
+        let [a, b] = [0, 1].map(|i| self.trees[i].nodes());
         if a.cost(meeting[0]) + b.cost(meeting[1]) >= self.best * (1.0 - GAIN) {
             return None;
         }
@@ -291,7 +290,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
         Some(path)
     }
 
-    /// Replaces parts of a path by single motions that are cheaper, and verified.
+    /// Replaces parts of a path by single verified motions that are cheaper.
     fn shorten(&mut self, path: &mut Path<C::State, L::Edge>, costs: &mut Vec<f64>, rng: &mut Rng) {
         for _ in 0..2 * path.edges.len() {
             if path.edges.len() < 2 {
@@ -301,14 +300,14 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Ao
             let j = rng.random_range(i + 2..path.states.len());
             let cost: f64 = costs[i..j].iter().sum();
             let (from, to) = (&path.states[i], &path.states[j]);
-            if self.core.steer.space().distance(from, to) >= cost * (1.0 - GAIN) {
+            if self.core.checker.space().distance(from, to) >= cost * (1.0 - GAIN) {
                 continue;
             }
-            let Some(way) = self.core.steer.reach(from, to, Direction::Forward) else { continue };
-            if way.cost < cost && self.core.steer.passes(from, &way.edge, to) {
+            let Some(motion) = self.core.checker.reach(from, to, Direction::Forward) else { continue };
+            if motion.cost < cost && self.core.checker.passes(from, &motion.edge, to, Direction::Forward) {
                 path.states.drain(i + 1..j);
-                path.edges.splice(i..j, [way.edge]);
-                costs.splice(i..j, [way.cost]);
+                path.edges.splice(i..j, [motion.edge]);
+                costs.splice(i..j, [motion.cost]);
             }
         }
     }
@@ -339,30 +338,30 @@ impl<C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C> + Clone> Planne
         self.turn = other;
         let target = self.informed.sample(rng);
         observer.on(Event::Sampled(&target));
-        let direction = self.trees[turn].tree().direction();
+        let direction = self.trees[turn].nodes().direction();
         let least = self.informed.least(direction, &target);
-        let most = self.best - self.informed.least(self.trees[other].tree().direction(), &target);
+        let most = self.best - self.informed.least(self.trees[other].nodes().direction(), &target);
         if most < least {
             return None;
         }
         let bound = if most < f64::INFINITY { least + (most - least) * rng.random::<f64>() } else { most };
         let from = self.choose(turn, &target, bound)?;
-        let (branch, steer, informed) = (&mut self.trees[turn], &mut self.core.steer, &self.informed);
-        let mut growth = Resampled(
+        let (tree, checker, informed) = (&mut self.trees[turn], &mut self.core.checker, &self.informed);
+        let mut extender = Resampled(
             |direction, q: &C::State| if most < f64::INFINITY { informed.least(direction, q) } else { most },
         );
-        let grown = branch.grow_from(from, &target, steer, &mut growth, rng, observer);
+        let grown = tree.grow_from(from, &target, checker, &mut extender, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
-        let state = self.trees[turn].tree().state(i).clone();
-        let from = self.choose(other, &state, self.best - self.trees[turn].tree().cost(i))?;
-        let (branch, steer) = (&mut self.trees[other], &mut self.core.steer);
-        let joined = branch.grow_from(from, &state, steer, &mut Connect::default(), rng, observer);
+        let state = self.trees[turn].nodes().state(i).clone();
+        let from = self.choose(other, &state, self.best - self.trees[turn].nodes().cost(i))?;
+        let (tree, checker) = (&mut self.trees[other], &mut self.core.checker);
+        let joined = tree.grow_from(from, &state, checker, &mut Connect::default(), rng, observer);
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, rng, observer)
     }
 
     fn progress(&self) -> Progress {
-        let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
+        let nodes = self.trees.iter().map(|tree| tree.nodes().len()).sum();
         self.core.progress(nodes)
     }
 

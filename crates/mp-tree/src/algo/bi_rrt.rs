@@ -11,9 +11,8 @@
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** Where greedy connections are of no use: long motions that mostly fail, or
-//! local planners whose single steps are what is known to work. Otherwise
-//! [RRT-Connect](super::rrt_connect) needs fewer samples.
+//! **When to use it.** Where greedy connections do not pay: where long motions mostly fail, or where the local planner is
+//! only good at single steps. Otherwise [RRT-Connect](super::rrt_connect) needs fewer samples.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -41,16 +40,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, Extend, NearestSelector, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use crate::{Append, Extend, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "bi-rrt",
-    summary: "two trees, each one step per iteration; where long connections mostly fail",
+    summary: "two trees, each with one step per iteration; where long connections mostly fail",
     citation: "LaValle and Kuffner 1999",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &["rrt-ext-ext"],
@@ -58,8 +57,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(BiRrt::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(BiRrt::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// Bi-RRT: see the [module](self).
@@ -69,9 +68,9 @@ pub type BiRrt<'c, C, L, N> =
 constructors! {
     "Bi-RRT" BiRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let grow = (Extend, Extend);
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let extender = (Extend, Extend);
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

@@ -40,16 +40,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, Connect, NearestSelector, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use crate::{Append, Connect, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-con-con",
-    summary: "two trees, both all the way in every iteration; for open spaces",
+    summary: "two greedy trees, which both extend as far as they can; for open spaces",
     citation: "LaValle and Kuffner 2001",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -57,8 +57,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(RrtConCon::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(RrtConCon::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// RRTConCon: see the [module](self).
@@ -68,9 +68,9 @@ pub type RrtConCon<'c, C, L, N> =
 constructors! {
     "RRTConCon" RrtConCon<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let grow = (Connect::default(), Connect::default());
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let extender = (Connect::default(), Connect::default());
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

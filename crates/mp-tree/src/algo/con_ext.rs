@@ -12,8 +12,8 @@
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** Seldom, to compare: wide open spaces where samples may be believed more than
-//! the other tree. [RRT-Connect](super::rrt_connect) is the better first choice.
+//! **When to use it.** Rarely, for comparison: in wide open spaces, where growing toward samples pays more than growing
+//! toward the other tree. [RRT-Connect](super::rrt_connect) is the better first choice.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -41,16 +41,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, Connect, Extend, NearestSelector, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use crate::{
+    Append, Connect, Extend, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees,
+};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-con-ext",
-    summary: "two trees: all the way toward samples, one step toward each other; to compare",
+    summary: "two trees: greedy toward samples, one step toward each other; for comparison",
     citation: "LaValle and Kuffner 2001",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -58,8 +60,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(RrtConExt::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(RrtConExt::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// RRTConExt: see the [module](self).
@@ -69,9 +71,9 @@ pub type RrtConExt<'c, C, L, N> =
 constructors! {
     "RRTConExt" RrtConExt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let grow = (Connect::default(), Extend);
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let extender = (Connect::default(), Extend);
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

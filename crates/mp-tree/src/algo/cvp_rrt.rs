@@ -1,10 +1,11 @@
 //! CVP-RRT: an RRT that learns where constraints are violated.
 //!
-//! P. Cheng and S. M. LaValle, *Reducing metric sensitivity in randomized trajectory design*, IROS 2001;
-//! with `m` inputs, from a tree that holds the start, repeat:
+//! P. Cheng and S. M. LaValle, *Reducing metric sensitivity in randomized trajectory design*, IROS 2001.
+//!
+//! With `m` inputs, from a tree that holds the start, repeat:
 //! 1. draw a sample, uniform in the space, or with a small probability a goal state;
-//! 2. go through the nodes in the order of their distance to it, and take the first that chance lets
-//!    pass: a node with violation frequency `σ` with probability `1 − σ`;
+//! 2. go through the nodes in the order of their distance to it, and accept a node with violation frequency `σ` with
+//!    probability `1 − σ`; take the first that is accepted;
 //! 3. of the inputs never tried at that node, apply the one whose successor is nearest to the sample
 //!    (exploration information: no input is tried twice);
 //! 4. where the motion is free, add its end as a child;
@@ -12,8 +13,8 @@
 //!    on: the part of the inputs known to violate the constraints, here and further down;
 //! 6. where the child is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
-//! A node at which all inputs fail has `σ = 1` and is never taken again. One all of whose inputs have been
-//! used counts every further attempt as a violation, so that it fades likewise.
+//! A node at which all inputs fail has `σ = 1` and is never taken again. At a node whose inputs have all been used, every
+//! further attempt counts as a violation, so that its `σ` rises to 1 too.
 //!
 //! **When to use it.** For systems with inputs where the metric misleads, so that plain RRT keeps choosing
 //! nodes from which nothing free can be reached: obstacles across the way, narrow limits of velocity.
@@ -48,21 +49,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::by_name::{BuildArgs, BuildResult, INPUTS, LEVELS, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, NearestSelector, PlannerInfo, Purpose, Recipe, Samples, Selector, SingleTree, Tuning,
-    Untried,
+    AppendApart, NearestSelector, PlannerInfo, Purpose, Samples, Selector, SingleTree, TreePlannerParts,
+    Tuning, Untried,
 };
 use mp_control::InputChoice;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
 use rand::RngExt;
 
-/// For people.
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "cvp-rrt",
-    summary: "one tree moved by a set of inputs, which avoids nodes where they have failed; for misleading metrics",
+    summary: "one tree moved by a set of inputs, which avoids nodes where inputs failed; for misleading metrics",
     citation: "Cheng and LaValle 2001",
     parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -70,9 +71,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
-    Ok(Box::new(CvpRrt::with_index(problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
+    Ok(Box::new(CvpRrt::with_index(problem, args.index, args.tuning)?))
 }
 
 /// CVP-RRT: see the [module](self).
@@ -82,14 +83,14 @@ pub type CvpRrt<'c, C, L, N> =
 constructors! {
     "CVP-RRT" CvpRrt<C, L, N> where [L: InputChoice],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let select = LeastViolated::new(NearestSelector(index), problem.local().count());
-        let attach = AppendApart::default();
-        Self::assemble(problem, Recipe { propose, select, grow: Untried::one(), attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let selector = LeastViolated::new(NearestSelector(index), problem.local().count());
+        let inserter = AppendApart::default();
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector, extender: Untried::one(), inserter, tuning })
     }
 }
 
-/// The nearest node that chance lets pass, by how often growing from it and below has failed.
+/// Selects the nearest node that is accepted with a probability that falls as motions from it and below it fail.
 #[derive(Clone, Debug)]
 pub struct LeastViolated<Se> {
     nearest: Se,
@@ -98,11 +99,11 @@ pub struct LeastViolated<Se> {
     parents: Vec<Option<NodeId>>,
 }
 
-/// Violations that count for less are not passed on to ancestors.
+/// Smaller increments of the frequency are not passed on to ancestors.
 const LEAST: f64 = 1e-9;
 
 impl<Se> LeastViolated<Se> {
-    /// By the distances of `nearest`, with `inputs` inputs to try at each node.
+    /// With the distances of `nearest`, and `inputs` inputs to try at each node.
     pub fn new(nearest: Se, inputs: usize) -> Self {
         Self { nearest, share: 1.0 / inputs.max(1) as f64, frequency: Vec::new(), parents: Vec::new() }
     }

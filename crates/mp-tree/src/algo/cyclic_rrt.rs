@@ -1,4 +1,4 @@
-//! The cyclic variant of RRT: a graph with cycles, which lists alternative paths.
+//! The cyclic variant of RRT: grows a graph with cycles, and lists alternative paths in it.
 //!
 //! N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas
 //! algorithms*, 2008, §2.3, after S. M. LaValle, *Rapidly-exploring random trees: a new tool for path
@@ -21,8 +21,8 @@
 //! [`routes`](CyclicRrt::routes) paths that are far apart (I. Abraham, D. Delling, A. V. Goldberg and
 //! R. F. Werneck, *Alternative routes in road networks*, ACM J. of Experimental Algorithmics 18, 2013).
 //!
-//! **When to use it.** To be given a choice of paths, or to see which ways round the obstacles there
-//! are. For one path RRT is better: edges that close cycles explore nothing (§2.3).
+//! **When to use it.** To get a choice of paths, or to see which routes around the obstacles exist. For one path RRT is
+//! better: edges that close cycles do not explore (§2.3).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -30,10 +30,10 @@
 //!
 //! and those of [RRT](super::rrt). A small tolerance makes few cycles; a large one makes many, and many
 //! paths that differ little. A passage may need nodes closer together than the tolerance: they are
-//! added as soon as those similar to them are joined. Made [by name](crate::build) it finds a path as
-//! RRT does, a little slower, and the alternatives cannot be asked for.
+//! added as soon as the nodes similar to them are joined. Made [by name](crate::build) it finds a path as RRT does, a
+//! little slower, and does not list alternatives.
 //!
-//! Two ways round a block:
+//! Two routes around a block:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Planner, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{CyclicRrt, Problem, Tuning};
@@ -56,12 +56,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo,
-    Recipe, Samples, Selector, SingleTree, Tree, TreeEdgeChecker, Tuning,
+    AppendDistinct, BuildError, EdgeChecker, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
+    PlannerInfo, Samples, Selector, SingleTree, Tree, TreePlannerParts, Tuning,
 };
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
@@ -75,13 +75,13 @@ const TOLERANCE: Parameter = Parameter {
     name: "tolerance",
     range: "in [0, 1], in steps",
     default: "0.5",
-    doc: "states no farther apart are similar, and joined by an edge instead of added",
+    doc: "states no farther apart are similar: they are joined by an edge instead of added",
 };
 
-/// For people.
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "cyclic-rrt",
-    summary: "rrt that keeps cycles; for lists of alternative paths from code, for one path rrt is better",
+    summary: "RRT with cycles; lists alternative paths when used from code, for one path RRT is better",
     citation: "Jouandeau, Touati and Ali Cherif 2008; LaValle 1998",
     parameters: &[STEP, TOLERANCE, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -89,25 +89,25 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let tolerance = given.settings.part_of(&TOLERANCE)?;
-    Ok(Box::new(CyclicRrt::with_index(given.problem, given.index, given.tuning, tolerance)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let tolerance = args.settings.part_of(&TOLERANCE)?;
+    Ok(Box::new(CyclicRrt::with_index(args.problem, args.index, args.tuning, tolerance)?))
 }
 
 /// Paths and their costs.
 pub type Listed<S, E> = Vec<(Path<S, E>, f64)>;
 
-/// From which node to which, in forward time.
+/// The two nodes of an edge, in forward time.
 type Ends = (NodeId, NodeId);
 
-/// One step, or an edge to a similar node: the slot of [`CyclicRrt`], which keeps its edges.
+/// Extends by one step, or adds an edge to a similar node: the extender of [`CyclicRrt`], which stores these edges.
 #[derive(Clone, Debug)]
 pub struct Cyclic<S, E> {
     tolerance: f64,
-    /// States that are added however similar to others.
+    /// States that are always added, however similar to others.
     goals: Vec<S>,
     edges: BTreeMap<Ends, (E, f64)>,
-    /// What the verifier, and for ways back the local planner, had to say.
+    /// The answers of the verifier, and for motions back those of the local planner.
     asked: BTreeMap<Ends, Option<(E, f64)>>,
     near: Vec<Hit>,
 }
@@ -126,8 +126,8 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
         hanging.chain(self.edges.iter().map(|(&ends, &(_, cost))| (ends, cost))).collect()
     }
 
-    /// The arcs that leave each node, without dead ends, and of goals only that to a last node, where
-    /// all end. What was not asked yet is believed, and to cost the same either way.
+    /// The arcs that leave each node, without dead ends. From goals only the arc to an extra last node, where all paths
+    /// end. An edge that was not verified yet is assumed to be free, and to cost the same either way.
     fn arcs(&self, tree: &Tree<S, E>, goals: &[NodeId]) -> Vec<Vec<(u32, f64)>> {
         let edges = self.all_edges(tree);
         let mut around = vec![Vec::new(); tree.len()];
@@ -168,13 +168,8 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
         arcs
     }
 
-    /// Verifies an edge in one direction; once. Whether that changes what there is to choose from.
-    fn ask<C, L>(
-        &mut self,
-        tree: &Tree<S, E>,
-        steer: &mut TreeEdgeChecker<'_, C, L>,
-        (from, to): Ends,
-    ) -> bool
+    /// Verifies an edge in one direction, once. Returns whether that changes the arcs.
+    fn ask<C, L>(&mut self, tree: &Tree<S, E>, checker: &mut EdgeChecker<'_, C, L>, (from, to): Ends) -> bool
     where
         C: Space<State = S>,
         L: LocalPlanner<S, Edge = E>,
@@ -192,11 +187,11 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
             Some(edge) => (edge.1, Some(edge)),
             None => {
                 let back = hangs(from, to).or_else(|| self.edges.get(&(to, from)).cloned());
-                let way = steer.reach(a, b, Direction::Forward).map(|motion| (motion.edge, motion.cost));
-                (back.map_or(f64::NAN, |edge| edge.1), way)
+                let new = checker.reach(a, b, Direction::Forward).map(|motion| (motion.edge, motion.cost));
+                (back.map_or(f64::NAN, |edge| edge.1), new)
             }
         };
-        let answer = forward.filter(|(edge, _)| verified || steer.passes(a, edge, b));
+        let answer = forward.filter(|(edge, _)| verified || checker.passes(a, edge, b, Direction::Forward));
         let changed = answer.as_ref().is_none_or(|&(_, cost)| cost != believed);
         self.asked.insert((from, to), answer);
         changed
@@ -204,15 +199,15 @@ impl<S: Clone + PartialEq, E: Clone> Cyclic<S, E> {
 }
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L::Edge> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (space, step) = (growing.checker().space(), growing.checker().step());
         let (direction, target) = (growing.tree().direction(), growing.target().clone());
         let a = growing.tree().state(from).clone();
-        let extension = growing.steer().extend(&a, &target, direction, Reach::Step(step));
+        let extension = growing.checker().extend(&a, &target, direction, Reach::Step(step));
         let (Extension::Advanced(motion) | Extension::Reached(motion)) = &extension else {
             return Grown::Trapped;
         };
@@ -222,13 +217,13 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Cyclic<C::State, L:
             let other = self.near.iter().map(|hit| hit.id).find(|&id| !self.joined(tree, from, id));
             let state = other.map(|id| (id, tree.state(id).clone()));
             if let Some((to, b)) = state
-                && let Some(way) = growing.steer().reach(&a, &b, direction)
+                && let Some(cycle) = growing.checker().reach(&a, &b, direction)
             {
-                self.edges.insert((from, to), (way.edge, way.cost));
+                self.edges.insert((from, to), (cycle.edge, cycle.cost));
                 return Grown::Trapped;
             }
         }
-        growing.settle(from, extension)
+        growing.insert(from, extension)
     }
 
     fn pruned(&mut self, _: Direction, survivors: &[NodeId]) {
@@ -248,7 +243,7 @@ type Inner<'c, C, L, N, S, E> =
 #[derive(Debug)]
 pub struct CyclicRrt<'c, C: Space, L: LocalPlanner<C::State>, N> {
     inner: Inner<'c, C, L, N, C::State, L::Edge>,
-    /// Where paths returned so far ended.
+    /// The last states of the paths returned so far.
     arrived: Vec<C::State>,
 }
 
@@ -259,16 +254,16 @@ constructors! {
             let range = "in [0, 1], in steps".to_owned();
             return Err(BuildError::OutOfRange { name: "tolerance", value: tolerance, range });
         }
-        let grow = Cyclic {
+        let extender = Cyclic {
             tolerance: tolerance * tuning.step.length_in(problem.space())?,
             goals: problem.goals().listed().to_vec(),
             edges: BTreeMap::new(),
             asked: BTreeMap::new(),
             near: Vec::new(),
         };
-        let (propose, attach) = (Samples(Uniform(problem.space())), AppendDistinct::default());
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach, tuning };
-        Ok(Self { inner: SingleTree::assemble(problem, recipe)?, arrived: Vec::new() })
+        let (target_sampler, inserter) = (Samples(Uniform(problem.space())), AppendDistinct::default());
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter, tuning };
+        Ok(Self { inner: SingleTree::assemble(problem, parts)?, arrived: Vec::new() })
     }
 }
 
@@ -279,28 +274,26 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
         self.inner.tree()
     }
 
-    /// The edges beside the tree: from which node to which.
+    /// The edges beside the tree: from node, to node.
     pub fn cycles(&self) -> impl Iterator<Item = (NodeId, NodeId)> {
-        self.inner.growth().edges.keys().copied()
+        self.inner.extender().edges.keys().copied()
     }
 
-    /// The `k` cheapest paths, each with its cost, that visit no node twice, from the start to where
-    /// paths returned so far ended; the cheapest first, ties by node. None before the first path is
-    /// returned. The cheapest often differ little: [`routes`](Self::routes) are far apart.
+    /// The `k` cheapest paths, each with its cost, that visit no node twice, from the start to the goal states of the
+    /// paths returned so far; the cheapest first, ties by node. No paths before the first path is returned. The cheapest
+    /// often differ little: [`routes`](Self::routes) are far apart.
     ///
-    /// Each edge has passed the verifier; those that do not are left out from then on. Motions back
-    /// are asked of the local planner. Both are remembered. Costs a search of the graph for each node
-    /// of each path.
+    /// Each edge has passed the verifier; edges that fail are left out from then on. The local planner makes the motions
+    /// back. Both answers are cached. Costs a search of the graph for each node of each path.
     pub fn alternatives(&mut self, k: usize) -> Listed<C::State, L::Edge> {
         self.list(|_, tree, arcs| shortest_paths(arcs, 0, tree.len() as u32, k))
     }
 
-    /// At most `k` paths, of which each goes somewhere the ones before do not: the first is the
-    /// cheapest, and each other the cheapest of those straight to and straight on from a node farther
-    /// than `apart`, in the metric of the space, from all of the paths before (from points half a step
-    /// apart, interpolated between their nodes), and without a detour there: within a cost of `apart`
-    /// before and behind that node no way is cheaper. Else as [`alternatives`](Self::alternatives);
-    /// costs a search of the graph for each node tried.
+    /// At most `k` paths that are far apart. The first is the cheapest path. Each other one is the cheapest path via a
+    /// node that is farther than `apart`, in the metric of the space, from all paths before (from points on them half a
+    /// step apart), with shortest paths to and from that node, and without a detour there: within a cost of `apart` before
+    /// and behind that node no path is cheaper. Otherwise as [`alternatives`](Self::alternatives); costs a search of the
+    /// graph for each node tried.
     ///
     /// # Errors
     /// When `apart` is negative or not a number.
@@ -332,24 +325,24 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> CyclicRrt<
         }))
     }
 
-    /// Lists what `choose` finds between node 0 and the last, until it finds only what is verified.
+    /// Lists the paths that `choose` finds between node 0 and the last, once all their edges are verified.
     fn list(
         &mut self,
         choose: impl Fn(&C, &Tree<C::State, L::Edge>, &[Vec<(u32, f64)>]) -> Vec<(f64, Vec<u32>)>,
     ) -> Listed<C::State, L::Edge> {
-        let (tree, steer, cyclic) = self.inner.parts();
+        let (tree, checker, cyclic) = self.inner.parts();
         let is_goal = |id: &NodeId| self.arrived.contains(tree.state(*id));
         let goals: Vec<NodeId> = (0..tree.len() as NodeId).filter(is_goal).collect();
         if goals.is_empty() {
             return Vec::new();
         }
         loop {
-            let mut found = choose(steer.space(), tree, &cyclic.arcs(tree, &goals));
+            let mut found = choose(checker.space(), tree, &cyclic.arcs(tree, &goals));
             let mut changed = false;
             for (_, nodes) in &mut found {
                 nodes.pop();
                 for pair in nodes.windows(2) {
-                    changed |= cyclic.ask(tree, steer, (pair[0], pair[1]));
+                    changed |= cyclic.ask(tree, checker, (pair[0], pair[1]));
                 }
             }
             if changed {

@@ -10,22 +10,22 @@
 //!    whose turn it is than the radius of that node; after `tries` samples take the next;
 //! 2. extend the tree from that node, one step at most, toward it; where that fails, the radius of
 //!    the node becomes `radius`;
-//! 3. if that added a node, connect the other tree to it, whatever the radii;
+//! 3. if that added a node, connect the other tree to it, regardless of radii;
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** Where the tree is shut in, as in a bug trap: most of the space is then
-//! nearest to nodes at a wall, and plain RRT runs into the walls again and again. Pays off where
-//! checking a motion costs more than finding a nearest neighbour.
+//! **When to use it.** Where the tree is enclosed, as in a bug trap: then most of the space is nearest to nodes at a wall,
+//! and plain RRT runs into the walls again and again. Pays off where checking a motion costs more than finding a nearest
+//! neighbour.
 //!
-//! The paper has a radius of ten steps, of steps much shorter than these. `tries` bounds what the paper does not: in spaces of
-//! many dimensions nearly every sample may be refused.
+//! The paper's radius is ten steps, of much shorter steps than here. `tries` is not in the paper: in spaces of many
+//! dimensions nearly every sample may be refused.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `step`: longest step | (0, extent of the space] | 5% of the extent |
 //! | `radius`: of nodes that failed, in steps | (0, ∞) | 2 |
-//! | `tries`: samples refused in a row before one is taken as it is | 0, 1, 2, … | 100 |
+//! | `tries`: samples refused in a row before one is taken regardless | 0, 1, 2, … | 100 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
@@ -49,12 +49,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     Acceptable, Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose,
-    Recipe, Samples, Selector, Settings, Tuning, TwoTrees,
+    Samples, Selector, Settings, TreePlannerParts, Tuning, TwoTrees,
 };
 use mp_cspace::{Hit, NearestNeighbors, NodeId, Rng, Space, Uniform};
 
@@ -70,13 +70,13 @@ pub(super) const TRIES: Parameter = Parameter {
     name: "tries",
     range: "a whole number",
     default: "100",
-    doc: "samples refused in a row before one is taken as it is",
+    doc: "samples refused in a row before one is taken regardless",
 };
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "dd-rrt",
-    summary: "RRT-Connect that takes nodes at walls for what they are; for traps and tight spaces",
+    summary: "RRT-Connect that refuses samples far from nodes that failed; for traps and tight spaces",
     citation: "Yershova, Jaillet, Siméon and LaValle 2005",
     parameters: &[STEP, RADIUS, TRIES, GOAL_BIAS, PATIENCE],
     aliases: &["dynamic-domain"],
@@ -84,22 +84,21 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let domain = Domain::fixed().read(given.settings)?;
-    Ok(Box::new(DdRrt::with_index(given.problem, given.index, given.tuning, domain)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let domain = Domain::fixed().read(args.settings)?;
+    Ok(Box::new(DdRrt::with_index(args.problem, args.index, args.tuning, domain)?))
 }
 
-/// From how far away samples attract a node that failed.
+/// The parameters of the dynamic domain: how near a sample must be to a node that failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
     /// The radius of a node that has failed for the first time, in steps; positive.
     pub radius: f64,
-    /// By what part the radius grows with a success and shrinks with a failure, in \[0, 1).
+    /// The part by which the radius grows with a success and shrinks with a failure, in \[0, 1).
     pub adapt: f64,
-    /// Below this no radius shrinks, in steps; positive, at most `radius`.
+    /// The smallest radius, in steps; positive, at most `radius`.
     pub least: f64,
-    /// After this many refusals in a row the next sample is taken as it is, so that planning never
-    /// comes to a halt.
+    /// After this many refusals in a row the next sample is taken regardless, so that planning does not stall.
     pub tries: u64,
 }
 
@@ -110,7 +109,7 @@ impl Domain {
         Self { radius: 2.0, adapt: 0.0, least: 0.5, tries: 100 }
     }
 
-    /// As set, by default where not.
+    /// The values that are set, the others as in `self`.
     ///
     /// # Errors
     /// When a value cannot be read.
@@ -122,8 +121,8 @@ impl Domain {
     }
 }
 
-/// The nearest node, unless it has failed and the target is beyond its radius. For joining always
-/// the nearest node.
+/// Selects the nearest node, unless it has failed and the target is beyond its radius. For joining always the nearest
+/// node.
 #[derive(Clone, Debug)]
 pub struct DynamicDomain<S, N> {
     nearest: NearestSelector<N>,
@@ -134,7 +133,7 @@ pub struct DynamicDomain<S, N> {
 }
 
 impl<S, N> DynamicDomain<S, N> {
-    /// No nodes, an empty index, and the step (a distance) that the domain is measured in.
+    /// A selector without nodes: an empty index, and the step (a distance) in which the domain is measured.
     ///
     /// # Errors
     /// When a value of the domain is out of range.
@@ -159,18 +158,18 @@ impl<C: Space, N: NearestNeighbors<C>> Selector<C> for DynamicDomain<C::State, N
         space: &C,
         points: &[C::State],
         target: &C::State,
-        why: Purpose,
+        purpose: Purpose,
         rng: &mut Rng,
         out: &mut Vec<Hit>,
     ) {
-        // What was accepted when it was proposed is not looked for again.
-        if let Some((_, hit)) = self.accepted.take_if(|(q, _)| why == Purpose::Explore && q == target) {
+        // A target that was accepted when it was sampled needs no second search.
+        if let Some((_, hit)) = self.accepted.take_if(|(q, _)| purpose == Purpose::Explore && q == target) {
             out.clear();
             out.push(hit);
             return;
         }
-        self.nearest.select(space, points, target, why, rng, out);
-        let Some(hit) = out.first().filter(|_| why == Purpose::Explore) else { return };
+        self.nearest.select(space, points, target, purpose, rng, out);
+        let Some(hit) = out.first().filter(|_| purpose == Purpose::Explore) else { return };
         if hit.distance <= self.radii[hit.id as usize] || self.refused >= self.domain.tries {
             self.refused = 0;
             self.accepted = Some((target.clone(), *hit));
@@ -187,9 +186,9 @@ impl<C: Space, N: NearestNeighbors<C>> Selector<C> for DynamicDomain<C::State, N
         self.radii.push(f64::INFINITY);
         self.nearest.inserted(space, points, id, parent);
     }
-    fn feedback(&mut self, id: NodeId, why: Purpose, grew: bool) {
+    fn feedback(&mut self, id: NodeId, purpose: Purpose, grew: bool) {
         self.accepted = None;
-        if why != Purpose::Explore {
+        if purpose != Purpose::Explore {
             return;
         }
         let Domain { radius, adapt, least, .. } = self.domain;
@@ -222,10 +221,10 @@ pub type DdRrt<'c, C, L, N> = TwoTrees<
 constructors! {
     "Dynamic-domain RRT" DdRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning, domain: Domain| {
-        let propose = Acceptable::new(Samples(Uniform(problem.space())));
+        let target_sampler = Acceptable::new(Samples(Uniform(problem.space())));
         let name = if domain.adapt > 0.0 { super::add_rrt::INFO.name } else { INFO.name };
-        let select = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;
-        let grow = (Extend, Connect::default());
-        Self::assemble(name, problem, Recipe { propose, select, grow, attach: Append, tuning })
+        let selector = DynamicDomain::new(index, domain, tuning.step.length_in(problem.space())?)?;
+        let extender = (Extend, Connect::default());
+        Self::assemble(name, problem, TreePlannerParts { target_sampler, selector, extender, inserter: Append, tuning })
     }
 }

@@ -1,4 +1,4 @@
-//! Informed RRT*: once there is a path, only states are drawn that could lie on a shorter one.
+//! Informed RRT*: once there is a path, only states that could lie on a shorter path are sampled.
 //!
 //! J. D. Gammell, S. S. Srinivasa and T. D. Barfoot, *Informed RRT\*: optimal sampling-based path
 //! planning focused via direct sampling of an admissible ellipsoidal heuristic*, IROS 2014.
@@ -12,12 +12,12 @@
 //! 4. where that is outside the bounds of the space, draw again.
 //!
 //! In other spaces, and for several goals, uniform samples are drawn until one obeys, at most
-//! [`TRIES`] times; then the last one is taken. Of a goal that is a region or a sampler nothing is
-//! known, and all samples are uniform.
+//! [`TRIES`] times; then the last one is taken. For a goal that is a region or a sampler there is no such bound, and all
+//! samples are uniform.
 //!
-//! **When to use it.** Instead of RRT* whenever goals are listed states, the metric is a true one
-//! (symmetric, with the triangle inequality) and no motion costs less than its distance. Where one
-//! of these does not hold, paths are as safe, but the best may be missed.
+//! **When to use it.** Instead of RRT* whenever goals are listed states, the metric is symmetric and satisfies the
+//! triangle inequality, and no motion costs less than its distance. Where one of these does not hold, paths are as safe,
+//! but the best may be missed.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -48,19 +48,19 @@
 //! ```
 
 use super::rrt_star::{GAMMA, NEAR, near};
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    Extend, Improving, Near, NearestSelector, PlannerInfo, Problem, Recipe, Rewire, Selector, TargetSampler,
-    Tuning,
+    Extend, Improving, Near, NearestSelector, PlannerInfo, Problem, Rewire, Selector, TargetSampler,
+    TreePlannerParts, Tuning,
 };
 use mp_cspace::{Direction, LocalPlanner, Rng, Space};
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "informed-rrt-star",
-    summary: "RRT* that samples only where a shorter path than the best can be",
+    summary: "RRT* that samples only where a path shorter than the best can be",
     citation: "Gammell, Srinivasa and Barfoot 2014",
     parameters: &[STEP, GOAL_BIAS, PATIENCE, NEAR, GAMMA],
     aliases: &[],
@@ -68,12 +68,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let near = near(given.settings)?;
-    Ok(Box::new(InformedRrtStar::with_index(given.problem, given.index, given.tuning, near)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let near = near(args.settings)?;
+    Ok(Box::new(InformedRrtStar::with_index(args.problem, args.index, args.tuning, near)?))
 }
 
-/// How many uniform samples are drawn at most for one that is of use.
+/// Most uniform samples drawn to find one that could lie on a shorter path.
 pub const TRIES: usize = 100;
 
 /// Samples that could lie on a path cheaper than the best.
@@ -98,13 +98,13 @@ impl<'c, C: Space> Informed<'c, C> {
         Self::new(problem.space(), problem.start().clone(), goals)
     }
 
-    /// Notes the cost of the best path.
+    /// Sets the cost of the best path.
     pub(crate) fn found(&mut self, cost: f64) {
         self.best = cost;
     }
 
-    /// The least that the way between a state and the root of the tree that grows in `direction` can
-    /// cost; zero where the goals are not listed.
+    /// A lower bound of the cost between a state and the root of the tree that grows in `direction`; zero where the goals
+    /// are not listed.
     pub(crate) fn least(&self, direction: Direction, q: &C::State) -> f64 {
         match direction {
             Direction::Forward => self.space.distance(&self.start, q),
@@ -115,7 +115,7 @@ impl<'c, C: Space> Informed<'c, C> {
         }
     }
 
-    /// The sample.
+    /// Draws a sample.
     pub fn sample(&mut self, rng: &mut Rng) -> C::State {
         if self.best.is_infinite() || self.goals.is_empty() {
             return self.space.sample_uniform(rng);
@@ -139,7 +139,7 @@ impl<'c, C: Space> Informed<'c, C> {
 }
 
 impl<C: Space> TargetSampler<C> for Informed<'_, C> {
-    fn propose<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
+    fn next_target<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
         self.sample(rng)
     }
     fn improved(&mut self, cost: f64) {
@@ -154,8 +154,8 @@ pub type InformedRrtStar<'c, C, L, N> =
 constructors! {
     "Informed RRT*" InformedRrtStar<C, L, N>,
     |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
-        let propose = Informed::of(&problem);
-        let attach = Rewire::new(near)?;
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
+        let target_sampler = Informed::of(&problem);
+        let inserter = Rewire::new(near)?;
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })
     }
 }

@@ -1,12 +1,12 @@
-//! The named algorithms, one file each, and the list of those that are made by name.
+//! The algorithms, one file each, and the list of those that can be made by name.
 //!
 //! | algorithm | | trees | per iteration |
 //! |---|---|---|---|
 //! | [`Rrt`](crate::Rrt) | [`rrt`] | from the start | one step toward a sample |
 //! | [`CyclicRrt`](crate::CyclicRrt) | [`cyclic_rrt`] | from the start, with cycles | as RRT, or an edge to a similar node; lists alternative paths |
 //! | [`RrtConnect`](crate::RrtConnect) | [`rrt_connect`] | from start and goal | one step toward a sample; then the other tree all the way to it |
-//! | [`Aorrtc`](crate::Aorrtc) | [`aorrtc`] | from start and goal, anew for each better path | as RRT-Connect, in the space of states and costs; ever better paths |
-//! | [`RrtStar`](crate::RrtStar) | [`rrt_star`] | from the start, rewired | one step toward a sample, attached by the cheapest way; ever better paths |
+//! | [`Aorrtc`](crate::Aorrtc) | [`aorrtc`] | from start and goal, new ones for each better path | as RRT-Connect, in the space of states and costs; anytime |
+//! | [`RrtStar`](crate::RrtStar) | [`rrt_star`] | from the start, rewired | one step toward a sample, inserted under the cheapest parent; anytime |
 //! | [`InformedRrtStar`](crate::InformedRrtStar) | [`informed_rrt_star`] | from the start, rewired | as RRT*, toward samples that can be on a better path |
 //! | [`BiRrt`](crate::BiRrt) | [`bi_rrt`] | from start and goal | one step toward a sample; then one step of the other tree toward it |
 //! | [`RrtConExt`](crate::RrtConExt) | [`con_ext`] | from start and goal | all the way toward a sample; then one step of the other tree |
@@ -49,25 +49,25 @@ pub mod shared_tree;
 pub mod t_rrt;
 pub mod utility_rrt;
 
-use crate::by_name::{Maker, Types};
+use crate::by_name::{BuildFn, Types};
 use mp_cspace::registry::PlannerInfo;
 
-/// Lists the planners made by name, each with the types of its file that stand at the root of the crate. Each file has an
+/// Lists the planners that can be made by name, each with the types of its file that the crate exports. Each file has an
 /// `INFO` and a `make`.
 macro_rules! planners {
     ($($module:ident: $($kind:ident),*;)+) => {
-        /// All of them.
+        /// All planners that can be made by name.
         pub(crate) const PLANNERS: &[PlannerInfo] = &[$($module::INFO),+];
 
-        /// The planner called `name`, and what makes it.
-        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, Maker<'c, 's, T>)> {
+        /// The planner called `name`, and the function that makes it.
+        pub(crate) fn find<'c, 's, T: Types<'c>>(name: &str) -> Option<(&'static PlannerInfo, BuildFn<'c, 's, T>)> {
             $(if $module::INFO.is_called(name) {
                 return Some((&$module::INFO, $module::make));
             })+
             None
         }
 
-        /// Their types.
+        /// The types that the crate exports.
         pub(crate) mod types {
             $($(pub use super::$module::$kind;)*)+
         }

@@ -6,26 +6,25 @@
 //!
 //! From one tree that holds the start and one that holds the goal, repeat:
 //! 1. draw `samples` samples, uniform in the space, and find for each its nearest node in the tree
-//!    whose turn it is: the node that collects most is the one whose Voronoi region seems largest
+//!    whose turn it is: the node that collects most samples probably has the largest Voronoi region
 //!    (the first of several);
 //! 2. extend the tree from there, one step at most, toward the mean of the samples collected;
 //! 3. if that added a node, connect the other tree to it;
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! The mean is made by interpolation, one sample after the other. In Euclidean space Voronoi
+//! The mean is computed by interpolation, one sample after the other. In Euclidean space Voronoi
 //! regions are convex, so the mean lies in the region of the node that collected the samples; in
-//! others the node nearest to the mean is extended, almost always the same.
+//! other spaces the node nearest to the mean is extended, almost always the same.
 //!
-//! **When to use it.** Open spaces that are to be covered evenly with few nodes, and motions so dear
-//! that some searches for neighbours more do not matter. In a bug trap the large regions belong to
-//! nodes at walls: there rather [dynamic domains](super::dd_rrt). When the tree has many more nodes
-//! than samples are drawn it grows as RRT-Connect does.
+//! **When to use it.** To cover open spaces evenly with few nodes, where motions are so expensive to check that a few more
+//! searches for neighbours do not matter. In a bug trap the large regions belong to nodes at walls: use
+//! [dynamic domains](super::dd_rrt) there. A tree of many more nodes than samples grows as that of RRT-Connect.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `step`: longest step | (0, extent of the space] | 5% of the extent |
-//! | `samples`: how many are looked at together; 1 is RRT-Connect | 1, 2, … 100 000 | 5 |
+//! | `samples`: how many are compared; 1 is RRT-Connect | 1, 2, … 100 000 | 5 |
 //! | `goal-bias`: probability of sampling a further goal state, where there is a sampler | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
@@ -49,16 +48,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
-    Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose, Recipe, Selector,
-    TargetSampler, Tuning, TwoTrees,
+    Append, BuildError, Connect, Extend, NearestSelector, Parameter, PlannerInfo, Purpose, Selector,
+    TargetSampler, TreePlannerParts, Tuning, TwoTrees,
 };
 use mp_cspace::{Hit, NodeId, Rng, Space};
 
-/// How many samples are looked at together.
+/// How many samples are compared.
 pub(crate) const SAMPLES: Parameter = Parameter {
     name: "samples",
     range: "a whole number from 1 to 100000",
@@ -69,7 +68,7 @@ pub(crate) const SAMPLES: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "mvb-rrt",
-    summary: "RRT-Connect by the most wanted of several samples; covers open spaces with few nodes",
+    summary: "RRT-Connect toward the largest Voronoi region; covers open spaces with few nodes",
     citation: "Lindemann and LaValle 2004",
     parameters: &[STEP, SAMPLES, GOAL_BIAS, PATIENCE],
     aliases: &["ms-rrt"],
@@ -77,13 +76,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let samples = given.settings.count_of(&SAMPLES)?;
-    Ok(Box::new(MvbRrt::with_index(given.problem, given.index, given.tuning, samples)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let samples = args.settings.count_of(&SAMPLES)?;
+    Ok(Box::new(MvbRrt::with_index(args.problem, args.index, args.tuning, samples)?))
 }
 
-/// Proposes the mean of those of several samples that have the same nearest node: the node with the
-/// most.
+/// Samples the mean of the samples nearest to one node: the node that is nearest to most of several samples.
 #[derive(Clone, Debug)]
 pub struct VoronoiBias {
     samples: u64,
@@ -91,19 +89,19 @@ pub struct VoronoiBias {
 }
 
 impl<C: Space> TargetSampler<C> for VoronoiBias {
-    fn propose<Se: Selector<C>>(
+    fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
         space: &C,
         points: &[C::State],
-        select: &mut Se,
+        selector: &mut Se,
     ) -> C::State {
-        // Of each region that was hit: its node, how often, the mean.
+        // For each region that was hit: its node, how often, and the mean of the samples.
         let mut regions: Vec<(NodeId, u32, C::State)> = Vec::new();
         let mut best = 0;
         for _ in 0..self.samples {
             let q = space.sample_uniform(rng);
-            select.select(space, points, &q, Purpose::Explore, rng, &mut self.hits);
+            selector.select(space, points, &q, Purpose::Explore, rng, &mut self.hits);
             let Some(hit) = self.hits.first() else { continue };
             let Some(i) = regions.iter().position(|(id, ..)| *id == hit.id) else {
                 regions.push((hit.id, 1, q));
@@ -130,9 +128,9 @@ constructors! {
     "Multi-sample RRT" MvbRrt<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning, samples: u64| {
         let samples = BuildError::count_within(SAMPLES.name, samples, 1, 100_000)?;
-        let propose = VoronoiBias { samples, hits: Vec::new() };
-        let grow = (Extend, Connect::default());
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = VoronoiBias { samples, hits: Vec::new() };
+        let extender = (Extend, Connect::default());
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

@@ -18,27 +18,26 @@
 //! | G4 | in place toward the rotation of the sample; then another step toward the sample |
 //! | G5 | toward the sample; where that fails, along the obstacle hit, toward the rotation of the sample |
 //! | G6 | toward the sample; where that fails, along the obstacle hit, with the rotation of the node |
-//! | G7 | toward the sample; where that fails, and so does a ray beside it, by what leads from where the one hits to where the other does: along the C-obstacle, either way |
+//! | G7 | toward the sample; where that fails, and a ray beside it fails too, by the vector between the two hits, in either direction: along the C-obstacle |
 //!
-//! Which way obstacles run is told by [`ObstacleHints`], which rigid bodies among meshes are and you may write for
-//! your own robots. Where they know nothing, all but G1 and G4 extend toward the sample.
-//! Directions that lead out of the space are followed as far as is within, to an eighth of a step.
+//! [`ObstacleHints`] give the directions of obstacles. Rigid bodies among meshes implement it, and you may implement it
+//! for your own robots. Without a hint, all methods but G1 and G4 extend toward the sample.
+//! Directions that lead out of the space are followed as far as they are within it, down to an eighth of a step.
 //!
-//! Not here: the paper's push to the medial axis. Different from it: how far along an obstacle is as far as the
-//! sample is in position; rays of G7 are no longer than a step, and the second leads toward a state a tenth of the
-//! way from the sample to another.
+//! Differences from the paper: its push to the medial axis is left out; along an obstacle the distance is that of the
+//! sample in position; rays of G7 are no longer than a step, and the second leads toward a state a tenth of the way from
+//! the sample to another.
 //!
-//! Against RRT, means of 100 seeds, steps of 20% of the extent, in the tests' worlds: 290 iterations instead of 740 through a narrow passage in
-//! the plane, 1400 instead of 2200 in space, 1500 instead of 1800 for a rod that must turn in a gap; 610 instead of
-//! 680 and 1070 instead of 1240 out of bug traps. An iteration costs a fifth to a
-//! third more motions, and looks for hits.
+//! Iterations against RRT, means of 100 seeds, steps of 20% of the extent, in the tests' worlds: 290 instead of 740
+//! through a narrow passage in the plane, 1400 instead of 2200 in space, 1500 instead of 1800 for a rod that must turn in
+//! a gap; 610 instead of 680 and 1070 instead of 1240 out of bug traps. An iteration costs a fifth to a third more
+//! motions, and the search for hits.
 //!
-//! **When to use it.** One-way motions and goal regions beyond narrow passages, where the walls lead through them
-//! and a robot that turns as it goes gets stuck. Where there are goal states and motions can be reversed,
-//! try [RRT-Connect](super::rrt_connect) first; its loop takes these growth methods too:
-//! [`ObstacleGuided`] as the first of its two growths in a [`Recipe`] for
-//! [`TwoTrees`](crate::TwoTrees). Made [by name](crate::build) it takes the hints
-//! [of the problem](crate::Problem::with_obstacles).
+//! **When to use it.** For one-way motions and goal regions beyond narrow passages, where the walls lead through the
+//! passage and a robot that turns as it goes gets stuck. Where there are goal states and motions can be reversed,
+//! try [RRT-Connect](super::rrt_connect) first. Its loop can use these growth methods too: make [`ObstacleGuided`] the
+//! first of the two extenders in [`TreePlannerParts`] for [`TwoTrees`](crate::TwoTrees). Made [by name](crate::build) it
+//! takes the hints [of the problem](crate::Problem::with_obstacles).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -91,17 +90,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo, Recipe,
-    Samples, Selector, SingleTree, Tuning,
+    AppendDistinct, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, PlannerInfo, Samples,
+    Selector, SingleTree, TreePlannerParts, Tuning,
 };
 use mp_cspace::{LocalPlanner, NodeId, Rng, Space, Uniform, obstacles::ObstacleHints};
 use rand::RngExt;
 
-/// For people.
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "obrrt",
     summary: "one tree that also grows along obstacles; for goal regions and one-way motions through narrow passages",
@@ -112,20 +111,20 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let mut problem = given.problem;
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let mut problem = args.problem;
     let hints = problem.take_obstacles().hints.ok_or(BuildError::NoHints { planner: INFO.name })?;
-    Ok(Box::new(Obrrt::with_index(problem, given.index, hints, given.tuning, GrowthWeights::default())?))
+    Ok(Box::new(Obrrt::with_index(problem, args.index, hints, args.tuning, GrowthWeights::default())?))
 }
 
-/// States looked at on a way that failed, for where it collides.
+/// States tested on a motion that failed, to find where it collides.
 const LOOKS: u32 = 10;
-/// How often a C-obstacle vector is doubled at most to make a step of it.
+/// Most doublings of a C-obstacle vector to make it as long as a step.
 const DOUBLINGS: u32 = 8;
 
-/// How often each growth method is used, against the others: of G0 to G7, in this order. Each is zero or more
-/// and finite, and one at least is positive. The default, 0.3, 0.05, 0.025, 0.025, 0.1, 0.1, 0.1 and 0.3, was chosen
-/// by measurement: methods that follow what was hit gain most, G7 before all.
+/// The relative frequencies of the growth methods G0 to G7, in this order. Each is zero or more
+/// and finite, and at least one is positive. The default, 0.3, 0.05, 0.025, 0.025, 0.1, 0.1, 0.1 and 0.3, was chosen
+/// by measurement: methods that follow the obstacle that was hit gain most, above all G7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GrowthWeights(pub [f64; 8]);
 
@@ -162,7 +161,7 @@ impl GrowthWeights {
     }
 }
 
-/// Grows by one of the methods of obstacle-based RRT: see the [module](self).
+/// Extends by one of the methods of obstacle-based RRT: see the [module](self).
 #[derive(Clone, Debug)]
 pub struct ObstacleGuided<H> {
     hints: H,
@@ -170,7 +169,7 @@ pub struct ObstacleGuided<H> {
 }
 
 impl<H> ObstacleGuided<H> {
-    /// Growth by `hints`.
+    /// The extender with these hints and frequencies.
     ///
     /// # Errors
     /// When a weight is negative or not finite, or none is positive.
@@ -183,7 +182,7 @@ impl<H> ObstacleGuided<H> {
         &self.hints
     }
 
-    /// Where the robot first touches something on the step from `from` toward `target`, as far as is seen.
+    /// The first of the tested states on the step from `from` toward `target` in which the robot touches an obstacle.
     fn hit<C: Space>(&mut self, space: &C, step: f64, from: &C::State, target: &C::State) -> Option<C::State>
     where
         H: ObstacleHints<C::State>,
@@ -222,7 +221,7 @@ impl<H> ObstacleGuided<H> {
     }
 }
 
-/// One step in the direction of `along`, as far as is within the space.
+/// One step in the direction of `along`, as far as it stays in the space.
 fn follow<C, L, Se, A>(from: NodeId, along: &C::State, growing: &mut Growing<'_, '_, C, L, Se, A>) -> Grown
 where
     C: Space,
@@ -230,7 +229,7 @@ where
     Se: Selector<C>,
     A: Inserter<C, L>,
 {
-    let (space, step) = (growing.steer().space(), growing.steer().step());
+    let (space, step) = (growing.checker().space(), growing.checker().step());
     let state = growing.tree().state(from);
     let distance = space.distance(state, along);
     if !(distance > 0.0 && distance.is_finite()) {
@@ -245,12 +244,12 @@ where
 }
 
 impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C, L> for ObstacleGuided<H> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (space, step) = (growing.checker().space(), growing.checker().step());
         let (state, sample) = (growing.tree().state(from).clone(), growing.target().clone());
         let method = self.weights.draw(growing.rng());
         let grown = match method {
@@ -265,7 +264,7 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C
                     Grown::Trapped => Grown::Advanced(turned),
                     grown => grown,
                 },
-                // There is nothing to turn, or no room for it.
+                // The robot has no rotation, or no room to turn.
                 Grown::Trapped => growing.step(from),
             },
             5 | 6 => match growing.step(from) {
@@ -305,8 +304,8 @@ pub type Obrrt<'c, C, L, N, H> =
 constructors! {
     "Obstacle-based RRT" Obrrt<C, L, N, H> where [H: ObstacleHints<C::State>],
     |problem, index, hints: H, tuning: Tuning, weights: GrowthWeights| {
-        let (propose, grow) = (Samples(Uniform(problem.space())), ObstacleGuided::new(hints, weights)?);
-        let attach = AppendDistinct::default();
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow, attach, tuning })
+        let (target_sampler, extender) = (Samples(Uniform(problem.space())), ObstacleGuided::new(hints, weights)?);
+        let inserter = AppendDistinct::default();
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter, tuning })
     }
 }

@@ -1,4 +1,4 @@
-//! OR-parallel planning: independent runs of one planner, of which the first to end wins.
+//! OR-parallel planning: independent runs of one planner; the first to find a path wins.
 //!
 //! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
 //! Italian Association for Artificial Intelligence, 2002. There the fastest processor wins; here
@@ -8,27 +8,25 @@
 //! 1. a round: each run makes `slice` iterations, or fewer if it finds a path; the runs are shared
 //!    out to the threads;
 //! 2. when runs have found a path, the one with the fewest iterations wins, of those the lowest i;
-//! 3. otherwise the next round. So no run goes further than one slice beyond where the winner ended,
-//!    as it could not win any more.
+//! 3. otherwise the next round. So no run goes more than one slice beyond the winner, as it could not win any more.
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one round.
 //!
-//! **When to use it.** On several cores, for problems where the time of a run depends much on luck:
-//! the shortest of n runs is then far shorter than the mean. It is worth something on a single
-//! core too where the times have a heavy tail; [restarts](super::restarts) do that with one tree in
-//! memory at a time.
+//! **When to use it.** On several cores, for problems where the time of a run varies much: then the shortest of n runs is
+//! far shorter than the mean. It helps on a single core too where the times have a heavy tail;
+//! [restarts](super::restarts) do that with one tree in memory at a time.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `runs`: how many independent runs, whatever the number of threads | 1, 2, … 1024 | 8 |
+//! | `runs`: how many independent runs, for any number of threads | 1, 2, … 1024 | 8 |
 //! | `slice`: iterations of each run per round; budgets are kept to within one slice | 1, 2, … 10⁶ | 32 |
 //!
 //! and those of the planner that is run. By name it is `or-` and the name of that, as in
 //! `or-rrt-connect`; [`build_from`](crate::build_from) makes it.
 //!
-//! An event is reported only for what [`solve`](Planner::solve) sees. A run in which the user's code
-//! panics loses that iteration, which is [counted](OrParallel::panics), and goes on; when all runs
-//! panic in one round, the step does, in the thread that called it, with what the first said.
+//! Observers see only the events of [`solve`](Planner::solve), not those of the runs. A run in which the user's code
+//! panics loses that iteration, which is [counted](OrParallel::panics), and goes on. When all runs panic in one round,
+//! the step panics in the calling thread, with the message of the first.
 //!
 //! Eight runs on two threads:
 //! ```
@@ -66,7 +64,7 @@ pub const RUNS: Parameter = Parameter {
     name: "runs",
     range: "a whole number from 1 to 1024",
     default: "8",
-    doc: "independent runs, whatever the number of threads; the one with the fewest iterations wins",
+    doc: "independent runs, for any number of threads; the one with the fewest iterations wins",
 };
 
 /// How long a round is.
@@ -123,13 +121,13 @@ impl<S, P: Planner<S>> OrParallel<S, P> {
         Ok(Self { runs, slice, workers, begun: false, winner: None, panics: 0 })
     }
 
-    /// Which run found the path returned last.
+    /// The run that found the path returned last.
     #[must_use]
     pub fn winner(&self) -> Option<usize> {
         self.winner
     }
 
-    /// How often a run has panicked, where not all did.
+    /// How often a run has panicked in a round in which not all did.
     #[must_use]
     pub fn panics(&self) -> u64 {
         self.panics
@@ -159,20 +157,20 @@ impl<S: Send, P: Planner<S, Edge: Send> + Send> Planner<S> for OrParallel<S, P> 
                 match step {
                     Ok(None) => {}
                     Ok(path) => return run.found = path,
-                    Err(why) => return run.panicked = Some(why),
+                    Err(panic) => return run.panicked = Some(panic),
                 }
             }
         });
-        let mut why = None;
+        let mut panic = None;
         let mut all = true;
         for run in &mut self.runs {
             let panicked = run.panicked.take();
             self.panics += u64::from(panicked.is_some());
             all &= panicked.is_some();
-            why = why.or(panicked);
+            panic = panic.or(panicked);
         }
-        if let (true, Some(why)) = (all, why) {
-            resume_unwind(why);
+        if let (true, Some(panic)) = (all, panic) {
+            resume_unwind(panic);
         }
         let ended = self.runs.iter().enumerate().filter(|(_, run)| run.found.is_some());
         let iterations = |run: &Run<P, _>| run.planner.progress().iterations;

@@ -5,19 +5,19 @@
 //! From a tree that holds the start, repeat:
 //! 1. draw a sample, uniform in the space, or with a small probability a goal state;
 //! 2. find the nearest of the nodes that have inputs left that were never tried there;
-//! 3. try those at it in the order of their successors' distances to the sample, each once and for all,
+//! 3. try these inputs in the order of their successors' distances to the sample, each only once ever,
 //!    until one leads, free of collision, to a state that is not within `apart` of another node;
 //! 4. add that as a child; a node at which all inputs have failed or been used is exhausted;
 //! 5. where the child is in the goal, verify the path: return it, or prune from the edge that failed;
 //! 6. when all nodes are exhausted, stop: [`Exhausted`](mp_cspace::StopReason::Exhausted) says that there is no
 //!    path by these inputs and this duration, states within `apart` counting as one.
 //!
-//! As nodes keep apart there are finitely many, so it always ends; with `apart` no larger than rounding
-//! that may take long. (The paper derives the distance from a Lipschitz bound of the system; here it is
+//! Nodes are at least `apart` from each other, so there are finitely many and planning always ends; with `apart` no larger
+//! than rounding that may take long. (The paper derives the distance from a Lipschitz bound of the system; here it is
 //! given.)
 //!
-//! **When to use it.** To learn that there is no solution at a resolution; and where the metric misleads,
-//! so that plain RRT tries the same hopeless inputs again and again.
+//! **When to use it.** To find out that there is no solution at a resolution; and where the metric misleads, so that plain
+//! RRT tries the same inputs that collide again and again.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -26,7 +26,7 @@
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //!
-//! A point finds out that it cannot leave a closed ring:
+//! A point cannot leave a closed ring:
 //! ```
 //! use mp_control::{DiscreteFlowCheck, InputPlanner, InputSet, Kinematic, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rn, Rng, StopReason};
@@ -48,17 +48,17 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::by_name::{BuildArgs, BuildResult, INPUTS, LEVELS, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, BuildError, NearestSelector, Parameter, PlannerInfo, Purpose, Recipe, Samples, Selector,
-    Settings, SingleTree, Tuning, Untried,
+    AppendApart, BuildError, NearestSelector, Parameter, PlannerInfo, Purpose, Samples, Selector, Settings,
+    SingleTree, TreePlannerParts, Tuning, Untried,
 };
 use mp_control::InputChoice;
 use mp_cspace::{Hit, NodeId, Rng, Space, Uniform};
 
-/// How far apart states are that count as one.
+/// Up to which distance states count as one.
 const APART: Parameter = Parameter {
     name: "apart",
     range: "in [0, 1], in steps",
@@ -66,10 +66,10 @@ const APART: Parameter = Parameter {
     doc: "states no farther apart count as one",
 };
 
-/// For people.
+/// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rc-rrt",
-    summary: "one tree moved by a set of inputs, each tried once at a node; stops when there is no path by them",
+    summary: "one tree moved by a set of inputs, each tried once per node; stops when they allow no path",
     citation: "Cheng and LaValle 2002",
     parameters: &[STEP, INPUTS, LEVELS, APART, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -77,13 +77,13 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let apart = apart(given.problem.space(), &given.tuning, given.settings)?;
-    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
-    Ok(Box::new(RcRrt::with_index(problem, given.index, apart, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let apart = apart(args.problem.space(), &args.tuning, args.settings)?;
+    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
+    Ok(Box::new(RcRrt::with_index(problem, args.index, apart, args.tuning)?))
 }
 
-/// What is set for `apart`, as a distance.
+/// The setting `apart` as a distance.
 pub(crate) fn apart<C: Space>(space: &C, tuning: &Tuning, settings: &Settings) -> Result<f64, BuildError> {
     Ok(settings.part_of(&APART)? * tuning.step.length_in(space)?)
 }
@@ -95,13 +95,13 @@ pub type RcRrt<'c, C, L, N> =
 constructors! {
     "RC-RRT, where states within `apart` count as one," RcRrt<C, L, N> where [L: InputChoice],
     |problem, index, apart: f64, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let (select, attach) = (Unexhausted::new(NearestSelector(index)), AppendApart::within(apart)?);
-        Self::assemble(problem, Recipe { propose, select, grow: Untried::until_new(), attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let (selector, inserter) = (Unexhausted::new(NearestSelector(index)), AppendApart::within(apart)?);
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector, extender: Untried::until_new(), inserter, tuning })
     }
 }
 
-/// The nearest node that has not yet failed to grow.
+/// Selects the nearest node that has not yet failed to grow.
 #[derive(Clone, Debug, Default)]
 pub struct Unexhausted<Se> {
     nearest: Se,
@@ -110,7 +110,7 @@ pub struct Unexhausted<Se> {
 }
 
 impl<Se> Unexhausted<Se> {
-    /// All nodes of `nearest` to begin with.
+    /// A selector in which no node is exhausted yet.
     pub fn new(nearest: Se) -> Self {
         Self { nearest, exhausted: Vec::new(), left: 0 }
     }

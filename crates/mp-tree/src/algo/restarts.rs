@@ -1,9 +1,8 @@
-//! Restarts: a planner that takes too long begins anew, with other random numbers.
+//! Restarts: a planner that takes too long is started again, with other random numbers.
 //!
-//! The time to a path depends on luck, and its distribution often has a heavy tail: a tree that
-//! began badly goes on badly. Beginning anew after a fixed number of iterations cuts the tail, but
-//! the right number is not known. These schedules come within a logarithm of it without knowing
-//! anything:
+//! The time to a path varies with the random numbers, and its distribution often has a heavy tail: a tree that
+//! begins badly continues badly. A restart after a fixed number of iterations cuts the tail, but the best number is not
+//! known. Without knowing the distribution, these schedules come within a logarithmic factor of the best:
 //!
 //! - `luby`: M. Luby, A. Sinclair and D. Zuckerman, *Optimal speedup of Las Vegas algorithms*,
 //!   Information Processing Letters 47, 1993. Run lengths 1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8, …:
@@ -11,31 +10,31 @@
 //! - `counter`: in the manner of the counter search of N. Amato, S. Ashur and S. Har-Peled, *Faster
 //!   motion planning via restarts*, 2025, and S. Ashur and S. Har-Peled, *Quickly avoiding a random
 //!   catastrophe*, 2025. A counter goes up 1, 2, 3, …; at each count n there is a run of every length
-//!   t for which t² divides n. So all whole lengths are swept at once, length t in one of t² counts:
-//!   the same shares as `zeta`, without its chance.
+//!   t for which t² divides n. So all lengths are swept at once, length t in one of t² counts: the same shares as
+//!   `zeta`, but deterministic.
 //! - `zeta`: the ζ(2) search of the same two papers. Each run length t is drawn with probability
 //!   6/(π·t)².
 //!
 //! Repeat:
 //! 1. make a planner for attempt k = 1, 2, …, which draws from stream (seed, k);
 //! 2. let it make as many iterations as the schedule says, times `unit`;
-//! 3. when it finds a path, return that; otherwise drop it.
+//! 3. when it finds a path, return the path; otherwise drop the planner.
 //!
 //! The seed is the first number drawn from the generator of the first step. Stepping on after a
-//! path goes on with the same attempt.
+//! path continues the same attempt.
 //!
 //! **When to use it.** When some seeds take many times longer than most: when the mean over seeds is
-//! nearly one and a half times the median, or more. The unit should be about what a lucky run needs.
-//! Where the tail is lighter than that of an exponential distribution, restarts only cost. Measured with
+//! nearly one and a half times the median, or more. The unit should be about what a fast run needs.
+//! Where the tail is lighter than that of an exponential distribution, restarts only cost time. Measured with
 //! RRT-Connect and `luby` on `twisty` over 100 seeds, in iterations (median, 95th percentile):
 //!
-//! | step | mean / median | as it is | unit 100 | unit 250 | unit 1000 |
+//! | step | mean / median | no restarts | unit 100 | unit 250 | unit 1000 |
 //! |---|---|---|---|---|---|
 //! | 5%, the default | 3.8 | 799, 14 949 | 869, 2555 | 465, 2185 | 612, 4269 |
 //! | 10% | 1.40 | 14 793, 65 904 | 2077, 12 131 | 3213, 14 197 | 5154, 28 602 |
 //! | 20% | 1.15 | 46 443, 129 811 | | 58 000, 285 000 | 71 000, 367 000 |
 //!
-//! With steps of 20% no unit does better than none, as drawing from those 100 runs shows.
+//! With steps of 20% no unit is better than no restarts, as resampling those 100 runs shows.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -86,7 +85,7 @@ pub const UNIT: Parameter = Parameter {
     doc: "iterations of a run of length 1",
 };
 
-/// How long one attempt after the other may run.
+/// The schedule of run lengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Schedule {
     /// 1, 1, 2, 1, 1, 2, 4, … (Luby, Sinclair and Zuckerman 1993).
@@ -102,7 +101,7 @@ impl Schedule {
     /// The schedule that is set, [`SCHEDULE`] by default.
     ///
     /// # Errors
-    /// When the value names none.
+    /// When the value is not the name of a schedule.
     pub fn of(settings: &Settings) -> Result<Self, BuildError> {
         let named = |name: &str| match name {
             "luby" => Some(Self::Luby),
@@ -128,7 +127,7 @@ impl Schedule {
     }
 }
 
-/// The run lengths of a [`Schedule`]; without end.
+/// The run lengths of a [`Schedule`], an infinite sequence.
 #[derive(Clone, Debug)]
 pub struct Lengths {
     schedule: Schedule,
@@ -143,7 +142,7 @@ impl Iterator for Lengths {
     fn next(&mut self) -> Option<u64> {
         Some(match self.schedule {
             Schedule::Luby => {
-                // The length doubles as long as it still divides the count of runs of length 1.
+                // The length doubles as long as it divides the count of runs of length 1.
                 let again = self.length > 0 && self.count.is_multiple_of(2 * self.length);
                 self.count += u64::from(!again && self.length > 0);
                 self.length = if again { 2 * self.length } else { 1 };
@@ -158,7 +157,7 @@ impl Iterator for Lengths {
                     break self.length;
                 }
             },
-            // Rejection from t with probability 1/(t(t + 1)), of which ⌊1/u⌋ is.
+            // Rejection sampling from ⌊1/u⌋, which is t with probability 1/(t(t + 1)).
             Schedule::Zeta => loop {
                 let t = (1.0 / (1.0 - self.rng.random::<f64>())).floor();
                 if self.rng.random::<f64>() * 2.0 * t <= t + 1.0 {
@@ -178,19 +177,19 @@ pub struct Restarts<'c, P> {
     planner: P,
     rng: Rng,
     attempt: u64,
-    /// Iterations the attempt may make.
+    /// How many iterations the attempt may take.
     allowed: u64,
-    /// What earlier attempts have done.
+    /// The progress of earlier attempts.
     past: Progress,
 }
 
 impl<'c, P> Restarts<'c, P> {
-    /// Restarts of the planner that `make` makes, told the number of the attempt from 1 on; run
-    /// lengths are in `unit` iterations.
+    /// Restarts of the planner that `make` makes, given the number of the attempt from 1 on; run lengths are in units of
+    /// `unit` iterations.
     ///
     /// # Errors
-    /// When the unit is out of range, or the first planner cannot be made. A later attempt that
-    /// cannot be made leaves the one before going on.
+    /// When the unit is out of range, or the first planner cannot be made. Where a later planner cannot be made, the
+    /// attempt before continues.
     pub fn new(
         schedule: Schedule,
         unit: u64,
@@ -240,7 +239,7 @@ impl<S, P: Planner<S>> Planner<S> for Restarts<'_, P> {
             self.rng = Rng::stream(*seed, 1);
             self.allowed = lengths.next().unwrap_or(1).saturating_mul(self.unit);
         } else if done.iterations >= self.allowed {
-            // If none can be made, the one there is goes on as long again.
+            // If no new planner can be made, the present one runs as long again.
             match (self.make)(self.attempt + 1) {
                 Err(_) => self.allowed = self.allowed.saturating_mul(2),
                 Ok(planner) => {

@@ -1,4 +1,4 @@
-//! RRS, the rapidly-exploring random snakes: an RRT whose blocked edges are bent free.
+//! RRS, the rapidly-exploring random snakes: an RRT whose blocked edges are bent around obstacles.
 //!
 //! K. Baizid, R. Chellali, R. Luza, B. Vitezslav and F. Arrichiello, *RRS: rapidly-exploring random snakes, a new
 //! method for mobile robot path planning*, §3.3, steps 1 to 8. Snakes: M. Kass, A. Witkin and D. Terzopoulos, *Snakes:
@@ -10,20 +10,20 @@
 //! 4. find the node nearest to it;
 //! 5. go from that node toward the sample, one step at most: where the straight curve is free, add its end and the
 //!    curve;
-//! 6. where it is not, send a [snake](mp_snake::Snake) from node to end around what blocks it;
+//! 6. where it is not, bend a [snake](mp_snake::Snake) from node to end around what blocks it;
 //! 7. where every piece of the snake is free, add its end and the snake: the sample is rescued;
 //! 8. return the tree; here, the path as soon as a node is in the goal and the path is verified piece by piece.
 //!
-//! So it is [RRT](super::rrt) with the local planner [`SnakePlanner`], and an end that is in collision itself is not
-//! rescued. What differs from the paper: before a snake relaxes it is laid to the side to which the obstacle pushes it
-//! as a whole ([`Snake::bulge`](mp_snake::Snake::bulge)), with a corner more where it grazes, and where that is free it
-//! does not relax at all; few do, for relaxing takes many times as long and saves little more. It stops as soon as it is
-//! free with some clearance. At most a third of all motions is tried in vain. The energies are those of
-//! [`Snake`](mp_snake::Snake), with its remarks on the formulas.
+//! So RRS is [RRT](super::rrt) with the local planner [`SnakePlanner`]; a sample whose end is itself in collision is not
+//! rescued. Differences from the paper: before a snake relaxes, all of it is moved to the side to which the obstacle
+//! pushes it ([`Snake::bulge`](mp_snake::Snake::bulge)), with one more corner where it grazes. Where that is free it does
+//! not relax at all; few snakes relax, as relaxing takes many times as long and saves few more edges. A snake stops as
+//! soon as it is free with some clearance. At most a third of all motions are tried without success. The energies are
+//! those of [`Snake`](mp_snake::Snake), with its remarks on the formulas.
 //!
-//! **When to use it.** Where the clearance and its gradient are cheap to ask (in the plane, by a distance map, some
-//! nanoseconds) and obstacles are many and small: then much longer steps can be taken, and far fewer
-//! iterations are needed. It does not help through long walls: there is nothing to bend around within a step.
+//! **When to use it.** Where the clearance and its gradient are cheap to compute (in the plane, by a distance map, some
+//! nanoseconds) and obstacles are many and small: then steps can be much longer, and far fewer iterations are needed. It
+//! does not help with long walls, around which no edge can bend within a step.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -34,8 +34,8 @@
 //! | `snake-steps`: most steps of a snake | 1 to 1,000,000 | 4 |
 //!
 //! Stiffness and spacing follow from the range ([`Params::for_edges`](mp_snake::Params::for_edges)). By name it takes the
-//! gradient from the [problem](crate::Problem::with_obstacles), and its paths are plain: straight between the nodes of the
-//! snakes, and verified piece by piece.
+//! gradient from the [problem](crate::Problem::with_obstacles), and its paths have straight edges between the nodes of the
+//! snakes, verified piece by piece.
 //!
 //! A point goes around a disc in the unit square, in one bend:
 //! ```
@@ -64,7 +64,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{BuildError, Parameter, PlannerInfo, Problem, Rrt, Settings, Verify};
 use mp_cspace::erased::AnyGradient;
@@ -73,12 +73,12 @@ use mp_cspace::{
 };
 use mp_snake::{Params, Repulsion, SnakePlanner};
 
-/// How far obstacles push snakes.
+/// The range within which obstacles push snakes.
 pub const RANGE: Parameter = Parameter {
     name: "range",
     range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
     default: "3%",
-    doc: "how far obstacles repel snakes; nodes are as far apart",
+    doc: "distance within which obstacles repel snakes; also the distance between their nodes",
 };
 
 /// Most steps of a snake.
@@ -100,23 +100,23 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let problem = bent(INFO.name, given.problem, given.settings)?;
-    Ok(Box::new(Plain(Rrs::with_index(problem, given.index, given.tuning)?)))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let problem = with_bending_edges(INFO.name, args.problem, args.settings)?;
+    Ok(Box::new(Flattened(Rrs::with_index(problem, args.index, args.tuning)?)))
 }
 
 /// RRS: see the [module](self). Made by [`Rrt::new`] of a problem with a [`SnakePlanner`].
 pub type Rrs<'c, C, M, F, N> = Rrt<'c, C, SnakePlanner<'c, C, M, F>, N>;
 
-/// A problem whose blocked edges are bent.
-type Bent<'c, C, M> = Problem<'c, C, SnakePlanner<'c, C, M, AnyGradient<'c, <C as Space>::State>>>;
+/// A problem with a local planner that bends blocked edges.
+type BendingProblem<'c, C, M> = Problem<'c, C, SnakePlanner<'c, C, M, AnyGradient<'c, <C as Space>::State>>>;
 
-/// `problem` for the planner called `planner`: edges that are blocked are bent by its clearance gradient.
-pub(crate) fn bent<'c, C, M>(
+/// `problem`, for the planner called `planner`, with a local planner that bends blocked edges by the clearance gradient.
+pub(crate) fn with_bending_edges<'c, C, M>(
     planner: &'static str,
     mut problem: Problem<'c, C, Straight<'c, C, M>>,
     settings: &Settings,
-) -> Result<Bent<'c, C, M>, BuildError>
+) -> Result<BendingProblem<'c, C, M>, BuildError>
 where
     C: Space<State: 'c>,
     M: MotionValidity<C::State> + Send + 'c,
@@ -145,10 +145,10 @@ impl<S> MotionValidity<S> for Boxed<'_, S> {
     }
 }
 
-/// A planner whose paths are made plain: straight between the nodes of the snakes.
-pub(crate) struct Plain<P>(pub(crate) P);
+/// A planner whose paths are flattened: straight edges between the nodes of the snakes.
+pub(crate) struct Flattened<P>(pub(crate) P);
 
-impl<S: Clone, P: Planner<S, Edge = PolylineEdge<S>>> Planner<S> for Plain<P> {
+impl<S: Clone, P: Planner<S, Edge = PolylineEdge<S>>> Planner<S> for Flattened<P> {
     type Edge = ();
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S>> {
         self.0.step(rng, observer).map(|path| path.flattened())

@@ -1,13 +1,13 @@
-//! RRS-Connect: two trees that reach for each other by edges that bend.
+//! RRS-Connect: RRT-Connect with edges that bend around obstacles.
 //!
 //! The snakes of K. Baizid et al., *RRS: rapidly-exploring random snakes*, §3.3, in the place of the local planner of
 //! J. J. Kuffner and S. M. LaValle, *RRT-Connect: an efficient approach to single-query path planning*, ICRA 2000.
 //!
-//! 1. to 5. are those of [RRT-Connect](super::rrt_connect); wherever a step there is blocked, though its end is free, a
-//!    [snake](mp_snake::Snake) goes around what blocks it, as in [RRS](super::rrs). In the tree from the goal edges are
-//!    bent in forward time.
+//! Steps 1 to 5 are those of [RRT-Connect](super::rrt_connect); wherever a step is blocked, though its end is free, a
+//! [snake](mp_snake::Snake) bends it around the obstacle, as in [RRS](super::rrs). In the tree from the goal edges are
+//! bent in forward time.
 //!
-//! **When to use it.** As [RRS](super::rrs), where both ends are known: it takes fewer iterations still.
+//! **When to use it.** As [RRS](super::rrs), where both ends are known: it takes even fewer iterations.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -46,8 +46,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::rrs::{Plain, RANGE, SNAKE_STEPS, bent};
-use crate::by_name::{Given, Made, Types};
+use super::rrs::{Flattened, RANGE, SNAKE_STEPS, with_bending_edges};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{BuildError, PlannerInfo, RrtConnect};
 use mp_snake::SnakePlanner;
@@ -63,12 +63,12 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    if !given.problem.goals().can_aim() {
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    if !args.problem.goals().can_aim() {
         return Err(BuildError::NoGoalState { planner: INFO.name });
     }
-    let problem = bent(INFO.name, given.problem, given.settings)?;
-    Ok(Box::new(Plain(RrsConnect::with_index(problem, given.index, given.tuning)?)))
+    let problem = with_bending_edges(INFO.name, args.problem, args.settings)?;
+    Ok(Box::new(Flattened(RrsConnect::with_index(problem, args.index, args.tuning)?)))
 }
 
 /// RRS-Connect: see the [module](self). Made by [`RrtConnect::new`] of a problem with a [`SnakePlanner`].

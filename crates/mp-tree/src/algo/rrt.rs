@@ -12,8 +12,8 @@
 //! 4. where the motion is free, add its end as a child of the node;
 //! 5. where that is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
-//! **When to use it.** Goals that are only a test (a region), local planners that cannot run
-//! backward, and problems where the goal is easy to get out of but hard to get into. When both
+//! **When to use it.** For goals that are only a test (a region), local planners that cannot run
+//! backward, and goals that are easy to leave but hard to enter. When both
 //! ends are known states, [RRT-Connect](super::rrt_connect) is usually much faster.
 //!
 //! | parameter | range | default |
@@ -42,10 +42,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{Append, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{Append, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -59,8 +59,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(Rrt::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(Rrt::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// RRT: see the [module](self).
@@ -69,8 +69,8 @@ pub type Rrt<'c, C, L, N> = SingleTree<'c, C, L, Samples<Uniform<'c, C>>, Neares
 constructors! {
     "RRT" Rrt<C, L, N>,
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let recipe = Recipe { propose, select: NearestSelector(index), grow: Extend, attach: Append, tuning };
-        Self::assemble(problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter: Append, tuning };
+        Self::assemble(problem, parts)
     }
 }

@@ -1,4 +1,4 @@
-//! RRT-Connect: two trees that reach for each other.
+//! RRT-Connect: two trees that grow toward each other.
 //!
 //! J. J. Kuffner and S. M. LaValle, *RRT-Connect: an efficient approach to single-query path
 //! planning*, ICRA 2000. As ALG. 2 and 3 of N. Jouandeau, Y. Touati and A. Ali Cherif,
@@ -12,8 +12,8 @@
 //! 4. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 5. the other tree has the next turn.
 //!
-//! **When to use it.** First. Both ends must be known states (or the goal a sampler), and motions
-//! must run backward as well as forward.
+//! **When to use it.** Try it first. Both ends must be known states (or the goal a sampler), and motions must run backward
+//! as well as forward.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -41,16 +41,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
-use crate::{Append, Connect, Extend, NearestSelector, PlannerInfo, Recipe, Samples, Tuning, TwoTrees};
+use crate::{
+    Append, Connect, Extend, NearestSelector, PlannerInfo, Samples, TreePlannerParts, Tuning, TwoTrees,
+};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-connect",
-    summary: "trees from start and goal that reach for each other; the first to try",
+    summary: "trees from start and goal that grow toward each other; the first to try",
     citation: "Kuffner and LaValle 2000",
     parameters: &[STEP, GOAL_BIAS, PATIENCE],
     aliases: &["rrt-ext-con"],
@@ -58,8 +60,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    Ok(Box::new(RrtConnect::with_index(given.problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    Ok(Box::new(RrtConnect::with_index(args.problem, args.index, args.tuning)?))
 }
 
 /// RRT-Connect: see the [module](self).
@@ -69,9 +71,9 @@ pub type RrtConnect<'c, C, L, N> =
 constructors! {
     "RRT-Connect" RrtConnect<C, L, N> where [N: Clone],
     |problem, index, tuning: Tuning| {
-        let propose = Samples(Uniform(problem.space()));
-        let grow = (Extend, Connect::default());
-        let recipe = Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning };
-        Self::assemble(INFO.name, problem, recipe)
+        let target_sampler = Samples(Uniform(problem.space()));
+        let extender = (Extend, Connect::default());
+        let parts = TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning };
+        Self::assemble(INFO.name, problem, parts)
     }
 }

@@ -1,4 +1,4 @@
-//! RRT by inputs, testing all: the classical expansion of a system that moves by a set of inputs.
+//! RRT by inputs: tests the successors of a node by all inputs, and keeps the best.
 //!
 //! S. M. LaValle and J. J. Kuffner, *Randomized kinodynamic planning*, ICRA 1999. As ALG. 4 of
 //! N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*,
@@ -16,8 +16,7 @@
 //! The listing in the paper does not lower `dmin` in step 5, and would keep the last of the nearer
 //! successors; its text asks for the closest, which is what is done here.
 //!
-//! **When to use it.** To compare with: [RSRT](super::rsrt) finds the same successors with fewer
-//! collision tests.
+//! **When to use it.** For comparison: [RSRT](super::rsrt) finds the same successors with fewer collision tests.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -57,17 +56,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::by_name::{BuildArgs, BuildResult, INPUTS, LEVELS, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{AppendDistinct, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{
+    AppendDistinct, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning,
+};
 use mp_control::{InputChoice, Order};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-inputs",
-    summary: "one tree moved by a set of inputs, all of them tested for collision; rsrt does with fewer tests",
+    summary: "one tree moved by a set of inputs, all of them tested for collision; RSRT needs fewer tests",
     citation: "LaValle and Kuffner 1999",
     parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -75,9 +76,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
-    Ok(Box::new(RrtInputs::with_index(problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
+    Ok(Box::new(RrtInputs::with_index(problem, args.index, args.tuning)?))
 }
 
 /// RRT by inputs: see the [module](self).
@@ -89,8 +90,8 @@ constructors! {
     |problem, index, tuning: Tuning| {
         let mut problem = problem;
         problem.local_mut().set_order(Order::TestAll);
-        let propose = Samples(Uniform(problem.space()));
-        let attach = AppendDistinct::default();
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let inserter = AppendDistinct::default();
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })
     }
 }

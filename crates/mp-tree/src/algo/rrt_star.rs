@@ -1,4 +1,4 @@
-//! RRT*: the tree that is rewired as it grows, so that its paths become optimal.
+//! RRT*: a tree that is rewired as it grows, so that its paths become optimal.
 //!
 //! S. Karaman and E. Frazzoli, *Sampling-based algorithms for optimal motion planning*, IJRR 30(7),
 //! 2011, algorithm 6 (and its k-nearest variant). The order in which parents are tried is that of
@@ -11,14 +11,14 @@
 //! 3. where the motion is free, find the nodes near its end: the k nearest, or those in a ball that
 //!    shrinks as the tree grows;
 //! 4. add the end under the near node through which it costs least to reach;
-//! 5. hang those near nodes on it that are cheaper to reach through it; costs below follow;
-//! 6. where the cheapest way to the goal has become cheaper, verify it: return it, or prune from the
+//! 5. make it the parent of those near nodes that are cheaper to reach through it, and update the costs below;
+//! 6. where the cheapest path to the goal has become cheaper, verify it: return it, or prune from the
 //!    edge that failed. Stepping on returns better paths, each cheaper than the one before.
 //!
 //! **When to use it.** When the length of the path matters more than the time to find it, and one
-//! tree can find it at all. The cost is what the local planner says, the length of the path for
-//! straight motions. Local planners that cannot reach a state exactly (sets of inputs) gain
-//! nothing. [Informed RRT*](super::informed_rrt_star) converges faster on problems with one goal.
+//! tree can find a path. The cost is that of the local planner: for straight motions the length of the path. Local
+//! planners that cannot reach a state exactly (sets of inputs) gain nothing.
+//! [Informed RRT*](super::informed_rrt_star) converges faster on problems with one goal.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -28,7 +28,7 @@
 //! | `near`: how many nodes are near, over e·(1 + 1/d)·ln n | (0, 1000] | 1.1 |
 //! | `gamma`: if above zero, near are instead those within γ·(ln n / n)^(1/d), at most a step | ≥ 0 | 0 |
 //!
-//! A point goes around a disc, by ever shorter ways:
+//! A point goes around a disc, on ever shorter paths:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Problem, RrtStar, Tuning, improve};
@@ -49,16 +49,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    BuildError, Extend, Improving, Near, NearestSelector, Parameter, PlannerInfo, Recipe, Rewire, Samples,
-    Settings, Tuning,
+    BuildError, Extend, Improving, Near, NearestSelector, Parameter, PlannerInfo, Rewire, Samples, Settings,
+    TreePlannerParts, Tuning,
 };
 use mp_cspace::Uniform;
 
-/// [`Near::NearestSelector`] by name.
+/// [`Near::KNearest`] by name.
 pub const NEAR: Parameter = Parameter {
     name: "near",
     range: "in (0, 1000]",
@@ -71,7 +71,7 @@ pub const GAMMA: Parameter = Parameter {
     name: "gamma",
     range: "0, or a length above",
     default: "0",
-    doc: "if not 0, near are those within gamma (ln n / n)^(1/d) and one step, instead",
+    doc: "if not 0, near are instead the nodes within gamma (ln n / n)^(1/d), at most one step",
 };
 
 /// The entry of [`planners`](crate::planners).
@@ -85,19 +85,19 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let near = near(given.settings)?;
-    Ok(Box::new(RrtStar::with_index(given.problem, given.index, given.tuning, near)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let near = near(args.settings)?;
+    Ok(Box::new(RrtStar::with_index(args.problem, args.index, args.tuning, near)?))
 }
 
-/// What counts as near, from settings.
+/// The nodes that count as near, from settings.
 ///
 /// # Errors
 /// When a value cannot be read.
 pub fn near(settings: &Settings) -> Result<Near, BuildError> {
     Ok(match (settings.number(GAMMA.name)?, settings.number(NEAR.name)?) {
         (Some(gamma), _) if gamma != 0.0 => Near::Radius { gamma },
-        (_, Some(factor)) => Near::NearestSelector { factor },
+        (_, Some(factor)) => Near::KNearest { factor },
         _ => Near::default(),
     })
 }
@@ -109,8 +109,8 @@ pub type RrtStar<'c, C, L, N> =
 constructors! {
     "RRT*" RrtStar<C, L, N>,
     |problem, index, tuning: Tuning; near: Near = [Near::default()]| {
-        let propose = Samples(Uniform(problem.space()));
-        let attach = Rewire::new(near)?;
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let inserter = Rewire::new(near)?;
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })
     }
 }

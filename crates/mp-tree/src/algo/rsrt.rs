@@ -13,13 +13,13 @@
 //!    unless a node is there already, and no more are tested;
 //! 6. where that is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
-//! As in the paper's sequence the child need not be nearer to the sample than `q_prox` is: a node near
-//! obstacles grows as often as another. [`InputPlanner::accepting`](mp_control::InputPlanner::accepting) asks for
+//! As in the paper's listing the child need not be nearer to the sample than `q_prox` is: a node near
+//! obstacles grows as often as any other. [`InputPlanner::accepting`](mp_control::InputPlanner::accepting) asks for
 //! [`Nearer`](mp_control::Accept::Nearer) ones, as ALG. 4 does.
 //!
-//! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. It
-//! takes the same successors as ALG. 4 under the same condition, for fewer collision tests. Bodies that
-//! move as they like are planned faster by [RRT-Connect](super::rrt_connect).
+//! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. Under the same
+//! condition it takes the same successors as ALG. 4, with fewer collision tests. For bodies that can move in any direction
+//! [RRT-Connect](super::rrt_connect) is faster.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -33,7 +33,7 @@
 //! [By name](crate::build) it moves by a uniform set of inputs over the degrees of freedom, translation
 //! and rotation alike, and keeps the edges of the local planner given.
 //!
-//! A car turns round in a lane too narrow to do so in one go:
+//! A car turns around in a lane too narrow to do so without reversing:
 //! ```
 //! use mp_control::{DiscreteFlowCheck, Car, InputPlanner, ReplayFinely};
 //! use mp_cspace::{Iterations, Outcome, Planner, Resolution, Rng, Se2, Se2State};
@@ -57,10 +57,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, INPUTS, LEVELS, Made, Types, moved_by_inputs};
+use crate::by_name::{BuildArgs, BuildResult, INPUTS, LEVELS, Types, moved_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
-use crate::{AppendApart, Extend, NearestSelector, PlannerInfo, Recipe, Samples, SingleTree, Tuning};
+use crate::{
+    AppendApart, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning,
+};
 use mp_control::{InputChoice, Order};
 use mp_cspace::Uniform;
 
@@ -75,9 +77,9 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let problem = moved_by_inputs(given.problem, &given.tuning, given.settings)?;
-    Ok(Box::new(Rsrt::with_index(problem, given.index, given.tuning)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
+    Ok(Box::new(Rsrt::with_index(problem, args.index, args.tuning)?))
 }
 
 /// RSRT: see the [module](self).
@@ -89,8 +91,8 @@ constructors! {
     |problem, index, tuning: Tuning| {
         let mut problem = problem;
         problem.local_mut().set_order(Order::SortFirst);
-        let propose = Samples(Uniform(problem.space()));
-        let attach = AppendApart::default();
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow: Extend, attach, tuning })
+        let target_sampler = Samples(Uniform(problem.space()));
+        let inserter = AppendApart::default();
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })
     }
 }

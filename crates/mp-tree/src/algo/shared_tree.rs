@@ -1,10 +1,10 @@
 //! One RRT grown by all threads: the *embarrassingly parallel* RRT.
 //!
 //! S. Carpin and E. Pagello, *On parallel RRTs for multi-robot systems*, Proc. 8th Conf. of the
-//! Italian Association for Artificial Intelligence, 2002; told of in N. Jouandeau, Y. Touati and
+//! Italian Association for Artificial Intelligence, 2002; described in N. Jouandeau, Y. Touati and
 //! A. Ali Cherif, *Incremental motion planning with Las Vegas algorithms*, 2008, §3: processors share
-//! the tree and sample in parallel. There each adds to it as it comes; here they take turns in
-//! batches, so that the answer does not depend on the machine.
+//! the tree and sample in parallel. There each adds its node at once; here nodes are added in batches, so that the result
+//! does not depend on the machine.
 //!
 //! From a tree that holds the start, repeat:
 //! 1. draw `batch` samples, number i of the planner from stream (seed, i): uniform in the space, or with
@@ -17,27 +17,25 @@
 //!
 //! The seed is the first number drawn from the generator of the first step. One step is one batch.
 //!
-//! **When to use it.** Where [RRT](super::rrt) is right, its motions are slow to check (a millisecond
-//! and more) and there are several cores. The samples of a batch do not know of each other, so that
-//! more motions are needed, the more so the smaller the tree: on average over 200 seeds of the example
+//! **When to use it.** Where [RRT](super::rrt) is the right planner, its motions are slow to check (a millisecond
+//! and more) and there are several cores. The samples of a batch do not see each other's nodes, so more motions are
+//! needed, especially while the tree is small: on average over 200 seeds of the example
 //! `shared_tree`, whose tree has some 200 nodes, 14% more with batches of 4, 18% with 8, 60% with 16,
-//! and 3.3 times as many with 64. Take at least as many as there are threads, and few for easy
-//! problems. Where the time of a run depends much on luck, [independent runs](super::or_parallel)
-//! gain more.
+//! and 3.3 times as many with 64. Use batches of at least the number of threads, and small ones for easy
+//! problems. Where the time of a run varies much, [independent runs](super::or_parallel) gain more.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `batch`: samples per iteration, whatever the number of threads | 1, 2, … 1024 | 8 |
+//! | `batch`: samples per iteration, for any number of threads | 1, 2, … 1024 | 8 |
 //!
 //! and those of [RRT](super::rrt). By name it is `shared-rrt`; [`build_from`](crate::build_from) makes it.
 //!
-//! Each sample of a batch has a local planner of its own, so there are `batch` and one more for the way
-//! straight to the goal. One that panics loses its sample, which is [counted](SharedTree::panics); when
-//! all of a batch panic, the step does, in the thread that called it, with what the first said. The tree
-//! stays. Verifying is left to the thread that calls, so with a verifier that is slow and a local
-//! planner no longer believed (`patience`) nothing is gained.
+//! Each sample of a batch has its own local planner, so there are `batch` of them, and one more for the straight
+//! motion to the goal. If one panics, its sample is lost and [counted](SharedTree::panics); if all of a batch panic, the
+//! step panics in the calling thread, with the message of the first. The tree stays valid. Only the calling thread
+//! verifies, so nothing is gained with a slow verifier and a local planner that is no longer trusted (`patience`).
 //!
-//! Two threads, the same answer as one:
+//! Two threads give the same path as one:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Goals, Problem, SharedTree, Tuning, Workers};
@@ -74,25 +72,25 @@ use std::any::Any;
 use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// How many samples at a time.
+/// How many samples a batch has.
 pub const BATCH: Parameter = Parameter {
     name: "batch",
     range: "a whole number from 1 to 1024",
     default: "8",
-    doc: "samples per iteration, whatever the number of threads; their motions are checked in parallel",
+    doc: "samples per iteration, for any number of threads; their motions are checked in parallel",
 };
 
-/// One sample of a batch: where to, and what came of it.
-struct Slot<S, L: LocalPlanner<S>> {
+/// One sample of a batch, and the extension toward it.
+struct BatchSample<S, L: LocalPlanner<S>> {
     local: L,
     rng: Rng,
     target: Option<S>,
-    why: Purpose,
+    purpose: Purpose,
     found: Option<(NodeId, Extension<S, L::Edge>)>,
     panicked: Option<Box<dyn Any + Send>>,
 }
 
-impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
+impl<S: Clone + PartialEq, L: LocalPlanner<S>> BatchSample<S, L> {
     fn work<C: Space<State = S>, N: NearestNeighbors<C>>(
         &mut self,
         (space, step): (&C, f64),
@@ -110,24 +108,24 @@ impl<S: Clone + PartialEq, L: LocalPlanner<S>> Slot<S, L> {
     }
 }
 
-/// The extension found before.
-struct Found<S, E>(Option<Extension<S, E>>);
+/// Inserts an extension found before.
+struct FoundExtension<S, E>(Option<Extension<S, E>>);
 
-impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Found<C::State, L::Edge> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for FoundExtension<C::State, L::Edge> {
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        self.0.take().map_or(Grown::Trapped, |extension| growing.settle(from, extension))
+        self.0.take().map_or(Grown::Trapped, |extension| growing.insert(from, extension))
     }
 }
 
 /// One RRT grown by all threads: see the [module](self).
 pub struct SharedTree<'c, C: Space, L: LocalPlanner<C::State>, N> {
     core: Core<'c, C, L>,
-    branch: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
-    slots: Vec<Slot<C::State, L>>,
+    tree: SearchTree<C, L, NearestSelector<N>, AppendDistinct>,
+    samples: Vec<BatchSample<C::State, L>>,
     workers: Workers,
     seed: Option<u64>,
     drawn: u64,
@@ -173,16 +171,16 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
             return Err(BuildError::OutOfRange { name: BATCH.name, value: batch as f64, range });
         }
         let core = Core::new(make(0)?, &tuning)?;
-        let slot = |i| {
+        let sample = |i| {
             let local = make(i)?.into_parts().local;
-            let why = Purpose::Explore;
-            Ok(Slot { local, rng: Rng::seed(0), target: None, why, found: None, panicked: None })
+            let purpose = Purpose::Explore;
+            Ok(BatchSample { local, rng: Rng::seed(0), target: None, purpose, found: None, panicked: None })
         };
-        let slots = (1..=batch).map(slot).collect::<Result<Vec<_>, BuildError>>()?;
+        let samples = (1..=batch).map(sample).collect::<Result<Vec<_>, BuildError>>()?;
         Ok(Self {
             core,
-            branch: SearchTree::new(0, Direction::Forward, NearestSelector(index), AppendDistinct::default()),
-            slots,
+            tree: SearchTree::new(0, Direction::Forward, NearestSelector(index), AppendDistinct::default()),
+            samples,
             workers,
             seed: None,
             drawn: 0,
@@ -195,19 +193,19 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     /// The tree; empty before the first step.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
-        self.branch.tree()
+        self.tree.nodes()
     }
 
-    /// How many samples were lost to a panic of the local planner, but for batches that were lost whole.
+    /// How many samples were lost to a panic of the local planner, without batches in which all were.
     #[must_use]
     pub fn panics(&self) -> u64 {
         self.panics
     }
 
-    /// Plants the root and tries the straight ways to the goal.
+    /// Adds the root and tries the straight motions to the goals.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        self.arrived.extend(self.core.plant(&mut self.branch, observer));
-        while let Some(grown) = self.core.leap(&mut self.branch, rng, observer) {
+        self.arrived.extend(self.core.add_start(&mut self.tree, observer));
+        while let Some(grown) = self.core.connect_directly(&mut self.tree, rng, observer) {
             if let Grown::Reached(id) = grown {
                 return self.arrived.push(id);
             }
@@ -215,12 +213,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
     }
 
     fn draw(&mut self, seed: u64) {
-        for slot in &mut self.slots {
-            slot.rng = Rng::stream(seed, self.drawn);
+        for sample in &mut self.samples {
+            sample.rng = Rng::stream(seed, self.drawn);
             self.drawn += 1;
-            slot.found = None;
-            slot.target = self.core.aim(&mut slot.rng);
-            slot.why = if slot.target.is_some() { Purpose::Join } else { Purpose::Explore };
+            sample.found = None;
+            sample.target = self.core.aim(&mut sample.rng);
+            sample.purpose = if sample.target.is_some() { Purpose::Join } else { Purpose::Explore };
         }
     }
 
@@ -229,36 +227,36 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         L: Send,
         N: Sync,
     {
-        let (space, points) = (self.core.steer.space(), self.branch.tree().states());
-        let (step, index) = (self.core.steer.step(), &self.branch.selector().0);
-        self.workers.each(&mut self.slots, |slot| {
-            let work = AssertUnwindSafe(|| slot.work((space, step), points, index));
-            slot.panicked = catch_unwind(work).err();
+        let (space, points) = (self.core.checker.space(), self.tree.nodes().states());
+        let (step, index) = (self.core.checker.step(), &self.tree.selector().0);
+        self.workers.each(&mut self.samples, |sample| {
+            let work = AssertUnwindSafe(|| sample.work((space, step), points, index));
+            sample.panicked = catch_unwind(work).err();
         });
-        let lost = self.slots.iter().filter(|slot| slot.panicked.is_some()).count();
-        if lost < self.slots.len() {
-            self.panics += lost as u64;
-        } else if let Some(why) = self.slots.iter_mut().find_map(|slot| slot.panicked.take()) {
-            resume_unwind(why);
+        let panicked = self.samples.iter().filter(|sample| sample.panicked.is_some()).count();
+        if panicked < self.samples.len() {
+            self.panics += panicked as u64;
+        } else if let Some(panic) = self.samples.iter_mut().find_map(|sample| sample.panicked.take()) {
+            resume_unwind(panic);
         }
     }
 
     fn merge(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        for slot in &mut self.slots {
-            let Some(target) = slot.target.take() else { continue };
+        for sample in &mut self.samples {
+            let Some(target) = sample.target.take() else { continue };
             observer.on(Event::Sampled(&target));
-            let Some((from, extension)) = slot.found.take() else {
+            let Some((from, extension)) = sample.found.take() else {
                 observer.on(Event::Trapped { tree: 0 });
                 continue;
             };
-            let new = self.branch.tree().len();
-            self.motions += u64::from(*self.branch.tree().state(from) != target);
-            let mut found = Found(Some(extension));
-            let grown = self.branch.grow_from(from, &target, &mut self.core.steer, &mut found, rng, observer);
-            let entered = match (slot.why, grown) {
+            let new = self.tree.nodes().len();
+            self.motions += u64::from(*self.tree.nodes().state(from) != target);
+            let mut found = FoundExtension(Some(extension));
+            let grown = self.tree.grow_from(from, &target, &mut self.core.checker, &mut found, rng, observer);
+            let entered = match (sample.purpose, grown) {
                 (Purpose::Join, Grown::Reached(id)) => Some(id),
                 _ => {
-                    let state = self.branch.tree().states().get(new);
+                    let state = self.tree.nodes().states().get(new);
                     state.is_some_and(|state| self.core.goals.reached(state)).then_some(new as NodeId)
                 }
             };
@@ -267,13 +265,12 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, N: NearestNeighbors<C>> SharedTree
         }
     }
 
-    /// The first path to a node in the goal that passes verification. What is pruned meanwhile is
-    /// struck off the others.
+    /// The first path to a node in the goal that passes verification. Nodes that are pruned meanwhile are dropped.
     fn arrive(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
         while !self.arrived.is_empty() {
             let id = self.arrived.remove(0);
             let rest = &mut self.arrived;
-            let path = self.core.path(&mut self.branch, id, observer, |survivors| {
+            let path = self.core.path(&mut self.tree, id, observer, |survivors| {
                 let renamed = rest.iter().filter_map(|old| survivors.binary_search(old).ok());
                 *rest = renamed.map(|new| new as NodeId).collect();
             });
@@ -312,7 +309,7 @@ where
 
     /// An iteration is a batch.
     fn progress(&self) -> Progress {
-        let mut progress = self.core.progress(self.branch.tree().len());
+        let mut progress = self.core.progress(self.tree.nodes().len());
         progress.motions += self.motions;
         progress
     }
@@ -325,7 +322,7 @@ where
 {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SharedTree")
-            .field("batch", &self.slots.len())
+            .field("batch", &self.samples.len())
             .field("iterations", &self.core.iterations)
             .field("motions", &self.motions)
             .field("panics", &self.panics)

@@ -16,34 +16,34 @@
 //! 6. add what passed as a child of the node; where that is in the goal, verify the path: return it, or prune from
 //!    the edge that failed.
 //!
-//! Different from the paper, the temperature falls with how far a step leads up, K is the range of costs, and failures
-//! count though a step up passes between them, as in D. Devaurs, T. Siméon and J. Cortés, *Enhancing the transition-based
-//! RRT to deal with complex cost spaces*, ICRA 2013: else steps that hardly climb, which always pass, keep the tree too
-//! cold for others. And in the paper a tree that has its part of nodes that refine it is not refined at all until it
-//! expands: in front of a passage narrower than a step it never would.
+//! Differences from the paper: the temperature falls with the height of a step, K is the range of costs, and failures are
+//! counted even if a step up passes between them, as in D. Devaurs, T. Siméon and J. Cortés, *Enhancing the
+//! transition-based RRT to deal with complex cost spaces*, ICRA 2013: otherwise steps that hardly climb, which always
+//! pass, keep the tree too cold for others. And in the paper a tree with its full part of refinement nodes is not refined
+//! at all until it expands: in front of a passage narrower than a step it never would.
 //!
-//! The tree follows valleys and saddles of the cost, and climbs as high as it must. A state whose cost is infinite or
-//! not a number is never entered. The straight way to the goal is not tried: no cost would bound it. Motions toward
-//! goals are not counted as refinement, nor kept from it.
+//! The tree follows valleys and saddles of the cost, and climbs no higher than necessary. A state whose cost is infinite
+//! or not a number is never entered. The straight motion to the goal is not tried, as its cost is not bounded. Motions
+//! toward goals do not count as refinement and are never refused for it.
 //!
-//! **When to use it.** When where a path leads matters more than how long it is: away from obstacles, over flat ground.
-//! It is not optimal, and only the ends of motions are asked what they cost. Narrow passages are entered by refining:
-//! there take ρ = 1, or shorter steps. [By name](crate::build) the cost is of being
-//! near obstacles, and the problem must [know](crate::Problem::with_obstacles) the gradient of the clearance: with the clearance
-//! d and the range r it is (1 − d/r)² where d < r, and 0 elsewhere; 1 in contact.
+//! **When to use it.** When the cost along a path matters more than its length: away from obstacles, over level ground.
+//! It is not optimal, and only the cost of the ends of motions counts. Narrow passages are entered by refinement:
+//! use ρ = 1 there, or shorter steps. [By name](crate::build) the cost is that of being near obstacles, and the problem
+//! must [know](crate::Problem::with_obstacles) the gradient of the clearance: with the clearance d and the range r the
+//! cost is (1 − d/r)² where d < r, and 0 elsewhere; 1 in contact.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `step`: longest step | (0, extent of the space] | 5% of the extent |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
-//! | `temperature`: T to begin with | positive and finite | 10⁻⁶ |
+//! | `temperature`: initial T | positive and finite | 10⁻⁶ |
 //! | `alpha`: factor α of the temperature | (1, 1000] | 2 |
-//! | `fails`: steps up refused before it is warmer, nFailMax | 0, 1, 2, … | 10 |
-//! | `refine`: part ρ of the nodes that may refine the tree, and how probably more do | \[0, 1\] | 0.1 |
-//! | `range` (by name): from how far obstacles cost | (0, extent of the space] | 10% of the extent |
+//! | `fails`: steps up refused before T rises, nFailMax | 0, 1, 2, … | 10 |
+//! | `refine`: part ρ of the nodes that may refine the tree, and the probability of more | \[0, 1\] | 0.1 |
+//! | `range` (by name): distance of obstacles from which states cost nothing | (0, extent of the space] | 10% of the extent |
 //!
-//! A point crosses the unit square, whose middle is costly:
+//! A point crosses the unit square, around its expensive middle:
 //! ```
 //! use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rn, Rng, Straight};
 //! use mp_tree::{Problem, TRrt, Temperature, Tuning};
@@ -64,11 +64,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP, constructors};
 use crate::{
     Append, BuildError, Extender, Growing, Grown, Inserter, NearestSelector, Parameter, PlannerInfo, Purpose,
-    Recipe, Samples, Selector, SingleTree, Tuning,
+    Samples, Selector, SingleTree, TreePlannerParts, Tuning,
 };
 use mp_cspace::{
     Direction, Extension, LocalPlanner, NodeId, Reach, Rng, Space, Uniform, obstacles::ClearanceGradient,
@@ -80,41 +80,41 @@ const TEMPERATURE: Parameter = Parameter {
     name: "temperature",
     range: "positive and finite",
     default: "0.000001",
-    doc: "temperature to begin with",
+    doc: "initial temperature",
 };
 /// [`Temperature::alpha`].
 const ALPHA: Parameter = Parameter {
     name: "alpha",
     range: "in (1, 1000]",
     default: "2",
-    doc: "factor by which it is warmer after failures, and colder after a step over all costs",
+    doc: "factor by which the temperature rises after failures, and falls after a step over all costs",
 };
 /// [`Temperature::fails`].
 const FAILS: Parameter = Parameter {
     name: "fails",
     range: "a whole number",
     default: "10",
-    doc: "steps up that are refused before it is warmer",
+    doc: "steps up that are refused before the temperature rises",
 };
 /// [`Temperature::refine`].
 const REFINE: Parameter = Parameter {
     name: "refine",
     range: "in [0, 1]",
     default: "0.1",
-    doc: "part of the nodes that may refine the tree, and how probably more of them do",
+    doc: "part of the nodes that may refine the tree, and the probability of more",
 };
-/// From how far obstacles cost.
+/// The distance of obstacles from which states cost nothing.
 const RANGE: Parameter = Parameter {
     name: "range",
     range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
     default: "10%",
-    doc: "states at least so far from obstacles cost nothing",
+    doc: "states at least this far from obstacles cost nothing",
 };
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "t-rrt",
-    summary: "one tree that keeps to states of low cost, by name to those far from obstacles",
+    summary: "one tree that prefers states of low cost, by name those far from obstacles",
     citation: "Jaillet, Cortés and Siméon 2010",
     parameters: &[STEP, GOAL_BIAS, PATIENCE, TEMPERATURE, ALPHA, FAILS, REFINE, RANGE],
     aliases: &["transition-rrt"],
@@ -122,8 +122,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let (mut problem, settings) = (given.problem, given.settings);
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let (mut problem, settings) = (args.problem, args.settings);
     let known = problem.take_obstacles();
     let mut field = known.gradient.ok_or(BuildError::NoGradient { planner: INFO.name })?;
     let range = settings.length_of(&RANGE, problem.space())?;
@@ -139,19 +139,20 @@ pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
         fails: settings.count_of(&FAILS)?,
         refine: settings.number(REFINE.name)?.unwrap_or(default.refine),
     };
-    Ok(Box::new(TRrt::with_index(problem, given.index, cost, given.tuning, with)?))
+    Ok(Box::new(TRrt::with_index(problem, args.index, cost, args.tuning, with)?))
 }
 
 /// The parameters of the transition test and the expansion control.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Temperature {
-    /// The temperature T to begin with; positive and finite.
+    /// The initial temperature T; positive and finite.
     pub initial: f64,
-    /// The factor α: by which it is warmer after failures, and colder after a step over the whole range of costs; in (1, 1000].
+    /// The factor α by which the temperature rises after failures, and falls after a step over the whole range of costs;
+    /// in (1, 1000].
     pub alpha: f64,
-    /// Steps up refused before it is warmer: nFailMax.
+    /// Steps up refused before the temperature rises: nFailMax.
     pub fails: u64,
-    /// The part ρ of the nodes that may refine the tree, and the probability that more of them do, in \[0, 1\].
+    /// The part ρ of the nodes that may refine the tree, and the probability with which more nodes do, in \[0, 1\].
     pub refine: f64,
 }
 
@@ -188,12 +189,12 @@ pub struct Transition<F> {
     fails: u64,
     /// Nodes that refined the tree.
     refined: u64,
-    /// What nodes cost, where it was asked.
+    /// The costs of nodes, as far as computed.
     costs: Vec<Option<f64>>,
 }
 
 impl<F> Transition<F> {
-    /// The test by `cost`.
+    /// The test with this cost of states.
     ///
     /// # Errors
     /// When a parameter is out of range.
@@ -203,13 +204,13 @@ impl<F> Transition<F> {
         Ok(Self { cost, with, temperature: with.initial, seen, fails: 0, refined: 0, costs: Vec::new() })
     }
 
-    /// The temperature now.
+    /// The present temperature.
     #[must_use]
     pub fn temperature(&self) -> f64 {
         self.temperature
     }
 
-    /// What node `id` costs.
+    /// The cost of node `id`.
     fn cost_of<S>(&mut self, id: NodeId, q: &S) -> f64
     where
         F: FnMut(&S) -> f64,
@@ -246,12 +247,12 @@ impl<F> Transition<F> {
 }
 
 impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C, L> for Transition<F> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let step = growing.steer().step();
+        let step = growing.checker().step();
         let refines = growing.purpose() == Purpose::Explore && growing.distance(from) <= step;
         let many = self.refined as f64 > self.with.refine * growing.tree().len() as f64;
         if refines && many && !growing.rng().random_bool(self.with.refine) {
@@ -259,7 +260,7 @@ impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C
         }
         let (state, target) = (growing.tree().state(from).clone(), growing.target().clone());
         let direction = growing.tree().direction();
-        let extension = growing.steer().extend(&state, &target, direction, Reach::Step(step));
+        let extension = growing.checker().extend(&state, &target, direction, Reach::Step(step));
         let (Extension::Advanced(motion) | Extension::Reached(motion)) = &extension else {
             return Grown::Trapped;
         };
@@ -267,12 +268,12 @@ impl<C: Space, L: LocalPlanner<C::State>, F: FnMut(&C::State) -> f64> Extender<C
         if !self.passes(here, there, growing.rng()) {
             return Grown::Trapped;
         }
-        let grown = growing.settle(from, extension);
+        let grown = growing.insert(from, extension);
         self.refined += u64::from(refines && grown != Grown::Trapped);
         grown
     }
 
-    fn leaps(&self) -> bool {
+    fn allows_direct(&self) -> bool {
         false
     }
 
@@ -288,7 +289,7 @@ pub type TRrt<'c, C, L, N, F> =
 constructors! {
     "T-RRT by the cost of states" TRrt<C, L, N, F> where [F: FnMut(&C::State) -> f64],
     |problem, index, cost: F, tuning: Tuning, with: Temperature| {
-        let (propose, grow) = (Samples(Uniform(problem.space())), Transition::new(cost, with)?);
-        Self::assemble(problem, Recipe { propose, select: NearestSelector(index), grow, attach: Append, tuning })
+        let (target_sampler, extender) = (Samples(Uniform(problem.space())), Transition::new(cost, with)?);
+        Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender, inserter: Append, tuning })
     }
 }

@@ -1,30 +1,26 @@
-//! Utility-guided RRT: of several expansions the one that promises most.
+//! Utility-guided RRT: makes the most promising of several expansions.
 //!
 //! B. Burns and O. Brock, *Single-query motion planning with utility-guided random trees*, ICRA 2007,
-//! on the two trees of [RRT-Connect](super::rrt_connect). The utility expected of an expansion is
-//! the probability that it is free times what it gains; node, direction and distance are chosen by
-//! it.
+//! on the two trees of [RRT-Connect](super::rrt_connect). The expected utility of an expansion is
+//! the probability that it is free times its gain; it decides on node, direction and distance.
 //!
 //! From one tree that holds the start and one that holds the goal, repeat:
-//! 1. draw a sample, uniform in the space: the first candidate is to expand from the node nearest to
-//!    it in the tree whose turn it is, toward it. Draw further candidates, a node of the tree and a
-//!    sample each, both uniform, until there are `candidates`;
-//! 2. estimate for each the probability that a step is free: the part of expansions of that node
-//!    that were (with one of each assumed), less the nearer the step ends to where others failed;
-//! 3. multiply by the gain: the length of the step, as a part of the longest; for nodes that were
-//!    drawn, divided by one more than the expansions tried from there, as little is new around
-//!    them;
-//! 4. make the most promising step (the first of several), and on toward its sample while steps are
-//!    free;
+//! 1. draw a sample, uniform in the space: the first candidate is the expansion toward it from its nearest node in the
+//!    tree whose turn it is. Draw further candidates, a node of the tree and a sample each, both uniform, until there are
+//!    `candidates`;
+//! 2. estimate for each the probability that a step is free: the part of expansions of that node that were free (with one
+//!    success and one failure added), reduced the nearer the step ends to where others failed;
+//! 3. multiply by the gain: the length of the step, as a part of the longest; for nodes that were drawn, divided by one
+//!    more than the expansions tried from there, as there is little left to explore around them;
+//! 4. make the most promising step (the first of several), and go on toward its sample while steps are free;
 //! 5. if that added a node, connect the other tree to the last;
 //! 6. where the trees have met, verify the path: return it, or prune from the edge that failed;
 //! 7. the other tree has the next turn.
 //!
-//! Simplified against the paper: its model of the space is fitted to all configurations seen, here
-//! each node remembers its own expansions, the eight last failures by place; and the gain is
-//! estimated without a search for neighbours.
+//! Simpler than the paper: there a model of the space is fitted to all configurations tested; here each node remembers its
+//! own expansions, with the ends of the last eight failures, and the gain is estimated without a search for neighbours.
 //!
-//! **When to use it.** Where checking a motion is dear, and many fail: about narrow passages.
+//! **When to use it.** Where checking a motion is expensive and many motions fail: around narrow passages.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -53,12 +49,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{Given, Made, Types};
+use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, BuildError, Connect, Extender, Growing, Grown, Inserter, NearestSelector, Parameter,
-    PlannerInfo, Recipe, Samples, Selector, Tuning, TwoTrees,
+    PlannerInfo, Samples, Selector, TreePlannerParts, Tuning, TwoTrees,
 };
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space, Uniform};
 use rand::RngExt;
@@ -74,7 +70,7 @@ pub(crate) const CANDIDATES: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "utility-rrt",
-    summary: "RRT-Connect that makes the most promising of several expansions; where most fail",
+    summary: "RRT-Connect that makes the most promising of several expansions; where most motions fail",
     citation: "Burns and Brock 2007",
     parameters: &[STEP, CANDIDATES, GOAL_BIAS, PATIENCE],
     aliases: &["utility-guided"],
@@ -82,22 +78,22 @@ pub const INFO: PlannerInfo = PlannerInfo {
 };
 
 /// Makes it by name.
-pub(crate) fn make<'c, T: Types<'c>>(given: Given<'c, '_, T>) -> Made<'c, T> {
-    let candidates = given.settings.count_of(&CANDIDATES)?;
-    Ok(Box::new(UtilityRrt::with_index(given.problem, given.index, given.tuning, candidates)?))
+pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
+    let candidates = args.settings.count_of(&CANDIDATES)?;
+    Ok(Box::new(UtilityRrt::with_index(args.problem, args.index, args.tuning, candidates)?))
 }
 
-/// Failures that a node remembers by place.
+/// How many failures a node remembers.
 const REMEMBERED: usize = 8;
-/// Steps made toward one sample at most.
+/// Most steps toward one sample.
 const LIMIT: u32 = 10_000;
 
-/// What became of expansions from a node.
+/// The results of expansions from a node.
 #[derive(Clone, Debug)]
 struct Past<S> {
     tried: u32,
     grown: u32,
-    /// Where the last ones that failed would have ended.
+    /// Where the last expansions that failed would have ended.
     failed: Vec<S>,
 }
 
@@ -111,11 +107,11 @@ impl<S> Default for Past<S> {
 #[derive(Clone, Debug)]
 pub struct UtilityGuided<S> {
     candidates: u64,
-    /// Of the nodes of the forward and of the backward tree.
+    /// By node, of the forward and of the backward tree.
     past: [Vec<Past<S>>; 2],
 }
 
-/// A step from a node, and what it is worth.
+/// A step from a node, and its expected utility.
 struct Expansion<S> {
     from: NodeId,
     toward: S,
@@ -148,12 +144,12 @@ impl<S: Clone> UtilityGuided<S> {
 }
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for UtilityGuided<C::State> {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
-        let (space, step) = (growing.steer().space(), growing.steer().step());
+        let (space, step) = (growing.checker().space(), growing.checker().step());
         let nodes = growing.tree().len();
         let tree = usize::from(growing.tree().direction() == Direction::Backward);
         self.past[tree].resize_with(nodes, Past::default);
@@ -222,13 +218,13 @@ constructors! {
     |problem, index, tuning: Tuning, candidates: u64| {
         let candidates = BuildError::count_within(CANDIDATES.name, candidates, 1, 100_000)?;
         let explore = UtilityGuided { candidates, past: [Vec::new(), Vec::new()] };
-        let recipe = Recipe {
-            propose: Samples(Uniform(problem.space())),
-            select: NearestSelector(index),
-            grow: (explore, Connect::default()),
-            attach: AppendDistinct::default(),
+        let parts = TreePlannerParts {
+            target_sampler: Samples(Uniform(problem.space())),
+            selector: NearestSelector(index),
+            extender: (explore, Connect::default()),
+            inserter: AppendDistinct::default(),
             tuning,
         };
-        Self::assemble(INFO.name, problem, recipe)
+        Self::assemble(INFO.name, problem, parts)
     }
 }

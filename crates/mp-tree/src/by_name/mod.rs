@@ -1,4 +1,4 @@
-//! What planners by name are made from.
+//! What planners made by name are made from.
 
 mod uniform;
 
@@ -11,7 +11,7 @@ use mp_cspace::{MotionValidity, NearestNeighbors, Planner, Space, Straight};
 /// A planner chosen at run time.
 pub type AnyPlanner<'c, S, E> = Box<dyn Planner<S, Edge = E> + Send + 'c>;
 
-/// The types that a planner by name is made of, in one: a tuple of space, motion check and index.
+/// The types of a planner made by name: a tuple of space, motion check and index.
 pub(crate) trait Types<'c> {
     type State: Clone + PartialEq + Send + Sync + std::fmt::Debug + 'c;
     type Space: Space<State = Self::State> + 'c;
@@ -31,23 +31,23 @@ where
     type Index = N;
 }
 
-/// How planners by name move.
+/// The local planner of planners made by name.
 pub(crate) type Local<'c, T> = Straight<'c, <T as Types<'c>>::Space, <T as Types<'c>>::Check>;
 
-/// What a planner by name is made from.
-pub(crate) struct Given<'c, 's, T: Types<'c>> {
+/// What a planner is made from by name.
+pub(crate) struct BuildArgs<'c, 's, T: Types<'c>> {
     /// The problem, with what is known of obstacles.
     pub(crate) problem: Problem<'c, T::Space, Local<'c, T>>,
     /// An empty index.
     pub(crate) index: T::Index,
     /// The parameters that every planner has.
     pub(crate) tuning: Tuning,
-    /// All that are set; the planner has parameters of these names.
+    /// All parameters that are set; the planner has parameters of these names.
     pub(crate) settings: &'s Settings,
 }
 
-/// A planner by name, or why there is none.
-pub(crate) type Made<'c, T> = Result<AnyPlanner<'c, <T as Types<'c>>::State, ()>, BuildError>;
+/// The planner, or why it cannot be made.
+pub(crate) type BuildResult<'c, T> = Result<AnyPlanner<'c, <T as Types<'c>>::State, ()>, BuildError>;
 
 /// Makes one kind of planner.
-pub(crate) type Maker<'c, 's, T> = fn(Given<'c, 's, T>) -> Made<'c, T>;
+pub(crate) type BuildFn<'c, 's, T> = fn(BuildArgs<'c, 's, T>) -> BuildResult<'c, T>;

@@ -1,10 +1,10 @@
-//! Problems moved by a uniform set of inputs, for planners by name.
+//! Problems whose local planner moves by a uniform set of inputs, for planners made by name.
 
 use crate::{BuildError, Parameter, Problem, Settings, Tuning};
 use mp_control::{Between, InputPlanner, InputSet, Kinematic};
 use mp_cspace::{LocalPlanner, Space};
 
-/// Of planners that move by a set of inputs: how many directions.
+/// The number of directions of a set of inputs.
 pub const INPUTS: Parameter = Parameter {
     name: "inputs",
     range: "a whole number",
@@ -12,7 +12,7 @@ pub const INPUTS: Parameter = Parameter {
     doc: "directions of motion, spread over translation and rotation; 0: both ways along each axis",
 };
 
-/// Of planners that move by a set of inputs: how many lengths of each.
+/// The number of lengths of motion per direction of a set of inputs.
 pub const LEVELS: Parameter = Parameter {
     name: "levels",
     range: "a whole number, 1 to 20",
@@ -23,8 +23,8 @@ pub const LEVELS: Parameter = Parameter {
 /// A local planner that moves by velocities, one second each; its motions and edges are those of `L`.
 pub(crate) type ByVelocities<'c, C, L> = InputPlanner<'c, C, Kinematic<'c, C>, Vec<f64>, Between<L>>;
 
-/// The problem moved by [`InputSet::uniform`], one step long. Goals are connected to from within a step;
-/// sampled ones are not known before, so then samples of the space are too.
+/// The problem with a local planner that moves by [`InputSet::uniform`], one step long. From within a step, listed goals
+/// are connected to exactly; where goals are sampled, and so not known beforehand, every target is.
 pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     problem: Problem<'c, C, L>,
     tuning: &Tuning,

@@ -1,22 +1,22 @@
-//! What the loops have in common: the ends of the path, the straight way between them, verified paths.
+//! What the loops have in common: the ends of the path, the straight motion between them, verified paths.
 
-use super::{Grown, Inserter, SearchTree, Selector, TreeEdgeChecker, Tuning};
+use super::{Grown, Inserter, SearchTree, Selector, Tuning};
 use mp_cspace::{
-    BuildError, Goals, LocalPlanner, NodeId, Observer, Path, Problem, ProblemParts, Progress, Rng, Space,
+    BuildError, EdgeChecker, Goals, LocalPlanner, NodeId, Observer, Path, Problem, Progress, Rng, Space,
 };
 use rand::RngExt;
 
-/// What a planner of the family has beside its trees: the ends of the problem, how it moves, and what it has done. The
-/// loops here are made of it, and yours may be.
+/// What a planner of the family has beside its trees: the ends of the problem, the edge checker, and counters. The loops
+/// of this crate use it, and yours may.
 #[derive(Debug)]
 pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
     /// Where paths begin.
     pub start: C::State,
     /// Where they end.
     pub goals: Goals<'c, C::State>,
-    /// How trees move, and the verifier.
-    pub steer: TreeEdgeChecker<'c, C, L>,
-    /// The probability of aiming at a goal; zero where there is none to aim at.
+    /// Makes and verifies the edges of the trees.
+    pub checker: EdgeChecker<'c, C, L>,
+    /// The probability of aiming at a goal; zero where there is no goal state to aim at.
     pub goal_bias: f64,
     /// Iterations so far.
     pub iterations: u64,
@@ -25,15 +25,16 @@ pub struct Core<'c, C: Space, L: LocalPlanner<C::State>> {
 }
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
-    /// A problem to be planned.
+    /// The core of a planner for a problem.
     ///
     /// # Errors
     /// When a parameter is out of range.
     pub fn new(problem: Problem<'c, C, L>, tuning: &Tuning) -> Result<Self, BuildError> {
         let goal_bias = tuning.checked_bias()?;
-        let ProblemParts { space, local, verify, start, goals } = problem.into_parts();
+        let step = tuning.step.length_in(problem.space())?;
+        let (checker, start, goals) = EdgeChecker::of(problem, tuning.patience);
         Ok(Self {
-            steer: TreeEdgeChecker::new(space, local, verify, tuning)?,
+            checker: checker.with_step(step),
             start,
             goal_bias: if goals.can_aim() { goal_bias } else { 0.0 },
             goals,
@@ -42,74 +43,75 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Core<'c, C, L> {
         })
     }
 
-    /// Plants the root of the first tree at the start, if there is none. The root, where that is in the goal.
-    pub fn plant<Se: Selector<C>, A: Inserter<C, L>>(
+    /// Adds the start as the root of the first tree, if the tree is empty. Returns the root if it is in the goal.
+    pub fn add_start<Se: Selector<C>, A: Inserter<C, L>>(
         &self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<NodeId> {
-        if !branch.tree().is_empty() {
+        if !tree.nodes().is_empty() {
             return None;
         }
         let arrived = self.goals.reached(&self.start);
-        let root = branch.add_root(self.steer.space(), self.start.clone(), observer);
+        let root = tree.add_root(self.checker.space(), self.start.clone(), observer);
         arrived.then_some(root)
     }
 
-    /// Tries to go straight from the start to the next listed goal state; `None` when all have been tried. What a
-    /// panic of the user's code interrupts is not tried again.
-    pub fn leap<Se: Selector<C>, A: Inserter<C, L>>(
+    /// Tries one motion of any length from the start to the next listed goal state; `None` when all have been tried. A
+    /// motion that a panic of the user's code interrupts is not tried again.
+    pub fn connect_directly<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Grown> {
         let goal = self.goals.listed().get(self.tried)?;
         self.tried += 1;
-        Some(branch.leap(0, goal, &mut self.steer, rng, observer))
+        Some(tree.connect_directly(0, goal, &mut self.checker, rng, observer))
     }
 
-    /// A goal to aim at instead of exploring, now and then.
+    /// A goal to aim at instead of exploring, with probability `goal_bias`.
     pub fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
         if self.goal_bias > 0.0 && rng.random_bool(self.goal_bias) { self.goals.aim(rng) } else { None }
     }
 
-    /// Roots the tree from the goal at a new sample of the goal, now and then, and always where it has no root.
+    /// Adds a new sample of the goal as a root of the tree from the goal: with probability `goal_bias`, and always where
+    /// the tree is empty.
     pub fn sample_goal<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) {
-        let wanted = branch.tree().is_empty() || rng.random_bool(self.goal_bias);
-        let space = self.steer.space();
+        let wanted = tree.nodes().is_empty() || rng.random_bool(self.goal_bias);
+        let space = self.checker.space();
         if wanted
             && let Some(goal) = self.goals.sample(rng)
-            && !branch.knows(space, &goal)
-            && self.steer.accepts(&goal)
+            && !tree.contains(space, &goal)
+            && self.checker.accepts(&goal)
         {
-            branch.add_root(space, goal, observer);
+            tree.add_root(space, goal, observer);
         }
     }
 
-    /// The path from the root to `id`, if it passes verification; otherwise its bad part is pruned, of which `pruned`
-    /// is told as by [`SearchTree::verify`].
+    /// The path from the root to `id`, if it passes verification. Otherwise the part from the failed edge on is pruned,
+    /// and `pruned` is called as by [`SearchTree::verify`].
     pub fn path<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
-        branch: &mut SearchTree<C, L, Se, A>,
+        tree: &mut SearchTree<C, L, Se, A>,
         id: NodeId,
         observer: &mut dyn Observer<C::State>,
         pruned: impl FnMut(&[NodeId]),
     ) -> Option<Path<C::State, L::Edge>> {
-        let passed = branch.verify(id, &mut self.steer, observer, pruned);
-        passed.then(|| branch.tree().path(id))
+        let passed = tree.verify(id, &mut self.checker, observer, pruned);
+        passed.then(|| tree.nodes().path(id))
     }
 
-    /// What has been done, with so many nodes.
+    /// The progress of a planner whose trees have this many nodes.
     #[must_use]
     pub fn progress(&self, nodes: usize) -> Progress {
-        let mut progress = Progress::new(self.iterations, nodes, self.steer.motions());
-        progress.rejected = self.steer.rejected();
+        let mut progress = Progress::new(self.iterations, nodes, self.checker.motions());
+        progress.rejected = self.checker.rejected();
         progress
     }
 }

@@ -3,33 +3,33 @@
 use super::{Growing, Inserter, Selector};
 use mp_cspace::{Direction, LocalPlanner, NodeId, Space};
 
-/// What became of growing toward a target.
+/// The result of growing toward a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Grown {
-    /// Nothing gained.
+    /// No node was added.
     Trapped,
-    /// The tree now ends at this node, nearer to the target.
+    /// This node was added, nearer to the target.
     Advanced(NodeId),
-    /// This node is the target, whether new or there before.
+    /// This node is the target, whether it is new or not.
     Reached(NodeId),
 }
 
-/// Grows a tree from a selected node toward the target. Implementations decide which steps are
-/// made; [`Growing`] makes them.
+/// Slot: grows a tree from a selected node toward the target. An extender decides which steps are made; [`Growing`]
+/// makes them.
 pub trait Extender<C: Space, L: LocalPlanner<C::State>> {
     /// Grows from `from`.
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown;
-    /// Whether a planner may try the straight way from the start to a goal, in one motion of any length, before it asks
-    /// this growth for the first time. Variants that must see every motion decline: those that refuse motions free of
-    /// collision, or promise to make none longer than a step. With two growths both must agree.
-    fn leaps(&self) -> bool {
+    /// Whether a planner may try the straight motion from the start to a goal, of any length, before it calls this
+    /// extender for the first time. Variants that must see every motion decline: those that refuse motions free of
+    /// collision, and those that make none longer than a step. With two extenders both must agree.
+    fn allows_direct(&self) -> bool {
         true
     }
-    /// Nodes of the tree that grows in `direction` were removed: node `i` was `survivors[i]`.
+    /// Nodes of the tree that grows in `direction` were removed: what is now node `i` was node `survivors[i]`.
     fn pruned(&mut self, _direction: Direction, _survivors: &[NodeId]) {}
 }
 
@@ -39,7 +39,7 @@ pub struct Extend;
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Extend {
     #[inline]
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
@@ -51,11 +51,11 @@ impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Extend {
 /// Step after step until the target is reached or a step fails (CONNECT of Kuffner and LaValle
 /// 2000). Each step becomes a node.
 ///
-/// Local planners whose steps need not come nearer would go on for ever: it ends as well where a
-/// step comes no nearer, and after `limit` steps.
+/// Also ends where a step comes no nearer to the target, and after `limit` steps: local planners whose steps need not
+/// come nearer would otherwise never end.
 #[derive(Clone, Copy, Debug)]
 pub struct Connect {
-    /// Most steps at a time, so that a tiny step cannot keep a planner from looking at its stop.
+    /// Most steps per call, so that a planner with tiny steps still reaches its stop.
     pub limit: u32,
 }
 
@@ -67,7 +67,7 @@ impl Default for Connect {
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for Connect {
     #[inline]
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,

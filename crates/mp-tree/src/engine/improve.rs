@@ -1,27 +1,27 @@
-//! The loop with one tree that goes on after a solution, for better ones.
+//! The anytime loop with one tree.
 
-use super::{Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree};
+use super::{
+    Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
+};
 use mp_cspace::{
     BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
     Space, Stop, StopReason,
 };
 
-/// The least part of its cost by which a path must be better than the one before: less than that
-/// may be rounding.
+/// The least part of its cost by which a path must be better than the one before: less may be rounding.
 const GAIN: f64 = 1e-9;
 
 /// A planner that grows one tree from the start and returns ever cheaper verified paths.
 ///
-/// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever
-/// the cheapest way to any of them costs less than what was returned last, be it by a new node or
-/// because the tree was rewired, that path is verified and returned. It no longer aims at listed
-/// goal states that it has reached.
+/// As [`SingleTree`](crate::SingleTree), but it remembers which nodes are in the goal. Whenever the cheapest path to
+/// any of them costs less than the path returned last, because of a new node or because the tree was rewired, it is
+/// verified and returned. Listed goal states that are reached are no longer aimed at.
 #[derive(Debug)]
 pub struct Improving<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
-    branch: SearchTree<C, L, Se, A>,
-    propose: P,
-    growth: G,
+    tree: SearchTree<C, L, Se, A>,
+    target_sampler: P,
+    extender: G,
     /// The nodes in the goal, in the order in which they were found.
     arrived: Vec<NodeId>,
     /// How many nodes have been tested for lying in the region.
@@ -38,16 +38,19 @@ where
     G: Extender<C, L>,
     A: Inserter<C, L>,
 {
-    /// The planner made by a recipe.
+    /// A planner for a problem.
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
+    pub fn assemble(
+        problem: Problem<'c, C, L>,
+        parts: TreePlannerParts<P, Se, G, A>,
+    ) -> Result<Self, BuildError> {
         Ok(Self {
-            core: Core::new(problem, &recipe.tuning)?,
-            branch: SearchTree::new(0, Direction::Forward, recipe.select, recipe.attach),
-            propose: recipe.propose,
-            growth: recipe.grow,
+            core: Core::new(problem, &parts.tuning)?,
+            tree: SearchTree::new(0, Direction::Forward, parts.selector, parts.inserter),
+            target_sampler: parts.target_sampler,
+            extender: parts.extender,
             arrived: Vec::new(),
             tested: 0,
             best: f64::INFINITY,
@@ -57,7 +60,7 @@ where
     /// The tree; empty before the first step.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
-        self.branch.tree()
+        self.tree.nodes()
     }
 
     /// The cost of the path returned last; infinite before there is one.
@@ -66,12 +69,12 @@ where
         self.best
     }
 
-    /// Plants the root and tries the straight ways.
+    /// Adds the root and tries the straight motions to the goals.
     fn begin(&mut self, rng: &mut Rng, observer: &mut dyn Observer<C::State>) {
-        // A start in the goal is found with the other nodes that are.
-        self.core.plant(&mut self.branch, observer);
-        while self.growth.leaps()
-            && let Some(grown) = self.core.leap(&mut self.branch, rng, observer)
+        // `better` finds a start that is in the goal.
+        self.core.add_start(&mut self.tree, observer);
+        while self.extender.allows_direct()
+            && let Some(grown) = self.core.connect_directly(&mut self.tree, rng, observer)
         {
             if !self.core.goals.has_region() {
                 self.note(grown);
@@ -79,7 +82,7 @@ where
         }
     }
 
-    /// Notes that a state aimed at is reached.
+    /// Remembers a node that reached the state aimed at.
     fn note(&mut self, grown: Grown) {
         if let Grown::Reached(id) = grown
             && !self.arrived.contains(&id)
@@ -88,36 +91,36 @@ where
         }
     }
 
-    /// A goal to aim at instead of exploring, now and then.
+    /// A goal not reached yet to aim at instead of exploring, with probability `goal_bias`.
     fn aim(&mut self, rng: &mut Rng) -> Option<C::State> {
         let goal = self.core.aim(rng)?;
-        let known = |&id: &NodeId| *self.branch.tree().state(id) == goal;
+        let known = |&id: &NodeId| *self.tree.nodes().state(id) == goal;
         if self.core.goals.has_region() || !self.arrived.iter().any(known) { Some(goal) } else { None }
     }
 
-    /// The cheapest path, if it is better than what was returned last and passes verification.
+    /// The cheapest path, if it is better than the path returned last and passes verification.
     fn better(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
-        while self.core.goals.has_region() && (self.tested as usize) < self.branch.tree().len() {
-            let reached = self.core.goals.reached(self.branch.tree().state(self.tested));
+        while self.core.goals.has_region() && (self.tested as usize) < self.tree.nodes().len() {
+            let reached = self.core.goals.reached(self.tree.nodes().state(self.tested));
             self.arrived.extend(reached.then_some(self.tested));
             self.tested += 1;
         }
         loop {
-            let tree = self.branch.tree();
+            let tree = self.tree.nodes();
             let costs = self.arrived.iter().map(|&id| (tree.cost(id), id));
             let (cost, id) = costs.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)))?;
             if self.best < f64::INFINITY && cost >= self.best - GAIN * self.best.abs() {
                 return None;
             }
             let pruned = |survivors: &[NodeId]| {
-                self.growth.pruned(Direction::Forward, survivors);
+                self.extender.pruned(Direction::Forward, survivors);
                 self.tested = survivors.partition_point(|&id| id < self.tested) as NodeId;
                 let renamed = |id: &NodeId| survivors.binary_search(id).ok().map(|new| new as NodeId);
                 self.arrived = self.arrived.iter().filter_map(renamed).collect();
             };
-            if let Some(path) = self.core.path(&mut self.branch, id, observer, pruned) {
+            if let Some(path) = self.core.path(&mut self.tree, id, observer, pruned) {
                 self.best = cost;
-                self.propose.improved(cost);
+                self.target_sampler.improved(cost);
                 return Some(path);
             }
         }
@@ -145,23 +148,27 @@ where
         if let Some(path) = self.better(observer) {
             return Some(path);
         }
-        let (target, why) = match self.aim(rng) {
+        let (target, purpose) = match self.aim(rng) {
             Some(goal) => (goal, Purpose::Join),
             None => {
-                let (points, select) = self.branch.parts();
-                (self.propose.propose(rng, self.core.steer.space(), points, select), Purpose::Explore)
+                let (points, selector) = self.tree.parts();
+                (
+                    self.target_sampler.next_target(rng, self.core.checker.space(), points, selector),
+                    Purpose::Explore,
+                )
             }
         };
         observer.on(Event::Sampled(&target));
-        let grown = self.branch.toward(&target, why, &mut self.core.steer, &mut self.growth, rng, observer);
-        if why == Purpose::Join && !self.core.goals.has_region() {
+        let grown =
+            self.tree.toward(&target, purpose, &mut self.core.checker, &mut self.extender, rng, observer);
+        if purpose == Purpose::Join && !self.core.goals.has_region() {
             self.note(grown);
         }
         self.better(observer)
     }
 
     fn progress(&self) -> Progress {
-        self.core.progress(self.branch.tree().len())
+        self.core.progress(self.tree.nodes().len())
     }
 
     fn improves(&self) -> bool {
@@ -169,9 +176,8 @@ where
     }
 }
 
-/// Runs a planner until it is stopped, and returns the last path it found with the reason. Each
-/// path is shown to `found` as it comes, with what had been done until then. A planner that does
-/// not [improve](Planner::improves) ends with its first.
+/// Runs a planner until it is stopped; returns the last path it found, and the reason. Calls `found` with each path and
+/// the progress so far. A planner that does not [improve](Planner::improves) ends with its first path.
 ///
 /// ```
 /// # use mp_cspace::{Discrete, FineDiscrete, Iterations, Resolution, Rn, Rng, Straight};

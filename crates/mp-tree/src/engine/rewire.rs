@@ -1,15 +1,15 @@
-//! Attach by the cheapest way: what makes RRT* of RRT.
+//! Slot: insertion by the cheapest parent, which turns RRT into RRT*.
 
-use super::{Inserted, Inserter, Selector, Tree, TreeEdgeChecker};
-use mp_cspace::{BuildError, Direction, Hit, LocalPlanner, Motion, NodeId, Space};
+use super::{Inserted, Inserter, Selector, Tree};
+use mp_cspace::{BuildError, Direction, EdgeChecker, Hit, LocalPlanner, Motion, NodeId, Space};
 
 /// Which nodes of a tree of n nodes, in a space of dimension d, count as near a new one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Near {
-    /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; any factor above 1 makes the best path
-    /// converge to an optimal one (k-nearest RRT*).
-    NearestSelector {
-        /// In (0, 1000]; 1.1 is customary.
+    /// The k nearest, k = ⌈factor · e · (1 + 1/d) · ln n⌉; with any factor above 1 the best path converges to an optimal
+    /// one (k-nearest RRT*).
+    KNearest {
+        /// In (0, 1000]; usually 1.1.
         factor: f64,
     },
     /// All within r = min(γ · (ln n / n)^(1/d), step). Convergence needs
@@ -23,7 +23,7 @@ pub enum Near {
 
 impl Default for Near {
     fn default() -> Self {
-        Self::NearestSelector { factor: 1.1 }
+        Self::KNearest { factor: 1.1 }
     }
 }
 
@@ -32,31 +32,31 @@ impl Near {
         self,
         (space, step): (&C, f64),
         points: &[C::State],
-        select: &Se,
+        selector: &Se,
         q: &C::State,
         out: &mut Vec<Hit>,
     ) {
         let (n, d) = (points.len() as f64 + 1.0, space.dim() as f64);
         match self {
-            Self::NearestSelector { factor } => {
+            Self::KNearest { factor } => {
                 let k = (factor * std::f64::consts::E * (1.0 + 1.0 / d) * n.ln()).ceil();
-                select.k_nearest(space, points, q, k as usize, out);
+                selector.k_nearest(space, points, q, k as usize, out);
             }
             Self::Radius { gamma } => {
                 let radius = (gamma * (n.ln() / n).powf(1.0 / d)).min(step);
-                select.near(space, points, q, radius, out);
+                selector.near(space, points, q, radius, out);
             }
         }
     }
 }
 
-/// Under the near node through which the root is reached at least cost; then every near node that
-/// is reached at less cost through the new one is hung on that (Karaman and Frazzoli 2011).
+/// Adds the end of a motion under the near node that gives it the least cost from the root; then makes it the parent of
+/// every near node that costs less through it (Karaman and Frazzoli 2011).
 ///
-/// Candidates are tried in order of the cost they promise, which is that of the near node and the
-/// distance; the first motion found free is taken, so that few are checked. Costs are those of the
-/// local planner, which must be able to reach a state exactly and should ask no less than the
-/// distance: where it cannot, this attaches as [`Append`](crate::Append).
+/// Candidate parents are tried in order of a lower bound of the cost: that of the near node plus the distance. The first
+/// motion found free is taken, so few are checked. Costs are those of the local planner, which must be able to reach a
+/// state exactly, and whose costs should be no less than the distance; where it cannot reach one, this inserts as
+/// [`Append`](crate::Append).
 #[derive(Clone, Debug, Default)]
 pub struct Rewire {
     near: Near,
@@ -66,27 +66,27 @@ pub struct Rewire {
 }
 
 impl Rewire {
-    /// Rewires the nodes that are `near`.
+    /// Rewires the nodes that count as `near`.
     ///
     /// # Errors
     /// When a number in `near` is out of range.
     pub fn new(near: Near) -> Result<Self, BuildError> {
         let (name, value, most) = match near {
-            Near::NearestSelector { factor } => ("near", factor, 1000.0),
+            Near::KNearest { factor } => ("near", factor, 1000.0),
             Near::Radius { gamma } => ("gamma", gamma, f64::MAX),
         };
         if value > 0.0 && value <= most {
             return Ok(Self { near, ..Self::default() });
         }
         let range = match near {
-            Near::NearestSelector { .. } => "in (0, 1000]",
+            Near::KNearest { .. } => "in (0, 1000]",
             Near::Radius { .. } => "a finite number above zero",
         };
         Err(BuildError::OutOfRange { name, value, range: range.to_owned() })
     }
 }
 
-/// How far it is from a state nearer to the root to one farther away, in forward time.
+/// The distance in forward time between a state nearer to the root (`upper`) and one farther from it (`lower`).
 fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: &C::State) -> f64 {
     match direction {
         Direction::Forward => space.distance(upper, lower),
@@ -95,11 +95,11 @@ fn distance<C: Space>(space: &C, direction: Direction, upper: &C::State, lower: 
 }
 
 impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
-    fn attach<Se: Selector<C>>(
+    fn insert<Se: Selector<C>>(
         &mut self,
-        steer: &mut TreeEdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         tree: &mut Tree<C::State, L::Edge>,
-        select: &mut Se,
+        selector: &mut Se,
         from: NodeId,
         motion: Motion<C::State, L::Edge>,
     ) -> Inserted {
@@ -107,13 +107,13 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
         if motion.end == *tree.state(from) {
             return Inserted::Known(from);
         }
-        let (space, direction) = (steer.space(), tree.direction());
-        self.near.find((space, steer.step()), tree.states(), select, &motion.end, &mut self.hits);
+        let (space, direction) = (checker.space(), tree.direction());
+        self.near.find((space, checker.step()), tree.states(), selector, &motion.end, &mut self.hits);
         if let Some(hit) = self.hits.iter().find(|hit| *tree.state(hit.id) == motion.end) {
             return Inserted::Known(hit.id);
         }
 
-        // All that asks the user's code comes first, so that a panic finds the tree as it was.
+        // The user's code runs first, so that a panic leaves the tree unchanged.
         let mut best = (from, motion);
         let mut cost = tree.cost(from) + best.1.cost;
         self.promises.clear();
@@ -128,22 +128,22 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
             if promise >= cost {
                 break;
             }
-            let Some(way) = steer.reach(tree.state(id), &best.1.end, direction) else { continue };
-            if tree.cost(id) + way.cost < cost {
-                cost = tree.cost(id) + way.cost;
-                best = (id, way);
+            let Some(other) = checker.reach(tree.state(id), &best.1.end, direction) else { continue };
+            if tree.cost(id) + other.cost < cost {
+                cost = tree.cost(id) + other.cost;
+                best = (id, other);
             }
         }
         let (parent, motion) = best;
-        let verified = steer.distrusts();
+        let verified = checker.distrusts();
         let mut better = Vec::new();
         for &Hit { id, .. } in &self.hits {
             let promise = cost + distance(space, direction, &motion.end, tree.state(id));
             if id != parent
                 && promise < tree.cost(id)
-                && let Some(way) = steer.reach(&motion.end, tree.state(id), direction)
+                && let Some(other) = checker.reach(&motion.end, tree.state(id), direction)
             {
-                better.push((id, way));
+                better.push((id, other));
             }
         }
 
@@ -151,9 +151,9 @@ impl<C: Space, L: LocalPlanner<C::State>> Inserter<C, L> for Rewire {
         if verified {
             tree.set_verified(new);
         }
-        for (id, way) in better {
-            // One rewired before may have made it cheaper than this.
-            if cost + way.cost < tree.cost(id) && tree.reparent(id, new, way.edge, way.cost) {
+        for (id, other) in better {
+            // A node rewired before may have made this one cheaper already.
+            if cost + other.cost < tree.cost(id) && tree.reparent(id, new, other.edge, other.cost) {
                 self.rewired.push(id);
                 if verified {
                     tree.set_verified(id);

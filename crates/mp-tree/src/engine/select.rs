@@ -2,54 +2,53 @@
 
 use mp_cspace::{Hit, NearestNeighbors, NodeId, Rng, Space};
 
-/// Why a tree is asked to grow.
+/// Why a tree grows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Purpose {
-    /// Toward a sample, to see more of the space.
+    /// Toward a sample, to explore the space.
     Explore,
     /// Toward a node of another tree or a goal, to meet it.
     Join,
 }
 
-/// Chooses the nodes to grow from, and learns from what became of them.
+/// Slot: chooses the nodes to grow from, and learns from the results.
 ///
-/// `points` are always the states of one tree, by id. The selector is told of each node in order
-/// and owns the index of the tree; per-node memory belongs here.
+/// `points` are always the states of one tree, by id. The selector is informed of each new node in order; it owns the
+/// index of the tree, and whatever is remembered per node.
 pub trait Selector<C: Space> {
-    /// The candidates to try in order, into `out` (cleared first), with their distances to
-    /// `target`. None at all means that this target is refused.
+    /// Writes the candidates in the order to try them to `out` (cleared first), with their distances to `target`. No
+    /// candidate means that this target is refused.
     fn select(
         &mut self,
         space: &C,
         points: &[C::State],
         target: &C::State,
-        why: Purpose,
+        purpose: Purpose,
         rng: &mut Rng,
         out: &mut Vec<Hit>,
     );
-    /// All nodes within `radius` of `q` (inclusive), in order of distance, into `out` (cleared
-    /// first).
+    /// Writes all nodes within `radius` of `q` (inclusive), in order of distance, to `out` (cleared first).
     fn near(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>);
-    /// The `k` nodes nearest to `q`, in order of distance, into `out` (cleared first).
+    /// Writes the `k` nodes nearest to `q`, in order of distance, to `out` (cleared first).
     ///
-    /// The default sorts all nodes: give a better one where there is an index.
+    /// The default sorts all nodes: override it where there is an index.
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
         self.near(space, points, q, f64::INFINITY, out);
         out.truncate(k);
     }
     /// Node `id` is new; `parent` is `None` for a root.
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId, parent: Option<NodeId>);
-    /// Whether the tree grew from `id` when asked for `why`.
-    fn feedback(&mut self, _id: NodeId, _why: Purpose, _grew: bool) {}
-    /// Whether no node is left to grow from, whatever the target; the default knows of none such.
+    /// Called with whether the tree grew from `id`, and for which purpose.
+    fn feedback(&mut self, _id: NodeId, _purpose: Purpose, _grew: bool) {}
+    /// Whether no node is left to grow from, for any target; by default never.
     fn exhausted(&self) -> bool {
         false
     }
-    /// Nodes were removed: node `i` was `survivors[i]`, and `points` are what remains.
+    /// Nodes were removed: what is now node `i` was node `survivors[i]`, and `points` are the remaining states.
     fn pruned(&mut self, space: &C, points: &[C::State], survivors: &[NodeId]);
 }
 
-/// The nearest node.
+/// Selects the nearest node.
 #[derive(Clone, Debug, Default)]
 pub struct NearestSelector<N>(pub N);
 

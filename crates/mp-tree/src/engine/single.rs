@@ -1,33 +1,31 @@
 //! The loop with one tree, grown from the start.
 
 use super::{
-    Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree,
-    TreeEdgeChecker,
+    Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
 };
 use mp_cspace::{
-    BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
-    Space,
+    BuildError, Direction, EdgeChecker, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem,
+    Progress, Rng, Space,
 };
 
 /// A planner that grows one tree from the start until it enters the goal.
 ///
-/// The first iteration tries to go straight from the start to each listed goal state, unless the growth
-/// [declines](Extender::leaps). Each one
-/// then proposes a target (with probability [`goal_bias`](crate::Tuning::goal_bias) a goal),
-/// grows the tree toward it, and verifies the path to what entered the goal. Stepping on after a
-/// solution grows the same tree on; the same path may be found again.
+/// The first iteration tries a straight motion from the start to each listed goal state, unless the extender
+/// [declines](Extender::allows_direct). Each iteration then samples a target (with probability
+/// [`goal_bias`](crate::Tuning::goal_bias) a goal), grows the tree toward it, and verifies the path to the first new node
+/// in the goal. Stepping on after a solution continues with the same tree; the same path may be found again.
 #[derive(Debug)]
 pub struct SingleTree<'c, C: Space, L: LocalPlanner<C::State>, P, Se, G, A> {
     core: Core<'c, C, L>,
-    branch: SearchTree<C, L, Se, A>,
-    propose: P,
-    growth: G,
+    tree: SearchTree<C, L, Se, A>,
+    target_sampler: P,
+    extender: G,
 }
 
-/// A tree, how it moves and how it grows.
+/// A tree, its edge checker and its extender.
 type Parts<'a, 'c, C, L, G> = (
     &'a Tree<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge>,
-    &'a mut TreeEdgeChecker<'c, C, L>,
+    &'a mut EdgeChecker<'c, C, L>,
     &'a mut G,
 );
 
@@ -40,48 +38,51 @@ where
     G: Extender<C, L>,
     A: Inserter<C, L>,
 {
-    /// The planner made by a recipe.
+    /// A planner for a problem.
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub fn assemble(problem: Problem<'c, C, L>, recipe: Recipe<P, Se, G, A>) -> Result<Self, BuildError> {
+    pub fn assemble(
+        problem: Problem<'c, C, L>,
+        parts: TreePlannerParts<P, Se, G, A>,
+    ) -> Result<Self, BuildError> {
         Ok(Self {
-            core: Core::new(problem, &recipe.tuning)?,
-            branch: SearchTree::new(0, Direction::Forward, recipe.select, recipe.attach),
-            propose: recipe.propose,
-            growth: recipe.grow,
+            core: Core::new(problem, &parts.tuning)?,
+            tree: SearchTree::new(0, Direction::Forward, parts.selector, parts.inserter),
+            target_sampler: parts.target_sampler,
+            extender: parts.extender,
         })
     }
 
     /// The tree; empty before the first step.
     #[must_use]
     pub fn tree(&self) -> &Tree<C::State, L::Edge> {
-        self.branch.tree()
+        self.tree.nodes()
     }
 
-    /// How it grows.
+    /// The extender.
     #[must_use]
-    pub fn growth(&self) -> &G {
-        &self.growth
+    pub fn extender(&self) -> &G {
+        &self.extender
     }
 
-    /// The tree, how it moves and how it grows.
+    /// The tree, its edge checker and its extender.
     pub(crate) fn parts(&mut self) -> Parts<'_, 'c, C, L, G> {
-        (self.branch.tree(), &mut self.core.steer, &mut self.growth)
+        (self.tree.nodes(), &mut self.core.checker, &mut self.extender)
     }
 
-    /// Plants the root and tries the straight way. What a panic of the user's code interrupts, the
-    /// next step takes up behind the place.
+    /// Adds the root and tries the straight motions to the goals. After a panic of the user's code the next step
+    /// continues behind the motion that panicked.
     fn begin(
         &mut self,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if let Some(root) = self.core.plant(&mut self.branch, observer) {
+        if let Some(root) = self.core.add_start(&mut self.tree, observer) {
             return self.candidate(root, observer);
         }
-        while self.growth.leaps()
-            && let Some(grown) = self.core.leap(&mut self.branch, rng, observer)
+        while self.extender.allows_direct()
+            && let Some(grown) = self.core.connect_directly(&mut self.tree, rng, observer)
         {
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate(id, observer) {
@@ -92,35 +93,36 @@ where
     }
 
     /// Grows toward `target`, which is a goal when the purpose is to join.
-    fn grow(
+    fn grow_toward(
         &mut self,
         target: &C::State,
-        why: Purpose,
+        purpose: Purpose,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         observer.on(Event::Sampled(target));
-        let before = self.branch.tree().len();
-        let grown = self.branch.toward(target, why, &mut self.core.steer, &mut self.growth, rng, observer);
-        if let (Purpose::Join, Grown::Reached(id)) = (why, grown) {
+        let before = self.tree.nodes().len();
+        let grown =
+            self.tree.toward(target, purpose, &mut self.core.checker, &mut self.extender, rng, observer);
+        if let (Purpose::Join, Grown::Reached(id)) = (purpose, grown) {
             return self.candidate(id, observer);
         }
         if self.core.goals.has_region() {
-            let mut new = before as NodeId..self.branch.tree().len() as NodeId;
-            let entered = new.find(|&id| self.core.goals.reached(self.branch.tree().state(id)))?;
+            let mut new = before as NodeId..self.tree.nodes().len() as NodeId;
+            let entered = new.find(|&id| self.core.goals.reached(self.tree.nodes().state(id)))?;
             return self.candidate(entered, observer);
         }
         None
     }
 
-    /// The path to `id` if it passes verification; otherwise its bad part is pruned.
+    /// The path to `id` if it passes verification; otherwise the part from the failed edge on is pruned.
     fn candidate(
         &mut self,
         id: NodeId,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        let pruned = |survivors: &[NodeId]| self.growth.pruned(Direction::Forward, survivors);
-        self.core.path(&mut self.branch, id, observer, pruned)
+        let pruned = |survivors: &[NodeId]| self.extender.pruned(Direction::Forward, survivors);
+        self.core.path(&mut self.tree, id, observer, pruned)
     }
 }
 
@@ -145,16 +147,16 @@ where
             return Some(path);
         }
         if let Some(goal) = self.core.aim(rng) {
-            return self.grow(&goal, Purpose::Join, rng, observer);
+            return self.grow_toward(&goal, Purpose::Join, rng, observer);
         }
-        let (points, select) = self.branch.parts();
-        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
-        self.grow(&target, Purpose::Explore, rng, observer)
+        let (points, selector) = self.tree.parts();
+        let target = self.target_sampler.next_target(rng, self.core.checker.space(), points, selector);
+        self.grow_toward(&target, Purpose::Explore, rng, observer)
     }
 
     fn progress(&self) -> Progress {
-        let mut progress = self.core.progress(self.branch.tree().len());
-        progress.exhausted = self.branch.is_exhausted();
+        let mut progress = self.core.progress(self.tree.nodes().len());
+        progress.exhausted = self.tree.is_exhausted();
         progress
     }
 }

@@ -3,34 +3,33 @@
 use super::{Purpose, Selector};
 use mp_cspace::{Hit, Rng, Sampler, Space};
 
-/// Proposes the next target of exploration, seeing the tree that is about to grow.
+/// Slot: samples the next target of exploration, given the tree that is about to grow.
 pub trait TargetSampler<C: Space> {
     /// The next target.
-    fn propose<Se: Selector<C>>(
+    fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
         space: &C,
         points: &[C::State],
-        select: &mut Se,
+        selector: &mut Se,
     ) -> C::State;
-    /// A verified path of this cost was found: from now on only cheaper ones are of interest.
+    /// A verified path of this cost was found: only cheaper ones are wanted from now on.
     fn improved(&mut self, _cost: f64) {}
 }
 
-/// The samples of a [`Sampler`], whatever the tree looks like.
+/// The samples of a [`Sampler`], independent of the tree.
 #[derive(Clone, Debug, Default)]
 pub struct Samples<Sa>(pub Sa);
 
 impl<C: Space, Sa: Sampler<C::State>> TargetSampler<C> for Samples<Sa> {
     #[inline]
-    fn propose<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
+    fn next_target<Se: Selector<C>>(&mut self, rng: &mut Rng, _: &C, _: &[C::State], _: &mut Se) -> C::State {
         self.0.sample(rng)
     }
 }
 
-/// The proposals of another, without those for which the selector has no candidate: for selectors
-/// that refuse targets. The selector decides when to give in; after 10,000 refusals in a row the
-/// last proposal is passed on all the same.
+/// The targets of another target sampler for which the selector has a candidate: for selectors that refuse targets. The
+/// selector decides when to stop refusing; after 10,000 refusals in a row the last target is returned all the same.
 #[derive(Clone, Debug, Default)]
 pub struct Acceptable<P> {
     inner: P,
@@ -38,27 +37,27 @@ pub struct Acceptable<P> {
 }
 
 impl<P> Acceptable<P> {
-    /// The proposals of `inner` that are accepted.
+    /// The targets of `inner` that are accepted.
     pub fn new(inner: P) -> Self {
         Self { inner, hits: Vec::new() }
     }
 }
 
 impl<C: Space, P: TargetSampler<C>> TargetSampler<C> for Acceptable<P> {
-    fn propose<Se: Selector<C>>(
+    fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
         space: &C,
         points: &[C::State],
-        select: &mut Se,
+        selector: &mut Se,
     ) -> C::State {
-        let mut target = self.inner.propose(rng, space, points, select);
+        let mut target = self.inner.next_target(rng, space, points, selector);
         for _ in 0..10_000 {
-            select.select(space, points, &target, Purpose::Explore, rng, &mut self.hits);
+            selector.select(space, points, &target, Purpose::Explore, rng, &mut self.hits);
             if points.is_empty() || !self.hits.is_empty() {
                 break;
             }
-            target = self.inner.propose(rng, space, points, select);
+            target = self.inner.next_target(rng, space, points, selector);
         }
         target
     }

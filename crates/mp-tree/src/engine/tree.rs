@@ -4,9 +4,9 @@ use mp_cspace::{Direction, Motion, NodeId, Path};
 
 /// A forest of states and the motions between them.
 ///
-/// Edges are kept in forward time whichever way the tree grows: in a [`Direction::Forward`] tree
-/// an edge leads from the parent to the child, in a [`Direction::Backward`] tree from the child
-/// to the parent. Ids are indices in order of insertion.
+/// Edges are stored in forward time in either direction of growth: in a [`Direction::Forward`] tree an edge leads from
+/// the parent to the child, in a [`Direction::Backward`] tree from the child to the parent. Ids are indices in order of
+/// insertion.
 ///
 /// ```
 /// use mp_cspace::{Direction, Motion};
@@ -20,7 +20,7 @@ use mp_cspace::{Direction, Motion, NodeId, Path};
 /// assert_eq!(tree.path(b).edges, ["3 to 5", "5 to 9"]);
 /// ```
 ///
-/// With the feature `serde` it is written and read: no edge that was read counts as verified.
+/// With the feature `serde` trees are serialized and deserialized; a deserialized edge does not count as verified.
 #[derive(Clone, Debug)]
 pub struct Tree<S, E> {
     direction: Direction,
@@ -28,7 +28,7 @@ pub struct Tree<S, E> {
     nodes: Vec<Node<E>>,
 }
 
-/// What there is to a node beside its state.
+/// What a node has beside its state.
 #[derive(Clone, Debug)]
 struct Node<E> {
     cost: f64,
@@ -42,7 +42,7 @@ struct Node<E> {
 /// No node.
 const NONE: NodeId = NodeId::MAX;
 
-/// How a node hangs on its parent.
+/// The connection of a node to its parent.
 #[derive(Clone, Debug)]
 struct Link<E> {
     parent: NodeId,
@@ -58,7 +58,7 @@ impl<S, E> Tree<S, E> {
         Self { direction, states: Vec::new(), nodes: Vec::new() }
     }
 
-    /// Which way the tree grows.
+    /// The direction in which the tree grows.
     #[must_use]
     pub fn direction(&self) -> Direction {
         self.direction
@@ -115,13 +115,13 @@ impl<S, E> Tree<S, E> {
         self.nodes[id as usize].cost
     }
 
-    /// Whether the edge of a node has passed verification. Roots have none to fail.
+    /// Whether the edge of a node has passed verification; true for roots, which have no edge.
     #[must_use]
     pub fn is_verified(&self, id: NodeId) -> bool {
         self.link(id).is_none_or(|link| link.verified)
     }
 
-    /// Notes that the edge of a node has passed verification.
+    /// Records that the edge of a node has passed verification.
     pub fn set_verified(&mut self, id: NodeId) {
         if let Some(link) = &mut self.nodes[id as usize].link {
             link.verified = true;
@@ -142,13 +142,11 @@ impl<S, E> Tree<S, E> {
         self.insert(motion.end, Node { cost, link: Some(link), child: NONE, sibling })
     }
 
-    /// Hangs node `id` on another parent, by an edge (in forward time) of the given cost, and
-    /// brings the costs of all that hangs on it up to date. The new edge is not verified yet; those
-    /// below keep what they have. `false`, and nothing changes, where that would make a ring:
-    /// `parent` is `id` or hangs on it.
+    /// Gives node `id` another parent, by an edge (in forward time) of the given cost, and updates the costs in the
+    /// subtree of `id`. The new edge is not verified yet; edges below keep their state. Returns `false` and changes
+    /// nothing where that would make a cycle: `parent` is in the subtree of `id`.
     ///
-    /// Linear in the depth of `parent`, the children of the former parent and the nodes that hang
-    /// on `id`.
+    /// Linear in the depth of `parent`, the children of the former parent and the size of the subtree of `id`.
     pub fn reparent(&mut self, id: NodeId, parent: NodeId, edge: E, cost: f64) -> bool {
         if self.lineage(parent).any(|node| node == id) {
             return false;
@@ -176,10 +174,11 @@ impl<S, E> Tree<S, E> {
         })
     }
 
-    /// The tree of these states, each with its parent, edge and cost but roots, in linear time. Parents are there.
+    /// The tree of these states, each with its parent, edge and cost, or `None` for roots; in linear time. Every parent
+    /// must be one of the nodes.
     ///
     /// # Errors
-    /// A node that hangs on itself.
+    /// A node that is its own ancestor.
     #[cfg(feature = "serde")]
     pub(super) fn from_links(
         direction: Direction,
@@ -211,7 +210,7 @@ impl<S, E> Tree<S, E> {
         }
     }
 
-    /// Takes `id` out of the list of the children of `parent`.
+    /// Removes `id` from the list of children of `parent`.
     fn unlink(&mut self, id: NodeId, parent: NodeId) {
         let after = self.nodes[id as usize].sibling;
         match self.children(parent).take_while(|&child| child != id).last() {
@@ -237,8 +236,8 @@ impl<S, E> Tree<S, E> {
         std::iter::successors(Some(id), |&node| self.parent(node))
     }
 
-    /// The path between a node and its root, in forward time: from the root in a forward tree,
-    /// to the root in a backward tree.
+    /// The path between a node and its root, in forward time: from the root in a forward tree, to the root in a backward
+    /// tree.
     #[must_use]
     pub fn path(&self, id: NodeId) -> Path<S, E>
     where
@@ -254,25 +253,25 @@ impl<S, E> Tree<S, E> {
         Path { states, edges }
     }
 
-    /// Removes a node and everything that hangs on it. The others keep their order and are
-    /// renumbered without gaps; the answer gives their former ids, so node `i` was `answer[i]`.
+    /// Removes a node with its subtree. The other nodes keep their order and are renumbered without gaps. Returns their
+    /// former ids: what is now node `i` was node `answer[i]`.
     ///
     /// Linear in the size of the tree.
     pub fn prune(&mut self, id: NodeId) -> Vec<NodeId> {
         if let Some(parent) = self.parent(id) {
             self.unlink(id, parent);
         }
-        let doomed = self.below(id);
+        let removed = self.below(id);
         let mut renamed = vec![0; self.len()];
         let mut survivors = Vec::new();
         for old in 0..self.len() {
-            if !doomed[old] {
+            if !removed[old] {
                 renamed[old] = survivors.len() as NodeId;
                 survivors.push(old as NodeId);
             }
         }
-        keep(&mut self.states, &doomed);
-        keep(&mut self.nodes, &doomed);
+        keep(&mut self.states, &removed);
+        keep(&mut self.nodes, &removed);
         let rename = |at: &mut NodeId| *at = if *at == NONE { NONE } else { renamed[*at as usize] };
         for node in &mut self.nodes {
             node.link.iter_mut().for_each(|link| rename(&mut link.parent));
@@ -282,8 +281,8 @@ impl<S, E> Tree<S, E> {
         survivors
     }
 
-    /// For each node whether it is `id` or hangs on it. Asks nothing of the order of parents and
-    /// children: rewiring may put a parent after its child.
+    /// For each node whether it is in the subtree of `id`. Works for any order of parents and children: rewiring may put
+    /// a parent after its child.
     fn below(&self, id: NodeId) -> Vec<bool> {
         let mut known: Vec<Option<bool>> = vec![None; self.len()];
         known[id as usize] = Some(true);
@@ -308,11 +307,11 @@ impl<S, E> Tree<S, E> {
     }
 }
 
-fn keep<T>(items: &mut Vec<T>, doomed: &[bool]) {
+fn keep<T>(items: &mut Vec<T>, removed: &[bool]) {
     let mut at = 0;
     items.retain(|_| {
         at += 1;
-        !doomed[at - 1]
+        !removed[at - 1]
     });
 }
 

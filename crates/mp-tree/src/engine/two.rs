@@ -1,7 +1,9 @@
 //! The loop with two trees, grown from the start and from the goal.
 
 use super::core::joined;
-use super::{Core, Extender, Grown, Inserter, Purpose, Recipe, SearchTree, Selector, TargetSampler, Tree};
+use super::{
+    Core, Extender, Grown, Inserter, Purpose, SearchTree, Selector, TargetSampler, Tree, TreePlannerParts,
+};
 use mp_cspace::{
     BuildError, Direction, Event, LocalPlanner, NodeId, Observer, Path, Planner, Problem, Progress, Rng,
     Space,
@@ -9,23 +11,22 @@ use mp_cspace::{
 
 /// A planner that grows one tree from the start and one from the goal until they meet.
 ///
-/// The first iteration tries to go straight from the start to each listed goal state, unless one of the growths
-/// [declines](Extender::leaps). Each one
-/// then grows one tree toward a proposed target, and the other toward what was reached; the trees
-/// take turns. Where they meet, the path is verified. The goal tree has a root for each listed
+/// The first iteration tries a straight motion from the start to each listed goal state, unless one of the extenders
+/// [declines](Extender::allows_direct). Each iteration then grows one tree toward a sampled target, and the other toward
+/// the node that was added; the trees take turns. Where they meet, the path is verified. The goal tree has a root for each listed
 /// goal state; where goals come from a sampler, a root is added with probability
-/// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in each one until there is any.
-/// Stepping on after a solution grows the same trees on.
+/// [`goal_bias`](crate::Tuning::goal_bias) per iteration, and in every iteration until there is one. Stepping on after a
+/// solution continues with the same trees.
 #[derive(Debug)]
 pub struct TwoTrees<'c, C: Space, L: LocalPlanner<C::State>, P, Se, GA, GB, A> {
     core: Core<'c, C, L>,
     trees: [SearchTree<C, L, Se, A>; 2],
-    /// How many listed goal states have been looked at, how many roots that gave, and how many of
-    /// those have been tried straight from the start.
-    planted: usize,
+    /// How many listed goal states were considered as roots, how many roots that gave, and to how many of those a straight
+    /// motion from the start was tried.
+    rooted: usize,
     roots: NodeId,
     tried: NodeId,
-    propose: P,
+    target_sampler: P,
     explore: GA,
     join: GB,
     turn: usize,
@@ -41,14 +42,14 @@ where
     GB: Extender<C, L>,
     A: Inserter<C, L>,
 {
-    /// The planner made by a recipe. `planner` names it in errors.
+    /// A planner for a problem. `planner` is its name in errors.
     ///
     /// # Errors
-    /// When a parameter is out of range, or there is nothing to root the goal tree at.
+    /// When a parameter is out of range, or there is no state to root the goal tree at.
     pub fn assemble(
         planner: &'static str,
         problem: Problem<'c, C, L>,
-        recipe: Recipe<P, Se, (GA, GB), A>,
+        parts: TreePlannerParts<P, Se, (GA, GB), A>,
     ) -> Result<Self, BuildError>
     where
         Se: Clone,
@@ -57,17 +58,17 @@ where
         if !problem.goals().can_aim() {
             return Err(BuildError::NoGoalState { planner });
         }
-        let forward = SearchTree::new(0, Direction::Forward, recipe.select.clone(), recipe.attach.clone());
-        let backward = SearchTree::new(1, Direction::Backward, recipe.select, recipe.attach);
+        let forward = SearchTree::new(0, Direction::Forward, parts.selector.clone(), parts.inserter.clone());
+        let backward = SearchTree::new(1, Direction::Backward, parts.selector, parts.inserter);
         Ok(Self {
-            core: Core::new(problem, &recipe.tuning)?,
+            core: Core::new(problem, &parts.tuning)?,
             trees: [forward, backward],
-            planted: 0,
+            rooted: 0,
             roots: 0,
             tried: 0,
-            propose: recipe.propose,
-            explore: recipe.grow.0,
-            join: recipe.grow.1,
+            target_sampler: parts.target_sampler,
+            explore: parts.extender.0,
+            join: parts.extender.1,
             turn: 0,
         })
     }
@@ -75,33 +76,33 @@ where
     /// The trees from the start and from the goal; empty before the first step.
     #[must_use]
     pub fn trees(&self) -> [&Tree<C::State, L::Edge>; 2] {
-        [self.trees[0].tree(), self.trees[1].tree()]
+        [self.trees[0].nodes(), self.trees[1].nodes()]
     }
 
-    /// Plants the roots and tries the straight way. What a panic of the user's code interrupts,
-    /// the next step takes up behind the place.
+    /// Adds the roots and tries the straight motions to the goals. After a panic of the user's code the next step
+    /// continues behind the motion that panicked.
     fn begin(
         &mut self,
         rng: &mut Rng,
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
-        if let Some(root) = self.core.plant(&mut self.trees[0], observer) {
-            return Some(self.trees[0].tree().path(root));
+        if let Some(root) = self.core.add_start(&mut self.trees[0], observer) {
+            return Some(self.trees[0].nodes().path(root));
         }
-        let space = self.core.steer.space();
-        while let Some(goal) = self.core.goals.listed().get(self.planted) {
-            self.planted += 1;
-            if !self.trees[1].knows(space, goal) {
+        let space = self.core.checker.space();
+        while let Some(goal) = self.core.goals.listed().get(self.rooted) {
+            self.rooted += 1;
+            if !self.trees[1].contains(space, goal) {
                 self.trees[1].add_root(space, goal.clone(), observer);
             }
-            self.roots = self.trees[1].tree().len() as NodeId;
+            self.roots = self.trees[1].nodes().len() as NodeId;
         }
-        while self.explore.leaps() && self.join.leaps() && self.tried < self.roots {
+        while self.explore.allows_direct() && self.join.allows_direct() && self.tried < self.roots {
             let goal_root = self.tried;
             self.tried += 1;
             let [forward, backward] = &mut self.trees;
-            let goal = backward.tree().state(goal_root);
-            let grown = forward.leap(0, goal, &mut self.core.steer, rng, observer);
+            let goal = backward.nodes().state(goal_root);
+            let grown = forward.connect_directly(0, goal, &mut self.core.checker, rng, observer);
             let Grown::Reached(id) = grown else { continue };
             if let Some(path) = self.candidate([id, goal_root], observer) {
                 return Some(path);
@@ -110,24 +111,24 @@ where
         None
     }
 
-    /// The path through two nodes with the same state, if it passes verification; otherwise its
-    /// bad part is pruned.
+    /// The path through two nodes with the same state, if it passes verification; otherwise the part from the failed edge
+    /// on is pruned.
     fn candidate(
         &mut self,
         meeting: [NodeId; 2],
         observer: &mut dyn Observer<C::State>,
     ) -> Option<Path<C::State, L::Edge>> {
         for (tree, id) in self.trees.iter_mut().zip(meeting) {
-            let direction = tree.tree().direction();
+            let direction = tree.nodes().direction();
             let pruned = |survivors: &[NodeId]| {
                 self.explore.pruned(direction, survivors);
                 self.join.pruned(direction, survivors);
             };
-            if !tree.verify(id, &mut self.core.steer, observer, pruned) {
+            if !tree.verify(id, &mut self.core.checker, observer, pruned) {
                 return None;
             }
         }
-        Some(joined([0, 1].map(|i| self.trees[i].tree().path(meeting[i]))))
+        Some(joined([0, 1].map(|i| self.trees[i].nodes().path(meeting[i]))))
     }
 }
 
@@ -159,20 +160,26 @@ where
         self.turn ^= 1;
         let [forward, backward] = &mut self.trees;
         let (a, b) = if turn == 0 { (forward, backward) } else { (backward, forward) };
-        let (points, select) = a.parts();
-        let target = self.propose.propose(rng, self.core.steer.space(), points, select);
+        let (points, selector) = a.parts();
+        let target = self.target_sampler.next_target(rng, self.core.checker.space(), points, selector);
         observer.on(Event::Sampled(&target));
         let grown =
-            a.toward(&target, Purpose::Explore, &mut self.core.steer, &mut self.explore, rng, observer);
+            a.toward(&target, Purpose::Explore, &mut self.core.checker, &mut self.explore, rng, observer);
         let (Grown::Advanced(i) | Grown::Reached(i)) = grown else { return None };
-        let joined =
-            b.toward(a.tree().state(i), Purpose::Join, &mut self.core.steer, &mut self.join, rng, observer);
+        let joined = b.toward(
+            a.nodes().state(i),
+            Purpose::Join,
+            &mut self.core.checker,
+            &mut self.join,
+            rng,
+            observer,
+        );
         let Grown::Reached(j) = joined else { return None };
         self.candidate(if turn == 0 { [i, j] } else { [j, i] }, observer)
     }
 
     fn progress(&self) -> Progress {
-        let nodes = self.trees.iter().map(|branch| branch.tree().len()).sum();
+        let nodes = self.trees.iter().map(|tree| tree.nodes().len()).sum();
         self.core.progress(nodes)
     }
 }

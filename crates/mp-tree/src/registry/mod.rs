@@ -1,14 +1,14 @@
 //! Planners by name, for programs that choose at run time.
 
+mod meta;
 mod state;
-mod wrap;
 
+pub use meta::{MetaPlanner, PlannerSpec, build_from, meta_planners};
 pub use state::{ProblemFactory, TreeState};
-pub use wrap::{MetaPlanner, PlannerSpec, build_from, wrappers};
 
 use crate::algo;
-use crate::by_name::{AnyPlanner, Given};
-use crate::{BuildError, PlannerInfo, Problem, Settings, Tuning, closest};
+use crate::by_name::{AnyPlanner, BuildArgs};
+use crate::{BuildError, PlannerInfo, Problem, Settings, Tuning};
 use mp_cspace::{DefaultNn, MotionValidity, NearestNeighbors, Space, Straight};
 
 /// All planners of the crate.
@@ -20,24 +20,18 @@ pub fn planners() -> &'static [PlannerInfo] {
 /// The planner called `name`, which may be one of its [other names](PlannerInfo::aliases).
 ///
 /// # Errors
-/// When there is none, with the names there are.
+/// When there is no such planner; the error lists the names.
 pub fn planner(name: &str) -> Result<&'static PlannerInfo, BuildError> {
-    planners().iter().find(|info| info.is_called(name)).ok_or_else(|| unknown(name))
+    let found = planners().iter().find(|info| info.is_called(name));
+    found.ok_or_else(|| BuildError::unknown_planner(name, planners()))
 }
 
-fn unknown(name: &str) -> BuildError {
-    let known: Vec<_> = planners().iter().map(|info| info.name).collect();
-    let aliases = planners().iter().flat_map(|info| info.aliases).copied();
-    let suggestion = closest(name, known.iter().copied().chain(aliases));
-    BuildError::UnknownPlanner { name: name.to_owned(), known, suggestion }
-}
-
-/// Makes the planner called `name`, with the nearest neighbours that suit the space. What it asks of obstacles it takes
-/// from the [problem](Problem::with_obstacles).
+/// Makes the planner called `name`, with the nearest neighbours that suit the space. Hints, gradient and geometry of
+/// obstacles come from the [problem](Problem::with_obstacles).
 ///
 /// # Errors
-/// When there is no such planner, it has no such parameters, or refuses their values; when the problem does not know
-/// of obstacles what the planner asks.
+/// When there is no such planner, it has no such parameters, or refuses their values; when the problem lacks the
+/// knowledge of obstacles that the planner needs.
 pub fn build<'c, C, M>(
     name: &str,
     problem: Problem<'c, C, Straight<'c, C, M>>,
@@ -65,9 +59,10 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + 'c,
 {
-    let (info, make) = algo::find::<(C, M, N)>(name).ok_or_else(|| unknown(name))?;
+    let (info, make) =
+        algo::find::<(C, M, N)>(name).ok_or_else(|| BuildError::unknown_planner(name, planners()))?;
     let tuning = Tuning::read(settings, info)?;
-    make(Given { problem, index, tuning, settings })
+    make(BuildArgs { problem, index, tuning, settings })
 }
 
 #[cfg(test)]

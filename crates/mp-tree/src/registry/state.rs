@@ -1,14 +1,14 @@
-//! Planners by name of erased problems: compiled here, for the kinds of state that robots have.
+//! Planners of erased problems, made by name: compiled here for the kinds of state that robots have.
 
 use crate::{AnyIndex, AnyPlanner, AnyProblem, BuildError, Settings, Workers};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Makes an erased problem, the same whenever it is asked.
+/// Makes an erased problem, the same one on every call.
 pub type ProblemFactory<'c, S> = Arc<dyn Fn() -> Result<AnyProblem<'c, S>, BuildError> + Send + Sync + 'c>;
 
-/// A kind of state for which the planners by name are compiled: those of SE(3), SE(2), the plane, and joints, here;
-/// others where [`compile_for`](crate::compile_for) names them. Whoever calls the method compiles no planner.
+/// A kind of state for which the planners are compiled: here those of SE(3), SE(2), the plane, and joints; others where
+/// [`compile_for`](crate::compile_for) is called. Calling the method compiles no planner.
 ///
 /// ```
 /// use mp_cspace::erased::{AnyIndex, AnySpace};
@@ -53,7 +53,7 @@ pub trait TreeState: Clone + Debug + PartialEq + Send + Sync + Sized {
         Self: 'c;
 }
 
-/// Compiles the planners by name for states of your own: implements [`TreeState`] for them.
+/// Compiles the planners for states of your own: implements [`TreeState`] for them.
 ///
 /// ```
 /// #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +80,6 @@ macro_rules! compile_for {
     )+};
 }
 
-// Unit tests do not ask for them: they would compile all of them once more.
+// Not in unit tests, which do not need them and would compile all of them again.
 #[cfg(not(test))]
 compile_for!(nalgebra::Isometry3<f64>, mp_cspace::Se2State, nalgebra::Vector2<f64>, nalgebra::DVector<f64>,);

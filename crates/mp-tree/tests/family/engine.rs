@@ -214,29 +214,31 @@ impl LocalPlanner<Point> for Grid {
 #[test]
 fn finitely_many_moves_make_no_duplicates_either() {
     let space = Rn::<2>::new([0.0; 2], [10.0; 2]).unwrap();
-    let recipe = Recipe {
-        propose: Samples(Uniform(&space)),
-        select: NearestSelector(Linear::new()),
-        grow: Extend,
-        attach: AppendDistinct::default(),
+    let parts = TreePlannerParts {
+        target_sampler: Samples(Uniform(&space)),
+        selector: NearestSelector(Linear::new()),
+        extender: Extend,
+        inserter: AppendDistinct::default(),
         tuning: Tuning { step: Step::Length(1.0), ..Tuning::default() },
     };
     let never = Goals::region(|_: &Point| false);
     let start = Point::new(5.0, 5.0);
     let free = Exact(Boxes::default());
     let problem = Problem::new(&space, Grid, free, start, never).unwrap();
-    let mut planner = SingleTree::assemble(problem, recipe).unwrap();
+    let mut planner = SingleTree::assemble(problem, parts).unwrap();
     planner.solve(&mut Rng::seed(1), &mut Iterations(5_000), &mut ());
     assert_no_duplicates(planner.tree());
     // The grid is 11 by 11; a move outside it from a border node may add a ring.
     assert!((80..=169).contains(&planner.tree().len()), "{}", planner.tree().len());
 }
 
+type Remembering<'c> = Remembers<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>;
+
 /// Straight motions that remember their ends, in forward time.
 #[derive(Clone, Debug)]
-struct Remembers<'c>(Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>);
+pub(crate) struct Remembers<L>(pub(crate) L);
 
-impl LocalPlanner<Point> for Remembers<'_> {
+impl<L: LocalPlanner<Point, Edge = ()>> LocalPlanner<Point> for Remembers<L> {
     type Edge = [Point; 2];
     fn extend(
         &mut self,
@@ -296,7 +298,7 @@ const REMEMBERING: [&str; 14] = [
 /// Planners by type, of a local planner that no planner by name has.
 fn remembering<'c>(
     name: &str,
-    problem: Problem<'c, Rn<2>, Remembers<'c>>,
+    problem: Problem<'c, Rn<2>, Remembering<'c>>,
     boxes: &Boxes<2>,
     tuning: Tuning,
 ) -> Result<Remembered<'c>, BuildError> {

@@ -244,35 +244,35 @@ fn resolution_completeness_ends_where_there_is_no_path() {
 #[test]
 fn violations_are_passed_on_to_ancestors() {
     let space = square();
-    let mut select = LeastViolated::new(NearestSelector(Linear::new()), 4);
+    let mut selector = LeastViolated::new(NearestSelector(Linear::new()), 4);
     let points = [Point::new(0.1, 0.1), Point::new(0.2, 0.1), Point::new(0.3, 0.1)];
     for (id, parent) in [(0, None), (1, Some(0)), (2, Some(1))] {
-        select.inserted(&space, &points[..=id as usize], id, parent);
+        selector.inserted(&space, &points[..=id as usize], id, parent);
     }
-    let feedback = |select: &mut LeastViolated<_>, id, grew| {
-        Selector::<Rn<2>>::feedback(select, id, Purpose::Explore, grew);
+    let feedback = |selector: &mut LeastViolated<_>, id, grew| {
+        Selector::<Rn<2>>::feedback(selector, id, Purpose::Explore, grew);
     };
-    feedback(&mut select, 2, false);
-    assert_eq!([0, 1, 2].map(|id| select.frequency(id)), [1.0 / 64.0, 1.0 / 16.0, 0.25]);
-    feedback(&mut select, 2, true);
-    assert_eq!(select.frequency(2), 0.25);
+    feedback(&mut selector, 2, false);
+    assert_eq!([0, 1, 2].map(|id| selector.frequency(id)), [1.0 / 64.0, 1.0 / 16.0, 0.25]);
+    feedback(&mut selector, 2, true);
+    assert_eq!(selector.frequency(2), 0.25);
     for _ in 0..9 {
-        feedback(&mut select, 2, false);
+        feedback(&mut selector, 2, false);
     }
-    assert_eq!(select.frequency(2), 1.0);
+    assert_eq!(selector.frequency(2), 1.0);
     // Certain to fail: the next one is taken.
     let (mut out, mut rng) = (Vec::new(), Rng::seed(1));
     let mut taken = [0; 3];
     for _ in 0..1000 {
-        select.select(&space, &points, &points[2], Purpose::Explore, &mut rng, &mut out);
+        selector.select(&space, &points, &points[2], Purpose::Explore, &mut rng, &mut out);
         out.iter().for_each(|hit| taken[hit.id as usize] += 1);
     }
     // Node 1 failed to 62.5 %, node 0 to 15.6 %: taken with the rest of the probability.
     assert!(taken[2] == 0 && (310..440).contains(&taken[1]) && (460..600).contains(&taken[0]), "{taken:?}");
     // Pruning renames parents.
-    select.pruned(&space, &[points[0], points[2]], &[0, 2]);
-    assert_eq!(select.frequency(1), 1.0);
-    let before = select.frequency(0);
-    feedback(&mut select, 1, false);
-    assert_eq!(select.frequency(0), before);
+    selector.pruned(&space, &[points[0], points[2]], &[0, 2]);
+    assert_eq!(selector.frequency(1), 1.0);
+    let before = selector.frequency(0);
+    feedback(&mut selector, 1, false);
+    assert_eq!(selector.frequency(0), before);
 }

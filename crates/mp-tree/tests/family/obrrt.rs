@@ -99,15 +99,18 @@ fn a_rod_turns_to_pass_a_gap() {
 fn two_trees_grow_along_obstacles() {
     let (space, boxes) = (square(), hollow([0.4, 0.5], 0.2, 0.05, 0.03));
     for seed in 0..20 {
-        let recipe = Recipe {
-            propose: Samples(Uniform(&space)),
-            select: NearestSelector(Linear::new()),
-            grow: (ObstacleGuided::new(boxes.clone(), GrowthWeights::default()).unwrap(), Connect::default()),
-            attach: AppendDistinct::default(),
+        let parts = TreePlannerParts {
+            target_sampler: Samples(Uniform(&space)),
+            selector: NearestSelector(Linear::new()),
+            extender: (
+                ObstacleGuided::new(boxes.clone(), GrowthWeights::default()).unwrap(),
+                Connect::default(),
+            ),
+            inserter: AppendDistinct::default(),
             tuning: step(0.1),
         };
         let problem = point_problem(&space, &boxes, [[0.4, 0.5], [0.05, 0.5]]);
-        let mut planner = TwoTrees::assemble("obrrt-connect", problem, recipe).unwrap();
+        let mut planner = TwoTrees::assemble("obrrt-connect", problem, parts).unwrap();
         let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(20_000), &mut ());
         let Outcome::Solved(path) = outcome else { panic!("seed {seed}: {outcome:?}") };
         assert!(!path.states.windows(2).any(|pair| boxes.hit(&pair[0], &pair[1])));
@@ -129,7 +132,7 @@ fn a_closed_box_is_never_entered() {
 struct Always(Vector2<f64>);
 
 impl TargetSampler<Rn<2>> for Always {
-    fn propose<Se: Selector<Rn<2>>>(
+    fn next_target<Se: Selector<Rn<2>>>(
         &mut self,
         _: &mut Rng,
         _: &Rn<2>,
@@ -147,15 +150,15 @@ fn methods_do_as_they_say() {
     let (space, wall) = (square(), Boxes(vec![([0.5, -1.0], [0.6, 2.0])]));
     for method in 0..8 {
         let only = GrowthWeights(std::array::from_fn(|i| f64::from(u8::from(i == method))));
-        let recipe = Recipe {
-            propose: Always([0.9, 0.5].into()),
-            select: NearestSelector(Linear::new()),
-            grow: ObstacleGuided::new(wall.clone(), only).unwrap(),
-            attach: AppendDistinct::default(),
+        let parts = TreePlannerParts {
+            target_sampler: Always([0.9, 0.5].into()),
+            selector: NearestSelector(Linear::new()),
+            extender: ObstacleGuided::new(wall.clone(), only).unwrap(),
+            inserter: AppendDistinct::default(),
             tuning: Tuning { goal_bias: 0.0, ..step(0.1) },
         };
         let problem = point_problem(&space, &wall, [[0.45, 0.5], [0.9, 0.5]]);
-        let mut planner = SingleTree::assemble(problem, recipe).unwrap();
+        let mut planner = SingleTree::assemble(problem, parts).unwrap();
         let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(50), &mut ());
         assert_eq!(outcome, Outcome::Stopped(StopReason::Iterations));
         let tree = planner.tree();

@@ -1,6 +1,7 @@
 //! Planners that improve: paths get ever cheaper, trees stay what their events say.
 
 use crate::common::*;
+use crate::engine::Remembers;
 use mp_cspace::registry::{Demand, PlannerInfo, Settings};
 use mp_cspace::*;
 use mp_tree::*;
@@ -141,33 +142,6 @@ fn events_tell_of_rewiring_and_costs_add_up() {
     }
 }
 
-/// Straight motions that remember their ends, in forward time.
-struct Remembers<'c>(Local<'c>);
-
-impl LocalPlanner<Point> for Remembers<'_> {
-    type Edge = [Point; 2];
-    fn extend(
-        &mut self,
-        from: &Point,
-        toward: &Point,
-        direction: Direction,
-        reach: Reach,
-    ) -> Extension<Point, [Point; 2]> {
-        let remember = |motion: Motion<Point, ()>| {
-            let edge = match direction {
-                Direction::Forward => [*from, motion.end],
-                Direction::Backward => [motion.end, *from],
-            };
-            Motion { end: motion.end, edge, cost: motion.cost }
-        };
-        match self.0.extend(from, toward, direction, reach) {
-            Extension::Trapped => Extension::Trapped,
-            Extension::Advanced(motion) => Extension::Advanced(remember(motion)),
-            Extension::Reached(motion) => Extension::Reached(remember(motion)),
-        }
-    }
-}
-
 struct Anything;
 impl Verify<Point, [Point; 2]> for Anything {
     fn verify_state(&mut self, _: &Point) -> MotionCheck {
@@ -183,14 +157,14 @@ fn rewired_edges_are_in_forward_time_in_trees_of_both_directions() {
     let (space, (boxes, _)) = (square(), wall());
     let local = certified(&space, boxes, 1e-3);
     let problem = Problem::new(&space, Remembers(local), Anything, START.into(), Point::from(GOAL)).unwrap();
-    let recipe = Recipe {
-        propose: Samples(Uniform(&space)),
-        select: NearestSelector(Linear::new()),
-        grow: (Extend, Connect::default()),
-        attach: Rewire::default(),
+    let parts = TreePlannerParts {
+        target_sampler: Samples(Uniform(&space)),
+        selector: NearestSelector(Linear::new()),
+        extender: (Extend, Connect::default()),
+        inserter: Rewire::default(),
         tuning: Tuning { step: Step::Length(0.05), ..Tuning::default() },
     };
-    let mut planner = TwoTrees::assemble("rewired", problem, recipe).unwrap();
+    let mut planner = TwoTrees::assemble("rewired", problem, parts).unwrap();
     let (mut rng, mut rewired) = (Rng::seed(1), [0; 2]);
     for _ in 0..1_000 {
         let mut count = OnEvent(|event: Event<'_, Point>| {
@@ -238,7 +212,7 @@ fn goals_of_every_kind_improve() {
 #[test]
 fn what_counts_as_near_must_be_in_range() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        for near in [Near::NearestSelector { factor: bad }, Near::Radius { gamma: bad }] {
+        for near in [Near::KNearest { factor: bad }, Near::Radius { gamma: bad }] {
             assert!(matches!(Rewire::new(near), Err(BuildError::OutOfRange { .. })));
         }
     }

@@ -32,10 +32,10 @@ fn closed() -> Boxes<2> {
     hollow([0.9, 0.2], 0.05, 0.02, 0.0)
 }
 
-/// What a planner comes to, and what it has done.
-type Came = (Outcome<Path<Point>>, Progress);
+/// The outcome and the progress of a run.
+type RunResult = (Outcome<Path<Point>>, Progress);
 
-fn solve(planner: &mut impl Planner<Point, Edge = ()>, seed: u64, iterations: u64) -> Came {
+fn solve(planner: &mut impl Planner<Point, Edge = ()>, seed: u64, iterations: u64) -> RunResult {
     let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(iterations), &mut ());
     (outcome, planner.progress())
 }
@@ -59,7 +59,7 @@ fn the_run_with_fewest_iterations_wins_on_any_number_of_threads() {
         let (iterations, winner, path) = alone.min_by_key(|(iterations, i, _)| (*iterations, *i)).unwrap();
         winners.push(winner);
         for slice in [1, 7, 1000] {
-            let mut came: Option<Came> = None;
+            let mut first: Option<RunResult> = None;
             for threads in 1..=4 {
                 let workers = Workers::new(threads).unwrap();
                 let mut planner = OrParallel::new(6, slice, workers, run).unwrap();
@@ -67,7 +67,7 @@ fn the_run_with_fewest_iterations_wins_on_any_number_of_threads() {
                 assert_eq!(now.0, Outcome::Solved(path.clone()), "seed {seed}");
                 assert_eq!(planner.winner(), Some(winner as usize));
                 assert!(now.1.iterations >= iterations && now.1.iterations < iterations + slice);
-                assert_eq!(*came.get_or_insert(now.clone()), now, "{threads} threads");
+                assert_eq!(*first.get_or_insert(now.clone()), now, "{threads} threads");
             }
         }
     }
@@ -254,18 +254,18 @@ fn bad_numbers_and_names_are_refused() {
         let make = || problem(&space, &boxes);
         build_from(name, make, Linear::new(), &settings, &Workers::alone()).map(|_| ())
     };
-    for wrapper in wrappers() {
-        let inner = wrapper.around.map_or("rrt-connect", |names| names[0]);
-        let name = format!("{}{inner}", wrapper.prefix);
-        for parameter in wrapper.parameters {
+    for meta in meta_planners() {
+        let inner = meta.around.map_or("rrt-connect", |names| names[0]);
+        let name = format!("{}{inner}", meta.prefix);
+        for parameter in meta.parameters {
             for bad in ["0", "-7", "99999999999999"] {
                 assert!(build(&name, &format!("{}={bad}", parameter.name)).is_err(), "{}", parameter.name);
             }
             build(&name, &format!("{}={}", parameter.name, parameter.default)).unwrap();
         }
         let error = build(&name, "stride=1").unwrap_err().to_string();
-        assert!(error.contains(wrapper.parameters[0].name) && error.contains("goal-bias"), "{error}");
-        let error = build(&format!("{}rrt-conect", wrapper.prefix), "step=0.1").unwrap_err();
+        assert!(error.contains(meta.parameters[0].name) && error.contains("goal-bias"), "{error}");
+        let error = build(&format!("{}rrt-conect", meta.prefix), "step=0.1").unwrap_err();
         assert!(error.to_string().contains("did you mean `rrt-connect`?"), "{error}");
     }
     assert!(matches!(build("or-or-or-or-or-rrt", "runs=1"), Err(BuildError::UnknownPlanner { .. })));

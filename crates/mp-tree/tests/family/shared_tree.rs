@@ -95,8 +95,9 @@ fn a_batch_is_drawn_from_its_streams_and_grows_from_the_tree_before_it() {
             let target = if rng.random_bool(bias) { GOAL } else { space.sample_uniform(&mut rng) };
             let distance = |id: &usize| space.distance(&before[*id], &target);
             let near = (0..before.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
-            let mut steer = local(&space, &boxes, 1e-3);
-            let extension = steer.extend(&before[near], &target, Direction::Forward, Reach::Step(STEP));
+            let mut local_planner = local(&space, &boxes, 1e-3);
+            let extension =
+                local_planner.extend(&before[near], &target, Direction::Forward, Reach::Step(STEP));
             let (Extension::Advanced(motion) | Extension::Reached(motion)) = extension else { continue };
             match nodes.contains(&motion.end) {
                 true => same += 1,

@@ -76,14 +76,14 @@ impl<C: Space> Selector<C> for DynamicDomain {
 fn a_selector_that_learns() {
     let (space, (boxes, start, goal)) = (square(), trap());
     let plain = RrtConnect::with_index(problem(&space, &boxes, start, goal), Linear::new(), short()).unwrap();
-    let recipe = Recipe {
-        propose: Samples(Uniform(&space)),
-        select: DynamicDomain { nearest: NearestSelector::default(), radius: 0.1, radii: Vec::new() },
-        grow: (Extend, Connect::default()),
-        attach: Append,
+    let parts = TreePlannerParts {
+        target_sampler: Samples(Uniform(&space)),
+        selector: DynamicDomain { nearest: NearestSelector::default(), radius: 0.1, radii: Vec::new() },
+        extender: (Extend, Connect::default()),
+        inserter: Append,
         tuning: short(),
     };
-    let learning = TwoTrees::assemble("dd-rrt", problem(&space, &boxes, start, goal), recipe).unwrap();
+    let learning = TwoTrees::assemble("dd-rrt", problem(&space, &boxes, start, goal), parts).unwrap();
     let (plain, learning) = (solves(plain, &boxes), solves(learning, &boxes));
     assert!(learning.motions < plain.motions, "{learning:?} against {plain:?}");
 }
@@ -93,18 +93,18 @@ fn a_selector_that_learns() {
 struct Farthest(usize);
 
 impl<C: Space> TargetSampler<C> for Farthest {
-    fn propose<Se: Selector<C>>(
+    fn next_target<Se: Selector<C>>(
         &mut self,
         rng: &mut Rng,
         space: &C,
         points: &[C::State],
-        select: &mut Se,
+        selector: &mut Se,
     ) -> C::State {
         let mut hits = Vec::new();
         let mut best = (f64::NEG_INFINITY, space.sample_uniform(rng));
         for _ in 0..self.0 {
             let q = space.sample_uniform(rng);
-            select.select(space, points, &q, Purpose::Explore, rng, &mut hits);
+            selector.select(space, points, &q, Purpose::Explore, rng, &mut hits);
             let distance = hits.first().map_or(0.0, |hit| hit.distance);
             if distance > best.0 {
                 best = (distance, q);
@@ -123,7 +123,7 @@ struct Sidestep {
 }
 
 impl<L: LocalPlanner<Point>> Extender<Rn<2>, L> for Sidestep {
-    fn grow<Se: Selector<Rn<2>>, A: Inserter<Rn<2>, L>>(
+    fn extend<Se: Selector<Rn<2>>, A: Inserter<Rn<2>, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, Rn<2>, L, Se, A>,
@@ -133,7 +133,7 @@ impl<L: LocalPlanner<Point>> Extender<Rn<2>, L> for Sidestep {
             return grown;
         }
         self.taken += 1;
-        let space = growing.steer().space();
+        let space = growing.checker().space();
         let aside = space.sample_uniform(growing.rng());
         growing.step_toward(from, &aside)
     }
@@ -145,19 +145,19 @@ impl<L: LocalPlanner<Point>> Extender<Rn<2>, L> for Sidestep {
 #[test]
 fn proposals_and_growths_of_ones_own() {
     let (space, (boxes, start, goal)) = (square(), trap());
-    let recipe = Recipe {
-        propose: Farthest(4),
-        select: NearestSelector(Linear::new()),
-        grow: Sidestep::default(),
-        attach: Append,
+    let parts = TreePlannerParts {
+        target_sampler: Farthest(4),
+        selector: NearestSelector(Linear::new()),
+        extender: Sidestep::default(),
+        inserter: Append,
         tuning: short(),
     };
-    solves(SingleTree::assemble(problem(&space, &boxes, start, goal), recipe).unwrap(), &boxes);
-    let both = Recipe {
-        propose: Samples(Uniform(&space)),
-        select: NearestSelector(Linear::new()),
-        grow: (Connect::default(), Connect::default()),
-        attach: Append,
+    solves(SingleTree::assemble(problem(&space, &boxes, start, goal), parts).unwrap(), &boxes);
+    let both = TreePlannerParts {
+        target_sampler: Samples(Uniform(&space)),
+        selector: NearestSelector(Linear::new()),
+        extender: (Connect::default(), Connect::default()),
+        inserter: Append,
         tuning: short(),
     };
     solves(TwoTrees::assemble("con-con", problem(&space, &boxes, start, goal), both).unwrap(), &boxes);
@@ -237,14 +237,14 @@ fn inputs_instead_of_straight_lines() {
     let start = Se2State::new(0.1, 0.2, 0.0);
     let beyond = Goals::region(|q: &Se2State| q.translation.x > 0.8);
     let problem = Problem::new(&space, car.clone(), car.clone(), start, beyond).unwrap();
-    let recipe = Recipe {
-        propose: Samples(Uniform(&space)),
-        select: NearestSelector(Linear::new()),
-        grow: Extend,
-        attach: AppendDistinct::default(),
+    let parts = TreePlannerParts {
+        target_sampler: Samples(Uniform(&space)),
+        selector: NearestSelector(Linear::new()),
+        extender: Extend,
+        inserter: AppendDistinct::default(),
         tuning: Tuning::default(),
     };
-    let mut planner = SingleTree::assemble(problem, recipe).unwrap();
+    let mut planner = SingleTree::assemble(problem, parts).unwrap();
     let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(50_000), &mut ());
     let Outcome::Solved(path) = outcome else { panic!("{:?}", planner.progress()) };
     let replayed = path.edges.iter().fold(start, |q, turn| drive(&q, *turn, 1.0));
@@ -256,14 +256,14 @@ fn inputs_instead_of_straight_lines() {
 struct OneStep;
 
 impl<C: Space, L: LocalPlanner<C::State>> Extender<C, L> for OneStep {
-    fn grow<Se: Selector<C>, A: Inserter<C, L>>(
+    fn extend<Se: Selector<C>, A: Inserter<C, L>>(
         &mut self,
         from: NodeId,
         growing: &mut Growing<'_, '_, C, L, Se, A>,
     ) -> Grown {
         growing.step(from)
     }
-    fn leaps(&self) -> bool {
+    fn allows_direct(&self) -> bool {
         false
     }
 }
@@ -294,19 +294,19 @@ fn leaps_can_be_declined() {
         let local = NeverFar(certified(&space, boxes.clone(), 1e-3));
         Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap()
     };
-    fn recipe<G>(
+    fn parts<G>(
         space: &Rn<2>,
-        grow: G,
-    ) -> Recipe<Samples<Uniform<'_, Rn<2>>>, NearestSelector<Linear>, G, Append> {
-        let (propose, select) = (Samples(Uniform(space)), NearestSelector(Linear::new()));
-        Recipe { propose, select, grow, attach: Append, tuning: short() }
+        extender: G,
+    ) -> TreePlannerParts<Samples<Uniform<'_, Rn<2>>>, NearestSelector<Linear>, G, Append> {
+        let (target_sampler, selector) = (Samples(Uniform(space)), NearestSelector(Linear::new()));
+        TreePlannerParts { target_sampler, selector, extender, inserter: Append, tuning: short() }
     }
-    solves(SingleTree::assemble(problem(), recipe(&space, OneStep)).unwrap(), &boxes);
-    solves(Improving::assemble(problem(), recipe(&space, OneStep)).unwrap(), &boxes);
+    solves(SingleTree::assemble(problem(), parts(&space, OneStep)).unwrap(), &boxes);
+    solves(Improving::assemble(problem(), parts(&space, OneStep)).unwrap(), &boxes);
     // It is enough that one of the two declines.
     solves(
-        TwoTrees::assemble("two", problem(), recipe(&space, (OneStep, Connect::default()))).unwrap(),
+        TwoTrees::assemble("two", problem(), parts(&space, (OneStep, Connect::default()))).unwrap(),
         &boxes,
     );
-    solves(TwoTrees::assemble("two", problem(), recipe(&space, (Extend, OneStep))).unwrap(), &boxes);
+    solves(TwoTrees::assemble("two", problem(), parts(&space, (Extend, OneStep))).unwrap(), &boxes);
 }

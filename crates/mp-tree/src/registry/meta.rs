@@ -1,8 +1,8 @@
-//! Planners that run other planners, by name.
+//! Meta-planners, which run other planners, by name.
 
 use crate::algo::or_parallel::{RUNS, SLICE};
 use crate::algo::restarts::{SCHEDULE, UNIT};
-use crate::algo::rrs::{self, Plain, bent};
+use crate::algo::rrs::{self, Flattened, with_bending_edges};
 use crate::algo::rrt;
 use crate::algo::shared_tree::BATCH;
 use crate::{
@@ -13,24 +13,24 @@ use mp_cspace::{MotionValidity, NearestNeighbors, Space, Straight};
 use std::fmt;
 use std::sync::Arc;
 
-/// A way to run another planner, named by what is put before that one's name.
+/// A way to run another planner; its name is a prefix of the name of that planner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MetaPlanner {
-    /// Before the name of the planner it runs.
+    /// The prefix.
     pub prefix: &'static str,
     /// What it is and when to use it, in a line.
     pub summary: &'static str,
     /// Its paper.
     pub citation: &'static str,
-    /// Its parameters; there are those of the planner it runs beside them.
+    /// Its own parameters, beside those of the planner it runs.
     pub parameters: &'static [Parameter],
-    /// The planners it can run, not wrapped themselves; `None`: any, wrapped or not.
+    /// The names of the planners it can run; `None` for any planner and any meta-planner.
     pub around: Option<&'static [&'static str]>,
 }
 
 const OR: MetaPlanner = MetaPlanner {
     prefix: "or-",
-    summary: "independent runs on all threads, of which the one with the fewest iterations wins",
+    summary: "independent runs on all threads; the one with the fewest iterations wins",
     citation: "Carpin and Pagello 2002",
     parameters: &[RUNS, SLICE],
     around: None,
@@ -46,64 +46,63 @@ const SHARED: MetaPlanner = MetaPlanner {
 
 const RESTART: MetaPlanner = MetaPlanner {
     prefix: "restart-",
-    summary: "begins anew when it takes too long: fewer very long runs",
+    summary: "starts again when it takes too long: fewer very long runs",
     citation: "Luby, Sinclair and Zuckerman 1993; Amato, Ashur and Har-Peled 2025",
     parameters: &[SCHEDULE, UNIT],
     around: None,
 };
 
-/// All wrappers of the crate. They may be combined: `or-restart-rrt-connect` runs several planners
-/// that restart.
+/// All meta-planners of the crate. They may be combined: `or-restart-rrt-connect` runs several planners that restart.
 #[must_use]
-pub fn wrappers() -> &'static [MetaPlanner] {
+pub fn meta_planners() -> &'static [MetaPlanner] {
     &[OR, SHARED, RESTART]
 }
 
-/// A planner by name, with what it is wrapped in: `rrt`, `or-rrt-connect`, `restart-rrt`, …
+/// The name of a planner, split into meta-planners and planner: `rrt`, `or-rrt-connect`, `restart-rrt`, …
 ///
 /// ```
 /// use mp_tree::{PlannerSpec, Settings};
-/// let named = PlannerSpec::new("restart-rrt-connect")?;
-/// assert_eq!(named.to_string(), "restart-rrt-connect");
-/// assert!(named.check(&Settings::parse(["unit=500", "step=10%"])?).is_ok());
-/// assert!(named.check(&Settings::parse(["runs=2"])?).is_err());
+/// let spec = PlannerSpec::new("restart-rrt-connect")?;
+/// assert_eq!(spec.to_string(), "restart-rrt-connect");
+/// assert!(spec.check(&Settings::parse(["unit=500", "step=10%"])?).is_ok());
+/// assert!(spec.check(&Settings::parse(["runs=2"])?).is_err());
 /// assert!(PlannerSpec::new("or-dijkstra").is_err());
 /// # Ok::<(), mp_tree::BuildError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlannerSpec {
-    /// The wrappers, the outermost first.
-    pub wrappers: Vec<&'static MetaPlanner>,
-    /// The planner inside.
+    /// The meta-planners, the outermost first.
+    pub meta_planners: Vec<&'static MetaPlanner>,
+    /// The innermost planner.
     pub planner: &'static PlannerInfo,
 }
 
 impl PlannerSpec {
-    /// Most wrappers around one planner.
+    /// Most meta-planners around one planner.
     const DEEPEST: usize = 4;
 
     /// The planner called `name`.
     ///
     /// # Errors
-    /// When there is none, with the names there are.
+    /// When there is no such planner; the error lists the names.
     pub fn new(name: &str) -> Result<Self, BuildError> {
         let mut rest = name;
-        let mut wrappers = Vec::new();
+        let mut meta_planners = Vec::new();
         loop {
             if let Ok(inner) = planner(rest) {
-                let innermost = wrappers.len().wrapping_sub(1);
-                let runs = |(i, wrapper): (usize, &&MetaPlanner)| {
-                    wrapper.around.is_none_or(|names| i == innermost && names.contains(&inner.name))
+                let innermost = meta_planners.len().wrapping_sub(1);
+                let runs = |(i, meta): (usize, &&MetaPlanner)| {
+                    meta.around.is_none_or(|names| i == innermost && names.contains(&inner.name))
                 };
-                if !wrappers.iter().enumerate().all(runs) {
+                if !meta_planners.iter().enumerate().all(runs) {
                     planner(name).map(|_| ())?;
                 }
-                return Ok(Self { wrappers, planner: inner });
+                return Ok(Self { meta_planners, planner: inner });
             }
-            let outer = self::wrappers().iter().find_map(|w| Some((w, rest.strip_prefix(w.prefix)?)));
+            let outer = self::meta_planners().iter().find_map(|w| Some((w, rest.strip_prefix(w.prefix)?)));
             match outer {
-                Some((wrapper, inner)) if wrappers.len() < Self::DEEPEST => {
-                    wrappers.push(wrapper);
+                Some((meta, inner)) if meta_planners.len() < Self::DEEPEST => {
+                    meta_planners.push(meta);
                     rest = inner;
                 }
                 _ => planner(rest).map(|_| ())?,
@@ -111,13 +110,13 @@ impl PlannerSpec {
         }
     }
 
-    /// Refuses settings that neither the planner nor a wrapper has, and values that cannot be read.
-    /// The range of the planner's own parameters is checked when it is made.
+    /// Refuses settings that neither the planner nor a meta-planner has, and values that cannot be read. The range of the
+    /// planner's own parameters is checked when it is made.
     ///
     /// # Errors
-    /// When there is one.
+    /// When there is such a setting or value.
     pub fn check(&self, settings: &Settings) -> Result<(), BuildError> {
-        let own = self.wrappers.iter().flat_map(|wrapper| wrapper.parameters);
+        let own = self.meta_planners.iter().flat_map(|meta| meta.parameters);
         settings.check_among(self.planner.name, own.chain(self.planner.parameters))?;
         Tuning::read(&self.planner_settings(settings), self.planner)?;
         Schedule::of(settings)?;
@@ -131,13 +130,13 @@ impl PlannerSpec {
 
 impl fmt::Display for PlannerSpec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.wrappers.iter().try_for_each(|wrapper| f.write_str(wrapper.prefix))?;
+        self.meta_planners.iter().try_for_each(|meta| f.write_str(meta.prefix))?;
         f.write_str(self.planner.name)
     }
 }
 
-/// As [`build_with`](crate::build_with), also of planners that run others. `make` makes the problem, as often as there
-/// are runs; they use `workers`.
+/// As [`build_with`](crate::build_with), for meta-planners too. `make` makes the problem, once for each run; the runs use
+/// `workers`.
 ///
 /// # Errors
 /// As [`build`](crate::build), and when `make` fails.
@@ -153,33 +152,33 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
-    let named = PlannerSpec::new(name)?;
-    named.check(settings)?;
+    let spec = PlannerSpec::new(name)?;
+    spec.check(settings)?;
     let factory =
-        Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), named };
+        Factory { make: Arc::new(make), index, settings: settings.clone(), workers: workers.clone(), spec };
     factory.planner(0)
 }
 
 type Make<'c, C, M> = dyn Fn() -> Result<Problem<'c, C, Straight<'c, C, M>>, BuildError> + Send + Sync + 'c;
 
-/// All that is needed to make a planner any number of times.
+/// Makes planners any number of times.
 struct Factory<'c, C: Space, M: MotionValidity<C::State>, N> {
     make: Arc<Make<'c, C, M>>,
     index: N,
     settings: Settings,
     workers: Workers,
-    named: PlannerSpec,
+    spec: PlannerSpec,
 }
 
 impl<'c, C: Space, M: MotionValidity<C::State>, N: Clone> Clone for Factory<'c, C, M, N> {
     fn clone(&self) -> Self {
-        let Self { make, index, settings, workers, named } = self;
+        let Self { make, index, settings, workers, spec } = self;
         Self {
             make: Arc::clone(make),
             index: index.clone(),
             settings: settings.clone(),
             workers: workers.clone(),
-            named: named.clone(),
+            spec: spec.clone(),
         }
     }
 }
@@ -190,27 +189,27 @@ where
     M: MotionValidity<C::State> + Send + 'c,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'c,
 {
-    /// The planner inside the wrappers before `depth`.
+    /// The planner inside the first `depth` meta-planners.
     fn planner(&self, depth: usize) -> Result<AnyPlanner<'c, C::State, ()>, BuildError> {
         let count = |parameter: Parameter| self.settings.count_of(&parameter);
-        match self.named.wrappers.get(depth) {
+        match self.spec.meta_planners.get(depth) {
             None => {
-                let settings = self.named.planner_settings(&self.settings);
-                build_with(self.named.planner.name, (self.make)()?, self.index.clone(), &settings)
+                let settings = self.spec.planner_settings(&self.settings);
+                build_with(self.spec.planner.name, (self.make)()?, self.index.clone(), &settings)
             }
-            Some(wrapper) if **wrapper == OR => {
+            Some(meta) if **meta == OR => {
                 let workers = self.workers.clone();
                 Ok(Box::new(OrParallel::new(count(RUNS)?, count(SLICE)?, workers, |_| {
                     self.planner(depth + 1)
                 })?))
             }
-            Some(wrapper) if **wrapper == SHARED => {
-                let (info, settings) = (self.named.planner, self.named.planner_settings(&self.settings));
+            Some(meta) if **meta == SHARED => {
+                let (info, settings) = (self.spec.planner, self.spec.planner_settings(&self.settings));
                 let tuning = Tuning::read(&settings, info)?;
                 let (batch, workers, index) = (count(BATCH)?, self.workers.clone(), self.index.clone());
                 Ok(if info.name == rrs::INFO.name {
-                    let make = |_| bent(info.name, (self.make)()?, &settings);
-                    Box::new(Plain(SharedTree::with_index(batch, workers, index, tuning, make)?))
+                    let make = |_| with_bending_edges(info.name, (self.make)()?, &settings);
+                    Box::new(Flattened(SharedTree::with_index(batch, workers, index, tuning, make)?))
                 } else {
                     Box::new(SharedTree::with_index(batch, workers, index, tuning, |_| (self.make)())?)
                 })

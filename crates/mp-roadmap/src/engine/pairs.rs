@@ -1,25 +1,25 @@
-//! What the generators that look for obstacles by pairs of states have in common: most attempts look, some are uniform.
+//! Generators that find states near obstacles by pairs of samples; some attempts are uniform samples instead.
 
+use super::constructors;
 use super::settings::{length, reachable};
 use super::{
-    AStar, Candidate, EdgeChecker, Kind, NearestConnector, NodeGenerator, Pace, Reachable, Recipe, Roadmap,
-    RoadmapPlanner,
+    AStar, Candidate, EdgeChecker, MilestoneKind, NearestConnector, NodeGenerator, Reachable, Roadmap,
+    RoadmapPlanner, RoadmapPlannerParts,
 };
 use mp_cspace::{
-    BuildError, DefaultNn, LocalPlanner, NearestNeighbors, Problem, Reversible, Rng, Space, Step,
+    BuildError, LocalPlanner, Reversible, Rng, Space, Step,
     registry::{Parameter, Settings},
 };
 use rand::RngExt;
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
-/// How far apart the states of a pair are, and how often none is drawn.
+/// How far apart the states of a pair are, and how often a uniform sample is drawn instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixing {
     /// Standard deviation of the distance, in (0, extent of the space].
     pub sigma: Step,
-    /// Part of the attempts that are uniform samples instead, in \[0, 1\]: where there is nothing to be near to,
-    /// only these find anything.
+    /// Part of the attempts that are uniform samples instead, in \[0, 1\]; without obstacles only these find states.
     pub uniform: f64,
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn part(name: &'static str, value: f64) -> Result<f64, BuildError> {
     Err(BuildError::OutOfRange { name, value, range: "in [0, 1]".to_owned() })
 }
 
-/// What is drawn as a pair of states, and what of it is taken.
+/// Which pairs of states are drawn, and which state of a pair is taken.
 pub trait PairRule: Copy + Debug + Send {
     /// One attempt: a free state, or none. `sigma` is the standard deviation of the distance of the pair, positive and
     /// in the metric of the space.
@@ -77,7 +77,7 @@ pub trait PairRule: Copy + Debug + Send {
     ) -> Option<C::State>;
 }
 
-/// Free states by pairs, and some uniform ones: the generator of Gaussian and of bridge-test PRM.
+/// Free states by pairs, and some uniform samples: the generator of Gaussian and of bridge-test PRM.
 #[derive(Clone, Copy, Debug)]
 pub struct Pairs<R> {
     sigma: f64,
@@ -93,30 +93,24 @@ impl<R: PairRule> Pairs<R> {
         Ok(Self { sigma, uniform, rule: PhantomData })
     }
 
-    /// The recipe of the planner that draws these.
+    /// The parts of a planner with this generator.
     ///
     /// # Errors
     /// When a parameter is out of range.
-    pub fn recipe<C: Space>(
+    pub fn parts<C: Space>(
         space: &C,
         reach: Reachable,
         mixing: Mixing,
-    ) -> Result<Recipe<Self, NearestConnector, AStar>, BuildError> {
-        Ok(Recipe {
-            generate: Self::new(space, mixing)?,
-            connect: NearestConnector::new(reach)?,
-            query: AStar::new(),
-            pace: Pace::default(),
-            improves: false,
-        })
+    ) -> Result<RoadmapPlannerParts<Self, NearestConnector, AStar>, BuildError> {
+        Ok(RoadmapPlannerParts::new(Self::new(space, mixing)?, NearestConnector::new(reach)?))
     }
 
     pub(crate) fn read<C: Space>(
         space: &C,
         settings: &Settings,
         mixing: Mixing,
-    ) -> Result<Recipe<Self, NearestConnector, AStar>, BuildError> {
-        Self::recipe(space, reachable(space, settings)?, mixing.read(settings)?)
+    ) -> Result<RoadmapPlannerParts<Self, NearestConnector, AStar>, BuildError> {
+        Self::parts(space, reachable(space, settings)?, mixing.read(settings)?)
     }
 }
 
@@ -130,16 +124,16 @@ where
         &mut self,
         _: u64,
         _: &Roadmap<C::State, L::Edge>,
-        steer: &mut EdgeChecker<'_, C, L>,
+        checker: &mut EdgeChecker<'_, C, L>,
         rng: &mut Rng,
         out: &mut Vec<Candidate<C::State, L::Edge>>,
     ) {
-        if drew_uniform(self.uniform, steer, rng, out) {
+        if drew_uniform(self.uniform, checker, rng, out) {
             return;
         }
-        let space = steer.space();
-        let found = R::attempt(space, |q: &C::State| steer.admits(q), self.sigma, rng);
-        out.extend(found.map(|q| Candidate::new(q, Kind::Near)));
+        let space = checker.space();
+        let found = R::attempt(space, |q: &C::State| checker.admits(q), self.sigma, rng);
+        out.extend(found.map(|q| Candidate::new(q, MilestoneKind::Near)));
     }
 
     fn independent(&self, _: &Roadmap<C::State, L::Edge>) -> u64 {
@@ -147,44 +141,18 @@ where
     }
 }
 
-impl<'c, C, L, R, N> RoadmapPlanner<'c, C, L, Pairs<R>, NearestConnector, AStar, N>
-where
-    C: Space,
-    L: LocalPlanner<C::State, Edge: Reversible>,
-    R: PairRule,
-    N: NearestNeighbors<C>,
-{
-    /// With the nearest neighbours that suit the space.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn new(problem: Problem<'c, C, L>, reach: Reachable, mixing: Mixing) -> Result<Self, BuildError>
-    where
-        C: DefaultNn<Nn = N>,
-        N: Default,
-    {
-        Self::with_index(problem, N::default(), reach, mixing)
-    }
+/// The planner that generates nodes by [`Pairs`] under a rule.
+pub type PairsPlanner<'c, C, L, N, R> = RoadmapPlanner<'c, C, L, Pairs<R>, NearestConnector, AStar, N>;
 
-    /// With an empty index of your choice.
-    ///
-    /// # Errors
-    /// When a parameter is out of range.
-    pub fn with_index(
-        problem: Problem<'c, C, L>,
-        index: N,
-        reach: Reachable,
-        mixing: Mixing,
-    ) -> Result<Self, BuildError> {
-        let recipe = Pairs::recipe(problem.space(), reach, mixing)?;
-        Ok(Self::assemble(problem, index, recipe))
-    }
+constructors! {
+    "The planner" PairsPlanner<C, L, N, R> where [R: PairRule],
+    |space, reach: Reachable, mixing: Mixing| Pairs::parts(space, reach, mixing)
 }
 
-/// Whether this attempt is to be a uniform sample; if so, and it is free, it goes into `out`.
+/// Decides whether this attempt is a uniform sample; if so, writes it to `out` if it is free. Returns the decision.
 pub(crate) fn drew_uniform<C, L>(
     probability: f64,
-    steer: &mut EdgeChecker<'_, C, L>,
+    checker: &mut EdgeChecker<'_, C, L>,
     rng: &mut Rng,
     out: &mut Vec<Candidate<C::State, L::Edge>>,
 ) -> bool
@@ -194,9 +162,9 @@ where
 {
     let draw = rng.random::<f64>() < probability;
     if draw {
-        let q = steer.space().sample_uniform(rng);
-        if steer.admits(&q) {
-            out.push(Candidate::new(q, Kind::Plain));
+        let q = checker.space().sample_uniform(rng);
+        if checker.admits(&q) {
+            out.push(Candidate::new(q, MilestoneKind::Plain));
         }
     }
     draw

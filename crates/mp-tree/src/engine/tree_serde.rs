@@ -1,10 +1,10 @@
-//! Trees written and read by serde.
+//! Trees serialized and deserialized by serde.
 
 use super::tree::Tree;
 use mp_cspace::{Direction, NodeId};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-/// A tree as it is written: what of a node can be worked out is left out.
+/// The serialized form of a tree, without what can be computed from it.
 #[derive(Serialize, Deserialize)]
 struct Written<S, L> {
     direction: Direction,
@@ -20,8 +20,8 @@ struct Link<E> {
     cost: f64,
 }
 
-/// An object with the members `direction`, `states` and `links`: of each node but roots `parent`, `edge` and `cost`.
-/// Which edges are verified is not written.
+/// An object with the members `direction`, `states` and `links`; a link has `parent`, `edge` and `cost`, and is null for
+/// roots. Which edges are verified is not serialized.
 impl<S: Serialize, E: Serialize> Serialize for Tree<S, E> {
     fn serialize<Z: Serializer>(&self, serializer: Z) -> Result<Z::Ok, Z::Error> {
         let link = |id| {
@@ -34,8 +34,8 @@ impl<S: Serialize, E: Serialize> Serialize for Tree<S, E> {
     }
 }
 
-/// Refuses what is no tree: a parent that is not there, nodes in a ring, a cost that is no length. No edge counts as
-/// verified. The children of a node are in the order of their ids.
+/// Refuses what is not a tree: a parent that does not exist, a cycle, a cost that is negative or not finite. No edge
+/// counts as verified. The children of a node are in the order of their ids.
 impl<'de, S: Deserialize<'de>, E: Deserialize<'de>> Deserialize<'de> for Tree<S, E> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let written: Written<S, Link<E>> = Written::deserialize(deserializer)?;
@@ -50,7 +50,7 @@ fn tree<S, E>(Written { direction, states, links }: Written<S, Link<E>>) -> Resu
     }
     let fault = links.iter().enumerate().find_map(|(id, link)| match link {
         Some(link) if link.parent as usize >= n => {
-            Some(format!("node {id} hangs on {}, which is not there", link.parent))
+            Some(format!("the parent of node {id}, {}, does not exist", link.parent))
         }
         Some(link) if !(link.cost >= 0.0 && link.cost < f64::INFINITY) => {
             Some(format!("the edge of node {id} costs {}", link.cost))
@@ -61,8 +61,7 @@ fn tree<S, E>(Written { direction, states, links }: Written<S, Link<E>>) -> Resu
         return Err(fault);
     }
     let links = links.into_iter().map(|link| link.map(|l| (l.parent, l.edge, l.cost))).collect();
-    Tree::from_links(direction, states, links)
-        .map_err(|id| format!("node {id} hangs on itself, by way of others"))
+    Tree::from_links(direction, states, links).map_err(|id| format!("node {id} is its own ancestor"))
 }
 
 #[cfg(test)]
@@ -104,10 +103,10 @@ mod tests {
         assert_eq!(read(&links("null, null, null")).unwrap().len(), 3);
         for (bad, why) in [
             ("null, null".to_owned(), "a tree of 3 states has 2 links"),
-            (format!("null, null, {}", link(3, 1.0)), "node 2 hangs on 3, which is not there"),
+            (format!("null, null, {}", link(3, 1.0)), "the parent of node 2, 3, does not exist"),
             (format!("null, null, {}", link(0, -1.0)), "the edge of node 2 costs -1"),
-            (format!("null, {}, {}", link(2, 1.0), link(1, 1.0)), "hangs on itself"),
-            (format!("{}, null, null", link(0, 1.0)), "node 0 hangs on itself"),
+            (format!("null, {}, {}", link(2, 1.0), link(1, 1.0)), "is its own ancestor"),
+            (format!("{}, null, null", link(0, 1.0)), "node 0 is its own ancestor"),
         ] {
             let error = read(&links(&bad)).unwrap_err();
             assert!(error.contains(why), "{error}");

@@ -1,22 +1,50 @@
-//! What makes one variant of the family differ from another.
+//! The parameters that several planners have.
 
-use super::settings::{GOAL_BIAS, PATIENCE, STEP};
 use mp_cspace::{
     BuildError, Step,
-    registry::{PlannerInfo, Settings},
+    registry::{Demand, Parameter, PlannerInfo, Settings},
+};
+
+/// [`PlannerInfo::cannot`](crate::PlannerInfo::cannot) of planners that grow a tree from the goal.
+pub const NEEDS_BOTH_ENDS: &[(Demand, &str)] = &[
+    (Demand::Region, "it also grows a tree from the goal, which needs a state to grow from"),
+    (Demand::OneWay, "it also grows a tree from the goal, by motions that run backward"),
+];
+
+/// [`Tuning::step`](crate::Tuning::step).
+pub const STEP: Parameter = Parameter {
+    name: "step",
+    range: "in (0, extent of the space], or with % in (0%, 100%] of the extent",
+    default: "5%",
+    doc: "longest step, in the metric of the space",
+};
+
+/// [`Tuning::goal_bias`](crate::Tuning::goal_bias).
+pub const GOAL_BIAS: Parameter = Parameter {
+    name: "goal-bias",
+    range: "in [0, 1]",
+    default: "0.05",
+    doc: "probability of aiming at the goal (with two trees: of sampling a new goal state)",
+};
+
+/// [`Tuning::patience`](crate::Tuning::patience).
+pub const PATIENCE: Parameter = Parameter {
+    name: "patience",
+    range: "a whole number",
+    default: "10",
+    doc: "rejected paths after which every new edge is verified as it grows",
 };
 
 /// The parameters every planner of the family has.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Longest step, in (0, extent of the space]; default a twentieth of the extent.
+    /// Longest step, in (0, extent of the space]; by default a twentieth of the extent.
     pub step: Step,
-    /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; default 0.05. Planners
-    /// that grow a tree from the goal use it for sampling new goal states, where there is a
-    /// sampler.
+    /// Probability of aiming at the goal rather than exploring, in \[0, 1\]; by default 0.05. Planners that grow a tree
+    /// from the goal sample a new goal state with this probability, where there is a sampler.
     pub goal_bias: f64,
-    /// After this many rejected candidate paths the local planner is no longer believed: each
-    /// new edge is verified as it grows. Default 10; 0 verifies every edge.
+    /// After this many rejected paths the local planner is no longer trusted: each new edge is verified as it grows. By
+    /// default 10; 0 verifies every edge.
     pub patience: u64,
 }
 
@@ -53,23 +81,6 @@ impl Tuning {
         let range = "in [0, 1], a probability".to_owned();
         Err(BuildError::OutOfRange { name: "goal-bias", value: self.goal_bias, range })
     }
-}
-
-/// One variant of the family: a policy for each slot of the engine, and the parameters.
-///
-/// Planners with two trees have a pair of growths: one for exploring, one for joining.
-#[derive(Clone, Copy, Debug)]
-pub struct Recipe<P, Se, G, A> {
-    /// What to grow toward next.
-    pub propose: P,
-    /// Which nodes to grow from.
-    pub select: Se,
-    /// How far to grow in one iteration.
-    pub grow: G,
-    /// How a new motion joins the tree.
-    pub attach: A,
-    /// The parameters.
-    pub tuning: Tuning,
 }
 
 #[cfg(test)]
