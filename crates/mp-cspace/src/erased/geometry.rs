@@ -7,7 +7,7 @@ use crate::{
 use nalgebra::Vector3;
 use std::fmt;
 
-/// Geometry that can be copied behind its pointer.
+/// Obstacle geometry as a trait object that can be cloned.
 trait Erased<'c, S>: ObstacleGeometry<S> + Send + Sync {
     fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c>;
 }
@@ -18,7 +18,7 @@ impl<'c, S, G: ObstacleGeometry<S> + Clone + Send + Sync + 'c> Erased<'c, S> for
     }
 }
 
-/// Any [`ObstacleGeometry`], behind a pointer.
+/// Any [`ObstacleGeometry`] behind a pointer.
 pub struct AnyGeometry<'c, S>(Box<dyn Erased<'c, S> + 'c>);
 
 impl<'c, S> AnyGeometry<'c, S> {

@@ -10,7 +10,7 @@ use nalgebra::{DVector, Isometry3};
 use std::fmt::{self, Debug};
 use std::sync::Arc;
 
-/// What of an index goes behind the pointer: all of [`NearestNeighbors`], with the space inside.
+/// The methods of [`NearestNeighbors`] as a trait object, the space inside.
 trait Erased<S>: Send + Sync {
     fn boxed(&self) -> Box<dyn Erased<S>>;
     fn inserted(&mut self, points: &[S], id: NodeId);
@@ -51,8 +51,8 @@ where
     }
 }
 
-/// Any index of an [erased space](AnySpace): it keeps the space it was made for, so that the search inside runs on the
-/// space itself and answers are the same, to the bit. Give it the erasure of that space.
+/// Any index of an [erased space](AnySpace). It keeps the space it was made for: the search runs on that space itself,
+/// and answers are the same, to the bit. Use it only with the erasure of that space.
 pub struct AnyIndex<S>(Box<dyn Erased<S>>);
 
 impl<S> AnyIndex<S> {
@@ -72,22 +72,22 @@ impl<S> AnyIndex<S> {
 }
 
 impl<S: CoordinateState> AnyIndex<S> {
-    /// A [`KdTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: a little
-    /// slower than [`of`](Self::of), compiled once.
+    /// A [`KdTree`] for a copy of `space`, empty and erased. All spaces of these states share its code: a little slower
+    /// than [`of`](Self::of), but compiled once.
     pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self {
         Self(S::index(AnySpace::new(space), AnyEmbed(Arc::new(space.clone()))).0)
     }
 }
 
 impl<S: CoordinateState> AnyIndex<S> {
-    /// A [`MetricTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: for
-    /// metrics whose distances take longer than a pointer.
+    /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces of these states share its code: for metrics
+    /// whose distances cost more than a call through a pointer.
     pub fn by_metric<C: Space<State = S> + TrueMetric + Clone + Send + 'static>(space: &C) -> Self {
         S::metric_index(AnySpace::new(space))
     }
 }
 
-/// What of coordinates goes behind the pointer.
+/// The methods of [`Embed`] as a trait object.
 trait ErasedEmbed<S>: Send + Sync {
     fn layout(&self) -> Layout;
     fn embed(&self, state: &S, out: &mut [f64]) -> usize;
@@ -103,15 +103,15 @@ impl<S, C: Embed<State = S> + Send> ErasedEmbed<S> for C {
 }
 
 /// Coordinates behind a pointer.
-#[allow(missing_debug_implementations)] // nothing to be seen
+#[allow(missing_debug_implementations)] // a pointer has nothing to print
 pub struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
 
-/// States for which an index of erased spaces with coordinates is compiled in this crate: those of robots.
+/// States of robots: for these, the indexes of erased spaces are compiled in this crate.
 pub trait CoordinateState: Clone + Debug + PartialEq + Send + Sync + 'static {
     /// An empty index of a space with these coordinates.
     #[doc(hidden)]
     fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self>;
-    /// An empty index of a space by its distances.
+    /// An empty index of a space that uses its distances only.
     #[doc(hidden)]
     fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self>;
 }
@@ -137,7 +137,7 @@ struct Embedded<S> {
     layout: AnyEmbed<S>,
 }
 
-/// Of the space an index asks distances and coordinates only; the rest is there because a space has it.
+/// An index uses only distances and coordinates; the other methods complete the trait.
 impl<S: Clone + Debug + PartialEq + Send + Sync> Space for Embedded<S> {
     type State = S;
     #[inline]
@@ -174,7 +174,7 @@ impl<S: Clone + Debug + PartialEq + Send + Sync> Embed for Embedded<S> {
     }
 }
 
-/// A space whose own index is compiled in this crate, for states of robots.
+/// A space of robot states whose own index is compiled in this crate.
 pub trait CompiledIndex: Space + Clone + Send + 'static {
     /// The [index that suits](DefaultNn) the space, empty and erased.
     fn compiled_index(&self) -> AnyIndex<Self::State>;
