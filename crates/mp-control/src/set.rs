@@ -28,7 +28,7 @@ impl<U: Input> InputSet<U> {
     /// The set of these inputs.
     ///
     /// # Errors
-    /// When there are none, one has no entries, or an entry is not finite.
+    /// When there is no input, an input has no entries, or an entry is not finite.
     pub fn new(inputs: impl IntoIterator<Item = U>) -> Result<Self, InputError> {
         let inputs: Vec<U> = inputs.into_iter().collect();
         if inputs.is_empty() {

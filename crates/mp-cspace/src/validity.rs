@@ -160,7 +160,7 @@ impl<S, V: MotionClearance<S> + ?Sized> MotionClearance<S> for &mut V {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MotionCheck {
     /// Free all along; `clearance` (m) is a lower bound on the distance to any obstacle over the
-    /// whole motion, zero where the check knows none (a discrete check never does).
+    /// whole motion, zero where the check gives none (a discrete check never does).
     Free {
         /// Lower bound on clearance, metres.
         clearance: f64,

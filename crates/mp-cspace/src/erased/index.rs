@@ -11,8 +11,8 @@ use std::fmt::{self, Debug};
 use std::sync::Arc;
 
 /// The methods of [`NearestNeighbors`] as a trait object, the space inside.
-trait Erased<S>: Send + Sync {
-    fn boxed(&self) -> Box<dyn Erased<S>>;
+trait ErasedIndex<S>: Send + Sync {
+    fn boxed(&self) -> Box<dyn ErasedIndex<S>>;
     fn inserted(&mut self, points: &[S], id: NodeId);
     fn clear(&mut self);
     fn nearest(&self, points: &[S], q: &S) -> Option<Hit>;
@@ -21,17 +21,17 @@ trait Erased<S>: Send + Sync {
 }
 
 /// An index with the space it searches.
-struct Searching<C, N> {
+struct IndexWithSpace<C, N> {
     space: Arc<C>,
     index: N,
 }
 
-impl<S, C, N> Erased<S> for Searching<C, N>
+impl<S, C, N> ErasedIndex<S> for IndexWithSpace<C, N>
 where
     C: Space<State = S> + Send + 'static,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
 {
-    fn boxed(&self) -> Box<dyn Erased<S>> {
+    fn boxed(&self) -> Box<dyn ErasedIndex<S>> {
         Box::new(Self { space: Arc::clone(&self.space), index: self.index.clone() })
     }
     fn inserted(&mut self, points: &[S], id: NodeId) {
@@ -53,7 +53,7 @@ where
 
 /// Any index of an [erased space](AnySpace). It keeps the space it was made for: the search runs on that space itself,
 /// and answers are the same, to the bit. Use it only with the erasure of that space.
-pub struct AnyIndex<S>(Box<dyn Erased<S>>);
+pub struct AnyIndex<S>(Box<dyn ErasedIndex<S>>);
 
 impl<S> AnyIndex<S> {
     /// `index` for a copy of `space`, erased.
@@ -62,7 +62,7 @@ impl<S> AnyIndex<S> {
         C: Space<State = S> + Clone + Send + 'static,
         N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
     {
-        Self(Box::new(Searching { space: Arc::new(space.clone()), index }))
+        Self(Box::new(IndexWithSpace { space: Arc::new(space.clone()), index }))
     }
 
     /// The [index that suits](DefaultNn) `space`, empty and erased.
@@ -77,9 +77,7 @@ impl<S: CoordinateState> AnyIndex<S> {
     pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self {
         Self(S::index(AnySpace::new(space), AnyEmbed(Arc::new(space.clone()))).0)
     }
-}
 
-impl<S: CoordinateState> AnyIndex<S> {
     /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces of these states share its code: for metrics
     /// whose distances cost more than a call through a pointer.
     pub fn by_metric<C: Space<State = S> + TrueMetric + Clone + Send + 'static>(space: &C) -> Self {
@@ -121,7 +119,7 @@ macro_rules! coordinate_states {
         $(impl CoordinateState for $state {
             fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self> {
                 let space = Arc::new(Embedded { space, layout });
-                AnyIndex(Box::new(Searching { space, index: <KdTree>::default() }))
+                AnyIndex(Box::new(IndexWithSpace { space, index: <KdTree>::default() }))
             }
             fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self> {
                 AnyIndex::new(&space, MetricTree::default())

@@ -5,7 +5,7 @@ use std::fmt::{self, Debug};
 use std::sync::Arc;
 
 /// The methods of [`Space`] as a trait object.
-trait Erased<S>: Send + Sync {
+trait ErasedSpace<S>: Send + Sync {
     fn dim(&self) -> usize;
     fn distance(&self, from: &S, to: &S) -> f64;
     fn interpolate_into(&self, from: &S, to: &S, t: f64, out: &mut S);
@@ -19,7 +19,7 @@ trait Erased<S>: Send + Sync {
     fn with_rotation_of(&self, position: &S, rotation: &S) -> S;
 }
 
-impl<S, C: Space<State = S> + Send> Erased<S> for C {
+impl<S, C: Space<State = S> + Send> ErasedSpace<S> for C {
     fn dim(&self) -> usize {
         Space::dim(self)
     }
@@ -68,7 +68,7 @@ impl<S, C: Space<State = S> + Send> Erased<S> for C {
 /// # Ok::<(), mp_cspace::SpaceError>(())
 /// ```
 pub struct AnySpace<'c, S> {
-    space: Arc<dyn Erased<S> + 'c>,
+    space: Arc<dyn ErasedSpace<S> + 'c>,
     /// Kept here because it is read often and never changes.
     extent: f64,
 }

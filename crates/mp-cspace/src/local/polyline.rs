@@ -48,15 +48,15 @@ impl<S> PolylineEdge<S> {
     /// whatever its length.
     pub fn check(&self, from: &S, to: &S, check: &mut (impl MotionValidity<S> + ?Sized)) -> MotionCheck {
         let parts = (self.vertices().len() + 1) as f64;
-        let (mut here, mut least) = (from, f64::INFINITY);
+        let (mut last, mut least) = (from, f64::INFINITY);
         for (i, next) in self.vertices().iter().chain([to]).enumerate() {
             let fraction = |at: f64| (i as f64 + at) / parts;
-            match check.check_motion(here, next) {
+            match check.check_motion(last, next) {
                 MotionCheck::Free { clearance } => least = least.min(clearance),
                 MotionCheck::Collision { at } => return MotionCheck::Collision { at: fraction(at) },
                 MotionCheck::Unproven { at } => return MotionCheck::Unproven { at: fraction(at) },
             }
-            here = next;
+            last = next;
         }
         MotionCheck::Free { clearance: least }
     }

@@ -27,7 +27,7 @@ impl SweptVolume {
     /// The metric of the body with these triangles (m), in its own frame.
     ///
     /// # Errors
-    /// When there are none, or a corner is not finite.
+    /// When there is no triangle, or a corner is not finite.
     pub fn new(triangles: impl IntoIterator<Item = [Point3<f64>; 3]>) -> Result<Self, SpaceError> {
         let (mut panels, mut area, mut radius) = (Vec::new(), 0.0, 0.0_f64);
         for [a, b, c] in triangles {

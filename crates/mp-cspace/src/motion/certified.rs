@@ -17,7 +17,7 @@ use std::collections::VecDeque;
 ///
 /// With `margin = tolerance / 2`:
 /// - a motion found free has clearance at least `margin` **all along it**, so an independent
-///   verifier that asks for less always agrees;
+///   verifier that requires less always agrees;
 /// - a motion whose clearance (as [`Clearance`](crate::Clearance) bounds it) is at least `tolerance` all along is
 ///   found free;
 /// - a motion whose least clearance is between the two may be [`Unproven`](MotionCheck::Unproven), which

@@ -23,7 +23,7 @@ pub(super) struct Coincident {
 
 impl Coincident {
     /// The states `ids` without `first`, with which they share; `None` when no other is left.
-    pub(super) fn beside(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Self> {
+    pub(super) fn sharing_with(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Self> {
         ids.retain(|&id| id != first);
         ids.sort_unstable();
         (!ids.is_empty()).then_some(Self { ids, same })

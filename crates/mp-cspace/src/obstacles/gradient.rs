@@ -24,7 +24,7 @@ pub trait ClearanceGradient<S> {
     /// - Free: the distance to the nearest obstacle. For a state at least `reach` (m) away, any number of at
     ///   least `reach` will do, with a gradient of zeros: the caller ignores obstacles that far.
     /// - In collision: zero or less, minus the depth where depth is known. The gradient then should point
-    ///   the way out; zeros where no way is known.
+    ///   out of the obstacle; zeros where that direction is not known.
     /// - `gradient` has one number per degree of freedom, in the order of the velocities of
     ///   [`Space::moved`](crate::Space::moved): translations (m/m) before rotations (m/rad), about world axes.
     ///   So the clearance after moving at velocity `v` for a short time `t` is `clearance + t·gradient·v`. Every

@@ -49,7 +49,7 @@ pub struct PathReport {
     /// Length in the metric of the space.
     pub length: f64,
     /// Lower bound (m) on the clearance along all edges; zero when there is a fault or the check
-    /// knows no clearance.
+    /// gives no clearance.
     pub clearance: f64,
     /// The first fault, `None` when the path is free.
     pub fault: Option<PathFault>,
@@ -66,7 +66,7 @@ impl PathReport {
 /// Verifies a path state by state and edge by edge with `check`, which should share no code with
 /// the check the planner used.
 ///
-/// A path of one state stands still there.
+/// A path of one state is checked as a motion from that state to itself.
 pub fn verify_path<C: Space>(
     space: &C,
     path: &Path<C::State>,

@@ -172,7 +172,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         &self.goals
     }
 
-    /// The parts of the problem, for planners; drops what is known of obstacles.
+    /// The parts of the problem, for planners; drops the obstacle knowledge.
     #[must_use]
     pub fn into_parts(self) -> ProblemParts<'c, C, L> {
         let Self { space, local, verify, start, goals, .. } = self;
@@ -186,13 +186,13 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         self
     }
 
-    /// The same problem with what is known of its obstacles, for planners by name that need it.
+    /// The same problem with this obstacle knowledge, for planners by name that need it.
     #[must_use]
     pub fn with_obstacles(self, obstacles: ObstacleKnowledge<'c, C::State>) -> Self {
         Self { obstacles, ..self }
     }
 
-    /// Takes what is known of obstacles out of the problem.
+    /// Takes the obstacle knowledge out of the problem.
     pub fn take_obstacles(&mut self) -> ObstacleKnowledge<'c, C::State> {
         std::mem::take(&mut self.obstacles)
     }

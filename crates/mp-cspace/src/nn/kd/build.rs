@@ -150,7 +150,7 @@ impl<const K: usize> KdTree<K> {
         if let Some(&i) = order.first() {
             self.leaves.push(leaf, items.dim, first, |d| items.at(i, d) as f32);
         }
-        self.leaves.set_coincident(leaf, Coincident::beside(first, ids, same));
+        self.leaves.set_coincident(leaf, Coincident::sharing_with(first, ids, same));
         Ref::leaf(leaf)
     }
 }

@@ -182,7 +182,7 @@ impl MetricTree {
         }
         // Coincident states have larger ids than the state they share with.
         let first = order[0] as usize;
-        items.coincident[first] = Coincident::beside(items.ids[first], all, true);
+        items.coincident[first] = Coincident::sharing_with(items.ids[first], all, true);
         self.build_leaf(items, &order[..1])
     }
 }

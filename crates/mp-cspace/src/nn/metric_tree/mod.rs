@@ -37,7 +37,7 @@ struct Step {
 }
 
 /// An exact index for any [`TrueMetric`]: it uses nothing but distances and the triangle
-/// inequality. For costly metrics, and for those that no coordinates bound.
+/// inequality. For costly metrics, and for metrics without a lower bound by coordinates.
 ///
 /// A vantage-point tree (Yianilos 1993, *Data structures and algorithms for nearest neighbor
 /// search in general metric spaces*) with buckets that store the distances to the last eight
