@@ -70,7 +70,7 @@ pub trait NearestNeighbors<C: Space> {
     /// # Panics
     /// When `id` is not below the number of `points`.
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId);
-    /// Removes all states from the index.
+    /// Removes all states from the index; the caller inserts them again.
     fn clear(&mut self);
     /// The nearest point, `None` when there is none.
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit>;

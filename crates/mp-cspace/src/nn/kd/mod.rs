@@ -49,7 +49,7 @@ pub struct KdTree<const K: usize = 16> {
     leaves: Leaves,
     /// Bounds of all coordinates, relative to the origin.
     bounds: [[f64; K]; 2],
-    /// The largest of them.
+    /// The largest absolute value of a coordinate.
     largest: f64,
     /// The inner nodes above the leaf found last, and which child was taken.
     path: Vec<(usize, usize)>,

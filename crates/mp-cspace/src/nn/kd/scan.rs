@@ -16,7 +16,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
             return;
         }
         let lanes = self.tree.leaves.lanes(leaf, dim);
-        // Lanes without a state are not a number, for which no comparison holds.
+        // Lanes without a state are NaN, for which no comparison holds.
         match *self.tree.layout.ends.as_slice() {
             [] | [_] => {
                 let squares = self.squares(lanes, 0, dim);
@@ -62,7 +62,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         let ranges = self.tree.leaves.ranges(leaf, dim);
         let gap = |d: usize| {
             let ([low, high], q) = (ranges[d], self.q32[d]);
-            // Around a period the distance may be shorter.
+            // Where there is a period, the other way round may be shorter.
             if layout.period[d] == f64::INFINITY { (low - q).max(q - high).max(0.0) } else { 0.0 }
         };
         let squares = |from: usize, to: usize| (from..to).map(gap).fold(0.0, |sum, t| sum + t * t);

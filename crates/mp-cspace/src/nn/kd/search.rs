@@ -80,7 +80,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         self.lane_reach = (lane * lane) as f32 + f32::MIN_POSITIVE;
     }
 
-    /// Searches for every image of the query; antipodes from number `a` on are not chosen yet.
+    /// Searches for every image of the query, the signs of the antipodes before number `a` being chosen.
     fn search_images(&mut self, root: Ref, a: usize) {
         let Some(&(start, end)) = self.tree.layout.antipodes.get(a) else { return self.search_image(root) };
         self.search_images(root, a + 1);
