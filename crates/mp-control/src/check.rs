@@ -1,4 +1,4 @@
-//! Testing the motion to a successor, and what its edge remembers.
+//! Collision tests of the motion to a successor, and what its edge stores.
 
 use crate::{Flow, Input};
 use mp_cspace::{
@@ -6,13 +6,13 @@ use mp_cspace::{
 };
 use std::fmt::Debug;
 
-/// An edge that remembers how it was made: run from the state before it, the input leads in `duration`
-/// to the state after it, bit for bit.
+/// An edge that stores its input: applied for `duration` from the state before the edge, it leads to the
+/// state after the edge, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlSegment<U> {
-    /// What the system is told.
+    /// The input of the system.
     pub input: U,
-    /// For how long, seconds.
+    /// How long it is applied, seconds.
     pub duration: f64,
 }
 
@@ -21,7 +21,7 @@ pub struct ControlSegment<U> {
 pub struct Drive<'a, S, U> {
     /// The node, which is free.
     pub node: &'a S,
-    /// Where the motion leads; in a backward tree where it comes from. In the space.
+    /// The state the motion leads to, in a backward tree the state it comes from. Within the space.
     pub successor: &'a S,
     /// The input.
     pub input: &'a U,
@@ -44,28 +44,28 @@ impl<'a, S, U> Drive<'a, S, U> {
 
 /// The collision test of successors in an [`InputPlanner`](crate::InputPlanner).
 pub trait FlowCheck<S, U, F> {
-    /// What an edge remembers.
+    /// What an edge stores.
     type Edge: Clone + Debug + Send + Sync;
 
-    /// Whether edges are replayed, so that running them forward must lead to the very same state.
+    /// Whether edges are replayed: running one forward must then lead to the same state, bit for bit.
     const REPLAYED: bool;
 
     /// The edge and its cost where the motion is free.
     fn test(&mut self, flow: &F, drive: &Drive<'_, S, U>) -> Option<(Self::Edge, f64)>;
 
-    /// Whether a motion may begin or end at `q` at all.
+    /// Whether any motion may begin or end at `q`.
     fn admits(&mut self, q: &S) -> bool;
 
-    /// A motion to a state exactly, whatever the inputs: `None` where there is no such thing, which is
-    /// the default.
+    /// A motion that ends exactly at a given state, whatever the inputs. `None`, the default, where the
+    /// check can make none.
     fn connect(&mut self, _node: &S, _to: &S, _direction: Direction) -> Option<Extension<S, Self::Edge>> {
         None
     }
 }
 
-/// Motions to successors are what another local planner does between the two states, and so are the
-/// edges: for [`Kinematic`](crate::Kinematic) motions and [`Straight`](mp_cspace::Straight), whose edges are
-/// the space's interpolation.
+/// Uses another local planner for the motion between node and successor, and stores its edge: for
+/// [`Kinematic`](crate::Kinematic) motions with [`Straight`](mp_cspace::Straight), whose edges are the
+/// space's interpolation.
 #[derive(Clone, Debug)]
 pub struct Between<L>(pub L);
 
@@ -88,7 +88,7 @@ impl<S, U, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Between<L> {
     }
 }
 
-/// As [`Between`], with edges that remember the input. Their cost is time.
+/// As [`Between`], with edges that store the input. Their cost is time.
 #[derive(Clone, Debug)]
 pub struct Recorded<L>(pub L);
 
@@ -110,8 +110,8 @@ fn segment<S, U: Input>(drive: &Drive<'_, S, U>) -> (ControlSegment<U>, f64) {
     (ControlSegment { input: drive.input.clone(), duration: drive.duration }, drive.duration)
 }
 
-/// Motions are sampled along the flow, whatever it is: the successor first, then states on the way no
-/// farther apart than a resolution. Edges remember the input; their cost is time.
+/// Samples motions along any flow: the successor first, then states between, no farther apart than a
+/// resolution. Edges store the input; their cost is time.
 ///
 /// **What it does not promise:** as with [`Discrete`](mp_cspace::Discrete), between tested states anything
 /// may be hit.
@@ -122,13 +122,14 @@ pub struct DiscreteFlowCheck<'c, C: Space, V> {
     /// Whether a state is free.
     pub valid: V,
     step: f64,
-    way: Vec<C::State>,
+    /// The sampled states of a motion.
+    samples: Vec<C::State>,
 }
 
-/// Motions that take more states than this are not free.
+/// Motions that need more states than this count as not free.
 const MAX_STATES: usize = 1 << 20;
 
-/// Parts in which the length of a motion is measured.
+/// Number of straight parts by which the length of a motion is measured.
 const LENGTH_PARTS: u32 = 8;
 
 impl<'c, C: Space, V: Validity<C::State>> DiscreteFlowCheck<'c, C, V> {
@@ -137,10 +138,10 @@ impl<'c, C: Space, V: Validity<C::State>> DiscreteFlowCheck<'c, C, V> {
     /// # Errors
     /// When the resolution is not positive and finite, or below 10⁻⁹ of the extent.
     pub fn new(space: &'c C, valid: V, resolution: Resolution) -> Result<Self, ParameterError> {
-        Ok(Self { space, valid, step: resolution.length_in(space)?, way: Vec::new() })
+        Ok(Self { space, valid, step: resolution.length_in(space)?, samples: Vec::new() })
     }
 
-    /// The length of the motion, as that of a polyline: its ends alone may be near each other.
+    /// The length of the motion as a polyline: the distance of its ends alone may be too short.
     fn length<U, F: Flow<C::State, U>>(&self, flow: &F, drive: &Drive<'_, C::State, U>) -> f64 {
         let (from, to) = drive.ends();
         let (mut length, mut last) = (0.0, from.clone());
@@ -153,21 +154,21 @@ impl<'c, C: Space, V: Validity<C::State>> DiscreteFlowCheck<'c, C, V> {
         length + self.space.distance(&last, to)
     }
 
-    /// Writes states of the motion into `way`, both ends included, no neighbours farther apart than the
-    /// step: the duration in as many equal parts as that takes. False where it takes too many.
-    fn walk<U, F: Flow<C::State, U>>(&mut self, flow: &F, drive: &Drive<'_, C::State, U>) -> bool {
+    /// Writes states of the motion into `samples`, both ends included, no neighbours farther apart than the
+    /// step: at as many equal parts of the duration as this needs. `false` where it needs too many.
+    fn sample<U, F: Flow<C::State, U>>(&mut self, flow: &F, drive: &Drive<'_, C::State, U>) -> bool {
         let (from, to) = drive.ends();
         let mut parts = (self.length(flow, drive) / self.step).ceil().clamp(1.0, MAX_STATES as f64) as usize;
         while parts < MAX_STATES {
-            self.way.clear();
-            self.way.push(from.clone());
+            self.samples.clear();
+            self.samples.push(from.clone());
             for i in 1..parts {
                 let time = drive.duration * (i as f64 / parts as f64);
-                self.way.push(flow.integrate(from, drive.input, time));
+                self.samples.push(flow.integrate(from, drive.input, time));
             }
-            self.way.push(to.clone());
+            self.samples.push(to.clone());
             let mut widest = 0.0_f64;
-            for pair in self.way.windows(2) {
+            for pair in self.samples.windows(2) {
                 let gap = self.space.distance(&pair[0], &pair[1]);
                 if !gap.is_finite() {
                     return false;
@@ -194,19 +195,19 @@ where
     const REPLAYED: bool = true;
 
     fn test(&mut self, flow: &F, drive: &Drive<'_, C::State, U>) -> Option<(ControlSegment<U>, f64)> {
-        if !self.valid.is_valid(drive.successor) || !self.walk(flow, drive) {
+        if !self.valid.is_valid(drive.successor) || !self.sample(flow, drive) {
             return None;
         }
-        let inner = 1..self.way.len() - 1;
-        let inside = self.way[inner.clone()].iter().all(|q| self.space.contains(q));
-        (inside && self.valid.first_invalid(&self.way[inner]).is_none()).then(|| segment(drive))
+        let inner = 1..self.samples.len() - 1;
+        let inside = self.samples[inner.clone()].iter().all(|q| self.space.contains(q));
+        (inside && self.valid.first_invalid(&self.samples[inner]).is_none()).then(|| segment(drive))
     }
     fn admits(&mut self, q: &C::State) -> bool {
         self.valid.is_valid(q)
     }
 }
 
-/// A state with more to it than its position is free where its position is.
+/// A state that is a position and something else, such as a velocity, is free where its position is free.
 #[derive(Clone, Debug)]
 pub struct OnPosition<V>(pub V);
 

@@ -5,7 +5,7 @@ use mp_cspace::Space;
 
 /// Positions with a velocity per degree of freedom, moved at constant acceleration.
 ///
-/// States are pairs: a position of any space that knows [velocities](Space::moved), and its velocity.
+/// States are pairs: a position of any space that has [velocities](Space::moved), and its velocity.
 /// Inputs are accelerations, one number per degree of freedom (m/s², rad/s², about world axes):
 ///
 /// > v(t) = v + a·t, q(t) = q moved at v + a·t/2 for t
@@ -13,8 +13,7 @@ use mp_cspace::Space;
 /// which is exact for vectors and angles. For rotations in space it is the Magnus integrator of second
 /// order: exact where acceleration and angular velocity share an axis, else off by O(t³·|ω × α|).
 ///
-/// Velocities have no other bound than that of the space they are a part of: what leads out of it is
-/// not entered.
+/// The only bounds on velocities are those of the space of states: planners drop successors outside it.
 #[derive(Debug)]
 pub struct DoubleIntegrator<'c, P> {
     positions: &'c P,
@@ -32,7 +31,7 @@ impl<'c, P: Space> DoubleIntegrator<'c, P> {
     /// with velocities.
     ///
     /// # Errors
-    /// When the space of positions knows no velocities.
+    /// When the space of positions has no velocities.
     pub fn new(positions: &'c P) -> Result<Self, InputError> {
         crate::Kinematic::new(positions).map(|_| Self { positions })
     }

@@ -1,4 +1,4 @@
-//! What can be wrong with inputs and flows.
+//! Errors in inputs and flows.
 
 use mp_cspace::{ParameterError, SpaceError};
 use thiserror::Error;
@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum InputError {
-    /// There is no input, or inputs have no entries.
+    /// There is no input, or an input has no entries.
     #[error("{what} must not be empty")]
     Empty {
         /// What is empty.
@@ -24,10 +24,10 @@ pub enum InputError {
     /// A number is out of its range, such as a duration of zero.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// Limits do not fit the space, such as their number.
+    /// Limits do not fit the space, for instance in number.
     #[error(transparent)]
     Space(#[from] SpaceError),
-    /// The space knows no [velocities](mp_cspace::Space::moved), or inputs have not one entry for each of
+    /// The space has no [velocities](mp_cspace::Space::moved), or inputs do not have one entry for each of
     /// its degrees of freedom.
     #[error("an input of {entries} entries moves no state of the space, which has {dim} degrees of freedom")]
     NoMotion {
@@ -41,10 +41,10 @@ pub enum InputError {
     FlowNotFinite {
         /// Which input.
         index: usize,
-        /// From where, as `Debug` prints it.
+        /// The state it is applied to, as `Debug` prints it.
         from: String,
     },
-    /// From all states tried every input leads nowhere or out of the space.
+    /// From every state tried, each input leads back to that state or out of the space.
     #[error(
         "no input leads from any of {states} sampled states to another state of the space: \
          the duration may be too long, or the inputs too large"

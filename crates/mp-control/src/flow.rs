@@ -3,14 +3,15 @@
 use nalgebra::{DVector, SVector};
 use std::fmt::Debug;
 
-/// What a system can be told to do: a list of numbers.
+/// The input of a system: a list of numbers.
 ///
-/// Numbers, arrays and vectors are inputs. So are velocities, where a system is told accelerations.
+/// Numbers, arrays and vectors are inputs. The velocities of a [`DoubleIntegrator`](crate::DoubleIntegrator),
+/// whose inputs are accelerations, implement it too.
 pub trait Input: Clone + Debug + PartialEq + Send + Sync {
     /// Its numbers.
     fn entries(&self) -> &[f64];
 
-    /// Its numbers, to be changed.
+    /// Its numbers, mutable.
     fn entries_mut(&mut self) -> &mut [f64];
 
     /// `self + factor · other`, number by number.
@@ -78,16 +79,15 @@ impl Input for Vec<f64> {
 
 /// How an input, applied for a while, moves a state. Closures `Fn(&S, &U, f64) -> S` implement it.
 ///
-/// Contract: the answer depends on the arguments only, to the bit; after no time the state is where it
-/// was; over `time` from zero to a duration the answers trace the motion, so that it can be checked at
-/// any state on the way. Users' flows may answer with states that are not finite or out of bounds:
-/// these are never entered.
+/// Contract: the answer depends on the arguments only, to the bit; after zero time the state is the same;
+/// over `time` from zero to a duration the answers trace the motion, so that it can be checked at any
+/// state between. Users' flows may return states that are not finite or out of bounds: planners drop them.
 pub trait Flow<S, U> {
     /// The state reached from `from` when `input` is applied for `time` seconds.
     fn integrate(&self, from: &S, input: &U, time: f64) -> S;
 
     /// The state from which `input` leads to `to` in `time` seconds, up to rounding; `None`, the
-    /// default, where time cannot be turned back.
+    /// default, where the flow cannot run backward.
     fn reversed(&self, _to: &S, _input: &U, _time: f64) -> Option<S> {
         None
     }

@@ -3,12 +3,12 @@
 use crate::{Flow, Input, InputError};
 use mp_cspace::Space;
 
-/// Any configuration moved at constant velocity: the trajectory as a list of positions. Inputs are
-/// velocities, one number per degree of freedom, as [`Space::moved`] takes them: a free-flyer is
-/// `Kinematic` on SE(3), an arm on R^n, a holonomic planar body on SE(2).
+/// Configurations of any space, moved at constant velocity. Inputs are velocities, one number per degree
+/// of freedom, as [`Space::moved`] takes them: a free-flyer is `Kinematic` on SE(3), an arm on R^n, a
+/// holonomic planar body on SE(2).
 ///
-/// By less than half a turn its motions are the space's own interpolation, so that any motion check
-/// and verifier of straight motions serves them.
+/// Motions that turn by less than half a turn are the space's own interpolation, so any motion check and
+/// verifier of straight motions can be used for them.
 #[derive(Debug)]
 pub struct Kinematic<'c, C> {
     space: &'c C,
@@ -22,10 +22,10 @@ impl<C> Clone for Kinematic<'_, C> {
 impl<C> Copy for Kinematic<'_, C> {}
 
 impl<'c, C: Space> Kinematic<'c, C> {
-    /// The states of `space` at given velocities.
+    /// The configurations of `space`, moved by velocities.
     ///
     /// # Errors
-    /// When the space knows no velocities.
+    /// When the space has no velocities.
     pub fn new(space: &'c C) -> Result<Self, InputError> {
         let dim = space.dim();
         let middle = space.unit_cube_to_state(&vec![0.5; dim]);
@@ -37,7 +37,7 @@ impl<'c, C: Space> Kinematic<'c, C> {
 }
 
 impl<C: Space, U: Input> Flow<C::State, U> for Kinematic<'_, C> {
-    /// Inputs of another number of entries move nothing.
+    /// An input with another number of entries does not move the state.
     #[inline]
     fn integrate(&self, from: &C::State, input: &U, time: f64) -> C::State {
         self.space.moved(from, input.entries(), time).unwrap_or_else(|| from.clone())

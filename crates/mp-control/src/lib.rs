@@ -1,13 +1,13 @@
 //! Systems that move by inputs: flows, input sets, and the local planner that chooses among inputs.
 //!
-//! A [`Flow`] says how an input, applied for a while, moves a state. An [`InputSet`] lists the inputs
-//! there are. [`InputPlanner`] is the [`LocalPlanner`](mp_cspace::LocalPlanner) of both, in either
-//! [`Order`] of testing; a [`FlowCheck`] tests a successor's motion and says what its edge remembers;
-//! [`ReplayMotions`] and [`ReplayFinely`] verify edges by running them again.
+//! A [`Flow`] says how an input, applied for a while, moves a state. An [`InputSet`] lists the inputs.
+//! [`InputPlanner`] is the [`LocalPlanner`](mp_cspace::LocalPlanner) of both, in either [`Order`] of
+//! testing. A [`FlowCheck`] tests the motion to a successor and says what its edge stores.
+//! [`ReplayMotions`] and [`ReplayFinely`] verify edges by replay.
 //!
 //! | system | states | inputs |
 //! |---|---|---|
-//! | [`Kinematic`] | of any space that knows [velocities](mp_cspace::Space::moved) | velocities |
+//! | [`Kinematic`] | of any space that has [velocities](mp_cspace::Space::moved) | velocities |
 //! | [`DoubleIntegrator`] | positions and velocities, as in [`Product::with_velocity`](mp_cspace::Product::with_velocity) | accelerations |
 //! | [`Unicycle`], [`Car`] | [`Se2State`](mp_cspace::Se2State) | speed and turning or steering |
 //! | [`Rk4`] | vectors | any: a differential equation, integrated |

@@ -6,13 +6,13 @@ use mp_cspace::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reac
 /// In which order successors are tested for collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Order {
-    /// Every successor is tested, and the nearest to the target of those free is taken: ALG. 4 of
+    /// Every successor is tested, and of the free ones the nearest to the target is taken: ALG. 4 of
     /// N. Jouandeau, Y. Touati and A. Ali Cherif, *Incremental motion planning with Las Vegas
-    /// algorithms*, 2008. (As printed the listing forgets to lower `dmin`, and would take the last
-    /// one nearer than the node; its text asks for the closest.)
+    /// algorithms*, 2008. (The printed listing never lowers `dmin`, and would take the last one nearer
+    /// than the node; the text of the paper means the closest.)
     TestAll,
-    /// Successors are sorted by their distance to the target and tested in that order, the first that
-    /// is free is taken: RSRT, §3.2 there.
+    /// Successors are sorted by their distance to the target and tested in that order; the first that
+    /// is free is taken: RSRT, §3.2 of the same paper.
     SortFirst,
 }
 
@@ -21,14 +21,14 @@ pub enum Order {
 pub enum Accept {
     /// Only those nearer to the target than the node itself: `dmin` of ALG. 4.
     Nearer,
-    /// Any: the sequence of RSRT has no such condition.
+    /// Any: RSRT has no such condition.
     Any,
 }
 
 /// What an [`InputPlanner`] has done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InputCounters {
-    /// Extensions asked for.
+    /// Calls of [`extend`](LocalPlanner::extend).
     pub expansions: u64,
     /// Successors produced: inputs integrated.
     pub successors: u64,
@@ -38,12 +38,12 @@ pub struct InputCounters {
     pub not_finite: u64,
     /// Successors dropped because they are not in the space.
     pub outside: u64,
-    /// Successors of backward trees dropped because running forward from them does not lead to the
-    /// very state they came from, or the flow cannot be turned back.
+    /// Successors of backward trees dropped because the flow cannot run backward, or running it forward
+    /// from them does not lead to the same state again, bit for bit.
     pub irreversible: u64,
 }
 
-/// A local planner that chooses among inputs, as its caller says: an [`InputPlanner`], or a reference to one.
+/// A local planner whose choice among inputs its caller controls: an [`InputPlanner`], or a reference to one.
 pub trait InputChoice {
     /// Sets the order in which successors are tested.
     fn set_order(&mut self, order: Order);
@@ -51,9 +51,9 @@ pub trait InputChoice {
     /// How many inputs there are.
     fn count(&self) -> usize;
 
-    /// From now on tries each input at most once per node: extends only by inputs not marked in `tried`, one entry per input
-    /// (all unmarked when it has another length), and marks those it tries. At most `most` are tested for collision at a
-    /// time. Any successor is accepted, in the order of [`SortFirst`](Order::SortFirst).
+    /// Tries each input at most once per node from now on: extends only by inputs not marked in `tried`, one entry per
+    /// input (all unmarked when it has another length), and marks those it tries. Each extension tests at most `most` for
+    /// collision. Any successor is accepted, in the order of [`SortFirst`](Order::SortFirst).
     fn lend_tried(&mut self, tried: Vec<bool>, most: usize);
 
     /// Ends [`lend_tried`](Self::lend_tried) and returns the marks.
@@ -75,17 +75,17 @@ impl<L: InputChoice + ?Sized> InputChoice for &mut L {
     }
 }
 
-/// Extends states by the inputs of a set: each, applied for the duration, gives a successor; one that is
-/// free of collision is taken, in the [`Order`] set.
+/// Extends states by the inputs of a set: each input, applied for the duration, gives a successor. One that
+/// is free of collision is taken, in the [`Order`] set.
 ///
-/// The length of a step is up to the inputs and the duration: [`Reach::Step`] limits nothing but exact
-/// connections. A target is reached when a successor equals it to the bit. Where the check can
+/// The inputs and the duration decide the length of a step: [`Reach::Step`] limits exact connections only.
+/// A target is reached when a successor equals it to the bit. Where the check can
 /// [connect](FlowCheck::connect) states exactly, [`Reach::Full`] does that, and so do steps toward the
 /// states given to [`reaching`](Self::reaching) from within a step of them.
 ///
-/// In backward trees successors are states that lead to the node: the flow is
-/// [turned back](Flow::reversed), and where edges are replayed only successors from which it runs
-/// forward to the very same node are used. Rounding makes them rare, so backward trees are of use with
+/// In backward trees successors are states that lead to the node: the flow is [reversed](Flow::reversed).
+/// Where edges are replayed, only successors from which the flow runs forward to the same node, bit for
+/// bit, are used. Rounding makes these rare, so backward trees are useful with
 /// [`Between`](crate::Between) only.
 ///
 /// Time per extension: one integration and distance per input, a sort in
@@ -101,15 +101,15 @@ pub struct InputPlanner<'c, C: Space, F, U, K> {
     accept: Option<Accept>,
     exact: Exact<C::State>,
     counters: InputCounters,
-    /// Inputs tried before, and how many may be tested.
+    /// The inputs tried before, and how many an extension may test.
     tried: Option<(Vec<bool>, usize)>,
-    /// Distance to the target and input of each successor.
+    /// The distance to the target and the input of each successor that may be taken.
     ranked: Vec<(f64, usize)>,
-    /// Successors by input.
-    ends: Vec<C::State>,
+    /// The successor of each input.
+    successors: Vec<C::State>,
 }
 
-/// The states that are connected to exactly.
+/// The states to which steps connect exactly.
 #[derive(Clone, Debug)]
 enum Exact<S> {
     Listed(Vec<S>),
@@ -125,10 +125,10 @@ impl<S: PartialEq> Exact<S> {
     }
 }
 
-/// States from which the flow is tried at construction.
+/// Number of states from which the flow is tried at construction.
 const PROBES: usize = 32;
 
-/// Inputs tried from each of them.
+/// The most inputs tried from each of these states.
 const PROBED_INPUTS: usize = 256;
 
 impl<'c, C, F, U, K> InputPlanner<'c, C, F, U, K>
@@ -142,9 +142,9 @@ where
     /// `check`. The order is that of RSRT until another is set.
     ///
     /// # Errors
-    /// When the duration is not positive and finite; when the flow leads from a state of the space,
-    /// of some that are tried, to one that is not finite, or from none of them to another state in
-    /// the space.
+    /// When the duration is not positive and finite; when the flow, tried from some states of the space,
+    /// leads from one of them to a state that is not finite, or from none of them to another state in the
+    /// space.
     pub fn new(
         space: &'c C,
         flow: F,
@@ -158,7 +158,7 @@ where
             space,
             flow,
             ranked: Vec::with_capacity(inputs.len()),
-            ends: Vec::with_capacity(inputs.len()),
+            successors: Vec::with_capacity(inputs.len()),
             inputs,
             duration,
             check,
@@ -176,28 +176,27 @@ where
         Self { order, ..self }
     }
 
-    /// The same with a condition of its own on successors. Unless this is called it goes with the order:
-    /// [`Accept::Nearer`] with [`Order::TestAll`], as ALG. 4 has it, [`Accept::Any`] with
-    /// [`Order::SortFirst`].
+    /// The same with this condition on successors. The default depends on the order: [`Accept::Nearer`]
+    /// with [`Order::TestAll`], as in ALG. 4, [`Accept::Any`] with [`Order::SortFirst`].
     #[must_use]
     pub fn accepting(self, accept: Accept) -> Self {
         Self { accept: Some(accept), ..self }
     }
 
-    /// The same with `states` that are connected to exactly from within a step of them, as goals should
-    /// be, where the check can do that.
+    /// The same, connecting exactly to these `states` from within a step of them, where the check can do
+    /// that: for goals.
     #[must_use]
     pub fn reaching(self, states: impl IntoIterator<Item = C::State>) -> Self {
         Self { exact: Exact::Listed(states.into_iter().collect()), ..self }
     }
 
-    /// The same, connecting exactly to any target within a step: for goals that are not known before.
+    /// The same, connecting exactly to any target within a step: for goals that are not known in advance.
     #[must_use]
     pub fn reaching_all(self) -> Self {
         Self { exact: Exact::All, ..self }
     }
 
-    /// What was done so far.
+    /// The counters so far.
     #[must_use]
     pub fn counters(&self) -> InputCounters {
         self.counters
@@ -215,14 +214,14 @@ where
         &self.check
     }
 
-    /// Produces the successors: those in the space, which are elsewhere than the node.
+    /// Computes the successors, and ranks those that are in the space and differ from the node.
     fn produce(&mut self, node: &C::State, toward: &C::State, direction: Direction) {
         self.ranked.clear();
-        self.ends.clear();
+        self.successors.clear();
         let counters = &mut self.counters;
         for (index, input) in self.inputs.inputs().iter().enumerate() {
             if self.tried.as_ref().is_some_and(|(tried, _)| tried[index]) {
-                self.ends.push(node.clone());
+                self.successors.push(node.clone());
                 continue;
             }
             let end = match direction {
@@ -232,7 +231,7 @@ where
             counters.successors += 1;
             let Some(end) = end else {
                 counters.irreversible += 1;
-                self.ends.push(node.clone());
+                self.successors.push(node.clone());
                 continue;
             };
             let distance = self.space.distance(&end, toward);
@@ -248,10 +247,10 @@ where
             } else if end != *node {
                 self.ranked.push((distance, index));
             }
-            self.ends.push(end);
+            self.successors.push(end);
         }
         if let Some((tried, _)) = &mut self.tried {
-            // Whatever the target, the others lead nowhere from here.
+            // Whatever the target, the inputs that are not ranked give no successor of this node.
             tried.fill(true);
             self.ranked.iter().for_each(|&(_, index)| tried[index] = false);
         }
@@ -262,12 +261,12 @@ where
         if let Some((tried, _)) = &mut self.tried {
             tried[index] = true;
         }
-        let (successor, input) = (&self.ends[index], &self.inputs.inputs()[index]);
+        let (successor, input) = (&self.successors[index], &self.inputs.inputs()[index]);
         let drive = Drive { node, successor, input, duration: self.duration, direction };
         self.check.test(&self.flow, &drive)
     }
 
-    /// The successor taken, its edge and cost.
+    /// The input of the successor taken, with its edge and cost.
     fn choose(
         &mut self,
         node: &C::State,
@@ -314,7 +313,7 @@ where
         })
     }
 
-    /// An exact connection, where it is wanted and can be made. `None` to go on with the inputs.
+    /// An exact connection, where it is wanted and can be made. `None` to continue with the inputs.
     fn connect(
         &mut self,
         node: &C::State,
@@ -395,8 +394,8 @@ where
         }
         self.produce(from, toward, direction);
         if reach == Reach::Full {
-            let ends = &self.ends;
-            self.ranked.retain(|&(_, index)| ends[index] == *toward);
+            let successors = &self.successors;
+            self.ranked.retain(|&(_, index)| successors[index] == *toward);
         }
         let within = match self.accept() {
             Accept::Nearer => self.space.distance(from, toward),
@@ -405,7 +404,7 @@ where
         let Some((index, (edge, cost))) = self.choose(from, direction, within) else {
             return Extension::Trapped;
         };
-        let motion = Motion { end: self.ends.swap_remove(index), edge, cost };
+        let motion = Motion { end: self.successors.swap_remove(index), edge, cost };
         if motion.end == *toward { Extension::Reached(motion) } else { Extension::Advanced(motion) }
     }
 

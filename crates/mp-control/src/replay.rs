@@ -1,19 +1,19 @@
-//! Verifying edges by running them again.
+//! Verifiers that replay edges.
 
 use crate::{ControlSegment, Flow};
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Resolution, Space, Validity, Verify};
 
-/// Not the motion it is said to be: refused at its end.
-const FALSE: MotionCheck = MotionCheck::Unproven { at: 1.0 };
+/// The answer for an edge whose replay does not end in the state after it.
+const WRONG_END: MotionCheck = MotionCheck::Unproven { at: 1.0 };
 
-/// Whether running the edge leads from `from` to `to`, bit for bit.
+/// Whether replaying the edge leads from `from` to `to`, bit for bit.
 fn replays<S: PartialEq, U, F: Flow<S, U>>(flow: &F, from: &S, segment: &ControlSegment<U>, to: &S) -> bool {
     let runs = segment.duration > 0.0 && segment.duration.is_finite();
     runs && flow.integrate(from, &segment.input, segment.duration) == *to
 }
 
-/// Verifies the edges of [`Recorded`](crate::Recorded): runs each again, which must end in the very state
-/// after it, and verifies the straight motion between.
+/// Verifies the edges of [`Recorded`](crate::Recorded): replays each, which must end in the state after it,
+/// bit for bit, and verifies the straight motion between.
 #[derive(Clone, Debug)]
 pub struct ReplayMotions<F, V> {
     flow: F,
@@ -22,7 +22,7 @@ pub struct ReplayMotions<F, V> {
 }
 
 impl<F, V> ReplayMotions<F, V> {
-    /// Runs edges by `flow` and verifies what is between by `check`, which should share no code with
+    /// Replays edges by `flow` and verifies the straight motions by `check`, which should share no code with
     /// that of the local planner.
     pub fn new(flow: F, check: V) -> Self {
         Self { flow, check }
@@ -39,7 +39,7 @@ impl<F, V> ReplayMotions<F, V> {
         F: Flow<S, U>,
         V: MotionValidity<S>,
     {
-        if replays(&self.flow, from, segment, to) { self.check.check_motion(from, to) } else { FALSE }
+        if replays(&self.flow, from, segment, to) { self.check.check_motion(from, to) } else { WRONG_END }
     }
 
     /// Verifies one state.
@@ -51,9 +51,9 @@ impl<F, V> ReplayMotions<F, V> {
     }
 }
 
-/// Verifies any edge that remembers its input: runs it again, which must end in the very state after it,
-/// and walks along it in steps of a resolution, some twenty times finer than that of the local planner. Shares only the
-/// flow with [`DiscreteFlowCheck`](crate::DiscreteFlowCheck): the flow is what a motion *is*.
+/// Verifies any edge that stores its input: replays it, which must end in the state after it, bit for bit, and
+/// tests states along it at a resolution, some twenty times finer than that of the local planner. Shares only the
+/// flow with [`DiscreteFlowCheck`](crate::DiscreteFlowCheck): the flow defines the motion.
 #[derive(Clone, Debug)]
 pub struct ReplayFinely<'c, C, F, V> {
     space: &'c C,
@@ -63,14 +63,14 @@ pub struct ReplayFinely<'c, C, F, V> {
     step: f64,
 }
 
-/// Steps of a walk shorter than this part of its duration are not taken.
+/// The shortest step, as a part of the duration: a motion that needs shorter ones is not proved.
 const SHORTEST: f64 = 1e-9;
 
-/// No step takes more than this part of a duration, however little it moves: it may have come round.
+/// The longest step, as a part of the duration, however little it moves: the motion may have come round.
 const LONGEST: f64 = 1.0 / 32.0;
 
 impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
-    /// Runs edges by `flow` and tests states by `valid` every `resolution`.
+    /// Replays edges by `flow` and tests states by `valid` every `resolution`.
     ///
     /// # Errors
     /// When the resolution is not positive and finite, or below 10⁻⁹ of the extent.
@@ -89,7 +89,7 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
         F: Flow<C::State, U>,
     {
         if !replays(&self.flow, from, segment, to) {
-            return FALSE;
+            return WRONG_END;
         }
         let (mut at, mut pace, mut q) = (0.0_f64, 0.01_f64, from.clone());
         loop {
@@ -99,15 +99,15 @@ impl<'c, C: Space, F, V: Validity<C::State>> ReplayFinely<'c, C, F, V> {
             if at >= 1.0 {
                 return MotionCheck::Free { clearance: 0.0 };
             }
-            // As far as one step of the resolution goes; a little farther next time.
+            // Halves the pace until the next state is within the resolution; then tries a longer one.
             let next = loop {
-                let ahead = (at + pace).min(1.0);
-                let state = match ahead < 1.0 {
-                    true => self.flow.integrate(from, &segment.input, segment.duration * ahead),
+                let next_at = (at + pace).min(1.0);
+                let state = match next_at < 1.0 {
+                    true => self.flow.integrate(from, &segment.input, segment.duration * next_at),
                     false => to.clone(),
                 };
                 if self.space.distance(&q, &state) <= self.step {
-                    break (ahead, state);
+                    break (next_at, state);
                 }
                 pace *= 0.5;
                 if pace <= SHORTEST {

@@ -4,8 +4,8 @@ use crate::Flow;
 use mp_cspace::ParameterError;
 use nalgebra::SVector;
 
-/// A vector moved by a differential equation `dq/dt = f(q, u)`, integrated by the classical method of
-/// Runge and Kutta of fourth order.
+/// A vector moved by a differential equation `dq/dt = f(q, u)`, integrated by the classical fourth-order
+/// Runge-Kutta method.
 ///
 /// ```
 /// use mp_control::{Flow, Rk4};
@@ -22,7 +22,7 @@ pub struct Rk4<F> {
     step: f64,
 }
 
-/// Most steps of one integration; longer ones get longer steps.
+/// The most steps of one integration; beyond that steps get longer.
 const MAX_STEPS: f64 = 1e6;
 
 impl<F> Rk4<F> {

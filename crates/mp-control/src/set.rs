@@ -1,17 +1,17 @@
-//! The inputs a system may be given.
+//! Input sets: the inputs that a system may get.
 
 use crate::{Input, InputError};
 use mp_cspace::{Halton, Joints, ParameterError, Rng, Sampler, Space, SpaceError};
 use nalgebra::{DVector, SVector};
 use std::f64::consts::TAU;
 
-/// A list of inputs, not empty and finite. Ties between successors go to the input listed first.
+/// A list of inputs: not empty, and all finite. Ties between successors go to the input listed first.
 ///
 /// ```
 /// use mp_control::InputSet;
 /// // A disc that moves at 1 m/s along x or y: four inputs.
 /// assert_eq!(InputSet::axes([1.0, 1.0])?.len(), 4);
-/// // All combinations of three values per axis, but for standing still: eight.
+/// // All combinations of three values per axis, except standing still: eight.
 /// assert_eq!(InputSet::grid([1.0, 1.0], 3)?.len(), 8);
 /// assert!(InputSet::<f64>::new([]).is_err());
 /// # Ok::<(), mp_control::InputError>(())
@@ -21,14 +21,14 @@ pub struct InputSet<U> {
     inputs: Vec<U>,
 }
 
-/// Most inputs of a grid.
+/// The most inputs of a grid.
 const MAX_GRID: usize = 1 << 20;
 
 impl<U: Input> InputSet<U> {
-    /// These inputs.
+    /// The set of these inputs.
     ///
     /// # Errors
-    /// When there are none, one has no entries, or an entry is not finite.
+    /// When there is no input, an input has no entries, or an entry is not finite.
     pub fn new(inputs: impl IntoIterator<Item = U>) -> Result<Self, InputError> {
         let inputs: Vec<U> = inputs.into_iter().collect();
         if inputs.is_empty() {
@@ -68,7 +68,7 @@ impl<U: Input> InputSet<U> {
 
 /// Uniform sets: `limits` holds the greatest magnitude of each entry.
 impl<const N: usize> InputSet<SVector<f64, N>> {
-    /// Each entry by itself at its limit, either way: `2N` inputs.
+    /// Each entry alone at its limit, positive and negative: `2N` inputs.
     ///
     /// # Errors
     /// When `N` is zero or a limit is not positive and finite.
@@ -78,8 +78,8 @@ impl<const N: usize> InputSet<SVector<f64, N>> {
         Self::new(vectors.iter().map(|v| SVector::from_column_slice(v)))
     }
 
-    /// All combinations of `levels` evenly spaced values of each entry from one limit to the other, but
-    /// for all zero.
+    /// All combinations of `levels` evenly spaced values of each entry from the negative to the positive
+    /// limit, except all zero.
     ///
     /// # Errors
     /// As [`axes`](Self::axes), or when there are fewer than two levels or more than 2²⁰ combinations.
@@ -89,7 +89,7 @@ impl<const N: usize> InputSet<SVector<f64, N>> {
         Self::new(vectors.iter().map(|v| SVector::from_column_slice(v)))
     }
 
-    /// `count` directions spread evenly, each as long as the limits make an ellipsoid.
+    /// `count` directions spread evenly, each scaled to the ellipsoid whose half axes are the limits.
     ///
     /// # Errors
     /// As [`axes`](Self::axes), or when the count is zero.
@@ -105,7 +105,7 @@ impl InputSet<DVector<f64>> {
     /// As [`axes`](InputSet::axes) of fixed size.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`axes`](InputSet::axes).
     pub fn axes_dyn(limits: &[f64]) -> Result<Self, InputError> {
         Self::new(axes(limits)?.into_iter().map(DVector::from_vec))
     }
@@ -113,7 +113,7 @@ impl InputSet<DVector<f64>> {
     /// As [`grid`](InputSet::grid) of fixed size.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`grid`](InputSet::grid).
     pub fn grid_dyn(limits: &[f64], levels: usize) -> Result<Self, InputError> {
         Self::new(grid(limits, levels)?.into_iter().map(DVector::from_vec))
     }
@@ -121,21 +121,21 @@ impl InputSet<DVector<f64>> {
     /// As [`spread`](InputSet::spread) of fixed size.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`spread`](InputSet::spread).
     pub fn spread_dyn(limits: &[f64], count: usize) -> Result<Self, InputError> {
         Self::new(spread(limits, count)?.into_iter().map(DVector::from_vec))
     }
 }
 
 impl InputSet<Vec<f64>> {
-    /// Velocities that move states of `space` by `reach` in one second, in its metric: dispatched
-    /// evenly over its degrees of freedom, translation and rotation alike. `directions` is how many
-    /// directions, zero for both ways along each degree of freedom; `levels` how many magnitudes of
-    /// each, every one a quarter of the one before. Turns are kept to about half a turn at most.
+    /// Velocities that move states of `space` by `reach` in one second, in its metric: spread evenly
+    /// over its degrees of freedom, translation and rotation alike. `directions` is the number of
+    /// directions, zero for both ways along each degree of freedom; `levels` the number of magnitudes of
+    /// each, every one a quarter of the one before. Turns are limited to about half a turn. Levels beyond
+    /// the hundredth have the magnitude of the hundredth.
     ///
     /// # Errors
-    /// When the space knows no velocities, `reach` is not positive and finite, or there is no level.
-    /// Levels beyond the hundredth are as long as that.
+    /// When the space has no velocities, `reach` is not positive and finite, or there is no level.
     pub fn uniform<C: Space>(
         space: &C,
         reach: f64,
@@ -155,7 +155,7 @@ impl InputSet<Vec<f64>> {
     }
 }
 
-/// For each degree of freedom the velocity that moves the middle of the space by `reach` in a second.
+/// For each degree of freedom, the velocity that moves the middle of the space by `reach` in one second.
 fn reaches<C: Space>(space: &C, reach: f64) -> Result<Vec<f64>, InputError> {
     let dim = space.dim();
     let middle = space.unit_cube_to_state(&vec![0.5; dim]);
@@ -169,7 +169,7 @@ fn reaches<C: Space>(space: &C, reach: f64) -> Result<Vec<f64>, InputError> {
         let little = 1e-4;
         let rate = moved(axis, little)? / little;
         let mut speed = reach / rate;
-        // A rotation that comes round again moves less than it turns.
+        // A rotation beyond half a turn comes round: its distance is less than the angle turned.
         for _ in 0..64 {
             let far = moved(axis, speed)? >= 0.6 * speed * rate;
             if far {
@@ -229,8 +229,8 @@ fn grid(limits: &[f64], levels: usize) -> Result<Vec<Vec<f64>>, InputError> {
     Ok((0..count).map(input).filter(|v| v.iter().any(|x| *x != 0.0)).collect())
 }
 
-/// Directions from a Halton sequence made normal (Box and Muller 1958) and of unit length, each
-/// followed by its opposite.
+/// Directions on the ellipsoid of the limits, each followed by its opposite: points of a Halton sequence made
+/// normal (Box and Muller 1958), of unit length, and scaled.
 fn spread(limits: &[f64], count: usize) -> Result<Vec<Vec<f64>>, InputError> {
     checked(limits)?;
     if count == 0 {
@@ -253,9 +253,9 @@ fn spread(limits: &[f64], count: usize) -> Result<Vec<Vec<f64>>, InputError> {
     };
     let mut directions = Vec::with_capacity(count + 1);
     while directions.len() < count {
-        let one = direction();
-        let opposite = one.iter().map(|x| -x).collect();
-        directions.extend([one, opposite]);
+        let next = direction();
+        let opposite = next.iter().map(|x| -x).collect();
+        directions.extend([next, opposite]);
     }
     directions.truncate(count);
     Ok(directions)

@@ -1,26 +1,26 @@
-//! Systems on wheels: motions along arcs of circles, in closed form.
+//! Systems on wheels: motions along circular arcs, in closed form.
 
 use crate::{Flow, InputError, InputSet};
 use mp_cspace::{ParameterError, Se2State};
 
-/// The pose after driving at `speed` (m/s) and turning at `rate` (rad/s) for `time`.
+/// The pose after driving at `speed` (m/s) and turning at `rate` (rad/s) for `time` seconds.
 #[inline]
 fn arc(from: &Se2State, speed: f64, rate: f64, time: f64) -> Se2State {
     let (half, length) = (0.5 * rate * time, speed * time);
-    // The chord: sin(x)/x of the arc's length, in the direction half way round.
+    // The chord: sin(x)/x times the arc's length, x being half the turn, in the direction at half the turn.
     let chord = if half.abs() < 1e-4 { 1.0 - half * half / 6.0 } else { half.sin() / half } * length;
     let (s, c) = (from.angle + half).sin_cos();
     let t = from.translation;
     Se2State::new(t.x + chord * c, t.y + chord * s, from.angle + rate * time)
 }
 
-/// A body in the plane that drives along its x axis and turns as it likes, on the spot as well. Inputs
-/// are `[speed (m/s), turning rate (rad/s)]`.
+/// A body in the plane that drives along its x axis and turns freely, also on the spot. Inputs are
+/// `[speed (m/s), turning rate (rad/s)]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Unicycle;
 
 impl Unicycle {
-    /// Nine inputs but for standing still: speeds and turning rates none, or at their limit either way.
+    /// Eight inputs: speed and turning rate zero or at their positive or negative limit, except both zero.
     ///
     /// # Errors
     /// When a limit is not positive and finite.
@@ -44,7 +44,7 @@ impl Flow<Se2State, [f64; 2]> for Unicycle {
     }
 }
 
-/// A car with front-wheel (Ackermann) steering, its pose that of the middle of the rear axle. Inputs are
+/// A car with front-wheel (Ackermann) steering. Its pose is that of the middle of the rear axle. Inputs are
 /// `[speed (m/s, negative in reverse), steering angle (rad)]`; it turns at `speed · tan(angle) / wheelbase`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Car {
@@ -60,8 +60,8 @@ impl Car {
         Ok(Self { wheelbase: ParameterError::positive("the wheelbase", wheelbase)? })
     }
 
-    /// Forward and in reverse at `speed`, with the steering in `2 · each_side + 1` positions up to
-    /// `steering` rad either way.
+    /// Inputs forward and in reverse at `speed` (m/s), with the steering in `2 · each_side + 1` positions up to
+    /// `steering` (rad) to either side.
     ///
     /// # Errors
     /// When the speed is not positive and finite, or the steering angle not in (0, π/2).

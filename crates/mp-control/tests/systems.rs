@@ -1,4 +1,4 @@
-//! Input sets, flows, the planner that chooses among inputs, and the verifiers that run its edges again.
+//! Input sets, flows, the planner that chooses among inputs, and the verifiers that replay its edges.
 
 use mp_control::*;
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_nearest_neighbors, check_true_metric};
@@ -13,7 +13,7 @@ fn square() -> Rn<2> {
     Rn::new([0.0; 2], [1.0; 2]).unwrap()
 }
 
-/// Off the disc in the middle of the square.
+/// Free outside the disc in the middle of the square.
 fn free(q: &Vector2<f64>) -> bool {
     (q - Vector2::new(0.5, 0.5)).norm() > 0.3
 }
@@ -61,7 +61,7 @@ where
                     same += 1;
                     let nearer = space.distance(&m.end, &toward) < space.distance(&from, &toward);
                     assert!(nearer || accept == Accept::Any);
-                    // Runs again to the bit, and nothing else does.
+                    // The edge replays to the bit, and no other edge does.
                     let again = flow.integrate(&from, &m.edge.input, m.edge.duration);
                     assert_eq!(again, m.end);
                     let longer = ControlSegment { duration: m.edge.duration * 1.5, ..m.edge.clone() };
@@ -96,8 +96,8 @@ fn both_orders_take_the_same_successor() {
     orders_agree(&space, flow, &inputs, 0.4, OnPosition(free), 5);
 }
 
-/// What the planner finds free, the finer verifier does too, but for what the resolution missed; and what
-/// it finds free is free where it was tested.
+/// The finer verifier accepts the motions that the planner finds free, except where the planner's resolution
+/// missed an obstacle.
 #[test]
 fn verifiers_agree_with_checks_up_to_resolution() {
     let space = Product::with_velocity(square(), [0.5, 0.5]).unwrap();
@@ -124,7 +124,7 @@ fn verifiers_agree_with_checks_up_to_resolution() {
     assert!(passed > 300 && refused <= passed / 50, "{passed} {refused}");
 }
 
-/// A motion all the way round ends where it began and is tested on its way all the same.
+/// A motion of a full turn ends where it began, and is tested between nevertheless.
 #[test]
 fn motions_that_come_round_are_tested_on_the_way() {
     let space = Se2::new([-2.0; 2], [2.0; 2]).unwrap();
@@ -179,7 +179,7 @@ fn systems_move_as_their_equations_say() {
     assert!((decay.integrate(&[1.0].into(), &1.0, 1.0).x - (-1.0_f64).exp()).abs() < 1e-6);
 }
 
-/// Time turned back and run again leads back, up to rounding.
+/// The reversed flow, run forward again, leads back up to rounding.
 fn reverses<C: Space, U, F: Flow<C::State, U>>(space: &C, flow: &F, input: &U, time: f64, q: &C::State) {
     let before = flow.reversed(q, input, time).unwrap();
     let gap = space.distance(&flow.integrate(&before, input, time), q);
@@ -188,7 +188,7 @@ fn reverses<C: Space, U, F: Flow<C::State, U>>(space: &C, flow: &F, input: &U, t
 
 proptest! {
     #[test]
-    fn time_can_be_turned_back(u in prop::array::uniform12(0.0..1.0_f64), a in prop::array::uniform6(-1.0..1.0_f64), time in 0.01..2.0_f64) {
+    fn flows_can_be_reversed(u in prop::array::uniform12(0.0..1.0_f64), a in prop::array::uniform6(-1.0..1.0_f64), time in 0.01..2.0_f64) {
         let plane = Se2::new([0.0; 2], [1.0; 2]).unwrap();
         let q = plane.unit_cube_to_state(&u);
         reverses(&plane, &Unicycle, &[a[0], a[1]], time, &q);
@@ -234,7 +234,7 @@ fn backward_edges_run_forward_to_the_bit_or_are_refused() {
     let extension = planner.extend(&node, &Vector2::new(0.9, 0.9), Direction::Backward, Reach::Step(1.0));
     assert!(matches!(extension, Extension::Advanced(_)));
     assert_eq!(planner.counters().irreversible, 0);
-    // A flow that cannot be turned back has no backward successors.
+    // A flow that cannot be reversed has no backward successors.
     let one_way = |q: &Vector2<f64>, u: &Vector2<f64>, t: f64| q + u * t;
     let check = DiscreteFlowCheck::new(&space, free, Resolution::Fraction(0.01)).unwrap();
     let mut planner = InputPlanner::new(&space, one_way, inputs, 0.7, check).unwrap();
@@ -327,7 +327,7 @@ fn bad_input_is_a_typed_error() {
     for limits in [&[1.0][..], &[1.0, 0.0], &[1.0, nan], &[]] {
         assert!(Product::with_velocity_dyn(square(), limits).is_err());
     }
-    /// A space that knows no velocities.
+    /// A space without velocities.
     #[derive(Clone, Debug)]
     struct Bare;
     impl Space for Bare {
@@ -424,7 +424,7 @@ fn uniform_inputs_move_by_the_step() {
     uniform_inputs_reach(&WithMetric::new(space.clone(), Manhattan), 1.0, 0);
     uniform_inputs_reach(&Se2::new([0.0; 2], [1.0; 2]).unwrap(), 0.1, 0);
     assert_eq!(InputSet::uniform(&space, 1.0, 0, 2).unwrap().len(), 24);
-    // A turn by more than half a turn is none.
+    // Inputs turn by about half a turn at most.
     let flow = Kinematic::new(&space).unwrap();
     let far = InputSet::uniform(&space, 9.0, 0, 1).unwrap();
     let middle = space.unit_cube_to_state(&[0.5; 6]);

@@ -73,8 +73,8 @@ pub fn rotation_angle(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
     (4.0 * half_chord(a, &nearer(a, b)).asin()).min(PI)
 }
 
-/// The rotation at fraction `t` along the shorter turn from `a` to `b`; exact at both ends, and
-/// the same rotation seen from either end.
+/// The rotation at fraction `t` along the shorter turn from `a` to `b`; exact at both ends. From `b` to
+/// `a` it is the same rotation at `1 - t`.
 #[inline]
 #[must_use]
 pub fn slerp(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>, t: f64) -> UnitQuaternion<f64> {

@@ -9,7 +9,7 @@
 //! | [`ObstacleGeometry`](crate::obstacles::ObstacleGeometry) | [`AnyGeometry`] |
 //! | [`ClearanceGradient`](crate::obstacles::ClearanceGradient) | [`AnyGradient`] |
 //!
-//! One call through a pointer stands before each question to a space or an index, a few nanoseconds. Constructors of
+//! Each call of a space or an index goes through one pointer, which costs a few nanoseconds. Constructors of
 //! planners by type stay generic.
 
 mod geometry;

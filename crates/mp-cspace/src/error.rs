@@ -1,4 +1,4 @@
-//! What can be wrong with the parameters of spaces, samplers, checks and smoothers.
+//! Errors in the parameters of spaces, samplers, motion checks and path smoothers.
 
 use thiserror::Error;
 
@@ -44,7 +44,7 @@ pub enum SpaceError {
         /// How many there are.
         found: usize,
     },
-    /// A space of no dimension, or a robot of no points.
+    /// A space has no dimension, or a robot no points.
     #[error("{what} must not be empty")]
     Empty {
         /// What is empty.
@@ -83,7 +83,7 @@ pub(crate) fn weight(name: &'static str, value: f64) -> Result<f64, SpaceError> 
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err(SpaceError::Weight { name, value }) }
 }
 
-/// Checks the bounds of every axis and gives the length of the box's diagonal.
+/// Checks the bounds of every axis and returns the length of the box's diagonal.
 pub(crate) fn diagonal(low: &[f64], high: &[f64]) -> Result<f64, SpaceError> {
     if low.len() != high.len() {
         return Err(SpaceError::Count { what: "upper bounds", expected: low.len(), found: high.len() });
@@ -94,7 +94,7 @@ pub(crate) fn diagonal(low: &[f64], high: &[f64]) -> Result<f64, SpaceError> {
     let mut sum = 0.0;
     for (axis, (&low, &high)) in low.iter().zip(high).enumerate() {
         let size = high - low;
-        // Half the exponent range is left to the square; NaN fails the comparison too.
+        // Below 1e150 the square does not overflow; NaN fails the comparison too.
         if !(low.is_finite() && high.is_finite() && size.abs() < 1e150) {
             return Err(SpaceError::NotFinite { axis, low, high });
         }

@@ -1,4 +1,4 @@
-//! Goals.
+//! Goals: sets of states to reach.
 
 use crate::{Factored, ParameterError, Rng, Sampler, Space};
 use rand::RngExt;
@@ -59,8 +59,8 @@ impl<C: Space> Goal<C::State> for Ball<'_, C> {
     }
 }
 
-/// Samples lie in the ball, toward uniform samples of the space: not uniform in the ball unless
-/// the space looks alike in all directions, but everywhere in it.
+/// Samples lie on the motion from the centre toward a uniform sample of the space. They reach every part
+/// of the ball, but are uniform in it only where the space looks alike in all directions.
 impl<C: Space> Sampler<C::State> for Ball<'_, C> {
     fn sample(&mut self, rng: &mut Rng) -> C::State {
         let q = self.space.sample_uniform(rng);
@@ -71,21 +71,21 @@ impl<C: Space> Sampler<C::State> for Ball<'_, C> {
     }
 }
 
-/// A goal of which some components are fixed and the others free: an arm whose last joints do not
-/// matter, a body that is to get somewhere turned anyhow.
+/// A goal that fixes some components and leaves the others free: an arm whose last joints do not
+/// matter, a body whose rotation does not.
 ///
 /// Components are the [factors](Factored) of the space: x, y and rotation in SE(2); x, y, z and
 /// rotation in SE(3). As a goal it holds the states whose fixed factors are within the tolerance,
-/// each by its own distance (metres or radians); as a sampler it yields states that have the fixed
-/// factors exactly, and the others at random.
+/// each by its own distance (metres or radians). As a sampler it yields states with the fixed
+/// factors exact and the others random.
 ///
 /// ```
 /// use mp_cspace::{FixedFactors, Goal, Rng, Sampler, Se2, Se2State};
 /// let space = Se2::new([0.0, 0.0], [1.0, 1.0])?;
-/// let mut there = FixedFactors::new(&space, Se2State::new(0.9, 0.1, 0.0), [0, 1], 0.01)?;
-/// assert!(there.reached(&Se2State::new(0.9, 0.105, 2.0)));
-/// assert!(!there.reached(&Se2State::new(0.9, 0.2, 0.0)));
-/// let sample = there.sample(&mut Rng::seed(1));
+/// let mut goal = FixedFactors::new(&space, Se2State::new(0.9, 0.1, 0.0), [0, 1], 0.01)?;
+/// assert!(goal.reached(&Se2State::new(0.9, 0.105, 2.0)));
+/// assert!(!goal.reached(&Se2State::new(0.9, 0.2, 0.0)));
+/// let sample = goal.sample(&mut Rng::seed(1));
 /// assert_eq!([sample.translation.x, sample.translation.y], [0.9, 0.1]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -98,11 +98,11 @@ pub struct FixedFactors<'c, C: Space> {
 }
 
 impl<'c, C: Factored> FixedFactors<'c, C> {
-    /// The states that agree with `state` in the factors listed, up to `tolerance` (0: exactly,
-    /// which only its own samples do).
+    /// The states that agree with `state` in the factors listed, up to `tolerance` (0: exactly, as
+    /// its own samples do).
     ///
     /// # Errors
-    /// When no factor is listed, or one that the space does not have; when the tolerance is
+    /// When no factor is listed, or a listed one is not a factor of the space; when the tolerance is
     /// negative or not finite.
     pub fn new(
         space: &'c C,
@@ -132,13 +132,13 @@ impl<'c, C: Factored> FixedFactors<'c, C> {
 
 impl<C: Factored> Goal<C::State> for FixedFactors<'_, C> {
     fn reached(&self, q: &C::State) -> bool {
-        let mut off = 0.0_f64;
+        let mut deviation = 0.0_f64;
         self.space.each_factor(q, &self.state, &mut |i, d| {
             if self.fixed[i] {
-                off = off.max(d);
+                deviation = deviation.max(d);
             }
         });
-        off <= self.tolerance
+        deviation <= self.tolerance
     }
 }
 
@@ -159,7 +159,7 @@ mod tests {
     use crate::{Joints, Rn, Se3};
     use nalgebra::{DVector, Vector2};
 
-    /// Samples have the fixed factors exactly, and all the room there is in the others.
+    /// Samples have the fixed factors exactly, and vary over much of the range of the others.
     fn holds<C: Factored>(space: &C, fixed: &[usize]) {
         let mut rng = Rng::seed(2);
         let state = space.sample_uniform(&mut rng);

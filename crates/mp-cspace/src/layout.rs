@@ -1,4 +1,4 @@
-//! How coordinates bound a metric from below.
+//! Layouts: how coordinates bound a metric from below.
 
 use std::f64::consts::TAU;
 
@@ -27,7 +27,7 @@ pub struct Layout {
     pub(crate) slack: f64,
 }
 
-/// A map of the coordinates that leaves the state what it is.
+/// A map of the coordinates that leaves the state unchanged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Symmetry {
     /// Adding ±`period` to one coordinate.
@@ -44,7 +44,7 @@ impl Layout {
     }
 
     /// `n` coordinates of the given period, embedded in \[−period/2, period/2\]: the Euclidean norm
-    /// of the differences, each the short way round.
+    /// of the differences, each taken the shorter way round.
     #[must_use]
     pub fn periodic(n: usize, period: f64) -> Self {
         let symmetries = (0..n).map(|coordinate| Symmetry::Period { coordinate, period }).collect();
@@ -59,15 +59,15 @@ impl Layout {
 
     /// `n` coordinates that mean the same when all are negated: min ‖a ± b‖₂.
     ///
-    /// Unit quaternions are such: at rotation angle θ this is 2 sin(θ/4), so twice it bounds θ.
-    /// Embed the one of both signs whose scalar part is not negative; the index is right anyway,
-    /// but faster.
+    /// An example are unit quaternions: at rotation angle θ this is 2 sin(θ/4), so twice it is at most θ.
+    /// Of both signs embed the one whose scalar part is not negative: the index is exact with either, but
+    /// faster so.
     #[must_use]
     pub fn antipodal(n: usize) -> Self {
         Self { symmetries: vec![Symmetry::Antipode { start: 0, end: n }], ..Self::euclidean(n) }
     }
 
-    /// All coordinates multiplied by `factor` ≥ 0, periods with them; the embedding multiplies too.
+    /// All coordinates and periods multiplied by `factor` ≥ 0; the embedding must multiply them too.
     #[must_use]
     pub fn scaled(mut self, factor: f64) -> Self {
         for s in &mut self.symmetries {
@@ -90,16 +90,16 @@ impl Layout {
     }
 
     /// The coordinates of `self`, then those of `other`, in one group: the squares of the bounds
-    /// add. Where either side has several groups this is only a bound of
-    /// √(bound² + bound²), not equal to it.
+    /// add. Where either side has several groups the result is below √(bound² + bound²), hence
+    /// still a lower bound.
     #[must_use]
     pub fn beside(self, other: Self) -> Self {
         let n = self.dim() + other.dim();
         Self { groups: vec![n], ..self.plus(other) }
     }
 
-    /// Admits that the computed distance may fall short of the bound by `slack`, an absolute
-    /// error; a relative error of 1e-7 is admitted anyway.
+    /// Allows the computed distance to fall short of the bound by `slack`, an absolute error. A
+    /// relative error of 1e-7 is always allowed.
     #[must_use]
     pub fn with_slack(mut self, slack: f64) -> Self {
         self.slack = slack;

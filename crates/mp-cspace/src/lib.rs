@@ -2,7 +2,7 @@
 //! neighbours, goals, stops, observers and paths.
 //!
 //! Planners know only the traits of this crate; they never see a mesh. To plan for a robot of your own, say how far it is
-//! from obstacles and how far its points travel. The rest is taken from the shelf:
+//! from obstacles and how far its points travel. The crate provides the rest:
 //!
 //! ```
 //! use mp_cspace::{Certified, Clearance, FineDiscrete, MotionClearance, Problem, Resolution, Rn, Straight};
@@ -52,7 +52,7 @@
 //! | what to plan | a [`Problem`], with [`Goals`] and a [verifier](Verify) |
 //! | when to stop | a [`Stop`]: [`Iterations`], [`Nodes`], [`Motions`], [`Deadline`], [`Cancel`], joined by [`Stop::or`] |
 //! | what to do with a path | [`Path`], [`verify_path`], [`least_clearance`], [`shorten`] |
-//! | what obstacles are like, for planners that ask | [`obstacles`] |
+//! | what obstacles are like, for planners that use it | [`obstacles`] |
 //! | planners and settings by name | [`registry`] |
 //! | planners compiled once for many spaces | [`erased`] |
 //! | whether your own implementation is right | `testkit`, with the feature `testkit` |
@@ -81,9 +81,9 @@ pub mod shortest;
 mod space;
 pub mod space_time;
 mod stop;
-mod tell;
 #[cfg(any(test, feature = "testkit"))]
 pub mod testkit;
+mod trace;
 mod validity;
 
 pub use edge_checker::EdgeChecker;

@@ -1,4 +1,4 @@
-//! Local planners: how one configuration reaches for another.
+//! Local planners: they propose and check the motion from one configuration to another.
 
 mod polyline;
 mod rotate;
@@ -6,7 +6,7 @@ mod rotate;
 pub use polyline::PolylineEdge;
 pub use rotate::{RotateAtS, turn_at};
 
-use crate::{KnownFree, MotionValidity, Space};
+use crate::{KnownFree, MotionCheck, MotionValidity, Space};
 use std::fmt::Debug;
 
 /// Which end of an edge is the parent. Edges are always stored in forward time.
@@ -42,7 +42,7 @@ pub struct Motion<S, E> {
 /// The outcome of one extension.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Extension<S, E> {
-    /// Nothing gained.
+    /// No motion was accepted.
     Trapped,
     /// Moved toward the target without reaching it.
     Advanced(Motion<S, E>),
@@ -50,15 +50,15 @@ pub enum Extension<S, E> {
     Reached(Motion<S, E>),
 }
 
-/// Extends from one state toward another: the trait that carries the straight line, certified
-/// edges, rotate-at-s, kinodynamic input sets and the snake.
+/// Extends from one state toward another. Straight lines (sampled or certified), rotate-at-s, input
+/// sets of kinodynamic systems and snakes implement it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not plan motions between states `{S}`",
     label = "not a `LocalPlanner<{S}>`",
     note = "a motion check becomes a local planner by `Straight::new(&space, check)`"
 )]
 pub trait LocalPlanner<S> {
-    /// What an edge remembers, enough to replay it exactly.
+    /// What an edge stores, enough to replay it exactly.
     type Edge: Clone + Debug + Send + Sync;
     /// Tries to move from `from`, which is free, toward `toward`, at most as far as `reach` allows.
     fn extend(
@@ -68,14 +68,14 @@ pub trait LocalPlanner<S> {
         direction: Direction,
         reach: Reach,
     ) -> Extension<S, Self::Edge>;
-    /// Whether a motion may begin or end at `q` at all, so that a start nothing can leave is bad
-    /// input and not a search without end. The default knows of no objection.
+    /// Whether any motion may begin or end at `q`. A start that no motion can leave is then bad input,
+    /// not an endless search. The default is `true`.
     fn admits(&mut self, _q: &S) -> bool {
         true
     }
 }
 
-/// An edge that can be run the other way: what roadmaps demand, as their edges have no direction.
+/// An edge that can be run backward. Roadmaps need this, as their edges have no direction.
 pub trait Reversible {
     /// The edge of the same motion from its end to its beginning.
     #[must_use]
@@ -116,6 +116,19 @@ impl<'c, C: Space, M: MotionValidity<C::State>> Straight<'c, C, M> {
     }
 }
 
+/// Checks the motion that extends the free state `from` to `end`, in forward time.
+fn check_toward<S>(
+    check: &mut impl MotionValidity<S>,
+    from: &S,
+    end: &S,
+    direction: Direction,
+) -> MotionCheck {
+    match direction {
+        Direction::Forward => check.check_extension(from, end, KnownFree::From),
+        Direction::Backward => check.check_extension(end, from, KnownFree::To),
+    }
+}
+
 impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for Straight<'_, C, M> {
     type Edge = ();
     fn extend(
@@ -132,10 +145,7 @@ impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for Straight<
             }
             _ => (toward.clone(), distance, true),
         };
-        let check = match direction {
-            Direction::Forward => self.check.check_extension(from, &end, KnownFree::From),
-            Direction::Backward => self.check.check_extension(&end, from, KnownFree::To),
-        };
+        let check = check_toward(&mut self.check, from, &end, direction);
         let motion = Motion { end, edge: (), cost };
         match (check.is_free(), reached) {
             (false, _) => Extension::Trapped,

@@ -12,9 +12,9 @@ use crate::error::weight;
 use crate::{DefaultNn, Factored, Linear, NearestNeighbors, Rng, Space, SpaceError, TrueMetric, nn::Layout};
 use std::fmt::{self, Debug};
 
-/// A distance between the states of a space, other than the space's own: [`WithMetric`] puts it on.
+/// A distance between the states of a space, other than the space's own: [`WithMetric`] puts it on the space.
 ///
-/// One that is symmetric and satisfies the triangle inequality is marked [`TrueMetric<C>`](TrueMetric).
+/// A metric that is symmetric and satisfies the triangle inequality is marked [`TrueMetric<C>`](TrueMetric).
 pub trait Metric<C: Space>: Sync + Sized {
     /// The index that serves the space best under this metric. [`Linear`] serves every metric;
     /// [`MetricTree`](crate::MetricTree) every true one.
@@ -141,10 +141,10 @@ impl<C: Factored, M: Metric<C>> Factored for WithMetric<C, M> {
     }
 }
 
-/// A closure as a metric, such as one of a user's own.
+/// A closure as a metric.
 ///
-/// Nothing is known of it but its values, so nearest neighbours are found by a [`Linear`] scan. A type of your own that
-/// implements [`Metric`], marked [`TrueMetric`], is served by a [`MetricTree`](crate::MetricTree).
+/// Only its values are known, so nearest neighbours are found by a [`Linear`] scan. A type of your own that
+/// implements [`Metric`] and is marked [`TrueMetric`] can use a [`MetricTree`](crate::MetricTree).
 ///
 /// ```
 /// use mp_cspace::{MetricFn, Rn, Space, WithMetric};

@@ -7,7 +7,7 @@ use nalgebra::{DVector, Isometry3, Quaternion, SVector, Translation3, UnitQuater
 pub trait StateVector: Sized {
     /// Appends its numbers.
     fn write(&self, out: &mut Vec<f64>);
-    /// The value of these numbers; `None` when there are too many or too few, or they are of none.
+    /// The value of these numbers; `None` when there are too many or too few, or they are not a valid value.
     fn read(numbers: &[f64]) -> Option<Self>;
 }
 

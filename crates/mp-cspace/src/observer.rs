@@ -1,8 +1,8 @@
-//! Watching a planner.
+//! Observers: they watch a planner at work.
 
 use crate::{NodeId, Progress};
 
-/// What a planner tells an observer.
+/// What a planner reports to an observer.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Event<'a, S> {
@@ -30,7 +30,7 @@ pub enum Event<'a, S> {
         /// Its state.
         state: &'a S,
     },
-    /// A node of tree `tree` hangs on another parent now: the way through it costs less.
+    /// A node of tree `tree` got another parent, through which it costs less.
     Rewired {
         /// Which tree (0 from the start, 1 from the goal).
         tree: usize,
@@ -51,7 +51,7 @@ pub enum Event<'a, S> {
         /// Which tree.
         tree: usize,
     },
-    /// A candidate path failed independent verification; its bad edge is pruned.
+    /// A candidate path failed independent verification; the edge that failed is pruned.
     Rejected,
     /// Nodes of `tree` were removed and the others renumbered, in unchanged order.
     Pruned {
@@ -64,7 +64,7 @@ pub enum Event<'a, S> {
     Solved,
 }
 
-// Derived, these would ask for `S: Copy`.
+// Derived, these would require `S: Copy`.
 impl<S> Clone for Event<'_, S> {
     fn clone(&self) -> Self {
         *self
@@ -94,7 +94,7 @@ impl<S, F: FnMut(Event<'_, S>)> Observer<S> for OnEvent<F> {
     }
 }
 
-/// Two observers, told in order.
+/// Two observers, called in order.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Both<A, B>(pub A, pub B);
 
@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn both_are_told() {
+    fn both_are_called() {
         let mut seen = 0;
         let mut counts = EventCounts::default();
         let mut both = Both(

@@ -1,4 +1,4 @@
-//! What a robot may tell planners of its obstacles, beside whether it touches one.
+//! What planners may query about obstacles beside collision: the clearance gradient, hints and geometry.
 
 mod gradient;
 mod hints;

@@ -13,8 +13,8 @@ use thiserror::Error;
 ///
 /// Between the states of a `Path<S>`, whose edges are `()`, the space interpolates.
 ///
-/// With the feature `serde` it is written as an object with the members `states` and `edges`; one whose numbers of states
-/// and edges do not fit is refused when it is read. Being free is not written: verify what you read.
+/// With the feature `serde` it is written as an object with the members `states` and `edges`. Reading refuses a path whose
+/// numbers of states and edges do not fit. The file does not say whether the path is free: verify it after reading.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -28,7 +28,7 @@ pub struct Path<S, E = ()> {
     pub edges: Vec<E>,
 }
 
-/// A path as it was written.
+/// A path as read, before the numbers of its states and edges are checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 struct Written<S, E> {
@@ -78,7 +78,7 @@ impl<S> Path<S> {
     }
 
     /// A lower bound (m) on the clearance along the path, or `None` when some edge is not found
-    /// free. As good as `check`: [`least_clearance`] gives a sharp one.
+    /// free. As sharp as that of `check`; [`least_clearance`] gives a sharp one.
     pub fn clearance(&self, check: &mut impl MotionValidity<S>) -> Option<f64> {
         if let [only] = self.states.as_slice() {
             return free_clearance(check.check_motion(only, only));
@@ -88,8 +88,7 @@ impl<S> Path<S> {
         })
     }
 
-    /// The state at arc length `s` from the start, kept between the two ends; `None` on the empty
-    /// path.
+    /// The state at arc length `s` from the start, clamped to the path; `None` on the empty path.
     pub fn at<C: Space<State = S>>(&self, space: &C, s: f64) -> Option<S>
     where
         S: Clone,
@@ -105,7 +104,7 @@ impl<S> Path<S> {
         self.states.last().cloned()
     }
 
-    /// The same path with states added on its edges, no two neighbours farther apart than
+    /// The same path with states added on its edges, so that no two neighbours are farther apart than
     /// `spacing`. All its states remain.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Outcomes and the planner trait.
 
-use crate::{Event, Observer, Path, Progress, Rng, Stop, StopReason, tell};
+use crate::{Event, Observer, Path, Progress, Rng, Stop, StopReason, trace};
 
 /// How a solve ended.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,18 +13,18 @@ pub enum Outcome<P> {
 
 /// A planner that works one iteration at a time, so that it can be stopped, resumed and watched.
 pub trait Planner<S> {
-    /// What an edge of its paths remembers.
+    /// What an edge of its paths stores.
     type Edge: Clone;
     /// One iteration. A returned path has passed the independent check.
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S, Self::Edge>>;
     /// What has been done so far.
     fn progress(&self) -> Progress;
-    /// Whether stepping on after a solution returns only better ones, so that it pays to go on until
-    /// the budget is spent.
+    /// Whether the planner is anytime: steps after a solution return only better ones, so it is worth
+    /// stepping until the budget is used up.
     fn improves(&self) -> bool {
         false
     }
-    /// Runs until solved or stopped. Call again to go on with the same trees.
+    /// Runs until solved or stopped. Call again to continue with the same trees.
     fn solve(
         &mut self,
         rng: &mut Rng,
@@ -35,12 +35,12 @@ pub trait Planner<S> {
             let progress = self.progress();
             let exhausted = || progress.exhausted.then_some(StopReason::Exhausted);
             if let Some(reason) = stop.check(&progress).or_else(exhausted) {
-                tell::ended(&progress, Some(reason));
+                trace::ended(&progress, Some(reason));
                 return Outcome::Stopped(reason);
             }
             observer.on(Event::Iteration(progress));
             if let Some(path) = self.step(rng, observer) {
-                tell::ended(&self.progress(), None);
+                trace::ended(&self.progress(), None);
                 observer.on(Event::Solved);
                 return Outcome::Solved(path);
             }

@@ -1,21 +1,21 @@
-//! Planners by name: what people are told of them, and the settings they are given as text.
+//! Planners by name: their descriptions for people, and their settings as text.
 
 use crate::{BuildError, Space, Step};
 
-/// A parameter of a planner, for people.
+/// A parameter of a planner, described for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parameter {
     /// Its name in settings.
     pub name: &'static str,
     /// The values allowed.
     pub range: &'static str,
-    /// Its default, as it would be set.
+    /// Its default, as text of a setting.
     pub default: &'static str,
     /// What it does.
     pub doc: &'static str,
 }
 
-/// A planner, for people.
+/// A planner, described for people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannerInfo {
     /// Its name on the command line.
@@ -26,14 +26,14 @@ pub struct PlannerInfo {
     pub citation: &'static str,
     /// Its parameters.
     pub parameters: &'static [Parameter],
-    /// Other names it goes by.
+    /// Its other names.
     pub aliases: &'static [&'static str],
-    /// What it by its nature cannot do, each with the reason.
+    /// The demands it cannot meet by its nature, each with the reason.
     pub cannot: &'static [(Demand, &'static str)],
 }
 
 impl PlannerInfo {
-    /// Whether it can do what is demanded.
+    /// Whether the planner can meet the demand.
     #[must_use]
     pub fn can(&self, demand: Demand) -> bool {
         self.cannot.iter().all(|(kind, _)| *kind != demand)
@@ -57,7 +57,7 @@ impl BuildError {
     }
 }
 
-/// What a problem may demand that not every planner can do by its nature.
+/// A demand of a problem that some planners cannot meet by their nature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Demand {
@@ -102,18 +102,18 @@ impl Settings {
         self.0.push((key.to_owned(), value.to_owned()));
     }
 
-    /// Refuses names that `planner` does not have.
+    /// Refuses names that are not parameters of `planner`.
     ///
     /// # Errors
-    /// When there is one, with the names there are.
+    /// When there is such a name; lists the names allowed.
     pub fn check(&self, planner: &PlannerInfo) -> Result<(), BuildError> {
         self.check_among(planner.name, planner.parameters)
     }
 
-    /// Refuses names of parameters other than `parameters`.
+    /// Refuses names other than those of `parameters`.
     ///
     /// # Errors
-    /// When there is one, with the names there are.
+    /// When there is such a name; lists the names allowed.
     pub fn check_among<'p>(
         &self,
         planner: &'static str,
@@ -129,7 +129,7 @@ impl Settings {
         }
     }
 
-    /// What is set for `parameters`, without the rest.
+    /// The settings of `parameters` only.
     #[must_use]
     pub fn only(&self, parameters: &[Parameter]) -> Self {
         let known = |key: &str| parameters.iter().any(|parameter| parameter.name == key);
@@ -158,20 +158,11 @@ impl Settings {
         Err(BuildError::OutOfRange { name: parameter.name, value, range: parameter.range.to_owned() })
     }
 
-    /// What is set for `key`, if any, being one of the words that `parse` knows.
+    /// The value set for `key`, if any, as `parse` reads it.
     ///
     /// # Errors
-    /// When it is none of them; `expected` lists them.
+    /// When `parse` does not accept it; `expected` says what it accepts.
     pub fn choice<T>(
-        &self,
-        key: &str,
-        expected: &'static str,
-        parse: impl Fn(&str) -> Option<T>,
-    ) -> Result<Option<T>, BuildError> {
-        self.read(key, expected, parse)
-    }
-
-    fn read<T>(
         &self,
         key: &str,
         expected: &'static str,
@@ -189,7 +180,7 @@ impl Settings {
     /// # Errors
     /// When it is not a number.
     pub fn number(&self, key: &str) -> Result<Option<f64>, BuildError> {
-        self.read(key, "a number", |value| value.parse().ok())
+        self.choice(key, "a number", |value| value.parse().ok())
     }
 
     /// The whole number set for `key`, if any.
@@ -197,7 +188,7 @@ impl Settings {
     /// # Errors
     /// When it is not a whole number, or negative.
     pub fn count(&self, key: &str) -> Result<Option<u64>, BuildError> {
-        self.read(key, "a whole number, not negative", |value| value.parse().ok())
+        self.choice(key, "a whole number, not negative", |value| value.parse().ok())
     }
 
     /// The step set for `key`, if any: a length, or with `%` a part of the extent.
@@ -205,7 +196,7 @@ impl Settings {
     /// # Errors
     /// When it is neither.
     pub fn step(&self, key: &str) -> Result<Option<Step>, BuildError> {
-        self.read(key, "a length, or a percentage of the extent like 20%", |value| {
+        self.choice(key, "a length, or a percentage of the extent like 20%", |value| {
             match value.strip_suffix('%') {
                 Some(percent) => percent.trim().parse().ok().map(|p: f64| Step::Fraction(p / 100.0)),
                 None => value.parse().ok().map(Step::Length),
@@ -213,7 +204,7 @@ impl Settings {
         })
     }
 
-    /// The length set for `parameter`, by default as its table says: a length, or with `%` a part of the extent of `space`.
+    /// The length set for `parameter`, or its default: a length, or with `%` a part of the extent of `space`.
     ///
     /// # Errors
     /// When it is neither, not positive, or longer than the extent.
@@ -238,7 +229,7 @@ fn malformed(setting: String, expected: &'static str) -> BuildError {
     BuildError::Malformed { setting, expected }
 }
 
-/// The name that `name` was probably meant to be: the one fewest edits away, if not too many.
+/// The known name that `name` was probably meant to be: the one fewest edits away, at most a third of its length.
 ///
 /// ```
 /// assert_eq!(mp_cspace::registry::closest("rrt-conect", ["rrt", "rrt-connect"]), Some("rrt-connect"));
@@ -252,7 +243,7 @@ pub fn closest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     near.filter(|&(edits, _)| edits <= most).min_by_key(|&(edits, _)| edits).map(|(_, other)| other)
 }
 
-/// Levenshtein's distance: insertions, deletions and substitutions from `a` to `b`.
+/// The Levenshtein distance: insertions, deletions and substitutions from `a` to `b`.
 fn edits(a: &[char], b: &[char]) -> usize {
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, x) in a.iter().enumerate() {

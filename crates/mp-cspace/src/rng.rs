@@ -2,6 +2,7 @@
 
 use rand::{RngExt, SeedableRng, TryRng};
 use std::convert::Infallible;
+use std::f64::consts::TAU;
 
 /// A seeded PCG-64 generator (O'Neill 2014, *PCG*).
 ///
@@ -35,10 +36,16 @@ impl Rng {
         Self(rand_pcg::Pcg64::new(state, u128::from(i)))
     }
 
-    /// A number drawn uniformly from \[0, 1): all that a space of your own needs to be sampled. For other
-    /// distributions there is the crate `rand`, whose generators this is one of.
+    /// A number drawn uniformly from \[0, 1): enough to sample a space of your own. For other distributions
+    /// use the crate `rand`, of which this is a generator.
     pub fn unit(&mut self) -> f64 {
         self.random()
+    }
+
+    /// A standard normal deviate (Box and Muller 1958).
+    pub(crate) fn normal(&mut self) -> f64 {
+        let (u, v) = (1.0 - self.random::<f64>(), self.random::<f64>());
+        (-2.0 * u.ln()).sqrt() * (TAU * v).cos()
     }
 }
 

@@ -1,4 +1,4 @@
-//! Samplers.
+//! Samplers: sources of states.
 
 mod obstacles;
 
@@ -41,7 +41,7 @@ impl<C: Space> Sampler<C::State> for Uniform<'_, C> {
 ///
 /// Deterministic: the random generator is not used. [`skip`](Halton::skip) gives each instance
 /// another part of the sequence; [`leap`](Halton::leap) breaks the correlation of large bases,
-/// felt above some eight dimensions (Kocis and Whiten 1997).
+/// noticeable above some eight dimensions (Kocis and Whiten 1997).
 #[derive(Clone, Debug)]
 pub struct Halton<'c, C> {
     space: &'c C,
@@ -65,11 +65,11 @@ impl<'c, C: Space> Halton<'c, C> {
         Self { index: self.index.wrapping_add(count.wrapping_mul(self.leap)), ..self }
     }
 
-    /// Takes only every `leap`-th point from here on; 409 is good.
+    /// Takes only every `leap`-th point from here on; 409 is a good leap.
     ///
     /// # Errors
-    /// When `leap` has a factor in common with a base (a prime beyond the bases has none), as the
-    /// points would then not fill the space.
+    /// When `leap` is zero or has a factor in common with a base (a prime beyond the bases has none), as
+    /// the points would then not fill the space.
     pub fn leap(self, leap: u64) -> Result<Self, ParameterError> {
         if leap == 0 || self.bases.iter().any(|b| leap.is_multiple_of(*b)) {
             let expected = "coprime to the bases, the first primes, one for each dimension";
@@ -89,7 +89,7 @@ impl<C: Space> Sampler<C::State> for Halton<'_, C> {
     }
 }
 
-/// The digits of `n` in `base`, mirrored at the point: in \[0, 1).
+/// The digits of `n` in `base`, mirrored at the radix point: in \[0, 1).
 fn radical_inverse(mut n: u64, base: u64) -> f64 {
     let step = 1.0 / base as f64;
     let (mut sum, mut scale) = (0.0, step);
@@ -114,7 +114,7 @@ fn primes(count: usize) -> Vec<u64> {
     primes
 }
 
-/// Now and then a goal, else another sampler's state.
+/// Samples a goal with a given probability, else another sampler's state.
 #[derive(Clone, Debug)]
 pub struct GoalBias<A, G> {
     sampler: A,
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(rng, Rng::seed(0), "the generator is left alone");
     }
 
-    /// 1/8 of each axis gets its share, in 12 dimensions, with leaps too.
+    /// Each eighth of every axis gets its share, in 12 dimensions, with leaps too.
     #[test]
     fn halton_fills_every_axis() {
         let cube = Joints::<DVector<f64>>::intervals(&[0.0; 12], &[1.0; 12]).unwrap();

@@ -1,8 +1,8 @@
 //! Shortening and smoothing of paths without ever leaving free space.
 //!
-//! Every edge these functions add, halves of old edges included, has been found free by `check`;
-//! what is not is rolled back. All are bounded in work and depend on nothing but their arguments:
-//! the same seed gives the same path.
+//! Every edge these functions add, halves of old edges included, has been found free by `check`; a
+//! change with an edge that is not free is dropped. All are bounded in work and depend on their
+//! arguments only: the same seed gives the same path.
 //!
 //! | function | does |
 //! |---|---|
@@ -10,7 +10,7 @@
 //! | [`shortcut`] | joins random places of the path by straight motions |
 //! | [`partial_shortcut`] | the same for one factor of the space at a time |
 //! | [`bspline`] | rounds corners by cubic B-spline subdivision |
-//! | [`simplify`] | all of them in a good order |
+//! | [`simplify`] | all of these in a good order |
 
 mod bspline;
 mod random;
@@ -18,7 +18,7 @@ mod random;
 pub use bspline::bspline;
 pub use random::{partial_shortcut, shortcut};
 
-use crate::{Factored, MotionValidity, Path, Rng, Space, tell};
+use crate::{Factored, MotionValidity, Path, Rng, Space, trace};
 
 /// How much work to put into shortening a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,8 +38,8 @@ impl Default for Effort {
     }
 }
 
-/// Leaves out states: from each kept state goes straight to a later one as far along as `check`
-/// allows, trying the goal first and halving the way back after each failure.
+/// Leaves out states: joins each kept state straight to a later one, as far along as `check` allows,
+/// trying the goal first and halving the number of states skipped after each failure.
 ///
 /// At most `n·log₂ n` checks for `n` states. The length does not increase.
 pub fn reduce<C: Space>(
@@ -49,20 +49,20 @@ pub fn reduce<C: Space>(
 ) -> Path<C::State> {
     let old = &path.states;
     let mut states: Vec<C::State> = old.first().cloned().into_iter().collect();
-    let mut here = 0;
-    while here + 1 < old.len() {
-        let mut there = old.len() - 1;
-        while there > here + 1 && !joins(space, check, &old[here..=there]) {
-            there = here + (there - here) / 2;
+    let mut first = 0;
+    while first + 1 < old.len() {
+        let mut last = old.len() - 1;
+        while last > first + 1 && !is_shortcut(space, check, &old[first..=last]) {
+            last = first + (last - first) / 2;
         }
-        states.push(old[there].clone());
-        here = there;
+        states.push(old[last].clone());
+        first = last;
     }
     Path::straight(states)
 }
 
 /// Whether the straight motion between the ends of a piece of path is free and no longer than it.
-fn joins<C: Space>(space: &C, check: &mut impl MotionValidity<C::State>, piece: &[C::State]) -> bool {
+fn is_shortcut<C: Space>(space: &C, check: &mut impl MotionValidity<C::State>, piece: &[C::State]) -> bool {
     let [first, .., last] = piece else { return false };
     let along: f64 = piece.windows(2).map(|w| space.distance(&w[0], &w[1])).sum();
     space.distance(first, last) <= along && check.check_motion(first, last).is_free()
@@ -88,6 +88,6 @@ pub fn simplify<C: Factored>(
     let short = partial_shortcut(space, check, &short, effort, rng);
     let short = reduce(space, check, &short);
     let short = bspline(space, check, &short, effort.rounds);
-    tell::simplified([path, &short].map(|path| path.states.len()));
+    trace::simplified([path, &short].map(|path| path.states.len()));
     short
 }

@@ -1,9 +1,9 @@
-//! The shortest simple paths of a directed graph, and alternatives far from them.
+//! The shortest simple paths of a directed graph, and alternative paths through given nodes.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, BinaryHeap};
 
-/// A length that is ordered.
+/// A length with a total order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Length(f64);
 
@@ -19,47 +19,47 @@ impl PartialOrd for Length {
     }
 }
 
-/// The nodes of the `k` shortest paths between two nodes that visit none twice, with their lengths,
-/// the shortest first, ties by nodes. `arcs[i]` are the ends and lengths, not negative, of the arcs
-/// that leave node i, at most one to each.
+/// The `k` shortest simple paths (which visit no node twice) between two nodes: their lengths and nodes,
+/// the shortest first, ties by nodes. `arcs[i]` lists the ends and lengths, not negative, of the arcs
+/// that leave node `i`, at most one to each node.
 ///
 /// J. Y. Yen, *Finding the k shortest loopless paths in a network*, Management Science 17, 1971. One
 /// search (Dijkstra 1959) for each node of each path found.
 pub fn shortest_paths(arcs: &[Vec<(u32, f64)>], from: u32, to: u32, k: usize) -> Vec<(f64, Vec<u32>)> {
     let mut found: Vec<(Length, Vec<u32>)> = Vec::new();
-    let mut waiting: BTreeSet<_> = shortest(arcs, &[from], to, &[]).into_iter().collect();
+    let mut candidates: BTreeSet<_> = shortest(arcs, &[from], to, &[]).into_iter().collect();
     while found.len() < k {
-        let Some(next) = waiting.pop_first() else { break };
+        let Some(next) = candidates.pop_first() else { break };
         found.push(next.clone());
         for end in 1..next.1.len() {
-            let stem = &next.1[..end];
+            let root = &next.1[..end];
             let taken: Vec<u32> =
-                found.iter().filter(|(_, path)| path.starts_with(stem)).map(|(_, path)| path[end]).collect();
-            waiting.extend(shortest(arcs, stem, to, &taken));
+                found.iter().filter(|(_, path)| path.starts_with(root)).map(|(_, path)| path[end]).collect();
+            candidates.extend(shortest(arcs, root, to, &taken));
         }
     }
     found.into_iter().map(|(length, path)| (length.0, path)).collect()
 }
 
-/// The shortest path that begins with `stem` and goes on to none of `taken`.
-fn shortest(arcs: &[Vec<(u32, f64)>], stem: &[u32], to: u32, taken: &[u32]) -> Option<(Length, Vec<u32>)> {
-    let (&spur, before) = stem.split_last()?;
-    // Lengths are summed from the beginning, so that the same path always has the same.
+/// The shortest path that begins with the nodes `root` and then visits none of `taken` next.
+fn shortest(arcs: &[Vec<(u32, f64)>], root: &[u32], to: u32, taken: &[u32]) -> Option<(Length, Vec<u32>)> {
+    let (&spur, before) = root.split_last()?;
+    // Lengths are summed from the start, so that the same path always has the same length.
     let mut length = 0.0;
-    for pair in stem.windows(2) {
+    for pair in root.windows(2) {
         length += arcs[pair[0] as usize].iter().find(|arc| arc.0 == pair[1])?.1;
     }
     let mut best = vec![f64::INFINITY; arcs.len()];
-    let mut came = vec![spur; arcs.len()];
+    let mut parents = vec![spur; arcs.len()];
     for &node in before {
         best[node as usize] = f64::NEG_INFINITY;
     }
     best[spur as usize] = length;
-    let mut open = BinaryHeap::from([Reverse((Length(length), spur))]);
-    while let Some(Reverse((Length(length), at))) = open.pop() {
+    let mut queue = BinaryHeap::from([Reverse((Length(length), spur))]);
+    while let Some(Reverse((Length(length), at))) = queue.pop() {
         if at == to {
-            let way = std::iter::successors(Some(at), |&at| (at != spur).then(|| came[at as usize]));
-            let mut path: Vec<u32> = way.collect();
+            let backward = std::iter::successors(Some(at), |&at| (at != spur).then(|| parents[at as usize]));
+            let mut path: Vec<u32> = backward.collect();
             path.extend(before.iter().rev());
             path.reverse();
             return Some((Length(length), path));
@@ -67,20 +67,20 @@ fn shortest(arcs: &[Vec<(u32, f64)>], stem: &[u32], to: u32, taken: &[u32]) -> O
         if length > best[at as usize] {
             continue;
         }
-        for &(next, more) in &arcs[at as usize] {
-            if length + more < best[next as usize] && !(at == spur && taken.contains(&next)) {
-                best[next as usize] = length + more;
-                came[next as usize] = at;
-                open.push(Reverse((Length(length + more), next)));
+        for &(next, arc) in &arcs[at as usize] {
+            if length + arc < best[next as usize] && !(at == spur && taken.contains(&next)) {
+                best[next as usize] = length + arc;
+                parents[next as usize] = at;
+                queue.push(Reverse((Length(length + arc), next)));
             }
         }
     }
     None
 }
 
-/// The shortest of the paths that lead straight to one of the nodes `via` and straight on, visiting
-/// none twice and without a detour: within `window` before and behind the node there is no shorter way.
-/// Ties by node. Arcs as in [`shortest_paths`]. Two searches, and one for each path tried.
+/// The shortest path through one of the nodes `via`: a shortest path to it, then a shortest path from it to
+/// the end. It visits no node twice and makes no detour: the part from `window` before the node to `window`
+/// behind it is a shortest path. Ties by node. Arcs as in [`shortest_paths`]. Two searches, and one for each path tried.
 ///
 /// I. Abraham, D. Delling, A. V. Goldberg and R. F. Werneck, *Alternative routes in road networks*, ACM
 /// J. of Experimental Algorithmics 18, 2013.
@@ -91,51 +91,51 @@ pub fn shortest_via(
     window: f64,
     via: impl Iterator<Item = u32>,
 ) -> Option<(f64, Vec<u32>)> {
-    let mut back = vec![Vec::new(); arcs.len()];
+    let mut reversed = vec![Vec::new(); arcs.len()];
     for (node, leaving) in (0..).zip(arcs) {
-        leaving.iter().for_each(|&(next, length)| back[next as usize].push((node, length)));
+        leaving.iter().for_each(|&(next, length)| reversed[next as usize].push((node, length)));
     }
-    let (ahead, back) = (lengths(arcs, from), lengths(&back, to));
-    let mut promises: Vec<(Length, u32)> =
-        via.map(|node| (Length(ahead[node as usize].0 + back[node as usize].0), node)).collect();
-    promises.retain(|(length, _)| length.0.is_finite());
-    promises.sort_unstable();
-    promises.into_iter().find_map(|(length, node)| {
-        let way = |tree: &[(f64, u32)], end| {
+    let (from_start, to_end) = (lengths(arcs, from), lengths(&reversed, to));
+    let mut candidates: Vec<(Length, u32)> =
+        via.map(|node| (Length(from_start[node as usize].0 + to_end[node as usize].0), node)).collect();
+    candidates.retain(|(length, _)| length.0.is_finite());
+    candidates.sort_unstable();
+    candidates.into_iter().find_map(|(length, node)| {
+        let path_in = |tree: &[(f64, u32)], end| {
             let next = |at: &u32| (*at != end).then(|| tree[*at as usize].1);
             std::iter::successors(Some(node), next).collect::<Vec<u32>>()
         };
-        let mut path = way(&ahead, from);
+        let mut path = path_in(&from_start, from);
         path.reverse();
-        path.extend(&way(&back, to)[1..]);
+        path.extend(&path_in(&to_end, to)[1..]);
         let distinct: BTreeSet<u32> = path.iter().copied().collect();
         if distinct.len() < path.len() {
             return None;
         }
-        let before = |at: &u32| ahead[node as usize].0 - ahead[*at as usize].0;
-        let behind = |at: &u32| back[node as usize].0 - back[*at as usize].0;
-        let turn = path.iter().position(|at| *at == node)?;
-        let first = path[..=turn].iter().rev().find(|at| before(at) >= window).unwrap_or(&from);
-        let last = path[turn..].iter().find(|at| behind(at) >= window).unwrap_or(&to);
-        let way = before(first) + behind(last);
-        let straight = lengths(arcs, *first)[*last as usize].0 >= way * (1.0 - 1e-9);
-        straight.then_some((length.0, path))
+        let before = |at: &u32| from_start[node as usize].0 - from_start[*at as usize].0;
+        let behind = |at: &u32| to_end[node as usize].0 - to_end[*at as usize].0;
+        let middle = path.iter().position(|at| *at == node)?;
+        let first = path[..=middle].iter().rev().find(|at| before(at) >= window).unwrap_or(&from);
+        let last = path[middle..].iter().find(|at| behind(at) >= window).unwrap_or(&to);
+        let part = before(first) + behind(last);
+        let is_shortest = lengths(arcs, *first)[*last as usize].0 >= part * (1.0 - 1e-9);
+        is_shortest.then_some((length.0, path))
     })
 }
 
-/// How far it is to each node, and the node before it on the way.
+/// The length of the shortest path to each node (Dijkstra), and the node before it on that path.
 fn lengths(arcs: &[Vec<(u32, f64)>], from: u32) -> Vec<(f64, u32)> {
     let mut best = vec![(f64::INFINITY, from); arcs.len()];
     best[from as usize].0 = 0.0;
-    let mut open = BinaryHeap::from([Reverse((Length(0.0), from))]);
-    while let Some(Reverse((Length(length), at))) = open.pop() {
+    let mut queue = BinaryHeap::from([Reverse((Length(0.0), from))]);
+    while let Some(Reverse((Length(length), at))) = queue.pop() {
         if length > best[at as usize].0 {
             continue;
         }
-        for &(next, more) in &arcs[at as usize] {
-            if length + more < best[next as usize].0 {
-                best[next as usize] = (length + more, at);
-                open.push(Reverse((Length(length + more), next)));
+        for &(next, arc) in &arcs[at as usize] {
+            if length + arc < best[next as usize].0 {
+                best[next as usize] = (length + arc, at);
+                queue.push(Reverse((Length(length + arc), next)));
             }
         }
     }
@@ -146,9 +146,9 @@ fn lengths(arcs: &[Vec<(u32, f64)>], from: u32) -> Vec<(f64, u32)> {
 mod tests {
     use super::*;
 
-    /// From 0 to 4: straight on by 1, or by 2 and 3. A detour leads from 2 to 3 by 5.
+    /// From 0 to 4: through 1, or through 2 and 3. A detour leads from 2 to 3 through 5.
     #[test]
-    fn detours_are_not_ways() {
+    fn detours_are_refused() {
         let mut arcs = vec![Vec::new(); 6];
         for (a, b, length) in [(0, 1, 1.0), (1, 4, 1.0), (0, 2, 2.0), (2, 3, 2.0), (3, 4, 2.0)] {
             arcs[a].push((b, length));
@@ -162,7 +162,7 @@ mod tests {
         assert_eq!(via(2, 10.0), None);
     }
 
-    /// All simple paths, by trying everything.
+    /// All simple paths, by exhaustive search.
     fn all(
         arcs: &[Vec<(u32, f64)>],
         to: u32,
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn as_trying_everything() {
+    fn agrees_with_exhaustive_search() {
         let mut seed = 1_u32;
         let mut pick = |n: u32| {
             seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -2,6 +2,7 @@
 
 mod ellipsoid;
 mod joints;
+mod poses;
 mod product;
 mod rn;
 mod se2;
@@ -22,32 +23,32 @@ use std::fmt::Debug;
 /// Marks a distance that is symmetric and satisfies the triangle inequality: that of the space itself, or that of a
 /// [`Metric`](crate::Metric) on the space `C`.
 ///
-/// Metric trees prune with the triangle inequality, so they demand it. Different states may be at distance zero
-/// (`q` and `-q` of unit quaternions are).
+/// Metric trees require it, as they prune with the triangle inequality. Different states may be at distance zero
+/// (the unit quaternions `q` and `-q` are).
 pub trait TrueMetric<C: ?Sized = Self> {}
 
-/// A configuration space (or state space): what states are, how far apart, and what lies between.
+/// A configuration space (or state space): its states, their distances, and the interpolation between them.
 ///
 /// Contract, checked by the conformance kit (`testkit::SpaceKit`, with the feature `testkit`):
 /// - `interpolate(a, b, 0) = a` and `interpolate(a, b, 1) = b`, exactly;
 /// - constant speed along a shortest curve: `distance(a, interpolate(a, b, t)) = t · distance(a, b)`
-///   up to rounding (a metric put on by [`WithMetric`](crate::WithMetric) may lack this one:
-///   maximum displacement measures chords);
+///   up to rounding (with another metric, put on by [`WithMetric`](crate::WithMetric), this may not
+///   hold: maximum displacement measures chords);
 /// - every sample is contained, and so is every state between two contained ones;
 /// - no two contained states are farther apart than `extent`.
 ///
-/// Spaces are shared by threads, and states passed between them.
+/// Threads share spaces, and pass states to each other.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no configuration space",
     label = "not a `Space`",
     note = "implement `Space`; or take one of `Rn`, `Se2`, `Se3`, `Joints`, `Product`"
 )]
 pub trait Space: Sync {
-    /// A configuration. Equality is exact: planners use it to tell a state they already have.
+    /// A configuration. Equality is exact: planners use it to recognise a state they already have.
     type State: Clone + Debug + PartialEq + Send + Sync;
 
     /// The distance from `from` to `to`, in the space's own unit: finite, not negative, and zero from a state to itself.
-    /// It need be neither symmetric nor satisfy the triangle inequality; a space where it does both is marked
+    /// It need neither be symmetric nor satisfy the triangle inequality; a space where both hold is marked
     /// [`TrueMetric`].
     fn distance(&self, from: &Self::State, to: &Self::State) -> f64;
 
@@ -73,8 +74,8 @@ pub trait Space: Sync {
     fn sample_uniform(&self, rng: &mut Rng) -> Self::State;
 
     /// A state drawn uniformly among those whose distances from `from` and to `to` add up to at most
-    /// `sum`. `None` where the space knows no direct way, or finds none within its bounds in a
-    /// hundred tries: then draw uniformly, and reject.
+    /// `sum`. `None` where the space has no direct method (the default), or finds no such state within its
+    /// bounds in a hundred tries: then draw uniformly, and reject.
     fn sample_between(
         &self,
         _from: &Self::State,
@@ -88,26 +89,26 @@ pub trait Space: Sync {
     /// Whether `q` is finite and within the bounds of the space.
     fn contains(&self, q: &Self::State) -> bool;
 
-    /// Where a constant velocity leads from `from` in `time` seconds (backwards when negative): one
-    /// number per degree of freedom, translations (m/s) before rotations (rad/s), about world axes.
-    /// May leave the bounds.
+    /// The state that a constant velocity leads to from `from` in `time` seconds (backwards when negative).
+    /// Velocities have one number per degree of freedom, translations (m/s) before rotations (rad/s), about
+    /// world axes. The state may be out of bounds.
     ///
-    /// Contract: by less than half a turn in any rotation, the way there is the space's own
-    /// interpolation, up to rounding. `None`, the default, where the space knows no velocities or
-    /// their number is not [`dim`](Space::dim).
+    /// Contract: as long as no rotation reaches half a turn, the motion is the space's own interpolation,
+    /// up to rounding. `None`, the default, where the space has no velocities or their number is not
+    /// [`dim`](Space::dim).
     fn moved(&self, _from: &Self::State, _velocity: &[f64], _time: f64) -> Option<Self::State> {
         None
     }
 
     /// The constant velocity that leads from `from` to `to` in one second along the interpolation, written
-    /// to `out`: the inverse of [`moved`](Space::moved). `false`, the default, where the space knows no velocities
-    /// or `out` has not [`dim`](Space::dim) numbers.
+    /// to `out`: the inverse of [`moved`](Space::moved). `false`, the default, where the space has no velocities
+    /// or the length of `out` is not [`dim`](Space::dim).
     fn velocity_into(&self, _from: &Self::State, _to: &Self::State, _out: &mut [f64]) -> bool {
         false
     }
 
-    /// The position of `position` with the rotation of `rotation`. In a space without rotations, the default, this is
-    /// `position` itself.
+    /// The state with the position of `position` and the rotation of `rotation`. In a space without rotations, the
+    /// default, this is `position` itself.
     ///
     /// Contract: interpolation between states of the same rotation does not turn, and between states of the same
     /// position does not move.
@@ -151,7 +152,7 @@ pub trait Factored: Space {
         out: &mut Self::State,
     );
 
-    /// How coordinates of each factor bound the distance in it: what a [`KdTree`](crate::KdTree) searches by under a metric
+    /// How the coordinates of each factor bound the distance in it: a [`KdTree`](crate::KdTree) uses them under a metric
     /// made of factors.
     fn factor_layouts(&self) -> Vec<Layout>;
 

@@ -1,4 +1,4 @@
-//! Positions at times, for obstacles that move.
+//! Positions at times: spaces for moving obstacles.
 
 use crate::space::lerp;
 use crate::{
@@ -8,16 +8,16 @@ use crate::{
 };
 use rand::RngExt;
 
-/// The positions of a space at times from zero to a horizon (s), moved forward in time only and no
+/// The positions of a space at times from zero to a horizon (s). Motions lead forward in time only, and no
 /// faster than a limit, in the metric of the space per second.
 ///
 /// Distance: `√(d² + (v·Δt)²)` with `d` that of the positions and `v` the limit, where the motion is
-/// possible: `d ≤ v·Δt`. Where it is not, so that no state from which the target can be reached is
-/// ever beaten by one from which it cannot, the greatest such distance is added. So the extent is
-/// **twice** the diagonal of space and time. Not symmetric, and so no true metric.
+/// possible: `d ≤ v·Δt`. Where it is not, the greatest such distance is added: a state from which the target
+/// can be reached is then always nearer than one from which it cannot. So the extent is **twice** the
+/// diagonal of space and time. Not symmetric, hence not a true metric.
 ///
-/// Interpolation is straight: a motion at constant speed. [`Forward`] keeps motion checks and verifiers
-/// to those that are possible.
+/// Interpolation is straight: a motion at constant speed. [`Forward`] makes motion checks and verifiers
+/// refuse impossible motions.
 ///
 /// ```
 /// use mp_cspace::{Rn, Space, space_time::SpaceTime};
@@ -36,7 +36,7 @@ pub struct SpaceTime<C> {
     diagonal: f64,
 }
 
-/// Rounding, relative: of speeds, and of distances in the diagonal.
+/// The relative rounding allowed: of speeds, and of distances relative to the diagonal.
 const ROUNDING: f64 = 1e-9;
 
 impl<C: Space> SpaceTime<C> {
@@ -69,8 +69,8 @@ impl<C: Space> SpaceTime<C> {
         self.speed
     }
 
-    /// Whether the motion from `from` to `to` is possible: forward in time and within the speed limit,
-    /// or none at all.
+    /// Whether the motion from `from` to `to` is possible: forward in time and within the speed limit, or
+    /// from a state to itself.
     pub fn leads(&self, from: &(C::State, f64), to: &(C::State, f64)) -> bool {
         let (distance, time) = (self.positions.distance(&from.0, &to.0), to.1 - from.1);
         from == to || (time > 0.0 && distance <= self.speed * time * (1.0 + ROUNDING))
@@ -88,10 +88,10 @@ impl<C: Space> Space for SpaceTime<C> {
     #[inline]
     fn distance(&self, from: &(C::State, f64), to: &(C::State, f64)) -> f64 {
         let d = self.positions.distance(&from.0, &to.0);
-        let way = self.speed * (to.1 - from.1);
-        let length = (d * d + way * way).sqrt();
-        // As far as rounding can tell.
-        if d <= way * (1.0 + ROUNDING) + ROUNDING * self.diagonal { length } else { self.diagonal + length }
+        let most = self.speed * (to.1 - from.1);
+        let length = (d * d + most * most).sqrt();
+        // Whether the motion is possible, up to rounding.
+        if d <= most * (1.0 + ROUNDING) + ROUNDING * self.diagonal { length } else { self.diagonal + length }
     }
 
     fn dim(&self) -> usize {
@@ -150,13 +150,13 @@ impl<S: Clone> Sampler<(S, f64)> for AtAnyTime<S> {
     }
 }
 
-/// A motion check or verifier that refuses motions back in time and beyond the speed limit before it
-/// asks the one inside.
+/// A motion check or verifier that refuses motions back in time or beyond the speed limit, and leaves all
+/// others to the one inside.
 #[derive(Clone, Debug)]
 pub struct Forward<'c, C, M> {
     /// The space.
     pub space: &'c SpaceTime<C>,
-    /// What is asked about the others.
+    /// The check of possible motions.
     pub check: M,
 }
 

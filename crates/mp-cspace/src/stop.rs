@@ -1,10 +1,10 @@
-//! When to stop.
+//! Stops: when a planner ends without a solution.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// What has been done so far.
+/// What a planner has done so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
@@ -12,7 +12,7 @@ pub struct Progress {
     pub iterations: u64,
     /// Nodes of its trees or roadmap.
     pub nodes: usize,
-    /// Motion checks asked of the local planner.
+    /// Motions checked by the local planner.
     pub motions: u64,
     /// Candidate paths that failed independent verification.
     pub rejected: u64,
@@ -40,7 +40,7 @@ pub enum StopReason {
     Motions,
     /// The deadline has passed.
     Deadline,
-    /// Somebody asked it to stop.
+    /// A [`Cancel`] was raised.
     Cancelled,
     /// The planner has tried all it can: there is no solution at its resolution.
     Exhausted,
@@ -50,7 +50,7 @@ pub enum StopReason {
 pub trait Stop {
     /// `Some(reason)` to stop now. Called once per iteration, before it.
     fn check(&mut self, progress: &Progress) -> Option<StopReason>;
-    /// Stops when either does; `self` is asked first.
+    /// Stops when either does; `self` is checked first.
     fn or<B: Stop>(self, other: B) -> Or<Self, B>
     where
         Self: Sized,
@@ -116,45 +116,46 @@ impl Stop for Motions {
     }
 }
 
-/// Stops at a time of the wall clock. What is computed before does not depend on it, only when
-/// it ends: for reproducible runs use the counting stops.
+/// Stops at a time of the wall clock. The clock changes when a run ends, not what is computed before: for
+/// reproducible runs use the counting stops.
 ///
-/// While iterations are short the clock is read only once in a while (at most every 64th time, and
-/// only while that many iterations take less than a millisecond).
+/// While iterations are short the clock is not read at each, but at least at every 64th; after two readings
+/// more than a millisecond apart, at the next.
 #[derive(Clone, Copy, Debug)]
 pub struct Deadline {
     at: Option<Instant>,
-    looked: Instant,
-    skip: u32,
-    left: u32,
+    last_read: Instant,
+    /// Checks without reading the clock: between two readings, and still to go.
+    skips: u32,
+    skips_left: u32,
 }
 
 impl Deadline {
-    /// At the instant `at`.
+    /// Stops at the instant `at`.
     #[must_use]
     pub fn at(at: Instant) -> Self {
-        Self { at: Some(at), looked: Instant::now(), skip: 0, left: 0 }
+        Self { at: Some(at), last_read: Instant::now(), skips: 0, skips_left: 0 }
     }
 
-    /// When `time` has passed from now.
+    /// Stops when `time` has passed from now.
     #[must_use]
     pub fn after(time: Duration) -> Self {
-        let looked = Instant::now();
-        Self { at: looked.checked_add(time), looked, skip: 0, left: 0 }
+        let now = Instant::now();
+        Self { at: now.checked_add(time), last_read: now, skips: 0, skips_left: 0 }
     }
 }
 
 impl Stop for Deadline {
     fn check(&mut self, _: &Progress) -> Option<StopReason> {
         let at = self.at?;
-        if self.left > 0 {
-            self.left -= 1;
+        if self.skips_left > 0 {
+            self.skips_left -= 1;
             return None;
         }
         let now = Instant::now();
-        let slow = now.duration_since(self.looked) > Duration::from_millis(1);
-        self.skip = if slow { 0 } else { (2 * self.skip + 1).min(63) };
-        (self.looked, self.left) = (now, self.skip);
+        let slow = now.duration_since(self.last_read) > Duration::from_millis(1);
+        self.skips = if slow { 0 } else { (2 * self.skips + 1).min(63) };
+        (self.last_read, self.skips_left) = (now, self.skips);
         (now >= at).then_some(StopReason::Deadline)
     }
 }
@@ -174,7 +175,7 @@ impl Stop for Deadline {
 pub struct Cancel(pub Arc<AtomicBool>);
 
 impl Cancel {
-    /// A flag not raised; clones share it.
+    /// A flag that is not raised; clones share it.
     #[must_use]
     pub fn new() -> Self {
         Self::default()

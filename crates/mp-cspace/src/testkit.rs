@@ -1,7 +1,7 @@
-//! Conformance kits: the axioms the planners rely on, for any implementation of the traits.
+//! Conformance kits: checks of the axioms that planners rely on, for any implementation of the traits.
 //!
 //! Call them from the tests of your own space, metric, local planner or nearest-neighbour index.
-//! They panic with the violated axiom and the states that violate it.
+//! They panic and name the violated axiom and the states that violate it.
 //!
 //! ```
 //! use mp_cspace::{Rn, testkit};

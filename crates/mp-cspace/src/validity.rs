@@ -1,4 +1,4 @@
-//! When a state, and when a motion, is free.
+//! Tests of states and of motions: whether they are free, and their clearance.
 
 /// Whether a state is free.
 ///
@@ -8,14 +8,14 @@ pub trait Validity<S> {
     /// Whether `q` is free (no collision, every constraint holds).
     fn is_valid(&mut self, q: &S) -> bool;
 
-    /// The index of one that is not free, `None` when all are: the hook for checks that test
-    /// several states at once. The states come in the order they should be tried.
+    /// The index of a state that is not free, `None` when all are free. Override it for checks that test
+    /// several states at once. The states come in the order in which they should be tested.
     fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
         states.iter().position(|q| !self.is_valid(q))
     }
 
-    /// How many states [`first_invalid`](Validity::first_invalid) takes best at a time, at least
-    /// one. Sampled motion checks hand over that many.
+    /// The best number of states for one call of [`first_invalid`](Validity::first_invalid), at least one.
+    /// Sampled motion checks pass that many.
     fn batch_size(&self) -> usize {
         1
     }
@@ -28,22 +28,22 @@ impl<S, F: FnMut(&S) -> bool> Validity<S> for F {
     }
 }
 
-/// A lower bound on how far the robot is from touching anything, in metres.
+/// A lower bound on the distance between the robot and the obstacles, in metres.
 pub trait Clearance<S> {
     /// A lower bound on the distance between the robot at `q` and the nearest obstacle.
     ///
     /// The search may stop as soon as the bound reaches `enough`: any return value ≥ `enough`
-    /// says only "at least `enough`". Zero or less means contact, or no bound known.
+    /// means only "at least `enough`". Zero or less means contact, or that no bound is known.
     fn clearance(&mut self, q: &S, enough: f64) -> f64;
 
-    /// Whether the robot at `q` surely touches something. May be overridden where an intersection
-    /// test is cheaper than a distance; answering `false` wrongly costs time, never safety.
+    /// Whether the robot at `q` certainly touches an obstacle. Override it where an intersection test is
+    /// cheaper than a distance. A wrong `false` costs time, never safety.
     fn in_contact(&mut self, q: &S) -> bool {
         self.clearance(q, f64::MIN_POSITIVE) <= 0.0
     }
 }
 
-/// An interval of a motion, about a state in its middle.
+/// An interval of a motion about the state in its middle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionInterval<'a, S> {
     /// Where the whole motion starts.
@@ -56,43 +56,43 @@ pub struct MotionInterval<'a, S> {
     pub half: f64,
     /// A bound (m) on how far any point of the robot travels over half the interval.
     pub travel: f64,
-    /// The clearance (m) to be kept.
+    /// The clearance (m) to keep.
     pub margin: f64,
 }
 
 /// The clearance over a [`MotionInterval`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalClearance {
-    /// At least `margin` as far from the middle as no point travels more than `clearance - margin`
-    /// to either side; beyond the ends of the interval too when that is farther. Returned whenever
-    /// the clearance in the middle is at least `travel + margin`.
+    /// Free to either side of the middle, with a clearance of at least `margin`, as far as no point of the
+    /// robot travels more than `clearance - margin`; that may be beyond the ends of the interval. Returned
+    /// whenever the clearance in the middle is at least `travel + margin`.
     Free {
-        /// As good as this clearance (m) in the middle.
+        /// The clearance (m) in the middle, or a number that implies the same.
         clearance: f64,
     },
-    /// At least `margin` from everything over `part` of the motion, a fraction of it above zero, to either side
-    /// of the middle. Where the clearance in the middle is `c` of at least twice the margin, this is at
-    /// least `(c - margin)` over the travel of the whole motion.
+    /// Free over `part` of the motion to either side of the middle, with a clearance of at least `margin`.
+    /// Where the clearance `c` in the middle is at least twice the margin, `part` is at least `c - margin`
+    /// divided by the travel of the whole motion.
     FreeOver {
-        /// The fraction; may be more than what is left of the motion.
+        /// The fraction of the motion, above zero; may reach beyond its ends.
         part: f64,
     },
-    /// Neither proved nor refuted: a shorter interval may be.
+    /// Neither proved nor refuted: a shorter interval may be decided.
     Unproven,
-    /// Less than twice the margin at `at`: not worth a closer look.
+    /// The clearance at `at` is less than twice the margin: shorter intervals are not tried.
     TooClose {
-        /// As a share of the way from the middle of the interval to its end, from −1 to 1.
+        /// As a fraction of half the interval, from −1 at its start to 1 at its end.
         at: f64,
     },
     /// In contact at `at`.
     Collision {
-        /// As a share of the way from the middle of the interval to its end, from −1 to 1.
+        /// As a fraction of half the interval, from −1 at its start to 1 at its end.
         at: f64,
     },
 }
 
 impl IntervalClearance {
-    /// What a clearance (m) in the middle says when `margin` (m) is to be kept.
+    /// The answer for a clearance (m) in the middle when `margin` (m) is to be kept.
     #[must_use]
     pub fn of(clearance: f64, margin: f64) -> Self {
         if clearance <= 0.0 {
@@ -128,8 +128,8 @@ pub trait MotionClearance<S>: Clearance<S> {
 
     /// The clearance over an interval of a motion.
     ///
-    /// The default takes the clearance in the middle, and assumes that some point travels as far as the interval's bound.
-    /// Override it where more is known, such as how far each part of the robot travels, and whether toward the obstacle or
+    /// The default uses the clearance in the middle, and assumes that some point travels as far as the interval's bound.
+    /// Override it where more is known, such as how far each part of the robot travels, and whether toward an obstacle or
     /// along it.
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
         let enough = interval.travel.max(interval.margin) + interval.margin;
@@ -137,7 +137,7 @@ pub trait MotionClearance<S>: Clearance<S> {
     }
 
     /// Whether [`in_contact`](Clearance::in_contact) costs so much less than
-    /// [`interval_clearance`](Self::interval_clearance) that [`Certified`](crate::Certified) first looks for contact at
+    /// [`interval_clearance`](Self::interval_clearance) that [`Certified`](crate::Certified) first tests for contact at
     /// states two strides apart along the whole motion.
     fn contact_first(&self) -> bool {
         false
@@ -156,11 +156,11 @@ impl<S, V: MotionClearance<S> + ?Sized> MotionClearance<S> for &mut V {
     }
 }
 
-/// What a check of a whole motion found. Times are fractions of the motion in \[0, 1\].
+/// The answer of a check of a whole motion. Its fractions of the motion are in \[0, 1\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MotionCheck {
     /// Free all along; `clearance` (m) is a lower bound on the distance to any obstacle over the
-    /// whole motion, zero where the check does not know one (a discrete check never does).
+    /// whole motion, zero where the check gives none (a discrete check never does).
     Free {
         /// Lower bound on clearance, metres.
         clearance: f64,
@@ -170,8 +170,8 @@ pub enum MotionCheck {
         /// Fraction of the motion.
         at: f64,
     },
-    /// Within the tolerance of contact at fraction `at` (grazing): neither proved. Planners treat
-    /// it as a collision.
+    /// Proved neither free nor in collision: within the tolerance of contact at fraction `at` (grazing).
+    /// Planners treat it as a collision.
     Unproven {
         /// Fraction of the motion.
         at: f64,
@@ -208,8 +208,8 @@ pub enum KnownFree {
 
 /// Whether a whole motion along the space's interpolation is free.
 ///
-/// Both what planners check edges with (discrete or certified) and what independently verifies
-/// a finished path implement it.
+/// The checks that planners use for edges (discrete or certified) implement it, and so do the independent
+/// verifiers of finished paths.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not check motions between states `{S}`",
     label = "not a `MotionValidity<{S}>`",
@@ -219,8 +219,8 @@ pub trait MotionValidity<S> {
     /// Checks the motion from `from` to `to`, both ends included.
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck;
 
-    /// Checks a motion one end of which is known to be free, being a node already: that end need
-    /// not be tested again.
+    /// Checks a motion with an end that is known to be free, as it is a node already: that end need not be
+    /// tested again.
     fn check_extension(&mut self, from: &S, to: &S, _known: KnownFree) -> MotionCheck {
         self.check_motion(from, to)
     }

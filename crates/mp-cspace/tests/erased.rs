@@ -1,4 +1,4 @@
-//! Erased spaces and indexes answer as those they were made of, to the bit.
+//! Erased spaces and indexes give the same answers as the originals, to the bit.
 
 use mp_cspace::erased::{AnyIndex, AnySpace};
 use mp_cspace::{

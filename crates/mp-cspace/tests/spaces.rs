@@ -186,7 +186,7 @@ fn bad_parameters_are_errors() {
     );
 }
 
-/// Intervals are a box, to the bit, and circles measure the shorter arcs; mixed as they should.
+/// Intervals alone equal a box, to the bit; circles alone measure the shorter arcs; mixtures combine both.
 #[test]
 fn joints_are_boxes_and_tori() {
     let mut rng = mp_cspace::Rng::seed(4);
@@ -196,8 +196,8 @@ fn joints_are_boxes_and_tori() {
         let (a, b) = (torus.sample_uniform(&mut rng), torus.sample_uniform(&mut rng));
         let arcs = Vector3::from_fn(|i, _| angle_difference(a[i], b[i]));
         assert!((torus.distance(&a, &b) - arcs.norm()).abs() < 1e-14);
-        let way = torus.interpolate(&a, &b, t) - (a + arcs * t).map(wrap_angle);
-        assert!(way.amax() < 1e-14, "{way}");
+        let gap = torus.interpolate(&a, &b, t) - (a + arcs * t).map(wrap_angle);
+        assert!(gap.amax() < 1e-14, "{gap}");
         let (a, b) = (r3().sample_uniform(&mut rng), r3().sample_uniform(&mut rng));
         assert_eq!(intervals.distance(&a, &b), r3().distance(&a, &b));
         assert_eq!(intervals.interpolate(&a, &b, t), r3().interpolate(&a, &b, t));
@@ -242,7 +242,7 @@ proptest! {
     }
 }
 
-/// Space and time: all the kit asks but constant speed, which motions that are not possible lack.
+/// Space and time satisfies the kit except constant speed, which impossible motions lack.
 #[test]
 fn space_time_conforms() {
     fn conforms<C: Embed>(positions: C) {
@@ -255,7 +255,7 @@ fn space_time_conforms() {
             let [a, b, c] = [0; 3].map(|_| space.sample_uniform(&mut rng));
             let slower = space.positions().distance(&a.0, &b.0) <= 0.6 * (b.1 - a.1);
             assert_eq!(space.leads(&a, &b), slower);
-            // What is possible is nearer than all that is not, and straight at constant speed.
+            // A possible motion is shorter than every impossible one, and straight at constant speed.
             if space.leads(&a, &b) {
                 possible += 1;
                 let t = 0.37;

@@ -1,4 +1,4 @@
-//! The kits pass what is right and name the axiom that something wrong violates.
+//! The kits accept correct implementations, and name the axiom that a wrong one violates.
 
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_nearest_neighbors, check_true_metric};
 use mp_cspace::*;
@@ -53,7 +53,7 @@ impl Space for Interval {
     }
 }
 
-/// What the kit says of it.
+/// The message of a kit that fails.
 fn verdict(run: impl FnOnce() + std::panic::UnwindSafe) -> String {
     match std::panic::catch_unwind(run) {
         Ok(()) => "passes".into(),
@@ -84,7 +84,7 @@ fn broken_spaces_are_caught_by_name() {
     assert!(verdict(|| check_true_metric(&square, &states, 1e-9)).contains("triangle inequality"));
 }
 
-/// Goes half a step too far, or only part of the way when asked for all of it.
+/// Goes half a step too far, or only part of the way where all or nothing is allowed.
 #[derive(Debug)]
 struct Wrong(u32);
 impl LocalPlanner<Vector1<f64>> for Wrong {

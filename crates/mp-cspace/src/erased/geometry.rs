@@ -7,19 +7,19 @@ use crate::{
 use nalgebra::Vector3;
 use std::fmt;
 
-/// Geometry that can be copied behind its pointer.
-trait Erased<'c, S>: ObstacleGeometry<S> + Send + Sync {
-    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c>;
+/// Obstacle geometry as a trait object that can be cloned.
+trait ErasedGeometry<'c, S>: ObstacleGeometry<S> + Send + Sync {
+    fn boxed(&self) -> Box<dyn ErasedGeometry<'c, S> + 'c>;
 }
 
-impl<'c, S, G: ObstacleGeometry<S> + Clone + Send + Sync + 'c> Erased<'c, S> for G {
-    fn boxed(&self) -> Box<dyn Erased<'c, S> + 'c> {
+impl<'c, S, G: ObstacleGeometry<S> + Clone + Send + Sync + 'c> ErasedGeometry<'c, S> for G {
+    fn boxed(&self) -> Box<dyn ErasedGeometry<'c, S> + 'c> {
         Box::new(self.clone())
     }
 }
 
-/// Any [`ObstacleGeometry`], behind a pointer.
-pub struct AnyGeometry<'c, S>(Box<dyn Erased<'c, S> + 'c>);
+/// Any [`ObstacleGeometry`] behind a pointer.
+pub struct AnyGeometry<'c, S>(Box<dyn ErasedGeometry<'c, S> + 'c>);
 
 impl<'c, S> AnyGeometry<'c, S> {
     /// `geometry`, erased.

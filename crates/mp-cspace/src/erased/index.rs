@@ -10,9 +10,9 @@ use nalgebra::{DVector, Isometry3};
 use std::fmt::{self, Debug};
 use std::sync::Arc;
 
-/// What of an index goes behind the pointer: all of [`NearestNeighbors`], with the space inside.
-trait Erased<S>: Send + Sync {
-    fn boxed(&self) -> Box<dyn Erased<S>>;
+/// The methods of [`NearestNeighbors`] as a trait object, the space inside.
+trait ErasedIndex<S>: Send + Sync {
+    fn boxed(&self) -> Box<dyn ErasedIndex<S>>;
     fn inserted(&mut self, points: &[S], id: NodeId);
     fn clear(&mut self);
     fn nearest(&self, points: &[S], q: &S) -> Option<Hit>;
@@ -21,17 +21,17 @@ trait Erased<S>: Send + Sync {
 }
 
 /// An index with the space it searches.
-struct Searching<C, N> {
+struct IndexWithSpace<C, N> {
     space: Arc<C>,
     index: N,
 }
 
-impl<S, C, N> Erased<S> for Searching<C, N>
+impl<S, C, N> ErasedIndex<S> for IndexWithSpace<C, N>
 where
     C: Space<State = S> + Send + 'static,
     N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
 {
-    fn boxed(&self) -> Box<dyn Erased<S>> {
+    fn boxed(&self) -> Box<dyn ErasedIndex<S>> {
         Box::new(Self { space: Arc::clone(&self.space), index: self.index.clone() })
     }
     fn inserted(&mut self, points: &[S], id: NodeId) {
@@ -51,9 +51,9 @@ where
     }
 }
 
-/// Any index of an [erased space](AnySpace): it keeps the space it was made for, so that the search inside runs on the
-/// space itself and answers are the same, to the bit. Give it the erasure of that space.
-pub struct AnyIndex<S>(Box<dyn Erased<S>>);
+/// Any index of an [erased space](AnySpace). It keeps the space it was made for: the search runs on that space itself,
+/// and answers are the same, to the bit. Use it only with the erasure of that space.
+pub struct AnyIndex<S>(Box<dyn ErasedIndex<S>>);
 
 impl<S> AnyIndex<S> {
     /// `index` for a copy of `space`, erased.
@@ -62,7 +62,7 @@ impl<S> AnyIndex<S> {
         C: Space<State = S> + Clone + Send + 'static,
         N: NearestNeighbors<C> + Clone + Send + Sync + 'static,
     {
-        Self(Box::new(Searching { space: Arc::new(space.clone()), index }))
+        Self(Box::new(IndexWithSpace { space: Arc::new(space.clone()), index }))
     }
 
     /// The [index that suits](DefaultNn) `space`, empty and erased.
@@ -72,22 +72,20 @@ impl<S> AnyIndex<S> {
 }
 
 impl<S: CoordinateState> AnyIndex<S> {
-    /// A [`KdTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: a little
-    /// slower than [`of`](Self::of), compiled once.
+    /// A [`KdTree`] for a copy of `space`, empty and erased. All spaces of these states share its code: a little slower
+    /// than [`of`](Self::of), but compiled once.
     pub fn by_coordinates<C: Embed<State = S> + Clone + Send + 'static>(space: &C) -> Self {
         Self(S::index(AnySpace::new(space), AnyEmbed(Arc::new(space.clone()))).0)
     }
-}
 
-impl<S: CoordinateState> AnyIndex<S> {
-    /// A [`MetricTree`] for a copy of `space`, empty and erased, whose code is shared by all spaces of these states: for
-    /// metrics whose distances take longer than a pointer.
+    /// A [`MetricTree`] for a copy of `space`, empty and erased. All spaces of these states share its code: for metrics
+    /// whose distances cost more than a call through a pointer.
     pub fn by_metric<C: Space<State = S> + TrueMetric + Clone + Send + 'static>(space: &C) -> Self {
         S::metric_index(AnySpace::new(space))
     }
 }
 
-/// What of coordinates goes behind the pointer.
+/// The methods of [`Embed`] as a trait object.
 trait ErasedEmbed<S>: Send + Sync {
     fn layout(&self) -> Layout;
     fn embed(&self, state: &S, out: &mut [f64]) -> usize;
@@ -103,15 +101,15 @@ impl<S, C: Embed<State = S> + Send> ErasedEmbed<S> for C {
 }
 
 /// Coordinates behind a pointer.
-#[allow(missing_debug_implementations)] // nothing to be seen
+#[allow(missing_debug_implementations)] // a pointer has nothing to print
 pub struct AnyEmbed<S>(Arc<dyn ErasedEmbed<S>>);
 
-/// States for which an index of erased spaces with coordinates is compiled in this crate: those of robots.
+/// States of robots: for these, the indexes of erased spaces are compiled in this crate.
 pub trait CoordinateState: Clone + Debug + PartialEq + Send + Sync + 'static {
     /// An empty index of a space with these coordinates.
     #[doc(hidden)]
     fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self>;
-    /// An empty index of a space by its distances.
+    /// An empty index of a space that uses its distances only.
     #[doc(hidden)]
     fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self>;
 }
@@ -121,7 +119,7 @@ macro_rules! coordinate_states {
         $(impl CoordinateState for $state {
             fn index(space: AnySpace<'static, Self>, layout: AnyEmbed<Self>) -> AnyIndex<Self> {
                 let space = Arc::new(Embedded { space, layout });
-                AnyIndex(Box::new(Searching { space, index: <KdTree>::default() }))
+                AnyIndex(Box::new(IndexWithSpace { space, index: <KdTree>::default() }))
             }
             fn metric_index(space: AnySpace<'static, Self>) -> AnyIndex<Self> {
                 AnyIndex::new(&space, MetricTree::default())
@@ -137,7 +135,7 @@ struct Embedded<S> {
     layout: AnyEmbed<S>,
 }
 
-/// Of the space an index asks distances and coordinates only; the rest is there because a space has it.
+/// An index uses only distances and coordinates; the other methods complete the trait.
 impl<S: Clone + Debug + PartialEq + Send + Sync> Space for Embedded<S> {
     type State = S;
     #[inline]
@@ -174,7 +172,7 @@ impl<S: Clone + Debug + PartialEq + Send + Sync> Embed for Embedded<S> {
     }
 }
 
-/// A space whose own index is compiled in this crate, for states of robots.
+/// A space of robot states whose own index is compiled in this crate.
 pub trait CompiledIndex: Space + Clone + Send + 'static {
     /// The [index that suits](DefaultNn) the space, empty and erased.
     fn compiled_index(&self) -> AnyIndex<Self::State>;

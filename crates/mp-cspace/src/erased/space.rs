@@ -4,8 +4,8 @@ use crate::{Rng, Space, TrueMetric};
 use std::fmt::{self, Debug};
 use std::sync::Arc;
 
-/// What of a space goes behind the pointer: all of [`Space`].
-trait Erased<S>: Send + Sync {
+/// The methods of [`Space`] as a trait object.
+trait ErasedSpace<S>: Send + Sync {
     fn dim(&self) -> usize;
     fn distance(&self, from: &S, to: &S) -> f64;
     fn interpolate_into(&self, from: &S, to: &S, t: f64, out: &mut S);
@@ -19,7 +19,7 @@ trait Erased<S>: Send + Sync {
     fn with_rotation_of(&self, position: &S, rotation: &S) -> S;
 }
 
-impl<S, C: Space<State = S> + Send> Erased<S> for C {
+impl<S, C: Space<State = S> + Send> ErasedSpace<S> for C {
     fn dim(&self) -> usize {
         Space::dim(self)
     }
@@ -68,19 +68,19 @@ impl<S, C: Space<State = S> + Send> Erased<S> for C {
 /// # Ok::<(), mp_cspace::SpaceError>(())
 /// ```
 pub struct AnySpace<'c, S> {
-    space: Arc<dyn Erased<S> + 'c>,
-    /// Asked often, and always the same.
+    space: Arc<dyn ErasedSpace<S> + 'c>,
+    /// Kept here because it is read often and never changes.
     extent: f64,
 }
 
 impl<'c, S> AnySpace<'c, S> {
-    /// A copy of `space`, erased. Copies of this one share it.
+    /// A copy of `space`, erased. Clones of the result share that copy.
     pub fn new<C: Space<State = S> + Clone + Send + 'c>(space: &C) -> Self {
         Self { space: Arc::new(space.clone()), extent: space.extent() }
     }
 }
 
-// Derived, it would ask for `S: Clone`.
+// Derived, it would require `S: Clone`.
 impl<S> Clone for AnySpace<'_, S> {
     fn clone(&self) -> Self {
         Self { space: Arc::clone(&self.space), extent: self.extent }
@@ -140,6 +140,6 @@ impl<S: Clone + Debug + PartialEq + Send + Sync> Space for AnySpace<'_, S> {
     }
 }
 
-/// Erases [`TrueMetric`] with the rest: what relies on it is the [index](crate::erased::AnyIndex), and that knows the
-/// space it was made for.
+/// Marks every erased space, whatever the space inside: only the [index](crate::erased::AnyIndex) relies on the mark,
+/// and it keeps the space it was made for.
 impl<S> TrueMetric for AnySpace<'_, S> {}

@@ -1,10 +1,10 @@
-//! Edges by way of other states.
+//! Edges through intermediate states.
 
 use crate::{MotionCheck, MotionValidity, Path, Reversible};
 use std::sync::Arc;
 
-/// An edge that goes from one end to the other by way of vertices: states in forward time, between which the space
-/// interpolates. Without vertices it is the straight motion. Copies share the vertices.
+/// An edge through vertices: states in forward time, between which the space interpolates. Without vertices it is the
+/// straight motion. Clones share the vertices.
 ///
 /// Every [`MotionValidity`] verifies such edges, motion by motion.
 ///
@@ -38,24 +38,25 @@ impl<S> PolylineEdge<S> {
         Self((!vertices.is_empty()).then(|| vertices.into()))
     }
 
-    /// The states between the ends.
+    /// The vertices between the ends.
     #[must_use]
     pub fn vertices(&self) -> &[S] {
         self.0.as_deref().unwrap_or_default()
     }
 
-    /// Checks each straight part of the edge from `from` to `to`. Fractions are of the number of parts.
+    /// Checks each straight part of the edge from `from` to `to`. In the fraction reported every part counts alike,
+    /// whatever its length.
     pub fn check(&self, from: &S, to: &S, check: &mut (impl MotionValidity<S> + ?Sized)) -> MotionCheck {
         let parts = (self.vertices().len() + 1) as f64;
-        let (mut here, mut least) = (from, f64::INFINITY);
+        let (mut last, mut least) = (from, f64::INFINITY);
         for (i, next) in self.vertices().iter().chain([to]).enumerate() {
-            let whole = |at: f64| (i as f64 + at) / parts;
-            match check.check_motion(here, next) {
+            let fraction = |at: f64| (i as f64 + at) / parts;
+            match check.check_motion(last, next) {
                 MotionCheck::Free { clearance } => least = least.min(clearance),
-                MotionCheck::Collision { at } => return MotionCheck::Collision { at: whole(at) },
-                MotionCheck::Unproven { at } => return MotionCheck::Unproven { at: whole(at) },
+                MotionCheck::Collision { at } => return MotionCheck::Collision { at: fraction(at) },
+                MotionCheck::Unproven { at } => return MotionCheck::Unproven { at: fraction(at) },
             }
-            here = next;
+            last = next;
         }
         MotionCheck::Free { clearance: least }
     }
@@ -69,7 +70,7 @@ impl<S: Clone> Reversible for PolylineEdge<S> {
 }
 
 impl<S: Clone> Path<S, PolylineEdge<S>> {
-    /// The same path with the vertices of its edges as states of its own, straight between them.
+    /// The same path with the vertices of its edges as states, straight between them.
     #[must_use]
     pub fn flattened(&self) -> Path<S> {
         let mut states = Vec::with_capacity(self.states.len());

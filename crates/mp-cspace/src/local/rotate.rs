@@ -1,22 +1,21 @@
 //! Rotate-at-s: translation, rotation in place, translation.
 
-use super::{Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach};
-use crate::{KnownFree, MotionValidity, ParameterError, Space};
+use super::{Direction, Extension, LocalPlanner, Motion, PolylineEdge, Reach, check_toward};
+use crate::{MotionValidity, ParameterError, Space};
 
-/// The states where rotate-at-s turns on its way from `from` to `to`: before and after the turn. `at` in \[0, 1\].
+/// The states before and after the turn of rotate-at-s from `from` to `to`. `at` in \[0, 1\].
 pub fn turn_at<C: Space>(space: &C, from: &C::State, to: &C::State, at: f64) -> [C::State; 2] {
     let middle = space.interpolate(from, to, at);
     [space.with_rotation_of(&middle, from), space.with_rotation_of(&middle, to)]
 }
 
 /// The rotate-at-s local planner (Amato, Bayazit, Dale, Jones and Vallejo 1998, *Choosing good distance metrics
-/// and local planners for probabilistic roadmap methods*): the straight line cut in three. The robot moves the fraction `s`
-/// of the way without turning, turns in place, and moves on.
+/// and local planners for probabilistic roadmap methods*): the straight line in three parts. The robot moves the fraction
+/// `s` of the way without turning, turns in place, and moves the rest without turning.
 ///
-/// Where the straight line sweeps much by turning while it moves, this may pass; most used are
-/// `s` of 0, 1/2 and 1. The cost is the length of the three parts, which in a metric that adds up translation and
-/// rotation is that of the straight line. Turned round in time it is rotate-at-(1 - s), so edges of backward trees are
-/// made that way.
+/// It may be free where the straight line, which turns while it moves, sweeps into an obstacle. Usual values of `s` are
+/// 0, 1/2 and 1. The cost is the length of the three parts; in a metric that adds translation and rotation it equals that
+/// of the straight line. Reversed in time it is rotate-at-(1 - s), which backward trees therefore use.
 ///
 /// ```
 /// use mp_cspace::{Direction, Discrete, Extension, LocalPlanner, Reach, Resolution, RotateAtS, Se2, Se2State};
@@ -57,27 +56,27 @@ impl<'c, C: Space, M: MotionValidity<C::State>> RotateAtS<'c, C, M> {
         self.at
     }
 
-    /// The states met on the way, without `from` and up to a length of `most`, that length, and whether the
-    /// target is the last of them.
-    fn walk(&self, from: &C::State, toward: &C::State, at: f64, most: f64) -> (Vec<C::State>, f64, bool) {
+    /// The vertices after `from`, cut off at the length `most`; the length; and whether the last vertex is
+    /// the target.
+    fn polyline(&self, from: &C::State, toward: &C::State, at: f64, most: f64) -> (Vec<C::State>, f64, bool) {
         let [before, after] = turn_at(self.space, from, toward, at);
-        let (mut met, mut gone, mut here) = (Vec::with_capacity(3), 0.0, from);
+        let (mut vertices, mut covered, mut last) = (Vec::with_capacity(3), 0.0, from);
         let corners = [before, after, toward.clone()];
         for (i, corner) in corners.iter().enumerate() {
-            let length = self.space.distance(here, corner);
-            if gone + length > most {
-                if most > gone {
-                    met.push(self.space.interpolate(here, corner, (most - gone) / length));
+            let length = self.space.distance(last, corner);
+            if covered + length > most {
+                if most > covered {
+                    vertices.push(self.space.interpolate(last, corner, (most - covered) / length));
                 }
-                return (met, most, false);
+                return (vertices, most, false);
             }
-            // Parts of no length are left out, but the target is always met.
+            // Parts of no length are left out, but the target is always a vertex.
             if length > 0.0 || i == 2 {
-                met.push(corner.clone());
+                vertices.push(corner.clone());
             }
-            (gone, here) = (gone + length, corner);
+            (covered, last) = (covered + length, corner);
         }
-        (met, gone, true)
+        (vertices, covered, true)
     }
 }
 
@@ -95,23 +94,19 @@ impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS
             Reach::Step(step) => step,
             Reach::Full => f64::INFINITY,
         };
-        let (mut via, cost, reached) = self.walk(from, toward, at, most);
-        let mut here = from;
-        for next in &via {
-            let check = match direction {
-                Direction::Forward => self.check.check_extension(here, next, KnownFree::From),
-                Direction::Backward => self.check.check_extension(next, here, KnownFree::To),
-            };
-            if !check.is_free() {
+        let (mut vertices, cost, reached) = self.polyline(from, toward, at, most);
+        let mut last = from;
+        for next in &vertices {
+            if !check_toward(&mut self.check, last, next, direction).is_free() {
                 return Extension::Trapped;
             }
-            here = next;
+            last = next;
         }
-        let Some(end) = via.pop() else { return Extension::Trapped };
+        let Some(end) = vertices.pop() else { return Extension::Trapped };
         if direction == Direction::Backward {
-            via.reverse();
+            vertices.reverse();
         }
-        let motion = Motion { end, edge: PolylineEdge::through(&via), cost };
+        let motion = Motion { end, edge: PolylineEdge::through(&vertices), cost };
         if reached { Extension::Reached(motion) } else { Extension::Advanced(motion) }
     }
     fn admits(&mut self, q: &C::State) -> bool {
@@ -137,8 +132,7 @@ mod tests {
         })
     }
 
-    /// All that is reached, in either direction, is verified by another check; what the planner says it costs is the
-    /// length by way of the states between.
+    /// Another check verifies every edge made, in either direction; the cost is the length through the vertices.
     #[test]
     fn edges_are_verified_in_forward_time() {
         let space = Se2::new([0.0; 2], [4.0; 2]).unwrap();

@@ -18,7 +18,7 @@ pub struct MaxDisplacement<P> {
 }
 
 impl MaxDisplacement<Point3<f64>> {
-    /// Of a body in space, `points` in the frame of the body.
+    /// The metric of a body in space, `points` (m) in the body's frame.
     ///
     /// # Errors
     /// When there is no point, or one is not finite.
@@ -30,7 +30,7 @@ impl MaxDisplacement<Point3<f64>> {
 }
 
 impl MaxDisplacement<Point2<f64>> {
-    /// Of a body in the plane, `points` in the frame of the body.
+    /// The metric of a body in the plane, `points` (m) in the body's frame.
     ///
     /// # Errors
     /// When there is no point, or one is not finite.
@@ -61,7 +61,7 @@ impl Metric<Se3> for MaxDisplacement<Point3<f64>> {
         let shift = to.translation.vector - from.translation.vector;
         self.points.iter().map(|p| (turn * p.coords + shift).norm_squared()).fold(0.0, f64::max).sqrt()
     }
-    /// Across the box, and each point to the other side of the body's origin.
+    /// The diagonal of the box, and twice the farthest point's distance from the body's origin.
     fn extent(&self, space: &Se3) -> f64 {
         space.translations().extent() + 2.0 * self.radius
     }
@@ -79,7 +79,7 @@ impl Metric<Se2> for MaxDisplacement<Point2<f64>> {
             |p: &Point2<f64>| (c * p.x - s * p.y + shift.x).powi(2) + (s * p.x + c * p.y + shift.y).powi(2);
         self.points.iter().map(squared).fold(0.0, f64::max).sqrt()
     }
-    /// Across the box, and each point to the other side of the body's origin.
+    /// The diagonal of the box, and twice the farthest point's distance from the body's origin.
     fn extent(&self, space: &Se2) -> f64 {
         space.translations().extent() + 2.0 * self.radius
     }

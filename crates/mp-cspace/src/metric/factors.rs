@@ -5,6 +5,7 @@ use crate::error::weight;
 use crate::nn::{Embed, Layout};
 use crate::{Factored, KdTree, SpaceError, TrueMetric};
 
+/// Calls `f(i, extent)` for each factor `i` in order.
 fn over_extents<C: Factored>(space: &C, mut f: impl FnMut(usize, f64)) {
     for i in 0..space.factors() {
         f(i, space.factor_extent(i));
@@ -105,7 +106,7 @@ impl<C: Factored> Metric<C> for Manhattan {
 }
 impl<C: Factored> TrueMetric<C> for Manhattan {}
 
-/// Writes all coordinates, those of factor `i` multiplied by `weight(i)`.
+/// Writes all coordinates, those of factor `i` multiplied by `weight(i)`; returns their number.
 #[inline]
 fn embed_weighted<C: Factored>(
     space: &C,

@@ -1,20 +1,20 @@
-//! An approximate swept volume.
+//! An approximate swept volume as a distance.
 
 use super::Metric;
 use crate::{Linear, Se2, Se2State, Se3, Space, SpaceError};
 use nalgebra::{Isometry3, Point3, Vector3};
 
-/// About how much volume (m³) a rigid body sweeps on the straight way from one pose to another, beyond its own:
-/// the distance that reflects best how likely a local planner fails (Benitez et al. 2010, *Key Elements for Motion
+/// The approximate volume (m³) that a rigid body sweeps, beyond its own, on the straight motion from one pose to another:
+/// the distance that best reflects how likely a local planner fails (Benitez et al. 2010, *Key Elements for Motion
 /// Planning Algorithms*, §3.1), "rough but inexpensive".
 ///
-/// Each triangle of the surface sweeps its area times how far its centre moves along its normal, taken
-/// as the mean of those at either end; half of them sweep outward: `½ Σ Aᵢ·|nᵢ·Δxᵢ|`. Exact for a convex body that does not
-/// turn; where it turns, parts of the surface that move along themselves sweep nothing, and chords stand for arcs. Cost
+/// Each triangle of the surface sweeps its area times the travel of its centre along its normal (the mean over the
+/// normals at both ends); half of the triangles sweep outward: `½ Σ Aᵢ·|nᵢ·Δxᵢ|`. Exact for a convex body that does not
+/// turn. Where it turns, parts of the surface that slide along themselves sweep nothing, and chords replace arcs. The cost
 /// grows with the number of triangles, so give a coarse mesh.
 ///
-/// No [`TrueMetric`](crate::TrueMetric): the triangle inequality does not hold, and different states may be at distance zero
-/// (a ball that turns). Nearest neighbours by it are found by [`Linear`](crate::Linear) search.
+/// Not a [`TrueMetric`](crate::TrueMetric): the triangle inequality does not hold, and different states may be at distance
+/// zero (a ball that turns). Its nearest neighbours are found by [`Linear`](crate::Linear) search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptVolume {
     /// Centre of each triangle, and its normal times its area.
@@ -24,10 +24,10 @@ pub struct SweptVolume {
 }
 
 impl SweptVolume {
-    /// Of the body with these triangles (m), in its own frame.
+    /// The metric of the body with these triangles (m), in its own frame.
     ///
     /// # Errors
-    /// When there are none, or a corner is not finite.
+    /// When there is no triangle, or a corner is not finite.
     pub fn new(triangles: impl IntoIterator<Item = [Point3<f64>; 3]>) -> Result<Self, SpaceError> {
         let (mut panels, mut area, mut radius) = (Vec::new(), 0.0, 0.0_f64);
         for [a, b, c] in triangles {
@@ -47,12 +47,11 @@ impl SweptVolume {
         Ok(Self { panels, area, radius })
     }
 
-    fn most(&self, across: f64) -> f64 {
-        0.5 * self.area * (across + 2.0 * self.radius)
+    /// A bound on the distance of poses whose translations lie in a box with this diagonal (m).
+    fn extent_of(&self, diagonal: f64) -> f64 {
+        0.5 * self.area * (diagonal + 2.0 * self.radius)
     }
-}
 
-impl SweptVolume {
     fn swept(&self, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let [ra, rb] = [from, to].map(|q| *q.rotation.to_rotation_matrix().matrix());
         let shift = to.translation.vector - from.translation.vector;
@@ -71,7 +70,7 @@ impl Metric<Se3> for SweptVolume {
         self.swept(from, to)
     }
     fn extent(&self, space: &Se3) -> f64 {
-        self.most(space.translations().extent())
+        self.extent_of(space.translations().extent())
     }
 }
 
@@ -82,7 +81,7 @@ impl Metric<Se2> for SweptVolume {
         self.swept(&from.to_isometry3(0.0), &to.to_isometry3(0.0))
     }
     fn extent(&self, space: &Se2) -> f64 {
-        self.most(space.translations().extent())
+        self.extent_of(space.translations().extent())
     }
 }
 
@@ -92,7 +91,7 @@ mod tests {
     use crate::{Rng, WithMetric};
     use std::f64::consts::FRAC_PI_2;
 
-    /// The sides of a box about the origin, in rectangles of `n` by `n`.
+    /// The sides of a box about the origin, each of `n` by `n` rectangles.
     fn sides(size: Vector3<f64>, n: u32) -> Vec<[Point3<f64>; 3]> {
         let mut triangles = Vec::new();
         for axis in 0..3 {
@@ -118,16 +117,17 @@ mod tests {
         let size = Vector3::new(1.0, 2.0, 3.0);
         let swept = SweptVolume::new(sides(size, 1)).unwrap();
         let from = Isometry3::identity();
-        for (way, volume) in
+        for (shift, volume) in
             [([2.0, 0.0, 0.0], 12.0), ([0.0, -1.0, 0.0], 3.0), ([1.0, 1.0, 1.0], 6.0 + 3.0 + 2.0)]
         {
-            let to = Isometry3::translation(way[0], way[1], way[2]);
+            let to = Isometry3::translation(shift[0], shift[1], shift[2]);
             assert!((swept.swept(&from, &to) - volume).abs() < 1e-12);
             assert!((swept.swept(&to, &from) - volume).abs() < 1e-12);
         }
     }
 
-    /// A rod turned about its middle: two sectors, of half its length for radius. Of a small angle the chords differ little.
+    /// A rod turned about its middle sweeps two sectors whose radius is half its length. At a small angle chords are
+    /// nearly arcs.
     #[test]
     fn a_rod_that_turns_sweeps_sectors() {
         let swept = SweptVolume::new(sides(Vector3::new(2.0, 1e-3, 0.5), 40)).unwrap();
@@ -135,7 +135,7 @@ mod tests {
         let sectors = 0.5 * 0.2 * 1.0_f64.powi(2) * 2.0 * 0.5;
         let found = swept.swept(&a.to_isometry3(0.0), &b.to_isometry3(0.0));
         assert!((found / sectors - 1.0).abs() < 0.02, "{found} {sectors}");
-        // About its own axis next to nothing.
+        // About its own axis the rod sweeps next to nothing.
         let roll = Isometry3::rotation(Vector3::x() * FRAC_PI_2);
         assert!(swept.swept(&Isometry3::identity(), &roll) < 0.5);
         let yaw = Isometry3::rotation(Vector3::z() * FRAC_PI_2);

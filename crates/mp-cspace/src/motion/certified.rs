@@ -1,4 +1,4 @@
-//! The certified motion check: clearance against a bound on how far the robot travels.
+//! The certified motion check: compares clearance with a bound on how far the robot travels.
 
 use super::discrete::bit_reversed;
 use crate::{
@@ -7,25 +7,25 @@ use crate::{
 };
 use std::collections::VecDeque;
 
-/// Proves motions free: no obstacle, however thin, is ever passed.
+/// Proves motions free: no motion found free passes through an obstacle, however thin.
 ///
 /// Where the robot has clearance `c` and no point of it travels farther than `L` over the whole
 /// motion, all states within a fraction `(c - margin) / L` of the motion to either side have
 /// clearance at least `margin`. The check covers the motion with such intervals: first one in the
-/// middle, then in the middles of what is left, in order of size, so that the parts about which
-/// least is known come first.
+/// middle, then in the middles of the uncovered parts, in order of size, so that the parts about
+/// which least is known come first.
 ///
 /// With `margin = tolerance / 2`:
 /// - a motion found free has clearance at least `margin` **all along it**, so an independent
-///   verifier that asks for less always agrees;
+///   verifier that requires less always agrees;
 /// - a motion whose clearance (as [`Clearance`](crate::Clearance) bounds it) is at least `tolerance` all along is
 ///   found free;
-/// - what is between may be [`Undecided`](MotionCheck::Unproven), which planners treat as a
-///   collision.
+/// - a motion whose least clearance is between the two may be [`Unproven`](MotionCheck::Unproven), which
+///   planners treat as a collision.
 ///
-/// Contact is looked for first, at the end, and at some places between where [that is
-/// cheap](MotionClearance::contact_first). At most `4·L / tolerance + 2` intervals are asked about. As distances cost the more the farther
-/// they reach, no interval is longer than twice the [stride](Certified::with_stride).
+/// Contact is tested first: at the end, and at some states between where [that is
+/// cheap](MotionClearance::contact_first). At most `4·L / tolerance + 2` intervals are queried. The farther a distance
+/// query reaches the more it costs, so no interval is longer than twice the [stride](Certified::with_stride).
 ///
 /// The idea is conservative advancement (Mirtich 1996), bisected as in Schwarzer, Saha and
 /// Latombe 2005, *Adaptive dynamic collision checking for single and multiple articulated robots*.
@@ -37,13 +37,14 @@ pub struct Certified<'c, C, V> {
     pub valid: V,
     tolerance: f64,
     stride: f64,
-    open: VecDeque<(f64, f64)>,
+    /// Parts of the motion not yet covered, each from one fraction to another.
+    uncovered: VecDeque<(f64, f64)>,
 }
 
-/// Motions longer than this many tolerances are refused: their parts would drown in rounding.
+/// Motions longer than this many tolerances are refused: rounding would exceed the size of their parts.
 const MAX_TOLERANCES: f64 = 1e9;
 
-/// Parts of a motion shorter than this fraction of it are not there.
+/// Uncovered parts shorter than this fraction of the motion come from rounding.
 const ROUNDING: f64 = 1e-15;
 
 impl<'c, C, V> Certified<'c, C, V>
@@ -57,11 +58,11 @@ where
     /// When the tolerance is not positive and finite.
     pub fn new(space: &'c C, valid: V, tolerance: f64) -> Result<Self, ParameterError> {
         let tolerance = ParameterError::positive("the tolerance", tolerance)?;
-        Ok(Self { space, valid, tolerance, stride: 0.02 * space.extent(), open: VecDeque::new() })
+        Ok(Self { space, valid, tolerance, stride: 0.02 * space.extent(), uncovered: VecDeque::new() })
     }
 
-    /// The same with strides of `stride` metres: no clearance beyond that (and the margin) is asked
-    /// for. Changes the cost, and which of the motions near the tolerance are accepted.
+    /// The same with strides of `stride` metres: clearance queries reach no farther than that plus the
+    /// margin. Changes the cost, and which of the motions near the tolerance are accepted.
     ///
     /// # Errors
     /// When the stride is not positive and finite.
@@ -81,8 +82,8 @@ where
         self.tolerance * 0.5
     }
 
-    /// Where there is contact, of places two strides apart between the ends of a motion in which no point travels
-    /// farther than `travel`: the middle first, then the quarters, …
+    /// The first fraction with contact among states two strides apart, between the ends of a motion in which no point
+    /// travels farther than `travel`: the middle first, then the quarters, …
     fn contact(&mut self, from: &C::State, to: &C::State, travel: f64) -> Option<f64> {
         let parts = (0.5 * travel / self.stride.max(self.margin())).ceil() as u64;
         let mut q = from.clone();
@@ -92,40 +93,40 @@ where
         })
     }
 
-    /// Covers the motion, no point of which travels farther than `travel`, with intervals that have
-    /// clearance.
+    /// Covers the motion with intervals proved free. No point of the robot travels farther than `travel`
+    /// (m) on it.
     fn cover(&mut self, from: &C::State, to: &C::State, travel: f64) -> MotionCheck {
         let margin = self.margin();
         let stride = self.stride.max(margin);
         let mut least = f64::INFINITY;
         let mut q = from.clone();
-        self.open.clear();
-        self.open.push_back((0.0, 1.0));
-        while let Some((a, b)) = self.open.pop_front() {
+        self.uncovered.clear();
+        self.uncovered.push_back((0.0, 1.0));
+        while let Some((a, b)) = self.uncovered.pop_front() {
             let at = 0.5 * (a + b);
-            // As many equal intervals as it takes; an odd number has one in the middle.
+            // How many equal intervals of at most two strides it takes; an odd number has one in the middle.
             let pieces = (0.5 * (b - a) * travel / stride).ceil().max(1.0);
             if pieces % 2.0 == 0.0 {
-                self.open.extend([(a, at), (at, b)]);
+                self.uncovered.extend([(a, at), (at, b)]);
                 continue;
             }
             let half = 0.5 * (b - a) / pieces;
             self.space.interpolate_into(from, to, at, &mut q);
             let interval = MotionInterval { from, to, middle: &q, half, travel: half * travel, margin };
             let covered = match self.valid.interval_clearance(&interval) {
-                IntervalClearance::Collision { at: beside } => {
-                    let at = at + half * beside;
+                IntervalClearance::Collision { at: offset } => {
+                    let at = at + half * offset;
                     self.space.interpolate_into(from, to, at, &mut q);
-                    // States of the motion are within rounding of those that were looked at.
-                    let collides = beside == 0.0 || self.valid.in_contact(&q);
+                    // This state may differ by rounding from the one the robot found in contact.
+                    let collides = offset == 0.0 || self.valid.in_contact(&q);
                     return if collides {
                         MotionCheck::Collision { at }
                     } else {
                         MotionCheck::Unproven { at }
                     };
                 }
-                IntervalClearance::TooClose { at: beside } => {
-                    return MotionCheck::Unproven { at: at + half * beside };
+                IntervalClearance::TooClose { at: offset } => {
+                    return MotionCheck::Unproven { at: at + half * offset };
                 }
                 IntervalClearance::Unproven if interval.travel <= margin => {
                     return MotionCheck::Unproven { at };
@@ -138,18 +139,18 @@ where
                 IntervalClearance::Free { clearance } => {
                     let reach = (clearance - margin) / travel;
                     let covered = if clearance >= interval.travel + margin { reach.max(half) } else { reach };
-                    // As far out as it is relied on.
-                    let relied = covered.min(b - at) * travel;
-                    least = least.min((clearance - relied).max(margin));
+                    // The clearance at the ends of the covered part, as far as that is in this part.
+                    let farthest = covered.min(b - at) * travel;
+                    least = least.min((clearance - farthest).max(margin));
                     covered
                 }
             };
-            // What is left over, unless it is rounding.
+            // The uncovered rest on either side, unless it is rounding.
             if at - covered > a + ROUNDING {
-                self.open.push_back((a, at - covered));
+                self.uncovered.push_back((a, at - covered));
             }
             if at + covered < b - ROUNDING {
-                self.open.push_back((at + covered, b));
+                self.uncovered.push_back((at + covered, b));
             }
         }
         MotionCheck::Free { clearance: least }
@@ -172,7 +173,7 @@ where
         if !provable {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        // Contact is likeliest at the end that nobody has tested.
+        // Contact is likeliest at the end that is not known to be free.
         if known != KnownFree::To && self.valid.in_contact(to) {
             return MotionCheck::Collision { at: 1.0 };
         }
@@ -197,11 +198,11 @@ mod tests {
     use rand::RngExt;
     use std::cell::Cell;
 
-    /// A point among discs; counts what it is asked.
+    /// A point among discs; counts its queries.
     #[derive(Default)]
     struct Discs {
         discs: Vec<(Vector2<f64>, f64)>,
-        asked: Cell<u32>,
+        queries: Cell<u32>,
     }
 
     impl Discs {
@@ -220,9 +221,9 @@ mod tests {
     }
     impl Clearance<Vector2<f64>> for Discs {
         fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
-            self.asked.set(self.asked.get() + 1);
+            self.queries.set(self.queries.get() + 1);
             let exact = self.exact(q).max(0.0);
-            // What may be answered beyond `enough` is anything: the least helpful is `enough`.
+            // Any answer of at least `enough` is allowed: the least helpful is `enough`.
             exact.min(enough)
         }
         fn in_contact(&mut self, q: &Vector2<f64>) -> bool {
@@ -235,7 +236,7 @@ mod tests {
         }
     }
 
-    /// The same, answering no more than what is asked, as a swept test does.
+    /// The same, proving nothing beyond the interval, as a swept test does.
     struct Swept(Discs);
     impl Clearance<Vector2<f64>> for Swept {
         fn clearance(&mut self, q: &Vector2<f64>, enough: f64) -> f64 {
@@ -247,7 +248,7 @@ mod tests {
             self.0.motion_bound(from, to)
         }
         fn interval_clearance(&mut self, interval: &MotionInterval<'_, Vector2<f64>>) -> IntervalClearance {
-            self.0.asked.set(self.0.asked.get() + 1);
+            self.0.queries.set(self.0.queries.get() + 1);
             let part = (interval.to - interval.from) * interval.half;
             let middle = *interval.middle;
             assert!((part.norm() - interval.travel).abs() < 1e-12);
@@ -291,7 +292,7 @@ mod tests {
                 MotionCheck::Unproven { .. } => assert!(exact < tolerance),
             }
             let bound = 4.0 * (b - a).norm() / tolerance + 2.0;
-            assert!(f64::from(check.valid.0.asked.get()) <= bound);
+            assert!(f64::from(check.valid.0.queries.get()) <= bound);
         }
         assert!(hits > 1000, "{hits}");
     }
@@ -322,13 +323,13 @@ mod tests {
                 }
             }
             let bound = 4.0 * (b - a).norm() / tolerance + 2.0;
-            assert!(f64::from(check.valid.asked.get()) <= bound);
+            assert!(f64::from(check.valid.queries.get()) <= bound);
         }
         assert!(free > 2000 && refused > 2000);
     }
 
-    /// A check that answers more than it is asked, as bounds on boxes do: covered far beyond the interval, and the
-    /// clearance out there is what counts.
+    /// Answers beyond `enough`, as bounds on boxes give, cover far beyond the interval: the clearance reported is that
+    /// at the ends of the covered part.
     #[test]
     fn reports_no_more_clearance_than_there_is() {
         struct Generous(Discs);
@@ -358,7 +359,7 @@ mod tests {
         assert!(free > 500);
     }
 
-    /// What a check shows of the part it names is all that is taken from it.
+    /// Where an answer names a part, only that part counts as covered.
     #[test]
     fn keeps_its_promises_by_parts() {
         struct Parts(Discs);
@@ -375,7 +376,7 @@ mod tests {
                 &mut self,
                 interval: &MotionInterval<'_, Vector2<f64>>,
             ) -> IntervalClearance {
-                self.0.asked.set(self.0.asked.get() + 1);
+                self.0.queries.set(self.0.queries.get() + 1);
                 let clearance = self.0.exact(interval.middle);
                 match IntervalClearance::of(clearance, interval.margin) {
                     IntervalClearance::Free { clearance } => {
@@ -402,11 +403,11 @@ mod tests {
                 _ => assert!(exact < tolerance),
             }
             let bound = 4.0 * (b - a).norm() / tolerance + 2.0;
-            assert!(f64::from(check.valid.0.asked.get()) <= bound);
+            assert!(f64::from(check.valid.0.queries.get()) <= bound);
         }
     }
 
-    /// Walls from thick to 1e-12 are never passed, from either side.
+    /// Motions never pass walls of thickness 0.1 to 1e-12, from either side.
     #[test]
     fn no_wall_is_too_thin() {
         struct Wall(f64);

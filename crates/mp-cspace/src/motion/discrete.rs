@@ -9,7 +9,7 @@ use crate::{KnownFree, MotionCheck, MotionValidity, ParameterError, Space, Valid
 /// the resolution can be passed; [`Certified`](super::Certified) never does that.
 ///
 /// The ends are tested first, then the states between in van der Corput (bit-reversed) order,
-/// which finds obstacles of any size soon. Nothing depends on the direction of the motion.
+/// which finds obstacles of any size early. The states tested do not depend on the direction of the motion.
 #[derive(Clone, Debug)]
 pub struct Discrete<'c, C: Space, V> {
     /// The space to interpolate in.
@@ -21,7 +21,7 @@ pub struct Discrete<'c, C: Space, V> {
     times: Vec<f64>,
 }
 
-/// Motions cut into more parts than this are refused: only states far out of bounds get there.
+/// Motions of more parts than this are refused: only states far out of bounds need so many.
 const MAX_PARTS: f64 = 4e9;
 
 impl<'c, C: Space, V: Validity<C::State>> Discrete<'c, C, V> {
@@ -40,7 +40,8 @@ impl<'c, C: Space, V: Validity<C::State>> Discrete<'c, C, V> {
         self.step
     }
 
-    /// Tests `i / parts` for `0 < i < parts` in bit-reversed order, one state at a time.
+    /// The first fraction `i / parts`, `0 < i < parts` in bit-reversed order, that is not free; tests one
+    /// state at a time.
     fn one_by_one(&mut self, from: &C::State, to: &C::State, parts: u64) -> Option<f64> {
         let mut q = from.clone();
         bit_reversed(parts).find_map(|i| {
@@ -143,7 +144,7 @@ mod tests {
         assert_eq!(seen, [1.0, 0.5, 0.25, 0.75]);
     }
 
-    /// A validity that takes batches.
+    /// A validity that tests states in batches.
     struct Batched(usize, f64);
     impl Validity<Vector1<f64>> for Batched {
         fn is_valid(&mut self, q: &Vector1<f64>) -> bool {

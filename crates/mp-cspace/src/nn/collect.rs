@@ -1,32 +1,32 @@
-//! What the searches of all indexes collect into.
+//! Collectors: where the searches of all indexes put their answers.
 
 use super::{Hit, NodeId};
 
-/// Receives states in the order a search meets them, and says how far the search must look.
+/// Receives states in the order a search finds them, and says how far the search must reach.
 pub(super) trait Collector {
     /// Whether offering a state again is harmless.
     const MAY_REPEAT: bool;
-    /// States farther than this are of no interest; at this distance they may be.
+    /// States farther than this are not wanted; at this distance they may be.
     fn limit(&self) -> f64;
-    /// Takes one state into account; `false` when it was of no interest.
+    /// Considers one state; `false` when it was not wanted.
     fn offer(&mut self, hit: Hit) -> bool;
 }
 
 /// The one nearest state.
 #[derive(Debug)]
-pub(super) struct One(Hit);
+pub(super) struct OneNearest(Hit);
 
-impl One {
-    pub(super) fn new() -> Self {
-        Self(Hit { id: NodeId::MAX, distance: f64::INFINITY })
-    }
-
-    pub(super) fn get(self) -> Option<Hit> {
-        (self.0.id != NodeId::MAX).then_some(self.0)
+impl OneNearest {
+    /// The answer of `search`.
+    #[inline]
+    pub(super) fn of(search: impl FnOnce(&mut Self)) -> Option<Hit> {
+        let mut nearest = Self(Hit { id: NodeId::MAX, distance: f64::INFINITY });
+        search(&mut nearest);
+        (nearest.0.id != NodeId::MAX).then_some(nearest.0)
     }
 }
 
-impl Collector for One {
+impl Collector for OneNearest {
     const MAY_REPEAT: bool = true;
 
     #[inline]
@@ -46,21 +46,21 @@ impl Collector for One {
 
 /// The `k` nearest states: a heap in `out`, the worst on top.
 #[derive(Debug)]
-pub(super) struct Nearest<'a> {
+pub(super) struct KNearest<'a> {
     k: usize,
     out: &'a mut Vec<Hit>,
 }
 
-impl<'a> Nearest<'a> {
-    /// Clears `out`.
-    pub(super) fn new(k: usize, out: &'a mut Vec<Hit>) -> Self {
+impl<'a> KNearest<'a> {
+    /// Fills `out` with the sorted answer of `search`, which is not called when `k` is 0.
+    #[inline]
+    pub(super) fn of(k: usize, out: &'a mut Vec<Hit>, search: impl FnOnce(&mut Self)) {
         out.clear();
-        Self { k, out }
-    }
-
-    /// Sorts the answer.
-    pub(super) fn finish(self) {
-        self.out.sort_unstable_by(Hit::order);
+        if k > 0 {
+            let mut nearest = Self { k, out };
+            search(&mut nearest);
+            nearest.out.sort_unstable_by(Hit::order);
+        }
     }
 
     /// Moves the hit at `i` up to where its parent is no better.
@@ -91,7 +91,7 @@ impl<'a> Nearest<'a> {
     }
 }
 
-impl Collector for Nearest<'_> {
+impl Collector for KNearest<'_> {
     const MAY_REPEAT: bool = false;
 
     #[inline]
@@ -125,25 +125,23 @@ impl Collector for Nearest<'_> {
 
 /// All states within a radius.
 #[derive(Debug)]
-pub(super) struct Within<'a> {
+pub(super) struct WithinRadius<'a> {
     radius: f64,
     out: &'a mut Vec<Hit>,
 }
 
-impl<'a> Within<'a> {
-    /// Clears `out`.
-    pub(super) fn new(radius: f64, out: &'a mut Vec<Hit>) -> Self {
+impl<'a> WithinRadius<'a> {
+    /// Fills `out` with the sorted answer of `search`.
+    #[inline]
+    pub(super) fn of(radius: f64, out: &'a mut Vec<Hit>, search: impl FnOnce(&mut Self)) {
         out.clear();
-        Self { radius, out }
-    }
-
-    /// Sorts the answer.
-    pub(super) fn finish(self) {
-        self.out.sort_unstable_by(Hit::order);
+        let mut within = Self { radius, out };
+        search(&mut within);
+        within.out.sort_unstable_by(Hit::order);
     }
 }
 
-impl Collector for Within<'_> {
+impl Collector for WithinRadius<'_> {
     const MAY_REPEAT: bool = false;
 
     #[inline]

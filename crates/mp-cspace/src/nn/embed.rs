@@ -10,7 +10,7 @@ use crate::{Space, nn::Layout};
 pub trait Embed: Space {
     /// How the coordinates bound the metric.
     fn layout(&self) -> Layout;
-    /// Writes the coordinates of `state` to the front of `out`, which is long enough, and tells
-    /// how many they are: the layout's [`dim`](Layout::dim).
+    /// Writes the coordinates of `state` to the front of `out`, which is long enough, and returns
+    /// their number: the layout's [`dim`](Layout::dim).
     fn embed(&self, state: &Self::State, out: &mut [f64]) -> usize;
 }

@@ -1,4 +1,4 @@
-//! The growth of a tree where nothing is in the way: what nearest-neighbour indexes are measured by.
+//! The growth of a tree without obstacles: the benchmark of nearest-neighbour indexes.
 
 use super::{NearestNeighbors, NodeId};
 use crate::{Rng, Space};
@@ -6,8 +6,8 @@ use crate::{Rng, Space};
 /// Grows a tree from `start` as RRT does (LaValle 1998, *Rapidly-exploring random trees*) when
 /// every motion is free: sample, find the nearest node, step toward the sample, insert.
 ///
-/// `at` is called whenever the tree has reached the next of the `sizes`, which ascend; it may read
-/// a clock. Returns the nodes.
+/// `at` is called whenever the tree reaches the next of the ascending `sizes`; it may read a clock.
+/// Returns the nodes.
 pub fn grow<C: Space, N: NearestNeighbors<C>>(
     space: &C,
     index: &mut N,

@@ -1,35 +1,36 @@
-//! The buckets of the trees: `f32` numbers of up to 32 states, structure of arrays.
+//! The leaves of the trees: buckets of `f32` numbers of up to 32 states, structure of arrays.
 
 use super::NodeId;
 use std::collections::BTreeMap;
 
-/// States in a leaf.
+/// The most lanes of a leaf, each for one state (lane 0 may stand for more).
 pub(super) const CAP: usize = 32;
 
 /// States per leaf of a new subtree, leaving room to grow.
 pub(super) const FILL: usize = CAP * 3 / 4;
 
-/// Lanes the compiler gets to vectorise at a time.
+/// Lanes in one vectorised step.
 pub(super) const WIDE: usize = 16;
 
-/// More states of a leaf that could not be split.
+/// States that share a lane or a vantage point with another state, from which they cannot be split.
 #[derive(Clone, Debug)]
-pub(super) struct Extra {
+pub(super) struct Coincident {
     /// In ascending order.
     pub(super) ids: Vec<NodeId>,
-    /// Their states are that of lane 0.
+    /// They all equal the state they share with.
     pub(super) same: bool,
 }
 
-impl Extra {
-    /// The states of `ids`, which `first` may be among, beside `first` in lane 0.
-    pub(super) fn beside(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Self> {
+impl Coincident {
+    /// The states `ids` without `first`, with which they share; `None` when no other is left.
+    pub(super) fn sharing_with(first: NodeId, mut ids: Vec<NodeId>, same: bool) -> Option<Self> {
         ids.retain(|&id| id != first);
         ids.sort_unstable();
         (!ids.is_empty()).then_some(Self { ids, same })
     }
 
-    /// Adds the state `id`; returns the smallest id, which belongs into lane 0.
+    /// Adds the state `id` to those that share with `first`; returns the smaller of both ids, which takes
+    /// the place of `first`.
     pub(super) fn join(&mut self, first: NodeId, id: NodeId) -> NodeId {
         let at = self.ids.partition_point(|&other| other < first.max(id));
         self.ids.insert(at, first.max(id));
@@ -38,26 +39,27 @@ impl Extra {
 }
 
 /// The range of no numbers.
-const NOTHING: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
+const EMPTY_RANGE: [f32; 2] = [f32::INFINITY, f32::NEG_INFINITY];
 
 /// All leaves of a tree.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Leaves {
-    /// How many states each leaf has, and whether lane 0 has company in `extras`.
     heads: Vec<Head>,
     ids: Vec<[NodeId; CAP]>,
-    /// `rows` rows of [`CAP`] lanes for each leaf; not a number where there is no state.
+    /// `rows` rows of [`CAP`] lanes for each leaf; NaN where there is no state.
     lanes: Vec<f32>,
     /// The least and the greatest number in each row of each leaf.
     ranges: Vec<[f32; 2]>,
-    extras: BTreeMap<usize, Extra>,
+    /// The states that share lane 0, by leaf.
+    coincident: BTreeMap<usize, Coincident>,
     free: Vec<usize>,
 }
 
+/// How many lanes of a leaf are filled, and whether states share lane 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Head {
     pub(super) len: u32,
-    pub(super) has_extra: bool,
+    pub(super) has_coincident: bool,
 }
 
 impl Leaves {
@@ -70,21 +72,21 @@ impl Leaves {
         self.heads.push(Head::default());
         self.ids.push([0; CAP]);
         self.lanes.resize(self.heads.len() * rows * CAP, f32::NAN);
-        self.ranges.resize(self.heads.len() * rows, NOTHING);
+        self.ranges.resize(self.heads.len() * rows, EMPTY_RANGE);
         self.heads.len() - 1
     }
 
     /// Empties leaf `i`.
     pub(super) fn clear(&mut self, i: usize, rows: usize) {
-        self.take_extra(i);
+        self.take_coincident(i);
         self.heads[i].len = 0;
         self.lanes[i * rows * CAP..][..rows * CAP].fill(f32::NAN);
-        self.ranges[i * rows..][..rows].fill(NOTHING);
+        self.ranges[i * rows..][..rows].fill(EMPTY_RANGE);
     }
 
-    /// Takes leaf `i` back.
+    /// Makes leaf `i` available to [`alloc`](Self::alloc).
     pub(super) fn free(&mut self, i: usize) {
-        self.take_extra(i);
+        self.take_coincident(i);
         self.free.push(i);
     }
 
@@ -99,27 +101,27 @@ impl Leaves {
         &self.ids[i][..self.heads[i].len as usize]
     }
 
-    /// The company of lane 0.
-    pub(super) fn extra(&self, i: usize) -> Option<&Extra> {
-        if self.heads[i].has_extra { self.extras.get(&i) } else { None }
+    /// The states that share lane 0.
+    pub(super) fn coincident(&self, i: usize) -> Option<&Coincident> {
+        if self.heads[i].has_coincident { self.coincident.get(&i) } else { None }
     }
 
-    pub(super) fn take_extra(&mut self, i: usize) -> Option<Extra> {
-        std::mem::take(&mut self.heads[i].has_extra).then(|| self.extras.remove(&i)).flatten()
+    pub(super) fn take_coincident(&mut self, i: usize) -> Option<Coincident> {
+        std::mem::take(&mut self.heads[i].has_coincident).then(|| self.coincident.remove(&i)).flatten()
     }
 
-    pub(super) fn set_extra(&mut self, i: usize, extra: Option<Extra>) {
-        self.heads[i].has_extra = extra.is_some();
-        if let Some(extra) = extra {
-            self.extras.insert(i, extra);
+    pub(super) fn set_coincident(&mut self, i: usize, coincident: Option<Coincident>) {
+        self.heads[i].has_coincident = coincident.is_some();
+        if let Some(coincident) = coincident {
+            self.coincident.insert(i, coincident);
         }
     }
 
-    /// Adds a state to the company of lane 0, which has some.
+    /// Adds a state to those that share lane 0, of which there are some.
     pub(super) fn join(&mut self, i: usize, id: NodeId, same: bool) {
-        if let Some(extra) = self.extras.get_mut(&i) {
-            extra.same &= same;
-            self.ids[i][0] = extra.join(self.ids[i][0], id);
+        if let Some(coincident) = self.coincident.get_mut(&i) {
+            coincident.same &= same;
+            self.ids[i][0] = coincident.join(self.ids[i][0], id);
         }
     }
 

@@ -1,17 +1,17 @@
 //! The linear scan.
 
-use super::collect::{Collector, Nearest, One, Within};
+use super::collect::{Collector, KNearest, OneNearest, WithinRadius};
 use super::{Hit, NearestNeighbors, NodeId};
 use crate::Space;
 
-/// Looks at every state: right for any metric, symmetric or not, and the fastest index below a
-/// few dozen states. `nearest` and `within` take time linear in the number of states.
+/// Measures the distance of every state: exact for any metric, symmetric or not, and the fastest index
+/// below a few dozen states. `nearest` and `within` take time linear in the number of states.
 #[derive(Clone, Debug, Default)]
 pub struct Linear {
     ids: Ids,
 }
 
-/// Which states were inserted: nearly always the first so many, which need no list.
+/// Which states were inserted: nearly always the first `n`, which need no list.
 #[derive(Clone, Debug)]
 enum Ids {
     First(usize),
@@ -34,15 +34,15 @@ impl Linear {
     /// Offers every state to `collector`.
     #[inline]
     fn scan<C: Space>(&self, space: &C, points: &[C::State], q: &C::State, collector: &mut impl Collector) {
-        let mut look = |id: NodeId, p: &C::State| {
+        let mut measure = |id: NodeId, p: &C::State| {
             let distance = space.distance(p, q);
             if distance <= collector.limit() {
                 collector.offer(Hit { id, distance });
             }
         };
         match &self.ids {
-            Ids::First(n) => points[..*n].iter().zip(0..).for_each(|(p, id)| look(id, p)),
-            Ids::Listed(ids) => ids.iter().for_each(|&id| look(id, &points[id as usize])),
+            Ids::First(n) => points[..*n].iter().zip(0..).for_each(|(p, id)| measure(id, p)),
+            Ids::Listed(ids) => ids.iter().for_each(|&id| measure(id, &points[id as usize])),
         }
     }
 }
@@ -62,20 +62,14 @@ impl<C: Space> NearestNeighbors<C> for Linear {
     }
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
-        let mut one = One::new();
-        self.scan(space, points, q, &mut one);
-        one.get()
+        OneNearest::of(|nearest| self.scan(space, points, q, nearest))
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        let mut nearest = Nearest::new(k, out);
-        self.scan(space, points, q, &mut nearest);
-        nearest.finish();
+        KNearest::of(k, out, |nearest| self.scan(space, points, q, nearest));
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
-        let mut within = Within::new(radius, out);
-        self.scan(space, points, q, &mut within);
-        within.finish();
+        WithinRadius::of(radius, out, |within| self.scan(space, points, q, within));
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! | index | for | how |
 //! |---|---|---|
-//! | [`Linear`] | any space | looks at every state; the oracle of the others |
+//! | [`Linear`] | any space | measures every state; the reference for the others |
 //! | [`KdTree`] | metrics bounded by coordinates: R^n, tori, SO, SE, products | a bucketed k-d tree that grows |
 //! | [`MetricTree`] | any [`TrueMetric`](crate::TrueMetric), such as maximum displacement | a vantage-point tree that grows |
 //!
-//! A planner that leaves the choice to the space asks for `C::Nn` of [`DefaultNn`].
+//! A planner that leaves the choice to the space uses `C::Nn` of [`DefaultNn`].
 
 mod collect;
 mod embed;
@@ -53,24 +53,24 @@ impl Hit {
     }
 }
 
-/// An index over states owned by somebody else.
+/// An index of states that its caller owns.
 ///
-/// `points` is always the same growing slice, and `space` the same space; the index is told of
-/// each new point by [`inserted`](NearestNeighbors::inserted), each once, in any order. Distances
-/// are *from* the point *to* the query. Ties go to the smallest id, so every implementation gives
-/// identical answers, to the bit. States at a distance that is not a number are never found.
+/// `points` is always the same growing slice, and `space` the same space. The caller announces each new
+/// point by [`inserted`](NearestNeighbors::inserted), once, in any order. Distances are *from* the point
+/// *to* the query. Ties go to the smallest id, so every implementation gives identical answers, to the
+/// bit. States at a distance that is NaN are never found.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no index of nearest neighbours for the space `{C}`",
     label = "not a `NearestNeighbors<{C}>`",
     note = "`Linear` serves every space; a space whose `DefaultNn` is given needs no index"
 )]
 pub trait NearestNeighbors<C: Space> {
-    /// Tells the index that `points[id]` is new.
+    /// Adds the state `points[id]` to the index.
     ///
     /// # Panics
-    /// When `points` has no `id`.
+    /// When `id` is not below the number of `points`.
     fn inserted(&mut self, space: &C, points: &[C::State], id: NodeId);
-    /// Forgets everything; the caller inserts again.
+    /// Removes all states from the index; the caller inserts them again.
     fn clear(&mut self);
     /// The nearest point, `None` when there is none.
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit>;
@@ -80,9 +80,9 @@ pub trait NearestNeighbors<C: Space> {
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>);
 }
 
-/// A space that names the index which serves it best, so that planners need not be told.
+/// A space that names the index which serves it best, so that planners need no choice.
 ///
-/// A space of your own without a better idea says `type Nn = Linear;`.
+/// A space of your own may always set `type Nn = Linear;`.
 pub trait DefaultNn: Space + Sized {
     /// The index.
     type Nn: NearestNeighbors<Self> + Default + Clone + std::fmt::Debug + Send + Sync;

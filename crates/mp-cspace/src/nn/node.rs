@@ -1,4 +1,4 @@
-//! What the nodes of all trees have in common.
+//! What the nodes of both trees have in common.
 
 /// A reference to a node: the index of an inner node, or that of a leaf with the top bit set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +22,7 @@ impl Ref {
     }
 }
 
-/// How many leaves there are below an inner node, and were when it was made.
+/// How many leaves there are below an inner node, and how many there were when it was built.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Weight {
     pub(super) leaves: u32,
@@ -35,8 +35,8 @@ impl Weight {
     }
 
     /// Whether the node should be rebuilt, its heavier child having `most` leaves: when it is out
-    /// of balance and has grown enough since it was made to pay for it.
-    pub(super) fn is_lopsided(self, most: u32) -> bool {
+    /// of balance and has grown enough since it was built to pay for it.
+    pub(super) fn is_unbalanced(self, most: u32) -> bool {
         self.leaves > self.built + self.built / 2 + 6 && most > self.leaves - self.leaves / 4
     }
 

@@ -1,9 +1,9 @@
-//! Clearance and which way it grows: what bends motions away from obstacles.
+//! Clearance and its gradient, by which motions bend away from obstacles.
 
-/// How far from the nearest obstacle a state is, and in which direction of the space that grows.
+/// The clearance of a state, and the direction of the space in which it grows.
 ///
-/// Answers guide: nothing accepts a motion by them, so they may be rough (an image, a blurred map, a field
-/// that a user wrote down), and closures are fields too.
+/// Answers only guide: no motion is accepted by them, so they may be rough (an image, a blurred map, a formula
+/// of the user). Closures implement it.
 ///
 /// ```
 /// use mp_cspace::obstacles::ClearanceGradient;
@@ -21,15 +21,14 @@
 pub trait ClearanceGradient<S> {
     /// The signed clearance (m) of `q`, and its gradient.
     ///
-    /// - Free: the distance to the nearest obstacle. A state at least `reach` (m) away may be answered by any
-    ///   number of at least `reach`, with a gradient of zeros: what is so far does not matter to the caller.
+    /// - Free: the distance to the nearest obstacle. For a state at least `reach` (m) away, any number of at
+    ///   least `reach` will do, with a gradient of zeros: the caller ignores obstacles that far.
     /// - In collision: zero or less, minus the depth where depth is known. The gradient then should point
-    ///   the way out; zeros where no way is known.
+    ///   out of the obstacle; zeros where that direction is not known.
     /// - `gradient` has one number per degree of freedom, in the order of the velocities of
     ///   [`Space::moved`](crate::Space::moved): translations (m/m) before rotations (m/rad), about world axes.
-    ///   So the clearance after moving at velocity `v` for a short time `t` is `clearance + t·gradient·v`. All
-    ///   of it is written, and all of it is finite; where the clearance has a kink, any of the gradients
-    ///   around will do.
+    ///   So the clearance after moving at velocity `v` for a short time `t` is `clearance + t·gradient·v`. Every
+    ///   entry is written, and is finite; where the clearance has a kink, any of the adjacent gradients will do.
     fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64;
 }
 

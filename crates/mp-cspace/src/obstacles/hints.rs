@@ -1,22 +1,22 @@
-//! What obstacles suggest: where to go along them, and around them.
+//! Hints by obstacles: states along them, and robot states placed at them.
 
 use crate::Rng;
 use nalgebra::Vector3;
 
-/// Suggests states along obstacles, for planners that grow by them, such as obstacle-based RRT.
+/// Suggests states along obstacles, for planners that grow along them, such as obstacle-based RRT.
 ///
-/// What is suggested need be neither free nor within the space: planners check. States have a position, and
-/// may have a rotation besides; for a point, position is all there is.
+/// A suggested state need be neither free nor within the space: planners check it. States have a position,
+/// and may have a rotation; a point robot has a position only.
 pub trait ObstacleHints<S> {
     /// Whether the robot at `q` touches an obstacle.
     fn touches(&mut self, q: &S) -> bool;
 
-    /// `from` moved along an obstacle, with the same rotation, by as far as `toward` is from it in position:
-    /// along the obstacle touched at `hit`, or when that is `None` along any. `None` where nothing is touched,
-    /// or there is nothing along which to move.
+    /// `from` moved along an obstacle, without turning, by the distance in position between `from` and
+    /// `toward`: along the obstacle touched at `hit`, or along any when `hit` is `None`. `None` where no
+    /// obstacle is touched, or there is none to move along.
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S>;
 
-    /// `q` moved and turned by what leads from `from` to `to`.
+    /// `q` moved and turned by the motion that leads from `from` to `to`.
     fn carried(&self, q: &S, from: &S, to: &S) -> S;
 }
 
@@ -32,7 +32,7 @@ impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for &mut H {
     }
 }
 
-/// A body from afar: where it is, how large, how full, and which way it runs. Metres; in the plane z is 0.
+/// A coarse description of a body: its place, size, longest axis and fullness. Metres; in the plane z is 0.
 ///
 /// The last two are *straightness* and *volume* of Benitez and Vallejo 2004.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,10 +58,10 @@ pub enum PointOf {
     Surface,
 }
 
-/// What obstacles look like, for planners that place the robot about them: OBPRM, and PRM by obstacle geometry.
+/// The geometry of obstacles, for planners that place the robot at them: OBPRM, and PRM by obstacle geometry.
 ///
-/// Here obstacles are *parts*: what hangs together is one, however many bodies a scene is made of. As with
-/// hints, states that are made need be neither free nor within the space.
+/// Here an obstacle is a connected *part*, however many bodies the scene is made of. As with hints, the states
+/// returned need be neither free nor within the space.
 pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     /// The obstacles, in the world.
     fn obstacles(&self) -> &[BodyFeatures];
@@ -78,20 +78,20 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     /// A point (m) of the robot, in its own frame.
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64>;
 
-    /// Where the robot at `q` has a point of its own frame, in the world.
+    /// The place in the world (m) of a `point` of the robot's own frame, the robot at `q`.
     fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64>;
 
-    /// The robot moved, without turning, from `q` to where a point of its frame comes to `place`, as near as its
-    /// freedom allows.
+    /// `q` moved, without turning, so that a `point` of the robot's frame comes to `place` in the world, as near
+    /// as the robot's degrees of freedom allow.
     fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S;
 
-    /// The robot with its centre at `place` and its straightness along `direction`, turned about it by `angle` (rad).
-    /// In the plane, where it can be turned about nothing but Z, it is turned about that. A robot
-    /// that cannot turn is only moved.
+    /// The state with the robot's centre at `place` and its [axis](BodyFeatures::axis) along `direction`, turned about
+    /// that by `angle` (rad). In the plane it is turned about Z, the only axis there. A robot that cannot turn is
+    /// only moved.
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S;
 
-    /// Whether the sphere around the robot at `q` touches that of no obstacle. The robot is free there, however
-    /// it is turned. O(obstacles), without a test for collision.
+    /// Whether the sphere around the robot at `q` is apart from those around all obstacles. The robot is then
+    /// free in any rotation about its centre. O(obstacles), without a collision test.
     fn is_far(&self, q: &S) -> bool {
         let robot = self.robot();
         let place = self.place_of(q, &robot.center);

@@ -5,7 +5,7 @@ use crate::{MotionClearance, Space};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Where a path is tightest.
+/// Where a path has the least clearance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tightest {
     /// A lower bound (m) on the clearance all along the path.
@@ -18,8 +18,8 @@ pub struct Tightest {
     pub at: f64,
 }
 
-/// A part of an edge from fraction `a` to `b`, with lower bounds on the clearance at both and
-/// between.
+/// A part of an edge: its ends `a` and `b`, each a fraction of the edge with a lower bound on the
+/// clearance there, and a lower bound on the clearance between.
 struct Part {
     bound: f64,
     edge: usize,
@@ -28,8 +28,8 @@ struct Part {
 }
 
 impl Part {
-    /// The part between two places whose clearance is known, `travel` the motion bound of the edge:
-    /// the two cones of descent meet at the bound.
+    /// The part between two places whose clearance is known, `travel` being the motion bound of the edge.
+    /// From either end the clearance falls at most by the travel: the two descents meet at the bound.
     fn new(edge: usize, travel: f64, a: (f64, f64), b: (f64, f64)) -> Self {
         let bound = 0.5 * (a.1 + b.1 - travel * (b.0 - a.0));
         Self { bound, edge, a, b }
@@ -55,15 +55,15 @@ impl PartialEq for Part {
 }
 impl Eq for Part {}
 
-/// How many clearances are asked for at most.
+/// The most clearance queries of one search.
 const MAX_QUERIES: usize = 1_000_000;
 
 /// The least clearance along `path`, its bounds at most `accuracy` metres apart; `None` for the
 /// empty path.
 ///
-/// Branch and bound on the motion bound (Piyavskii 1972, Shubert 1972): the part that may be
-/// tightest is halved first. A path in contact gives zero. An accuracy that is not positive, or
-/// takes over a million queries, ends with what is known then: still a lower bound.
+/// Branch and bound on the motion bound (Piyavskii 1972, Shubert 1972): the part of least bound is
+/// halved first. A path in contact gives zero. With an accuracy that is not positive, or takes over a
+/// million queries, the bounds known by then are returned: still valid.
 pub fn least_clearance<C, V>(
     space: &C,
     valid: &mut V,
@@ -75,7 +75,7 @@ where
     V: MotionClearance<C::State>,
 {
     let edges = path.states.len().checked_sub(1)?;
-    // Of the states exactly; first of all, as the search starts from the tightest of them.
+    // First the states themselves: the search starts from the one of least clearance.
     let mut at_states = Vec::with_capacity(edges + 1);
     let mut tightest = Tightest { clearance: 0.0, found: f64::INFINITY, edge: 0, at: 0.0 };
     for (i, q) in path.states.iter().enumerate() {
@@ -98,7 +98,7 @@ where
         let Some(Part { edge, a, b, .. }) = parts.pop() else { break };
         let at = 0.5 * (a.0 + b.0);
         let q = space.interpolate(&path.states[edge], &path.states[edge + 1], at);
-        // What would settle both halves.
+        // A clearance that would settle both halves.
         let enough = 2.0 * tightest.found - a.1.min(b.1) + (at - a.0) * travels[edge];
         let clearance = valid.clearance(&q, enough.max(tightest.found)).max(0.0);
         if clearance < tightest.found {

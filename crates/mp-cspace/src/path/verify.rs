@@ -1,7 +1,7 @@
 //! Verification of finished paths.
 
 use super::Path;
-use crate::{MotionCheck, MotionValidity, Space, tell};
+use crate::{MotionCheck, MotionValidity, Space, trace};
 use std::fmt;
 
 /// The first thing found wrong with a path.
@@ -49,7 +49,7 @@ pub struct PathReport {
     /// Length in the metric of the space.
     pub length: f64,
     /// Lower bound (m) on the clearance along all edges; zero when there is a fault or the check
-    /// knows no clearance.
+    /// gives no clearance.
     pub clearance: f64,
     /// The first fault, `None` when the path is free.
     pub fault: Option<PathFault>,
@@ -66,7 +66,7 @@ impl PathReport {
 /// Verifies a path state by state and edge by edge with `check`, which should share no code with
 /// the check the planner used.
 ///
-/// A path of one state stands still there.
+/// A path of one state is checked as a motion from that state to itself.
 pub fn verify_path<C: Space>(
     space: &C,
     path: &Path<C::State>,
@@ -78,7 +78,7 @@ pub fn verify_path<C: Space>(
         Err(fault) => (0.0, Some(fault)),
     };
     let report = PathReport { edges, length, clearance, fault };
-    tell::verified(&report);
+    trace::verified(&report);
     report
 }
 
@@ -94,7 +94,7 @@ fn first_fault<C: Space>(
     }
     let mut least = f64::INFINITY;
     let ends = states.iter().zip(states.iter().skip(1).chain([last]));
-    // The pair of the last state with itself is needed only when there is no other.
+    // The pair of the last state with itself is checked only when there is no other pair.
     for (edge, (a, b)) in ends.take((states.len() - 1).max(1)).enumerate() {
         match check.check_motion(a, b) {
             MotionCheck::Free { clearance } => least = least.min(clearance),

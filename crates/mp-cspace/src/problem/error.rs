@@ -43,7 +43,7 @@ pub enum BuildError {
         /// What the verifier found.
         check: MotionCheck,
     },
-    /// The local planner lets no motion begin or end there, though the verifier finds it free:
+    /// The local planner lets no motion begin or end at an end of the path that the verifier finds free:
     /// its own check is stricter, for instance by its tolerance.
     #[error("the local planner refuses the {endpoint}, which is free but too close for its check: {state}")]
     Refused {
@@ -55,19 +55,21 @@ pub enum BuildError {
     /// The metric gives no finite distance between start and goal.
     #[error("the distance from the start to the goal is {distance}, not a finite number")]
     Distance {
-        /// What the metric says.
+        /// The distance that the metric gives.
         distance: f64,
     },
     /// The goal is an empty set.
     #[error("no goal is given: list goal states, or give a region or a sampler")]
     NoGoal,
     /// The planner needs goal states and has only a region.
-    #[error("{planner} also grows from the goal: a region alone does not do, give goal states or a sampler")]
+    #[error(
+        "{planner} also grows from the goal: a region alone is not enough, give goal states or a sampler"
+    )]
     NoGoalState {
         /// Which planner.
         planner: &'static str,
     },
-    /// The planner grows along obstacles and is told nothing of them.
+    /// The planner grows along obstacles and the problem has no hints of them.
     #[error(
         "{planner} follows obstacles: give the problem hints of them; robots that have none need another planner"
     )]
@@ -75,17 +77,17 @@ pub enum BuildError {
         /// Which planner.
         planner: &'static str,
     },
-    /// The planner asks for the clearance gradient and is told none.
+    /// The planner needs a clearance gradient and the problem has none.
     #[error(
-        "{planner} asks how far obstacles are and which way from them leads: give the problem a clearance gradient; robots that have none need another planner"
+        "{planner} needs the distance to obstacles and the direction in which it grows: give the problem a clearance gradient; robots that have none need another planner"
     )]
     NoGradient {
         /// Which planner.
         planner: &'static str,
     },
-    /// The planner asks what obstacles look like and is not told.
+    /// The planner needs the geometry of obstacles and the problem has none.
     #[error(
-        "{planner} asks what obstacles look like: give the problem their geometry; robots that have none need another planner"
+        "{planner} needs the geometry of obstacles: give it to the problem; robots that have none need another planner"
     )]
     NoGeometry {
         /// Which planner.
@@ -101,7 +103,7 @@ pub enum BuildError {
         /// The values allowed.
         range: String,
     },
-    /// The planner moves by a set of inputs, and there is something wrong with them.
+    /// The inputs of a planner that moves by inputs are not valid.
     #[error("{reason}")]
     Inputs {
         /// What is wrong.
@@ -121,7 +123,7 @@ pub enum BuildError {
     Malformed {
         /// The setting.
         setting: String,
-        /// What would do.
+        /// The form expected.
         expected: &'static str,
     },
     /// The planner has no such parameter.

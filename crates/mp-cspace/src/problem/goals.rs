@@ -1,4 +1,4 @@
-//! What to reach.
+//! The goals of a problem.
 
 use crate::{Goal, Rng, Sampler};
 use rand::RngExt;
@@ -65,7 +65,7 @@ impl<'g, S> Goals<'g, S> {
         self.region.is_none() && !self.can_aim()
     }
 
-    /// Whether `q` lies in the region; never without one.
+    /// Whether `q` lies in the region; `false` without a region.
     #[must_use]
     pub fn reached(&self, q: &S) -> bool {
         self.region.as_ref().is_some_and(|region| region.reached(q))
@@ -83,13 +83,13 @@ impl<'g, S> Goals<'g, S> {
         self.sampler.is_some()
     }
 
-    /// A new sample of the goal, if there is a sampler and it hits.
+    /// A new sample of the goal, if there is a sampler and the sample lies in the region, if any.
     pub fn sample(&mut self, rng: &mut Rng) -> Option<S> {
         let state = self.sampler.as_mut()?.sample(rng);
         self.region.as_ref().is_none_or(|region| region.reached(&state)).then_some(state)
     }
 
-    /// A state to aim at: one of those listed, each as likely as the other, or else a sample.
+    /// A state to aim at: one of those listed, each equally likely, or else a sample.
     pub fn aim(&mut self, rng: &mut Rng) -> Option<S>
     where
         S: Clone,

@@ -1,4 +1,4 @@
-//! What to plan: checked before any planner sees it.
+//! Problems: what to plan, checked before a planner gets it.
 
 mod error;
 mod goals;
@@ -30,14 +30,14 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
 /// A problem of an erased space, with straight edges.
 pub type AnyProblem<'c, S> = Problem<'c, AnySpace<'c, S>, AnyStraight<'c, S>>;
 
-/// What planners by name may want to know of obstacles, beside whether a motion is free. Each is optional; a planner
-/// that cannot do without says so.
+/// What planners by name may query about obstacles, beside whether a motion is free. Each field is optional; a planner
+/// that needs a missing one returns an error.
 pub struct ObstacleKnowledge<'c, S> {
-    /// Where obstacles lead along: for obstacle-based RRT.
+    /// States along obstacles: for obstacle-based RRT.
     pub hints: Option<BoxedHints<'c, S>>,
-    /// Which way clearance grows: for edges that are bent by snakes, and for costs of being near obstacles.
+    /// The clearance and its gradient: for edges bent by snakes, and for costs of being near obstacles.
     pub gradient: Option<AnyGradient<'c, S>>,
-    /// What obstacles look like: for OBPRM, and PRM by obstacle geometry.
+    /// The geometry of obstacles: for OBPRM, and PRM by obstacle geometry.
     pub geometry: Option<AnyGeometry<'c, S>>,
 }
 
@@ -58,15 +58,15 @@ impl<S> fmt::Debug for ObstacleKnowledge<'_, S> {
     }
 }
 
-/// What obstacles suggest.
+/// Obstacle hints behind a pointer.
 pub type BoxedHints<'c, S> = Box<dyn ObstacleHints<S> + Send + 'c>;
 
-/// The verifier of the paths of a local planner.
+/// The verifier of a local planner's paths, behind a pointer.
 pub type BoxedVerify<'c, C, L> =
     Box<dyn Verify<<C as Space>::State, <L as LocalPlanner<<C as Space>::State>>::Edge> + Send + 'c>;
 
 /// What a [`Problem`] consists of, for planners: [`Problem::into_parts`].
-#[allow(missing_debug_implementations)] // verifiers need not have any
+#[allow(missing_debug_implementations)] // verifiers need not implement `Debug`
 pub struct ProblemParts<'c, C: Space, L: LocalPlanner<C::State>> {
     /// The space.
     pub space: &'c C,
@@ -82,15 +82,15 @@ pub struct ProblemParts<'c, C: Space, L: LocalPlanner<C::State>> {
 
 impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
     /// A problem whose start and listed goals are in the space, free by the verifier, and
-    /// admitted by the local planner. Goal states that are not are left out as long as there is
-    /// something else to reach.
+    /// admitted by the local planner. Goal states that are not are left out as long as another
+    /// goal remains.
     ///
-    /// `verifier` should share no code with the check inside `local`: what it does not find free
-    /// is not returned. Pass `&mut` values to look at counters afterwards.
+    /// `verifier` should share no code with the check inside `local`: a path that it does not find free
+    /// is not returned. Pass `&mut` values to read their counters afterwards.
     ///
     /// # Errors
-    /// When the start, or all that is given as goal, is outside the space, not free or refused;
-    /// when the distance between them is not finite; when there is no goal at all.
+    /// When the start, or every goal given, is outside the space, not free or refused; when the
+    /// distance between them is not finite; when there is no goal at all.
     pub fn new(
         space: &'c C,
         mut local: L,
@@ -172,40 +172,40 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         &self.goals
     }
 
-    /// All there is, to plan with.
+    /// The parts of the problem, for planners; drops the obstacle knowledge.
     #[must_use]
     pub fn into_parts(self) -> ProblemParts<'c, C, L> {
         let Self { space, local, verify, start, goals, .. } = self;
         ProblemParts { space, local, verify, start, goals }
     }
 
-    /// The same problem with what its obstacles suggest, for planners by name that grow along them.
+    /// The same problem with obstacle hints, for planners by name that grow along obstacles.
     #[must_use]
     pub fn with_hints(mut self, hints: impl ObstacleHints<C::State> + Send + 'c) -> Self {
         self.obstacles.hints = Some(Box::new(hints));
         self
     }
 
-    /// The same problem with what is known of its obstacles, for planners by name that ask for it.
+    /// The same problem with this obstacle knowledge, for planners by name that need it.
     #[must_use]
     pub fn with_obstacles(self, obstacles: ObstacleKnowledge<'c, C::State>) -> Self {
         Self { obstacles, ..self }
     }
 
-    /// Takes what is known of obstacles out of the problem.
+    /// Takes the obstacle knowledge out of the problem.
     pub fn take_obstacles(&mut self) -> ObstacleKnowledge<'c, C::State> {
         std::mem::take(&mut self.obstacles)
     }
 
-    /// The problem and what its obstacles suggest, if that was given.
+    /// The problem, and its obstacle hints if they were given.
     #[must_use]
     pub fn take_hints(mut self) -> (Self, Option<BoxedHints<'c, C::State>>) {
         let hints = self.obstacles.hints.take();
         (self, hints)
     }
 
-    /// The same problem with a local planner made from the one there, for instance around it. Start
-    /// and goals are not checked again.
+    /// The same problem with a local planner made from its present one, for instance a wrapper of it.
+    /// Start and goals are not checked again.
     ///
     /// # Errors
     /// Those of `make`.

@@ -11,8 +11,8 @@ type Pool = rayon::ThreadPool;
 #[cfg(not(feature = "parallel"))]
 type Pool = std::convert::Infallible;
 
-/// A pool of threads that belongs to whoever holds it; clones share it. Nothing computed depends
-/// on how many there are. Without the feature `parallel` there is only the caller's own.
+/// A pool of worker threads; clones share it. No result depends on the number of threads. Without the
+/// feature `parallel` only the caller's own thread works.
 #[derive(Clone, Debug)]
 pub struct Workers(Option<Arc<Pool>>);
 
@@ -26,10 +26,10 @@ impl Workers {
         Self(None)
     }
 
-    /// `threads` threads.
+    /// A pool of `threads` threads.
     ///
     /// # Errors
-    /// When that is none or more than [`MOST`](Self::MOST), or the system refuses them.
+    /// When `threads` is zero or more than [`MOST`](Self::MOST), or the system refuses them.
     pub fn new(threads: usize) -> Result<Self, BuildError> {
         match Self::checked(threads)? {
             #[cfg(feature = "parallel")]
@@ -41,10 +41,10 @@ impl Workers {
         }
     }
 
-    /// `threads` if there may be as many.
+    /// `threads`, if a pool may have that many.
     ///
     /// # Errors
-    /// When that is none or more than [`MOST`](Self::MOST).
+    /// When `threads` is zero or more than [`MOST`](Self::MOST).
     pub fn checked(threads: usize) -> Result<usize, BuildError> {
         match threads {
             1..=Self::MOST => Ok(threads),
@@ -56,7 +56,7 @@ impl Workers {
         BuildError::OutOfRange { name: "threads", value: threads as f64, range }
     }
 
-    /// Calls `work` on each item, at the same time on several where there are threads.
+    /// Calls `work` on each item, on several in parallel where there are threads.
     pub fn each<T: Send>(&self, items: &mut [T], work: impl Fn(&mut T) + Send + Sync) {
         match &self.0 {
             None => items.iter_mut().for_each(work),

@@ -1,25 +1,22 @@
-//! Samplers that look for obstacles: the Gaussian strategy and the bridge test.
+//! Samplers near obstacles: the Gaussian strategy and the bridge test.
 
 use super::Sampler;
 use crate::{ParameterError, Rng, Space, Validity};
-use rand::RngExt;
-use std::f64::consts::TAU;
 
-/// A state at a distance from `q` that is normally distributed about zero with the standard deviation
-/// `sigma`, toward a state drawn uniformly (and no farther than that).
-fn beside<C: Space>(space: &C, q: &C::State, sigma: f64, rng: &mut Rng) -> C::State {
+/// A state between `q` and a state drawn uniformly, at a normally distributed distance from `q`: of mean
+/// zero and standard deviation `sigma`, its sign dropped.
+fn normal_neighbor<C: Space>(space: &C, q: &C::State, sigma: f64, rng: &mut Rng) -> C::State {
     let other = space.sample_uniform(rng);
-    let (u, v) = (1.0 - rng.random::<f64>(), rng.random::<f64>());
-    let normal = (-2.0 * u.ln()).sqrt() * (TAU * v).cos();
-    let (far, distance) = (space.distance(q, &other), (sigma * normal).abs());
-    if distance >= far { other } else { space.interpolate(q, &other, distance / far) }
+    let normal = rng.normal();
+    let (most, distance) = (space.distance(q, &other), (sigma * normal).abs());
+    if distance >= most { other } else { space.interpolate(q, &other, distance / most) }
 }
 
 macro_rules! obstacle_sampler {
     ($name:ident) => {
         impl<'c, C: Space, V: Validity<C::State>> $name<'c, C, V> {
-            /// Samples of `space` by what `valid` says is free; `sigma` is the standard deviation of the distance, in the
-            /// metric of the space.
+            /// Samples of `space`, where `valid` tells which states are free; `sigma` is the standard deviation of the
+            /// distance, in the metric of the space.
             ///
             /// # Errors
             /// When `sigma` is not positive and finite.
@@ -34,13 +31,13 @@ macro_rules! obstacle_sampler {
                 Self { tries: tries.max(1), ..self }
             }
 
-            /// What says what is free.
+            /// The test that tells which states are free.
             pub fn valid(&self) -> &V {
                 &self.valid
             }
         }
 
-        /// Tries up to the limit; then a state drawn uniformly, which need not be free.
+        /// When all tries up to the limit fail, the sample is drawn uniformly and need not be free.
         impl<C: Space, V: Validity<C::State>> Sampler<C::State> for $name<'_, C, V> {
             fn sample(&mut self, rng: &mut Rng) -> C::State {
                 let found = (0..self.tries).find_map(|_| self.attempt(rng));
@@ -51,11 +48,11 @@ macro_rules! obstacle_sampler {
 }
 
 /// The Gaussian sampling strategy (Boor, Overmars and van der Stappen 1999, *The Gaussian sampling strategy for
-/// probabilistic roadmap planners*): free states near obstacles, the density of which is that of the
-/// obstacles blurred by a Gaussian.
+/// probabilistic roadmap planners*): free states near obstacles. Their density is that of the obstacles
+/// blurred by a Gaussian.
 ///
-/// Of two states, one uniform and the other at a normally distributed distance from it, the free one is taken if the other
-/// is not free.
+/// Of two states, one uniform and the other at a normally distributed distance from it, the free one is taken if exactly
+/// one is free.
 #[derive(Clone, Debug)]
 pub struct Gaussian<'c, C, V> {
     space: &'c C,
@@ -67,10 +64,10 @@ pub struct Gaussian<'c, C, V> {
 obstacle_sampler!(Gaussian);
 
 impl<C: Space, V: Validity<C::State>> Gaussian<'_, C, V> {
-    /// One try: two tests at most three of four times in vain among few obstacles.
+    /// One try, of two tests; among few obstacles most tries fail.
     pub fn attempt(&mut self, rng: &mut Rng) -> Option<C::State> {
         let one = self.space.sample_uniform(rng);
-        let two = beside(self.space, &one, self.sigma, rng);
+        let two = normal_neighbor(self.space, &one, self.sigma, rng);
         match (self.valid.is_valid(&one), self.valid.is_valid(&two)) {
             (true, false) => Some(one),
             (false, true) => Some(two),
@@ -83,7 +80,7 @@ impl<C: Space, V: Validity<C::State>> Gaussian<'_, C, V> {
 /// roadmap planners*): free states between obstacles, in narrow passages.
 ///
 /// Of two states, one uniform and the other at a normally distributed distance from it, the one in their middle is taken
-/// if it is free and both are not. Few samples pass: join it with uniform ones.
+/// if it is free and both are not. Few tries succeed: mix it with uniform samples.
 #[derive(Clone, Debug)]
 pub struct Bridge<'c, C, V> {
     space: &'c C,
@@ -101,7 +98,7 @@ impl<C: Space, V: Validity<C::State>> Bridge<'_, C, V> {
         if self.valid.is_valid(&one) {
             return None;
         }
-        let two = beside(self.space, &one, self.sigma, rng);
+        let two = normal_neighbor(self.space, &one, self.sigma, rng);
         if self.valid.is_valid(&two) {
             return None;
         }
@@ -131,7 +128,7 @@ mod tests {
         (q.x - 0.5).abs() <= 0.1 && free(q)
     }
 
-    /// How far from what is not free: the walls are all there is.
+    /// The distance from the walls.
     fn to_wall(q: &Vector2<f64>) -> f64 {
         let x = ((q.x - 0.5).abs() - 0.1).max(0.0);
         if x > 0.0 { x } else { 0.02 - (q.y - 0.5).abs() }
@@ -170,15 +167,15 @@ mod tests {
     fn without_obstacles_they_are_uniform_after_some_tries() {
         let space = square();
         let mut rng = Rng::seed(3);
-        let mut asked = 0;
+        let mut tests = 0;
         let all = |_: &Vector2<f64>| {
-            asked += 1;
+            tests += 1;
             true
         };
         let mut near = Gaussian::new(&space, all, 0.02).unwrap().with_tries(10);
         assert!(near.attempt(&mut rng).is_none());
         assert!(space.contains(&near.sample(&mut rng)));
-        assert_eq!(asked, 22);
+        assert_eq!(tests, 22);
         for sigma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(Gaussian::new(&space, free, sigma).is_err() && Bridge::new(&space, free, sigma).is_err());
         }

@@ -7,8 +7,8 @@ use crate::{MotionValidity, Path, Space};
 const MAX_ROUNDS: usize = 10;
 
 /// Rounds the corners of the path by `rounds` of cubic B-spline subdivision (Lane and Riesenfeld
-/// 1980): edges are cut at their middles, and each state moves half way toward the middle of its
-/// two new neighbours' midpoints, where that is free. Start and goal stay.
+/// 1980): edges are cut at their middles, and each state moves half way toward the point midway between
+/// the middles of its two edges, where that is free. Start and goal stay.
 ///
 /// In a metric of constant speed the length does not increase.
 pub fn bspline<C: Space>(
@@ -36,7 +36,7 @@ fn round<C: Space>(
     let middle = |a: &C::State, b: &C::State| space.interpolate(a, b, 0.5);
     // Corners that would move less are straight enough.
     let least = 1e-6 * space.extent();
-    // What each inner state becomes, between the middles of its two edges.
+    // The new states of each inner state that moves: its own, between the middles of its two edges.
     let mut moved: Vec<Option<[C::State; 3]>> = vec![None; states.len()];
     for (i, w) in states.windows(3).enumerate() {
         let (before, after) = (middle(&w[0], &w[1]), middle(&w[1], &w[2]));

@@ -4,8 +4,8 @@ use super::{Effort, all_free};
 use crate::{Factored, MotionValidity, Path, Rng, Space};
 use rand::RngExt;
 
-/// A piece of a path between two places of it: `first..=last` are the edges it begins and ends
-/// on, `from` and `to` its ends.
+/// A piece of a path: it begins on edge `first` and ends on edge `last`, at the arc lengths `s` and the
+/// states `from` and `to`.
 struct Piece<S> {
     first: usize,
     last: usize,
@@ -33,7 +33,7 @@ fn random_piece<C: Space>(
     let total = s[s.len() - 1];
     let (x, y) = (total * rng.random::<f64>(), total * rng.random::<f64>());
     let (s1, s2) = if x < y { (x, y) } else { (y, x) };
-    // Never an edge of no length, but perhaps the last.
+    // Never an edge of zero length, except perhaps the last.
     let edge_at = |at: f64| s.partition_point(|&end| end <= at).clamp(1, s.len() - 1) - 1;
     let (first, last) = (edge_at(s1), edge_at(s2));
     let state_at = |edge: usize, at: f64| {
@@ -49,10 +49,9 @@ fn random_piece<C: Space>(
     })
 }
 
-/// Tries `propose` until the effort is spent, taking the pieces it offers which are shorter and
-/// free.
+/// Calls `propose` until the effort is used up, and takes the proposals that are shorter and free.
 ///
-/// A proposal replaces the states strictly between the edges' far ends.
+/// A proposal replaces the states strictly between the start of edge `first` and the end of edge `last`.
 fn improve<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
@@ -76,10 +75,10 @@ fn improve<C: Space>(
         new.extend(middle);
         new.push(states[last + 1].clone());
         let length = arc_lengths(space, &new)[new.len() - 1];
-        // A gain that would drown in rounding is none.
+        // A gain within rounding does not count.
         let gain = s[last + 1] - s[first] - length;
-        let worth_it = gain > 1e-9 * s[s.len() - 1];
-        if worth_it && all_free(check, &new) {
+        let is_shorter = gain > 1e-9 * s[s.len() - 1];
+        if is_shorter && all_free(check, &new) {
             new.pop();
             states.splice(first..=last, new);
             s = arc_lengths(space, &states);
@@ -105,10 +104,10 @@ pub fn shortcut<C: Space>(
 }
 
 /// Straightens one random [factor](Factored) of the space between two random places of the path,
-/// the others going on as they did, wherever that is free and shorter (the partial shortcut of
-/// Geraerts and Overmars 2007).
+/// the other factors unchanged, wherever that is free and shorter (the partial shortcut of Geraerts
+/// and Overmars 2007).
 ///
-/// This takes out needless turning that plain shortcuts cannot, as they change all factors at
+/// This removes needless turning that plain shortcuts cannot remove, as they change all factors at
 /// once. The length does not increase.
 pub fn partial_shortcut<C: Factored>(
     space: &C,

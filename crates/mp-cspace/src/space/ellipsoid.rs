@@ -12,7 +12,7 @@ pub(super) fn sample(from: &[f64], to: &[f64], sum: f64, rng: &mut Rng, out: &mu
     // A point of the unit ball: a direction by normal deviates, a radius by its volume.
     let mut norm = 0.0;
     for x in out.iter_mut() {
-        *x = normal(rng);
+        *x = rng.normal();
         norm += *x * *x;
     }
     let radius = rng.random::<f64>().powf(1.0 / n as f64) / norm.sqrt().max(f64::MIN_POSITIVE);
@@ -20,8 +20,8 @@ pub(super) fn sample(from: &[f64], to: &[f64], sum: f64, rng: &mut Rng, out: &mu
     for (i, x) in out.iter_mut().enumerate() {
         *x *= radius * if i == 0 { 0.5 * sum.max(between) } else { across };
     }
-    // The first axis is mirrored onto the direction from one to the other: a ball stretched along
-    // one axis has no other handedness.
+    // A reflection takes the first axis to the direction from `from` to `to`. It serves as well as a
+    // rotation, as a ball stretched along one axis is its own mirror image.
     let axis = |i: usize| if between > 0.0 { (to[i] - from[i]) / between } else { f64::from(i == 0) };
     let mirror = |i: usize| f64::from(i == 0) - axis(i);
     let square: f64 = (0..n).map(|i| mirror(i) * mirror(i)).sum();
@@ -36,18 +36,12 @@ pub(super) fn sample(from: &[f64], to: &[f64], sum: f64, rng: &mut Rng, out: &mu
     }
 }
 
-/// A normal deviate (Box and Muller 1958).
-fn normal(rng: &mut Rng) -> f64 {
-    let (u, v) = (1.0 - rng.random::<f64>(), rng.random::<f64>());
-    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
-}
-
 #[cfg(test)]
 mod tests {
     use crate::{Rn, Rng, Space};
     use nalgebra::{SVector, Vector3};
 
-    /// Where the box cuts nothing off: counts in parts of known volume agree with it.
+    /// Where the box cuts nothing off, the counts in parts of known volume agree with the volumes.
     #[test]
     fn the_ellipsoid_is_filled_evenly() {
         let space = Rn::<3>::new([-9.0; 3], [9.0; 3]).unwrap();

@@ -10,13 +10,13 @@ use std::fmt::Debug;
 
 /// A list of coordinates: `SVector<f64, N>` where their number is known when compiling, else `DVector<f64>`.
 pub trait Coordinates: Clone + Debug + PartialEq + Send + Sync {
-    /// How many there must be; `None` when any number will do.
+    /// The number of coordinates; `None` when it is known only at run time.
     const COUNT: Option<usize>;
-    /// The list of `f(0)`, `f(1)`, …, `f(count - 1)`; of [`COUNT`](Self::COUNT) where that is a number.
+    /// The list of `f(0)`, `f(1)`, …, `f(count - 1)`; where [`COUNT`](Self::COUNT) is a number, of that many.
     fn from_fn(count: usize, f: impl FnMut(usize) -> f64) -> Self;
     /// The coordinates.
     fn as_slice(&self) -> &[f64];
-    /// The coordinates, to be changed.
+    /// The coordinates, mutable.
     fn as_mut_slice(&mut self) -> &mut [f64];
 }
 
@@ -52,7 +52,7 @@ impl Coordinates for DVector<f64> {
     }
 }
 
-/// What one joint can do.
+/// The range of one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum JointRange {
     /// From `low` to `high`: radians or metres.
@@ -62,7 +62,7 @@ pub enum JointRange {
         /// The upper bound.
         high: f64,
     },
-    /// Any angle, in (-π, π] rad, going round the shorter way.
+    /// Any angle, in (-π, π] rad; motions take the shorter arc.
     Circle,
 }
 
@@ -109,8 +109,8 @@ impl JointRange {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joints<Q> {
     ranges: Vec<JointRange>,
-    /// Differences up to these are the shorter way: π on circles, infinite on intervals.
-    straight: Q,
+    /// Differences up to these need no wrapping: π on circles, infinite on intervals.
+    unwrapped: Q,
     extent: f64,
 }
 
@@ -118,8 +118,8 @@ impl<Q: Coordinates> Joints<Q> {
     /// The space of joints with these ranges.
     ///
     /// # Errors
-    /// When there are none or not as many as `Q` has coordinates, a bound is not finite, or some `low` is not
-    /// below its `high`.
+    /// When there is no range, or not as many as `Q` has coordinates; when a bound is not finite, or some `low`
+    /// is not below its `high`.
     pub fn new(ranges: impl Into<Vec<JointRange>>) -> Result<Self, SpaceError> {
         let ranges = ranges.into();
         if let Some(expected) = Q::COUNT
@@ -130,11 +130,11 @@ impl<Q: Coordinates> Joints<Q> {
         let bounds = |end: usize| ranges.iter().map(|r| r.bounds()[end]).collect::<Vec<_>>();
         crate::error::diagonal(&bounds(0), &bounds(1))?;
         let extent = ranges.iter().map(|r| r.extent().powi(2)).sum::<f64>().sqrt();
-        let straight = Q::from_fn(ranges.len(), |i| match ranges[i] {
+        let unwrapped = Q::from_fn(ranges.len(), |i| match ranges[i] {
             JointRange::Interval { .. } => f64::INFINITY,
             JointRange::Circle => PI,
         });
-        Ok(Self { ranges, straight, extent })
+        Ok(Self { ranges, unwrapped, extent })
     }
 
     /// A box of R^n: every joint an interval.
@@ -165,7 +165,7 @@ impl<Q: Coordinates> Joints<Q> {
         Self::new(vec![JointRange::Circle; count])
     }
 
-    /// What each joint can do.
+    /// The range of each joint.
     #[must_use]
     pub fn ranges(&self) -> &[JointRange] {
         &self.ranges
@@ -181,11 +181,11 @@ impl<Q: Coordinates> Joints<Q> {
         })
     }
 
-    /// The signed way of joint `i`.
+    /// The signed difference of joint `i`, on circles along the shorter arc.
     #[inline]
-    fn way(&self, i: usize, from: f64, to: f64) -> f64 {
+    fn difference(&self, i: usize, from: f64, to: f64) -> f64 {
         let d = to - from;
-        if d.abs() <= self.straight.as_slice()[i] { d } else { angle_difference(from, to) }
+        if d.abs() <= self.unwrapped.as_slice()[i] { d } else { angle_difference(from, to) }
     }
 
     fn state(&self, mut u: impl FnMut(usize) -> f64) -> Q {
@@ -195,7 +195,7 @@ impl<Q: Coordinates> Joints<Q> {
         })
     }
 
-    /// The coordinate of joint `i` that an index searches by.
+    /// The coordinate of joint `i` for an index.
     #[inline]
     pub(crate) fn coordinate(&self, i: usize, x: f64) -> f64 {
         match self.ranges[i] {
@@ -221,7 +221,7 @@ impl<Q: Coordinates> Space for Joints<Q> {
     fn distance(&self, from: &Q, to: &Q) -> f64 {
         let (from, to) = (from.as_slice(), to.as_slice());
         let count = self.ranges.len().min(from.len()).min(to.len());
-        (0..count).map(|i| self.way(i, from[i], to[i])).map(|d| d * d).sum::<f64>().sqrt()
+        (0..count).map(|i| self.difference(i, from[i], to[i])).map(|d| d * d).sum::<f64>().sqrt()
     }
 
     #[inline]
@@ -268,7 +268,7 @@ impl<Q: Coordinates> Space for Joints<Q> {
         let (n, from, to) = (self.ranges.len(), from.as_slice(), to.as_slice());
         let fits = [from.len(), to.len(), out.len()] == [n; 3];
         if fits {
-            (0..n).for_each(|i| out[i] = self.way(i, from[i], to[i]));
+            (0..n).for_each(|i| out[i] = self.difference(i, from[i], to[i]));
         }
         fits
     }
@@ -282,7 +282,7 @@ impl<Q: Coordinates> Factored for Joints<Q> {
     fn each_factor(&self, from: &Q, to: &Q, f: &mut impl FnMut(usize, f64)) {
         let (from, to) = (from.as_slice(), to.as_slice());
         let count = self.ranges.len().min(from.len()).min(to.len());
-        (0..count).for_each(|i| f(i, self.way(i, from[i], to[i]).abs()));
+        (0..count).for_each(|i| f(i, self.difference(i, from[i], to[i]).abs()));
     }
     fn factor_extent(&self, factor: usize) -> f64 {
         self.ranges.get(factor).map_or(0.0, |range| range.extent())

@@ -4,7 +4,7 @@ use super::{Factored, Joints, Rn, Space, TrueMetric};
 use crate::{Rng, SpaceError, error::weight, nn::Layout};
 use nalgebra::{DVector, SVector};
 
-/// The product of two spaces, states being pairs.
+/// The product of two spaces. Its states are pairs.
 ///
 /// Distance: `√((wa·da)² + (wb·db)²)`.
 ///
@@ -58,8 +58,8 @@ impl<A: Space, B: Space> Product<A, B> {
 
 impl<A: Space, const N: usize> Product<A, Rn<N>> {
     /// The states of `positions` with a velocity each: one number per degree of freedom, no greater
-    /// than its limit. Velocities weigh (in seconds) such that the greatest distance between two
-    /// counts as much as that between two positions; [`new`](Self::new) takes weights of your own.
+    /// than its limit. The weight of velocities (in seconds) makes their extent count as much as that of
+    /// the positions; [`new`](Self::new) takes weights of your own.
     ///
     /// ```
     /// use mp_cspace::{Product, Se2, Space};
@@ -81,10 +81,10 @@ impl<A: Space, const N: usize> Product<A, Rn<N>> {
 }
 
 impl<A: Space> Product<A, Joints<DVector<f64>>> {
-    /// As [`with_velocity`](Product::with_velocity), the number of degrees of freedom known at run time.
+    /// As [`with_velocity`](Product::with_velocity), with the number of degrees of freedom known at run time.
     ///
     /// # Errors
-    /// As there.
+    /// Those of [`with_velocity`](Product::with_velocity).
     pub fn with_velocity_dyn(positions: A, limits: &[f64]) -> Result<Self, SpaceError> {
         check_limits(&positions, limits)?;
         let low: Vec<f64> = limits.iter().map(|limit| -limit).collect();

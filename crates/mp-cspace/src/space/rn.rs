@@ -1,4 +1,4 @@
-//! R^n, the dimension known at compile time.
+//! R^n, its dimension known at compile time.
 
 use super::{Factored, Space, TrueMetric, ellipsoid, lerp, scale};
 use crate::{Rng, SpaceError, error::diagonal, nn::Layout};

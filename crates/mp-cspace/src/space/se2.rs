@@ -1,8 +1,9 @@
 //! SE(2): poses in the plane.
 
+use super::poses::pose_space;
 use super::{Factored, Rn, Space, TrueMetric};
 use crate::angle::{angle_at, angle_difference, angle_lerp, wrap_angle};
-use crate::{Rng, SpaceError, error::weight, nn::Layout};
+use crate::{Rng, nn::Layout};
 use nalgebra::{Isometry2, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 use rand::RngExt;
 use std::f64::consts::PI;
@@ -24,7 +25,7 @@ impl Se2State {
         Self { translation: Vector2::new(x, y), angle: wrap_angle(angle) }
     }
 
-    /// Where the pose puts a point of the body.
+    /// The place of a point of the body at this pose.
     #[inline]
     #[must_use]
     pub fn transform_point(&self, p: &Point2<f64>) -> Point2<f64> {
@@ -62,35 +63,7 @@ pub struct Se2 {
     rotation_weight: f64,
 }
 
-impl Se2 {
-    /// Poses whose translation is in the box from `low` to `high`.
-    ///
-    /// # Errors
-    /// When a bound is not finite or a `low` is not below its `high`.
-    pub fn new(low: impl Into<Vector2<f64>>, high: impl Into<Vector2<f64>>) -> Result<Self, SpaceError> {
-        Ok(Self { translations: Rn::new(low.into(), high.into())?, rotation_weight: 0.5 })
-    }
-
-    /// The same poses with another weight of rotation (m/rad).
-    ///
-    /// # Errors
-    /// When the weight is not positive and finite.
-    pub fn with_rotation_weight(self, rotation_weight: f64) -> Result<Self, SpaceError> {
-        Ok(Self { rotation_weight: weight("the rotation weight", rotation_weight)?, ..self })
-    }
-
-    /// The box of translations.
-    #[must_use]
-    pub fn translations(&self) -> &Rn<2> {
-        &self.translations
-    }
-
-    /// The weight of rotation, metres per radian.
-    #[must_use]
-    pub fn rotation_weight(&self) -> f64 {
-        self.rotation_weight
-    }
-}
+pose_space!(Se2, 2);
 
 impl TrueMetric for Se2 {}
 

@@ -1,9 +1,10 @@
 //! SE(3): poses in space.
 
+use super::poses::pose_space;
 use super::so3::{is_unit, rotation_at, turn, turned, twice};
 use super::{Factored, Rn, Space, TrueMetric};
 use crate::angle::{rotation_angle, slerp};
-use crate::{Rng, SpaceError, error::weight, nn::Layout};
+use crate::{Rng, nn::Layout};
 use nalgebra::{Isometry3, Vector3};
 use rand::RngExt;
 use std::f64::consts::PI;
@@ -31,35 +32,7 @@ pub struct Se3 {
     rotation_weight: f64,
 }
 
-impl Se3 {
-    /// Poses whose translation is in the box from `low` to `high`.
-    ///
-    /// # Errors
-    /// When a bound is not finite or a `low` is not below its `high`.
-    pub fn new(low: impl Into<Vector3<f64>>, high: impl Into<Vector3<f64>>) -> Result<Self, SpaceError> {
-        Ok(Self { translations: Rn::new(low.into(), high.into())?, rotation_weight: 0.5 })
-    }
-
-    /// The same poses with another weight of rotation (m/rad).
-    ///
-    /// # Errors
-    /// When the weight is not positive and finite.
-    pub fn with_rotation_weight(self, rotation_weight: f64) -> Result<Self, SpaceError> {
-        Ok(Self { rotation_weight: weight("the rotation weight", rotation_weight)?, ..self })
-    }
-
-    /// The box of translations.
-    #[must_use]
-    pub fn translations(&self) -> &Rn<3> {
-        &self.translations
-    }
-
-    /// The weight of rotation, metres per radian.
-    #[must_use]
-    pub fn rotation_weight(&self) -> f64 {
-        self.rotation_weight
-    }
-}
+pose_space!(Se3, 3);
 
 impl TrueMetric for Se3 {}
 

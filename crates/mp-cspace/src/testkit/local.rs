@@ -2,10 +2,10 @@
 
 use crate::{Direction, Extension, LocalPlanner, Reach, Rng, Space};
 
-/// Checks a [`LocalPlanner`] on random pairs of states: a full reach never advances part of the
-/// way; what is reached is the target exactly; an advance stays within the step and is of use;
-/// costs are finite and not negative; the same question gets the same answer. For planners that
-/// step by time rather than distance give `step` as infinite.
+/// Checks a [`LocalPlanner`] on random pairs of states: a full reach is all or nothing; a motion that
+/// reaches the target ends at it exactly; an advance stays within the step and moves; costs are finite
+/// and not negative; the same question gets the same answer. For planners that step by time rather than
+/// distance give `step` as infinite.
 ///
 /// # Panics
 /// When an axiom is violated, naming it and the states.

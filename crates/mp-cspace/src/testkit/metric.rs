@@ -21,8 +21,8 @@ pub fn check_metric<C: Space>(space: &C, states: &[C::State]) {
     }
 }
 
-/// Checks that of a [`TrueMetric`] on every triple of `states`: symmetry and the triangle inequality, to
-/// `tolerance` relative to the greatest distance.
+/// Checks the distance of a [`TrueMetric`] space on every triple of `states`: symmetry and the triangle
+/// inequality, to `tolerance` relative to the greatest distance.
 ///
 /// # Panics
 /// When an axiom is violated, naming it.

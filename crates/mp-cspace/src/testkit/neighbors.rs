@@ -8,7 +8,7 @@ use rand::RngExt;
 /// inserted (some of them twice, so that distances tie), and again after a `clear`.
 ///
 /// # Panics
-/// When an answer differs, naming the question.
+/// When an answer differs, naming the query.
 pub fn check_nearest_neighbors<C, N>(space: &C, index: &mut N, points: usize, seed: u64)
 where
     C: Space,
@@ -53,7 +53,7 @@ fn scan<C: Space>(space: &C, states: &[C::State], q: &C::State) -> Vec<Hit> {
 fn compare<C: Space>(space: &C, index: &impl NearestNeighbors<C>, states: &[C::State], rng: &mut Rng) {
     let n = states.len();
     for query in 0..3 {
-        // A state that is in the index has itself and its twins at distance zero.
+        // A state in the index has itself and equal states at distance zero.
         let q = if query == 0 && n > 0 {
             states[rng.random_range(0..n)].clone()
         } else {

@@ -6,12 +6,12 @@ use rand::RngExt;
 
 /// Checks the axioms of a [`Space`].
 ///
-/// What is checked: dimension and extent are positive; samples, and images of the unit cube with
-/// its faces, are contained; uniform sampling is deterministic and agrees with the map from the
-/// unit cube; the metric's axioms; no distance exceeds the extent; interpolation is exact at both
-/// ends, stays inside, does not depend on what the output held, goes at constant speed, and a
-/// part of a motion is the motion between the ends of the part; constant velocities, where the
-/// space knows them, lead along the interpolation.
+/// These are: dimension and extent are positive; samples, and images of the unit cube with its
+/// faces, are contained; uniform sampling is deterministic and agrees with the map from the unit
+/// cube; distances satisfy [`check_metric`] and do not exceed the extent; interpolation is exact at both
+/// ends, stays inside, does not depend on what the output held, and has constant speed; a part of a
+/// motion is the motion between the ends of the part; constant velocities, where the space has them,
+/// lead along the interpolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpaceKit {
     samples: usize,
@@ -27,31 +27,31 @@ impl Default for SpaceKit {
 }
 
 impl SpaceKit {
-    /// 300 samples, seed 1, tolerance 10⁻⁹ of the extent, constant speed demanded.
+    /// A kit with 300 samples, seed 1, a tolerance of 10⁻⁹ of the extent, and constant speed required.
     #[must_use]
     pub fn new() -> Self {
         Self { samples: 300, seed: 1, tolerance: 1e-9, constant_speed: true }
     }
 
-    /// With this many samples.
+    /// The same with this many samples.
     #[must_use]
     pub fn samples(self, samples: usize) -> Self {
         Self { samples, ..self }
     }
 
-    /// With this seed.
+    /// The same with this seed.
     #[must_use]
     pub fn seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// With this tolerance of distances, as a fraction of the extent.
+    /// The same with this tolerance of distances, as a fraction of the extent.
     #[must_use]
     pub fn tolerance(self, tolerance: f64) -> Self {
         Self { tolerance, ..self }
     }
 
-    /// Without demanding constant speed, for a space under a metric that lacks it.
+    /// The same without requiring constant speed, for a space under a metric that lacks it.
     #[must_use]
     pub fn any_speed(self) -> Self {
         Self { constant_speed: false, ..self }
@@ -150,15 +150,15 @@ impl SpaceKit {
         }
     }
 
-    /// A constant velocity leads along the interpolation, where the space knows velocities.
+    /// A constant velocity leads along the interpolation, where the space has velocities.
     fn velocities<C: Space>(&self, space: &C, a: &C::State, rng: &mut Rng) {
         let slack = self.tolerance * space.extent();
         // Less than half a turn about all axes together.
         let velocity: Vec<f64> = (0..space.dim()).map(|_| rng.random_range(-1.0..1.0)).collect();
         let Some(b) = space.moved(a, &velocity, 1.0) else { return };
         for t in [0.0, rng.random(), 1.0] {
-            let (q, way) = (space.moved(a, &velocity, t), space.interpolate(a, &b, t));
-            let gap = q.map_or(f64::INFINITY, |q| space.distance(&q, &way));
+            let (q, expected) = (space.moved(a, &velocity, t), space.interpolate(a, &b, t));
+            let gap = q.map_or(f64::INFINITY, |q| space.distance(&q, &expected));
             assert!(
                 gap <= slack,
                 "space: a velocity leads along the interpolation, violated by {gap} at {t}\n  from {a:?} at {velocity:?}"

@@ -398,7 +398,7 @@ constructors! {
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn parts<C: Space, H: Clone>(
+pub fn parts<C: Space, H>(
     space: &C,
     hints: H,
     reach: Reachable,
@@ -406,6 +406,6 @@ pub fn parts<C: Space, H: Clone>(
 ) -> Result<RoadmapPlannerParts<OnObstacles<H>, StagedConnector, AStar>, BuildError> {
     BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
     let turns = Turns::At(AT[..with.turns].to_vec());
-    let generator = OnObstacles::new(space, hints.clone(), with)?;
+    let generator = OnObstacles::new(space, hints, with)?;
     Ok(RoadmapPlannerParts::new(generator, StagedConnector::new(reach, with.among, turns)?))
 }

@@ -248,12 +248,12 @@ constructors! {
 ///
 /// # Errors
 /// When a parameter is out of range.
-pub fn parts<H: Clone>(
+pub fn parts<H>(
     hints: H,
     reach: Reachable,
     with: ByGeometry,
 ) -> Result<RoadmapPlannerParts<AroundObstacles<H>, StagedConnector, AStar>, BuildError> {
-    let generator = AroundObstacles::new(hints.clone(), with)?;
+    let generator = AroundObstacles::new(hints, with)?;
     let connector = StagedConnector::new(reach, NeighborSet::Nearest, Turns::WhereFar)?;
     Ok(RoadmapPlannerParts::new(generator, connector))
 }

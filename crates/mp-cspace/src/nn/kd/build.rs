@@ -1,7 +1,7 @@
-//! Building a subtree from its states.
+//! Builds a subtree from its states.
 
 use super::super::NodeId;
-use super::super::leaf::{CAP, Extra, FILL};
+use super::super::leaf::{CAP, Coincident, FILL};
 use super::{Inner, KdTree, Ref, Weight};
 use crate::nn::Embed;
 
@@ -12,18 +12,18 @@ pub(super) struct Items {
     /// `dim` coordinates each.
     rows: Vec<f64>,
     ids: Vec<NodeId>,
-    extras: Vec<Option<Extra>>,
+    coincident: Vec<Option<Coincident>>,
 }
 
 impl Items {
     pub(super) fn new(dim: usize) -> Self {
-        Self { dim, rows: Vec::new(), ids: Vec::new(), extras: Vec::new() }
+        Self { dim, rows: Vec::new(), ids: Vec::new(), coincident: Vec::new() }
     }
 
-    pub(super) fn push(&mut self, x: &[f64], id: NodeId, extra: Option<Extra>) {
+    pub(super) fn push(&mut self, x: &[f64], id: NodeId, coincident: Option<Coincident>) {
         self.rows.extend_from_slice(&x[..self.dim]);
         self.ids.push(id);
-        self.extras.push(extra);
+        self.coincident.push(coincident);
     }
 
     #[inline]
@@ -31,7 +31,7 @@ impl Items {
         self.rows[item as usize * self.dim + d]
     }
 
-    /// Splits `order` in two parts, neither empty, as evenly as equal coordinates allow: the
+    /// Splits `order` in two parts, neither empty, as evenly as equal coordinates allow. Returns the
     /// coordinate, the value, and the length of the first part.
     fn split(&self, order: &mut [u32]) -> Option<(usize, f64, usize)> {
         let mut widths = vec![(0.0, 0); self.dim];
@@ -94,53 +94,53 @@ impl<const K: usize> KdTree<K> {
                 self.free_inner.push(i);
             }
             Err(leaf) => {
-                let mut extra = self.leaves.take_extra(leaf);
+                let mut coincident = self.leaves.take_coincident(leaf);
                 for &id in self.leaves.ids(leaf) {
-                    items.push(&self.shape.embed(space, &points[id as usize]), id, extra.take());
+                    items.push(&self.layout.embed(space, &points[id as usize]), id, coincident.take());
                 }
                 self.leaves.free(leaf);
             }
         }
     }
 
-    /// A subtree of `items`, which is emptied.
+    /// A subtree of `items`; moves their coincident states into it.
     pub(super) fn build<S: PartialEq>(&mut self, points: &[S], items: &mut Items) -> Ref {
         let mut order: Vec<u32> = (0..items.ids.len() as u32).collect();
         self.build_part(points, items, &mut order)
     }
 
     fn build_part<S: PartialEq>(&mut self, points: &[S], items: &mut Items, order: &mut [u32]) -> Ref {
-        // Only lane 0 of a leaf may stand for more states than one.
-        let heavy = order.iter().filter(|&&i| items.extras[i as usize].is_some()).count();
-        if order.len() > FILL || heavy > 1 {
+        // Only lane 0 of a leaf may stand for more than one state.
+        let shared = order.iter().filter(|&&i| items.coincident[i as usize].is_some()).count();
+        if order.len() > FILL || shared > 1 {
             if let Some((d, split, first)) = items.split(order) {
                 let (left, right) = order.split_at_mut(first);
                 let children = [self.build_part(points, items, left), self.build_part(points, items, right)];
                 let leaves = children.iter().map(|&c| self.leaves_below(c)).sum();
                 return self.new_inner(Inner { split, children, dim: d as u32, weight: Weight::new(leaves) });
             }
-            if order.len() > CAP || heavy > 1 {
-                return self.build_lump(points, items, order);
+            if order.len() > CAP || shared > 1 {
+                return self.build_coincident_leaf(points, items, order);
             }
         }
-        order.sort_by_key(|&i| items.extras[i as usize].is_none());
+        order.sort_by_key(|&i| items.coincident[i as usize].is_none());
         let leaf = self.leaves.alloc(items.dim);
         for &i in order.iter() {
             self.leaves.push(leaf, items.dim, items.ids[i as usize], |d| items.at(i, d) as f32);
         }
-        self.leaves.set_extra(leaf, order.first().and_then(|&i| items.extras[i as usize].take()));
+        self.leaves.set_coincident(leaf, order.first().and_then(|&i| items.coincident[i as usize].take()));
         Ref::leaf(leaf)
     }
 
     /// A leaf for any number of states with the same coordinates.
-    fn build_lump<S: PartialEq>(&mut self, points: &[S], items: &mut Items, order: &[u32]) -> Ref {
+    fn build_coincident_leaf<S: PartialEq>(&mut self, points: &[S], items: &mut Items, order: &[u32]) -> Ref {
         let mut ids = Vec::new();
         let mut same = true;
         for &i in order {
             ids.push(items.ids[i as usize]);
-            if let Some(extra) = items.extras[i as usize].take() {
-                ids.extend(extra.ids);
-                same &= extra.same;
+            if let Some(coincident) = items.coincident[i as usize].take() {
+                ids.extend(coincident.ids);
+                same &= coincident.same;
             }
         }
         let first = ids.iter().copied().min().unwrap_or(0);
@@ -150,7 +150,7 @@ impl<const K: usize> KdTree<K> {
         if let Some(&i) = order.first() {
             self.leaves.push(leaf, items.dim, first, |d| items.at(i, d) as f32);
         }
-        self.leaves.set_extra(leaf, Extra::beside(first, ids, same));
+        self.leaves.set_coincident(leaf, Coincident::sharing_with(first, ids, same));
         Ref::leaf(leaf)
     }
 }

@@ -1,9 +1,9 @@
-//! Insertion.
+//! Insertion into the k-d tree.
 
 use super::super::NodeId;
 use super::super::leaf::CAP;
 use super::build::Items;
-use super::shape::Shape;
+use super::layout::TreeLayout;
 use super::{Inner, KdTree, Ref, Weight};
 use crate::nn::Embed;
 
@@ -11,10 +11,10 @@ impl<const K: usize> KdTree<K> {
     pub(super) fn insert<C: Embed>(&mut self, space: &C, points: &[C::State], id: NodeId) {
         let state = &points[id as usize];
         if self.root.is_none() {
-            self.shape = Shape::new(space, state);
+            self.layout = TreeLayout::new(space, state);
         }
         let dim = self.dim();
-        let x = self.shape.embed(space, state);
+        let x = self.layout.embed(space, state);
         let [low, high] = &mut self.bounds;
         low.iter_mut().zip(&x).for_each(|(low, x)| *low = low.min(*x));
         high.iter_mut().zip(&x).for_each(|(high, x)| *high = high.max(*x));
@@ -24,7 +24,7 @@ impl<const K: usize> KdTree<K> {
             None => *self.root.insert(Ref::leaf(self.leaves.alloc(dim))),
         };
         let leaf = self.descend(root, &x);
-        let joined = self.leaves.head(leaf).has_extra && self.join(space, points, leaf, id, &x);
+        let joined = self.leaves.head(leaf).has_coincident && self.join(space, points, leaf, id, &x);
         if joined {
             return;
         }
@@ -36,7 +36,7 @@ impl<const K: usize> KdTree<K> {
         }
     }
 
-    /// The leaf of `x`; the way there is left in `path`.
+    /// The leaf of `x`; sets `path` to the inner nodes above it.
     fn descend(&mut self, root: Ref, x: &[f64; K]) -> usize {
         self.path.clear();
         let mut r = root;
@@ -53,8 +53,8 @@ impl<const K: usize> KdTree<K> {
         }
     }
 
-    /// Puts a state with the coordinates of a leaf's lane 0 beside those that could not be split
-    /// from it; `false` when it is no such state.
+    /// Adds a state whose coordinates are those of a leaf's lane 0 to the states coincident with it;
+    /// `false` when the coordinates differ.
     fn join<C: Embed>(
         &mut self,
         space: &C,
@@ -65,7 +65,7 @@ impl<const K: usize> KdTree<K> {
     ) -> bool {
         let Some(&first) = self.leaves.ids(leaf).first() else { return false };
         let first = &points[first as usize];
-        if self.shape.embed(space, first) != *x {
+        if self.layout.embed(space, first) != *x {
             return false;
         }
         self.leaves.join(leaf, id, *first == points[id as usize]);
@@ -108,19 +108,19 @@ impl<const K: usize> KdTree<K> {
         if a >= b {
             return None;
         }
-        // States go where their `f64` coordinate would: above `split` means `b` or more in `f32`.
+        // States go to the side of their `f64` coordinate: above `split` means `b` or more in `f32`.
         let middle = 0.5 * (f64::from(a) + f64::from(b));
         let split = if middle as f32 >= b { middle.next_down() } else { middle };
         let (row, lanes, ids) = (*row, lanes.to_vec(), self.leaves.ids(leaf).to_vec());
-        let extra = self.leaves.take_extra(leaf);
+        let coincident = self.leaves.take_coincident(leaf);
         let right = self.leaves.alloc(dim);
         self.leaves.clear(leaf, dim);
         for (lane, &id) in ids.iter().enumerate() {
             let to = if row[lane] >= b { right } else { leaf };
             self.leaves.push(to, dim, id, |d| lanes[d * CAP + lane]);
         }
-        // Lane 0 stayed lane 0 on its side.
-        self.leaves.set_extra(if row[0] >= b { right } else { leaf }, extra);
+        // Lane 0 is still lane 0 of its leaf.
+        self.leaves.set_coincident(if row[0] >= b { right } else { leaf }, coincident);
         let to = if x[widest] > split { right } else { leaf };
         self.leaves.push(to, dim, id, |d| x[d] as f32);
         Some(self.new_inner(Inner {
@@ -159,15 +159,15 @@ impl<const K: usize> KdTree<K> {
         }
     }
 
-    /// Rebuilds the highest node of the path that is out of balance, if it has grown enough since
-    /// it was built to pay for it.
+    /// Rebuilds the highest node of the path that is out of balance and has grown enough since it was
+    /// built to pay for it.
     fn rebalance<C: Embed>(&mut self, space: &C, points: &[C::State]) {
-        let lopsided = |&(i, _): &(usize, usize)| {
+        let unbalanced = |&(i, _): &(usize, usize)| {
             let node = &self.inner[i];
-            node.weight
-                .is_lopsided(self.leaves_below(node.children[0]).max(self.leaves_below(node.children[1])))
+            let [a, b] = node.children.map(|child| self.leaves_below(child));
+            node.weight.is_unbalanced(a.max(b))
         };
-        let Some(depth) = self.path.iter().position(lopsided) else { return };
+        let Some(depth) = self.path.iter().position(unbalanced) else { return };
         let (i, _) = self.path[depth];
         let before = i64::from(self.inner[i].weight.leaves);
         let mut items = Items::new(self.dim());

@@ -2,17 +2,17 @@
 
 mod build;
 mod insert;
+mod layout;
 mod scan;
 mod search;
-mod shape;
 
-use super::collect::{Nearest, One, Within};
+use super::collect::{KNearest, OneNearest, WithinRadius};
 use super::leaf::Leaves;
 use super::node::{Ref, Weight};
 use super::{Embed, Hit, NearestNeighbors, NodeId};
-use shape::Shape;
+use layout::TreeLayout;
 
-/// The `K` that stands for a number of coordinates read from the layout, and their maximum.
+/// The `K` that means "as many coordinates as the layout has", and the most there may then be.
 const ANY: usize = 16;
 
 /// Splits space: coordinate `dim` is ≤ `split` in the first child and ≥ `split` in the second.
@@ -32,33 +32,33 @@ struct Inner {
 /// widest coordinate. Unbalanced subtrees are rebuilt as in a scapegoat tree (Galperin, Rivest
 /// 1993), so insertion takes amortised O(log² n) whatever the order of the states. The search
 /// descends depth first with incremental distances to the cells (Arya, Mount 1993). Buckets hold
-/// `f32` coordinates, structure of arrays, that serve as a filter with a conservative margin; what
-/// passes is decided by the metric itself, in `f64`. Hence answers are those of
-/// [`Linear`](super::Linear), to the bit. Symmetries (periods, q ~ −q) are met by searching for
+/// `f32` coordinates, structure of arrays, as a filter with a conservative margin; the metric itself
+/// decides about the states that pass, in `f64`. Hence answers are those of
+/// [`Linear`](super::Linear), to the bit. Symmetries (periods, q ~ −q) are handled by searching for
 /// the images of the query.
 ///
 /// `K` is the layout's number of coordinates, best given where it is known at compile time; 16
-/// stands for any number up to 16. Of more coordinates than `K` the index looks at the first ones
-/// only. Queries allocate nothing, unless there are more than 16 coordinates.
+/// stands for any number up to 16. Of more coordinates than `K` the index uses only the first.
+/// Queries allocate nothing, unless there are more than 16 coordinates.
 #[derive(Clone, Debug)]
 pub struct KdTree<const K: usize = 16> {
-    shape: Shape<K>,
+    layout: TreeLayout<K>,
     root: Option<Ref>,
     inner: Vec<Inner>,
     free_inner: Vec<usize>,
     leaves: Leaves,
     /// Bounds of all coordinates, relative to the origin.
     bounds: [[f64; K]; 2],
-    /// The largest of them.
+    /// The largest absolute value of a coordinate.
     largest: f64,
-    /// The inner nodes on the way to the last leaf, and which child was taken.
+    /// The inner nodes above the leaf found last, and which child was taken.
     path: Vec<(usize, usize)>,
 }
 
 impl<const K: usize> Default for KdTree<K> {
     fn default() -> Self {
         Self {
-            shape: Shape::default(),
+            layout: TreeLayout::default(),
             root: None,
             inner: Vec::new(),
             free_inner: Vec::new(),
@@ -77,10 +77,10 @@ impl<const K: usize> KdTree<K> {
         Self::default()
     }
 
-    /// The number of coordinates looked at.
+    /// The number of coordinates used.
     #[inline]
     fn dim(&self) -> usize {
-        if K == ANY { self.shape.dim } else { K }
+        if K == ANY { self.layout.dim } else { K }
     }
 }
 
@@ -94,22 +94,14 @@ impl<C: Embed, const K: usize> NearestNeighbors<C> for KdTree<K> {
     }
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
-        let mut one = One::new();
-        self.search(space, points, q, &mut one);
-        one.get()
+        OneNearest::of(|nearest| self.search(space, points, q, nearest))
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        let mut nearest = Nearest::new(k, out);
-        if k > 0 {
-            self.search(space, points, q, &mut nearest);
-        }
-        nearest.finish();
+        KNearest::of(k, out, |nearest| self.search(space, points, q, nearest));
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
-        let mut within = Within::new(radius, out);
-        self.search(space, points, q, &mut within);
-        within.finish();
+        WithinRadius::of(radius, out, |within| self.search(space, points, q, within));
     }
 }

@@ -2,7 +2,7 @@
 //! those that pass.
 
 use super::super::collect::Collector;
-use super::super::leaf::{CAP, Extra, WIDE};
+use super::super::leaf::{CAP, Coincident, WIDE};
 use super::super::{Hit, NodeId};
 use super::search::Search;
 use crate::nn::Embed;
@@ -16,13 +16,13 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
             return;
         }
         let lanes = self.tree.leaves.lanes(leaf, dim);
-        // Lanes without a state are not a number, for which no comparison holds.
-        match *self.tree.shape.ends.as_slice() {
+        // Lanes without a state are NaN, for which no comparison holds.
+        match *self.tree.layout.ends.as_slice() {
             [] | [_] => {
                 let squares = self.squares(lanes, 0, dim);
                 let least = least(&squares);
                 if least <= reach {
-                    self.take(leaf, squares, least);
+                    self.offer_passing(leaf, squares, least);
                 }
             }
             [end, _] => {
@@ -35,7 +35,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
                 });
                 if least(&excess) <= 0.0 {
                     let bounds = pairs(&a, &b, |a, b| a + b + 2.0 * (a * b).sqrt());
-                    self.take(leaf, bounds, least(&bounds));
+                    self.offer_passing(leaf, bounds, least(&bounds));
                 }
             }
             ref ends => {
@@ -48,25 +48,25 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
                 let bounds = sums.map(|sum| sum * sum);
                 let least = least(&bounds);
                 if least <= reach {
-                    self.take(leaf, bounds, least);
+                    self.offer_passing(leaf, bounds, least);
                 }
             }
         }
     }
 
-    /// Whether all lanes are farther than the reach, by the box around them. Rounds as the lanes do, in the
-    /// same order, so that no lane passes where the box does not.
+    /// Whether the box around all lanes is farther than the reach. Rounds as the lanes do, in the same
+    /// order, so that no lane passes where the box does not.
     #[inline(always)]
     fn is_beyond(&self, leaf: usize, dim: usize) -> bool {
-        let shape = &self.tree.shape;
+        let layout = &self.tree.layout;
         let ranges = self.tree.leaves.ranges(leaf, dim);
         let gap = |d: usize| {
             let ([low, high], q) = (ranges[d], self.q32[d]);
-            // Where there is a period, the way round may be shorter.
-            if shape.period[d] == f64::INFINITY { (low - q).max(q - high).max(0.0) } else { 0.0 }
+            // Where there is a period, the other way round may be shorter.
+            if layout.period[d] == f64::INFINITY { (low - q).max(q - high).max(0.0) } else { 0.0 }
         };
         let squares = |from: usize, to: usize| (from..to).map(gap).fold(0.0, |sum, t| sum + t * t);
-        match *shape.ends.as_slice() {
+        match *layout.ends.as_slice() {
             [] | [_] => squares(0, dim) > self.lane_reach,
             [end, _] => {
                 let (a, b) = (squares(0, end), squares(end, dim));
@@ -78,7 +78,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     }
 
     /// The squared distance of every lane from the image over the coordinates `start..end`, each
-    /// the short way round its period.
+    /// the shorter way round its period.
     #[inline(always)]
     fn squares(&self, lanes: &[f32], start: usize, end: usize) -> [f32; CAP] {
         let mut out = [0.0; CAP];
@@ -86,7 +86,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
             let mut sum = [0.0f32; WIDE];
             for d in start..end {
                 let Some(row) = lanes[d * CAP + w * WIDE..].first_chunk::<WIDE>() else { break };
-                let (q, period) = (self.q32[d], self.tree.shape.period[d]);
+                let (q, period) = (self.q32[d], self.tree.layout.period[d]);
                 if period == f64::INFINITY {
                     for (s, x) in sum.iter_mut().zip(row) {
                         let t = x - q;
@@ -107,14 +107,14 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         out
     }
 
-    /// Offers the states of a leaf whose bound is small enough, the one with the `least` first: it
-    /// spares most of the others.
-    fn take(&mut self, leaf: usize, mut bounds: [f32; CAP], least_bound: f32) {
+    /// Offers the states of a leaf whose bound is small enough, the one of `least_bound` first: it
+    /// excludes most of the others.
+    fn offer_passing(&mut self, leaf: usize, mut bounds: [f32; CAP], least_bound: f32) {
         let ids = self.tree.leaves.ids(leaf);
-        if let Some(extra) = self.tree.leaves.extra(leaf)
+        if let Some(coincident) = self.tree.leaves.coincident(leaf)
             && bounds[0] <= self.lane_reach
         {
-            self.offer_all(ids[0], extra);
+            self.offer_all(ids[0], coincident);
             bounds[0] = f32::NAN;
         }
         if let Some(first) = bounds.iter().position(|&b| b == least_bound) {
@@ -131,16 +131,16 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     }
 
     /// Offers all states that lane 0 stands for.
-    fn offer_all(&mut self, first: NodeId, extra: &Extra) {
-        if !extra.same {
-            return [first].iter().chain(&extra.ids).for_each(|&id| self.offer(id));
+    fn offer_all(&mut self, first: NodeId, coincident: &Coincident) {
+        if !coincident.same {
+            return [first].iter().chain(&coincident.ids).for_each(|&id| self.offer(id));
         }
         if self.is_repeated(first) {
             return;
         }
         let distance = self.space.distance(&self.points[first as usize], self.query);
-        // Equal distances in the order of ids: one that is refused speaks for the rest.
-        let mut all = [first].into_iter().chain(extra.ids.iter().copied());
+        // Equal distances in the order of ids: after the first one refused all would be.
+        let mut all = [first].into_iter().chain(coincident.ids.iter().copied());
         let _ = all.all(|id| self.collector.offer(Hit { id, distance }));
         self.limit();
     }
@@ -153,15 +153,15 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         }
     }
 
-    /// Whether another image of the query is the one to find state `id` by.
+    /// Whether state `id` is found by another image of the query instead.
     #[inline]
     fn is_repeated(&self, id: NodeId) -> bool {
-        if L::MAY_REPEAT || self.tree.shape.antipodes.is_empty() {
+        if L::MAY_REPEAT || self.tree.layout.antipodes.is_empty() {
             return false;
         }
-        let x = self.tree.shape.embed(self.space, &self.points[id as usize]);
-        // The nearer of an image and its antipode; of two equally near the original.
-        (0..).zip(&self.tree.shape.antipodes).any(|(a, &(start, end))| {
+        let x = self.tree.layout.embed(self.space, &self.points[id as usize]);
+        // The nearer of an image and its antipode finds it; of two equally near the one not negated.
+        (0..).zip(&self.tree.layout.antipodes).any(|(a, &(start, end))| {
             let dot: f64 = (start..end).map(|d| x[d] * self.q[d]).sum();
             dot < 0.0 || (dot == 0.0 && self.negated >> a & 1 == 1)
         })

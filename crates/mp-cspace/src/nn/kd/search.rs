@@ -1,4 +1,4 @@
-//! The search.
+//! The search of the k-d tree.
 
 use super::super::collect::Collector;
 use super::{Inner, KdTree, Ref};
@@ -14,15 +14,15 @@ pub(super) struct Search<'a, C: Embed, L, const K: usize> {
     /// Coordinates of the image of the query being searched for.
     pub(super) q: [f64; K],
     pub(super) q32: [f32; K],
-    /// Which of the shape's antipodes are negated in it, bit by bit.
+    /// Which of the layout's antipodes are negated in it, bit by bit.
     pub(super) negated: u32,
-    /// The current cell, along coordinates with a period.
+    /// The current cell; kept only for coordinates with a period.
     cell: [(f64, f64); K],
     /// Squared distance of the image from the current cell: by coordinate, and summed by group.
     off: [f64; K],
     sums: [f64; K],
     groups: usize,
-    /// Cells farther than this hold nothing of interest, nor do lanes farther than that.
+    /// Squared distances beyond which cells, and lanes, hold no wanted state.
     reach: f64,
     pub(super) lane_reach: f32,
     /// Bounds on the rounding of cells and of lanes.
@@ -30,7 +30,7 @@ pub(super) struct Search<'a, C: Embed, L, const K: usize> {
 }
 
 impl<const K: usize> KdTree<K> {
-    /// Offers `collector` every state that may interest it.
+    /// Offers `collector` every state that it may want.
     pub(super) fn search<C: Embed>(
         &self,
         space: &C,
@@ -39,7 +39,7 @@ impl<const K: usize> KdTree<K> {
         collector: &mut impl Collector,
     ) {
         let Some(root) = self.root else { return };
-        let q = self.shape.embed(space, query);
+        let q = self.layout.embed(space, query);
         let largest = q.iter().fold(self.largest, |largest, x| largest.max(x.abs())) * self.dim() as f64;
         let [low, high] = &self.bounds;
         let mut search = Search {
@@ -54,13 +54,13 @@ impl<const K: usize> KdTree<K> {
             cell: std::array::from_fn(|d| (low[d], high[d])),
             off: [0.0; K],
             sums: [0.0; K],
-            groups: self.shape.ends.len(),
+            groups: self.layout.ends.len(),
             reach: 0.0,
             lane_reach: 0.0,
             pads: [largest * 1e-14, largest * 5e-7],
         };
         search.limit();
-        search.images(root, 0);
+        search.search_images(root, 0);
     }
 }
 
@@ -68,9 +68,9 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     /// Reads the limit of the collector.
     #[inline]
     pub(super) fn limit(&mut self) {
-        // 1e-7 is what a layout admits; `f32` arithmetic is off by some 2^-24 per operation, of
-        // which there are some 30.
-        let limit = (self.collector.limit() + self.tree.shape.slack) * (1.0 + 1e-7);
+        // A layout allows 1e-7; `f32` arithmetic is off by some 2^-24 per operation, in some 30
+        // operations.
+        let limit = (self.collector.limit() + self.tree.layout.slack) * (1.0 + 1e-7);
         if limit < 0.0 {
             (self.reach, self.lane_reach) = (-1.0, -1.0);
             return;
@@ -80,35 +80,35 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         self.lane_reach = (lane * lane) as f32 + f32::MIN_POSITIVE;
     }
 
-    /// Searches for every image of the query, antipodes from number `a` on undecided.
-    fn images(&mut self, root: Ref, a: usize) {
-        let Some(&(start, end)) = self.tree.shape.antipodes.get(a) else { return self.begin(root) };
-        self.images(root, a + 1);
+    /// Searches for every image of the query, the signs of the antipodes before number `a` being chosen.
+    fn search_images(&mut self, root: Ref, a: usize) {
+        let Some(&(start, end)) = self.tree.layout.antipodes.get(a) else { return self.search_image(root) };
+        self.search_images(root, a + 1);
         let saved = self.q;
         self.q[start..end].iter_mut().for_each(|x| *x = -*x);
         self.negated ^= 1 << a;
-        self.images(root, a + 1);
+        self.search_images(root, a + 1);
         self.negated ^= 1 << a;
         self.q = saved;
     }
 
     /// Searches for the image `q`.
-    fn begin(&mut self, root: Ref) {
+    fn search_image(&mut self, root: Ref) {
         self.sums = [0.0; K];
         for d in 0..self.tree.dim() {
             self.q32[d] = self.q[d] as f32;
             let off = self.distance_along(d, self.cell[d]);
             self.off[d] = off * off;
-            self.sums[self.tree.shape.group[d] as usize] += off * off;
+            self.sums[self.tree.layout.group[d] as usize] += off * off;
         }
-        if self.admits() {
+        if self.is_in_reach() {
             self.visit(root);
         }
     }
 
-    /// Whether the current cell may hold something of interest.
+    /// Whether the current cell may hold a wanted state.
     #[inline(always)]
-    fn admits(&self) -> bool {
+    fn is_in_reach(&self) -> bool {
         match (self.groups, self.sums.as_slice()) {
             (1, [a, ..]) => *a <= self.reach,
             (2, [a, b, ..]) => {
@@ -123,22 +123,22 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         }
     }
 
-    /// How far coordinate `d` of the image is from an interval, the short way round its period.
+    /// How far coordinate `d` of the image is from an interval, the shorter way round its period.
     #[inline]
     fn distance_along(&self, d: usize, (low, high): (f64, f64)) -> f64 {
-        let (q, period) = (self.q[d], self.tree.shape.period[d]);
+        let (q, period) = (self.q[d], self.tree.layout.period[d]);
         let (below, above) = (low - q, q - high);
         if below <= 0.0 && above <= 0.0 {
             0.0
         } else {
-            // One of the two is positive: the gap on this side. The other side of the interval is
-            // reached by going on round.
+            // One of the two is positive: the gap to the near side of the interval. The far side is
+            // reached around the period.
             let gap = below.max(above);
             gap.min(period + below.min(above)).max(0.0)
         }
     }
 
-    /// Searches the current cell, which is that of `r`.
+    /// Searches the current cell, that of node `r`.
     fn visit(&mut self, r: Ref) {
         let i = match r.get() {
             Err(leaf) => return self.scan(leaf),
@@ -146,8 +146,8 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         };
         let node = &self.tree.inner[i];
         let d = node.dim as usize;
-        if self.tree.shape.period[d] != f64::INFINITY {
-            return self.visit_round(node, d);
+        if self.tree.layout.period[d] != f64::INFINITY {
+            return self.visit_periodic(node, d);
         }
         let diff = self.q[d] - node.split;
         let near = usize::from(diff > 0.0);
@@ -155,13 +155,13 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
         self.visit_at(node.children[1 - near], d, diff * diff);
     }
 
-    /// Searches a cell like the current one, but for the squared distance along `d`.
+    /// Searches a cell that differs from the current one by the squared distance `off` along `d`.
     #[inline(always)]
     fn visit_at(&mut self, r: Ref, d: usize, off: f64) {
-        let g = self.tree.shape.group[d] as usize;
+        let g = self.tree.layout.group[d] as usize;
         let (old, sum) = (self.off[d], self.sums[g]);
         self.sums[g] = sum - old + off;
-        if self.admits() {
+        if self.is_in_reach() {
             self.off[d] = off;
             self.visit(r);
             self.off[d] = old;
@@ -170,7 +170,7 @@ impl<C: Embed, L: Collector, const K: usize> Search<'_, C, L, K> {
     }
 
     /// Searches the children of a node that splits a coordinate with a period.
-    fn visit_round(&mut self, node: &Inner, d: usize) {
+    fn visit_periodic(&mut self, node: &Inner, d: usize) {
         let whole = self.cell[d];
         let cells = [(whole.0, node.split), (node.split, whole.1)];
         let offs = cells.map(|cell| self.distance_along(d, cell));

@@ -1,7 +1,7 @@
-//! Building a subtree from its states.
+//! Builds a subtree from its states.
 
 use super::super::NodeId;
-use super::super::leaf::{CAP, Extra, FILL};
+use super::super::leaf::{CAP, Coincident, FILL};
 use super::super::node::{Ref, Weight};
 use super::{Inner, MetricTree, ROWS, capped};
 use crate::Space;
@@ -10,15 +10,15 @@ use crate::Space;
 #[derive(Debug, Default)]
 pub(super) struct Items {
     ids: Vec<NodeId>,
-    extras: Vec<Option<Extra>>,
-    /// Distances to the last ancestors, the one at depth `d` in row `d % ROWS`.
+    coincident: Vec<Option<Coincident>>,
+    /// Distances to the nearest ancestors, the one at depth `d` in row `d % ROWS`.
     rows: Vec<[f32; ROWS]>,
 }
 
 impl Items {
-    pub(super) fn push(&mut self, id: NodeId, extra: Option<Extra>, row: impl FnMut(usize) -> f32) {
+    pub(super) fn push(&mut self, id: NodeId, coincident: Option<Coincident>, row: impl FnMut(usize) -> f32) {
         self.ids.push(id);
-        self.extras.push(extra);
+        self.coincident.push(coincident);
         self.rows.push(std::array::from_fn(row));
     }
 }
@@ -57,20 +57,22 @@ impl MetricTree {
         match r.get() {
             Ok(i) => {
                 let node = &mut self.inner[i];
-                let (vantage, twins, children) = (node.vantage, node.twins.take(), node.children);
-                items.push(vantage, twins, |row| self.ancestor_distance(space, points, top, row, vantage));
+                let (vantage, coincident, children) = (node.vantage, node.coincident.take(), node.children);
+                items.push(vantage, coincident, |row| {
+                    self.ancestor_distance(space, points, top, row, vantage)
+                });
                 for child in children {
                     self.gather(space, points, top, depth + 1, child, items);
                 }
                 self.free_inner.push(i);
             }
             Err(leaf) => {
-                let mut extra = self.leaves.take_extra(leaf);
+                let mut coincident = self.leaves.take_coincident(leaf);
                 let lanes = self.leaves.lanes(leaf, ROWS);
-                // Ancestors between `top` and the leaf have taken the rows of the highest ones.
+                // Ancestors between `top` and the leaf have overwritten the rows of the highest ones.
                 let kept = depth.saturating_sub(ROWS);
                 for (lane, &id) in self.leaves.ids(leaf).iter().enumerate() {
-                    items.push(id, extra.take(), |row| {
+                    items.push(id, coincident.take(), |row| {
                         match (top.saturating_sub(ROWS)..top).find(|d| d % ROWS == row) {
                             Some(d) if d >= kept => lanes[row * CAP + lane],
                             _ => self.ancestor_distance(space, points, top, row, id),
@@ -102,15 +104,15 @@ impl MetricTree {
         items: &mut Items,
         order: &mut [u32],
     ) -> Ref {
-        // Only lane 0 of a leaf may stand for more states than one.
-        let heavy = order.iter().filter(|&&i| items.extras[i as usize].is_some()).count();
-        if order.len() <= FILL && heavy <= 1 {
-            order.sort_by_key(|&i| items.extras[i as usize].is_none());
+        // Only lane 0 of a leaf may stand for more than one state.
+        let shared = order.iter().filter(|&&i| items.coincident[i as usize].is_some()).count();
+        if order.len() <= FILL && shared <= 1 {
+            order.sort_by_key(|&i| items.coincident[i as usize].is_none());
             return self.build_leaf(items, order);
         }
         let state = |i: u32| &points[items.ids[i as usize] as usize];
         if order.iter().all(|&i| state(i) == state(order[0])) {
-            return self.build_lump(items, order);
+            return self.build_coincident_leaf(items, order);
         }
         // A state far from the parent's vantage point, hence near the rim, cuts the rest into
         // shells of little curvature.
@@ -140,12 +142,18 @@ impl MetricTree {
         };
         let ranges = [range(&distances[..half]), range(&distances[half..])];
         drop(distances);
-        let twins = items.extras[vantage].take();
+        let coincident = items.coincident[vantage].take();
         let (first, second) = rest.split_at_mut(half);
         let children = [first, second].map(|part| self.build_part(space, points, depth + 1, items, part));
         let leaves = children.iter().map(|&c| self.leaves_below(c)).sum();
-        let node =
-            Inner { vantage: id, twins, split: ranges[0].1, ranges, children, weight: Weight::new(leaves) };
+        let node = Inner {
+            vantage: id,
+            coincident,
+            split: ranges[0].1,
+            ranges,
+            children,
+            weight: Weight::new(leaves),
+        };
         if let Some(i) = self.free_inner.pop() {
             self.inner[i] = node;
             return Ref::inner(i);
@@ -160,21 +168,21 @@ impl MetricTree {
             let rows = items.rows[i as usize];
             self.leaves.push(leaf, ROWS, items.ids[i as usize], |row| rows[row]);
         }
-        self.leaves.set_extra(leaf, order.first().and_then(|&i| items.extras[i as usize].take()));
+        self.leaves.set_coincident(leaf, order.first().and_then(|&i| items.coincident[i as usize].take()));
         Ref::leaf(leaf)
     }
 
     /// A leaf for any number of equal states.
-    fn build_lump(&mut self, items: &mut Items, order: &mut [u32]) -> Ref {
+    fn build_coincident_leaf(&mut self, items: &mut Items, order: &mut [u32]) -> Ref {
         let ids = &items.ids;
         order.sort_by_key(|&i| ids[i as usize]);
         let mut all: Vec<NodeId> = order.iter().map(|&i| ids[i as usize]).collect();
         for &i in order.iter() {
-            all.extend(items.extras[i as usize].take().into_iter().flat_map(|extra| extra.ids));
+            all.extend(items.coincident[i as usize].take().into_iter().flat_map(|coincident| coincident.ids));
         }
-        // Extras have larger ids than the state they are with.
+        // Coincident states have larger ids than the state they share with.
         let first = order[0] as usize;
-        items.extras[first] = Extra::beside(items.ids[first], all, true);
+        items.coincident[first] = Coincident::sharing_with(items.ids[first], all, true);
         self.build_leaf(items, &order[..1])
     }
 }

@@ -3,14 +3,14 @@
 mod build;
 mod search;
 
-use super::collect::{Collector, Nearest, One, Within};
-use super::leaf::{CAP, Extra, Leaves};
+use super::collect::{KNearest, OneNearest, WithinRadius};
+use super::leaf::{CAP, Coincident, Leaves};
 use super::node::{Ref, Weight};
 use super::{Hit, NearestNeighbors, NodeId};
 use crate::{Space, TrueMetric};
 use build::Items;
 
-/// How many ancestors a leaf remembers the distances to.
+/// To how many ancestors a leaf stores the distances.
 const ROWS: usize = 8;
 
 /// Splits space by the distance from a state.
@@ -18,7 +18,7 @@ const ROWS: usize = 8;
 struct Inner {
     vantage: NodeId,
     /// States equal to the vantage point.
-    twins: Option<Extra>,
+    coincident: Option<Coincident>,
     /// New states at most this far go to the first child.
     split: f64,
     /// The least and greatest distance of the states below each child.
@@ -37,10 +37,10 @@ struct Step {
 }
 
 /// An exact index for any [`TrueMetric`]: it uses nothing but distances and the triangle
-/// inequality. For metrics that are costly, or that no coordinates bound.
+/// inequality. For costly metrics, and for metrics without a lower bound by coordinates.
 ///
 /// A vantage-point tree (Yianilos 1993, *Data structures and algorithms for nearest neighbor
-/// search in general metric spaces*) with buckets that remember the distances to the last eight
+/// search in general metric spaces*) with buckets that store the distances to the last eight
 /// vantage points above them (Bozkaya, Özsoyoglu 1997, *Distance-based indexing for
 /// high-dimensional metric spaces*), which excludes most of a bucket's states unmeasured.
 /// Unbalanced subtrees are rebuilt as in a scapegoat tree, so insertion takes amortised O(log² n)
@@ -52,13 +52,13 @@ pub struct MetricTree {
     inner: Vec<Inner>,
     free_inner: Vec<usize>,
     leaves: Leaves,
-    /// States that are at no finite distance from themselves, hence have no place in the tree.
-    strays: Vec<NodeId>,
-    /// The way to the last leaf.
+    /// States whose distance from themselves is not finite, which therefore have no place in the tree.
+    unmeasurable: Vec<NodeId>,
+    /// The steps down to the leaf found last.
     path: Vec<Step>,
 }
 
-/// A distance as the tree keeps it: capping changes no difference for the worse.
+/// A distance as the tree stores it: capping never enlarges a difference, so lower bounds stay valid.
 #[inline]
 fn capped(distance: f64) -> f64 {
     if distance < 1e17 { distance } else { 1e17 }
@@ -71,8 +71,8 @@ impl MetricTree {
         Self::default()
     }
 
-    /// The leaf of `state`; the way there is left in `path`. `Err` when the state is that of a
-    /// vantage point, which it joins.
+    /// The leaf of state `id`; sets `path` to the steps down to it. `Err` when the state equals a vantage
+    /// point: it then joins that.
     fn descend<C: Space>(&mut self, space: &C, points: &[C::State], id: NodeId) -> Result<usize, ()> {
         self.path.clear();
         let state = &points[id as usize];
@@ -90,8 +90,9 @@ impl MetricTree {
             let vantage = &points[node.vantage as usize];
             let distance = capped(space.distance(vantage, state));
             if distance == 0.0 && vantage == state {
-                let twins = node.twins.get_or_insert_with(|| Extra { ids: Vec::new(), same: true });
-                node.vantage = twins.join(node.vantage, id);
+                let coincident =
+                    node.coincident.get_or_insert_with(|| Coincident { ids: Vec::new(), same: true });
+                node.vantage = coincident.join(node.vantage, id);
                 return Err(());
             }
             let side = usize::from(distance > node.split);
@@ -105,12 +106,12 @@ impl MetricTree {
     fn insert<C: Space>(&mut self, space: &C, points: &[C::State], id: NodeId) {
         let state = &points[id as usize];
         if !space.distance(state, state).is_finite() {
-            self.strays.push(id);
+            self.unmeasurable.push(id);
             return;
         }
         let Ok(leaf) = self.descend(space, points, id) else { return };
         let ids = self.leaves.ids(leaf);
-        if self.leaves.head(leaf).has_extra && points[ids[0] as usize] == *state {
+        if self.leaves.head(leaf).has_coincident && points[ids[0] as usize] == *state {
             self.leaves.join(leaf, id, true);
             return;
         }
@@ -124,12 +125,12 @@ impl MetricTree {
         }
         self.rebuild(space, points, self.path.len(), Ref::leaf(leaf), Some(id));
         // The highest node that is out of balance.
-        let lopsided = |step: &Step| {
+        let unbalanced = |step: &Step| {
             let node = &self.inner[step.node];
             let [a, b] = node.children.map(|child| self.leaves_below(child));
-            node.weight.is_lopsided(a.max(b))
+            node.weight.is_unbalanced(a.max(b))
         };
-        if let Some(depth) = self.path.iter().position(lopsided) {
+        if let Some(depth) = self.path.iter().position(unbalanced) {
             self.rebuild(space, points, depth, Ref::inner(self.path[depth].node), None);
         }
     }
@@ -138,7 +139,7 @@ impl MetricTree {
         r.get().map_or(1, |i| self.inner[i].weight.leaves)
     }
 
-    /// Rebuilds the subtree `r`, which is at `depth` of the path, with one more state.
+    /// Rebuilds the subtree `r`, which is at `depth` of the path, with the state `more` added.
     fn rebuild<C: Space>(
         &mut self,
         space: &C,
@@ -178,24 +179,14 @@ where
     }
 
     fn nearest(&self, space: &C, points: &[C::State], q: &C::State) -> Option<Hit> {
-        let mut one = One::new();
-        self.search(space, points, q, &mut one);
-        one.get()
+        OneNearest::of(|nearest| self.search(space, points, q, nearest))
     }
 
     fn k_nearest(&self, space: &C, points: &[C::State], q: &C::State, k: usize, out: &mut Vec<Hit>) {
-        let mut nearest = Nearest::new(k, out);
-        if nearest.limit() >= 0.0 {
-            self.search(space, points, q, &mut nearest);
-        }
-        nearest.finish();
+        KNearest::of(k, out, |nearest| self.search(space, points, q, nearest));
     }
 
     fn within(&self, space: &C, points: &[C::State], q: &C::State, radius: f64, out: &mut Vec<Hit>) {
-        let mut within = Within::new(radius, out);
-        if within.limit() >= 0.0 {
-            self.search(space, points, q, &mut within);
-        }
-        within.finish();
+        WithinRadius::of(radius, out, |within| self.search(space, points, q, within));
     }
 }

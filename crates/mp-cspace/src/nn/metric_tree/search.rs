@@ -1,7 +1,7 @@
-//! The search.
+//! The search of the metric tree.
 
 use super::super::collect::Collector;
-use super::super::leaf::{CAP, Extra, WIDE};
+use super::super::leaf::{CAP, Coincident, WIDE};
 use super::super::node::Ref;
 use super::super::{Hit, NodeId};
 use super::{MetricTree, ROWS, capped};
@@ -21,7 +21,7 @@ struct Search<'a, C: Space, L> {
 }
 
 impl MetricTree {
-    /// Offers `collector` every state that may interest it.
+    /// Offers `collector` every state that it may want.
     pub(super) fn search<C: Space>(
         &self,
         space: &C,
@@ -29,7 +29,7 @@ impl MetricTree {
         query: &C::State,
         collector: &mut impl Collector,
     ) {
-        for &id in &self.strays {
+        for &id in &self.unmeasurable {
             collector.offer(Hit { id, distance: space.distance(&points[id as usize], query) });
         }
         if let Some(root) = self.root {
@@ -46,7 +46,7 @@ impl<C: Space, L: Collector> Search<'_, C, L> {
             Ok(i) => i,
         };
         let node = &self.tree.inner[i];
-        let distance = capped(self.offer(node.vantage, node.twins.as_ref()));
+        let distance = capped(self.offer(node.vantage, node.coincident.as_ref()));
         let row = depth % ROWS;
         let saved = std::mem::replace(&mut self.rows[row], distance as f32);
         self.largest = self.largest.max(distance);
@@ -73,13 +73,13 @@ impl<C: Space, L: Collector> Search<'_, C, L> {
         let bounds = &mut bounds[..len];
         let mut reach = self.reach();
         let mut start = 0;
-        if let Some(extra) = self.tree.leaves.extra(leaf)
+        if let Some(coincident) = self.tree.leaves.coincident(leaf)
             && bounds[0] <= reach
         {
-            self.offer(ids[0], Some(extra));
+            self.offer(ids[0], Some(coincident));
             start = 1;
         }
-        // The most promising first: it may spare the others.
+        // The most promising first: it may exclude the others.
         let mut first = start;
         for lane in start..len {
             if bounds[lane] < bounds[first] {
@@ -99,22 +99,22 @@ impl<C: Space, L: Collector> Search<'_, C, L> {
         }
     }
 
-    /// The largest bound of a lane that is of interest, with the rounding of `f32`.
+    /// The largest bound of a lane that may be wanted, with the rounding of `f32`.
     #[inline]
     fn reach(&self) -> f32 {
         let limit = self.collector.limit();
         (limit + 5e-7 * (self.largest + limit)) as f32
     }
 
-    /// Offers a state and those equal to it; its distance.
+    /// Offers a state and those equal to it; returns its distance.
     #[inline]
-    fn offer(&mut self, id: NodeId, twins: Option<&Extra>) -> f64 {
+    fn offer(&mut self, id: NodeId, coincident: Option<&Coincident>) -> f64 {
         let distance = self.space.distance(&self.points[id as usize], self.query);
         if self.collector.offer(Hit { id, distance })
-            && let Some(twins) = twins
+            && let Some(coincident) = coincident
         {
-            // In the order of ids: one that is refused speaks for the rest.
-            let _ = twins.ids.iter().all(|&id| self.collector.offer(Hit { id, distance }));
+            // In the order of ids: after the first one refused all would be.
+            let _ = coincident.ids.iter().all(|&id| self.collector.offer(Hit { id, distance }));
         }
         distance
     }

@@ -1,4 +1,4 @@
-//! What is told by `tracing`: events at the level of debugging, from functions that are compiled once.
+//! The `tracing` events of the crate: at debug level, from functions that are compiled once.
 
 use crate::{Progress, StopReason, path::PathReport};
 
@@ -20,7 +20,7 @@ pub(crate) fn verified(report: &PathReport) {
     }
 }
 
-/// A path was made simpler: how many states it had and has.
+/// A path was simplified: its numbers of states before and after.
 pub(crate) fn simplified(states: [usize; 2]) {
     tracing::debug!(from = states[0], to = states[1], "simplified");
 }

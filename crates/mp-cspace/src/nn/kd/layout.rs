@@ -1,15 +1,15 @@
-//! The part of a layout that a tree looks at.
+//! The part of a layout that a tree uses.
 
 use super::ANY;
 use crate::layout::{Layout, Symmetry};
 use crate::nn::Embed;
 
-/// What a tree knows of its space, fixed by the first state.
+/// The coordinates of a space as a tree uses them, fixed by the first state.
 #[derive(Clone, Debug)]
-pub(super) struct Shape<const K: usize> {
-    /// Coordinates looked at.
+pub(super) struct TreeLayout<const K: usize> {
+    /// Number of coordinates used.
     pub(super) dim: usize,
-    /// Coordinates of the layout.
+    /// Number of coordinates of the layout.
     full: usize,
     /// The group of each coordinate.
     pub(super) group: [u32; K],
@@ -25,7 +25,7 @@ pub(super) struct Shape<const K: usize> {
     origin: [f64; K],
 }
 
-impl<const K: usize> Default for Shape<K> {
+impl<const K: usize> Default for TreeLayout<K> {
     fn default() -> Self {
         Self {
             dim: 0,
@@ -40,49 +40,49 @@ impl<const K: usize> Default for Shape<K> {
     }
 }
 
-impl<const K: usize> Shape<K> {
-    /// The shape of `space`, its first state being `first`.
+impl<const K: usize> TreeLayout<K> {
+    /// The layout of `space`, relative to the state `first`.
     pub(super) fn new<C: Embed>(space: &C, first: &C::State) -> Self {
         let Layout { groups, symmetries, slack } = space.layout();
         let full = groups.last().copied().unwrap_or(0);
         let dim = if K == ANY { full.min(K) } else { K };
-        let mut shape = Self { dim, full, slack, ..Self::default() };
+        let mut layout = Self { dim, full, slack, ..Self::default() };
         let mut start = 0;
         for end in groups {
             let end = end.min(dim);
             if end > start {
-                shape.group[start..end].fill(shape.ends.len() as u32);
-                shape.ends.push(end);
+                layout.group[start..end].fill(layout.ends.len() as u32);
+                layout.ends.push(end);
                 start = end;
             }
         }
-        // Coordinates past the layout's are zero, and may belong anywhere.
-        if shape.ends.is_empty() {
-            shape.ends.push(dim);
+        // Coordinates past the layout's are zero, and may belong to any group.
+        if layout.ends.is_empty() {
+            layout.ends.push(dim);
         }
-        shape.group[start..].fill(shape.ends.len() as u32 - 1);
-        let last = shape.ends.len() - 1;
-        shape.ends[last] = dim;
-        let mut origin = shape.embed(space, first);
+        layout.group[start..].fill(layout.ends.len() as u32 - 1);
+        let last = layout.ends.len() - 1;
+        layout.ends[last] = dim;
+        let mut origin = layout.embed(space, first);
         for s in symmetries {
             match s {
                 Symmetry::Period { coordinate, period } if coordinate < dim => {
-                    shape.period[coordinate] = period;
+                    layout.period[coordinate] = period;
                     origin[coordinate] = 0.0;
                 }
                 Symmetry::Antipode { start, end } if start < dim => {
                     let end = end.min(dim);
-                    shape.antipodes.push((start, end));
+                    layout.antipodes.push((start, end));
                     origin[start..end].fill(0.0);
                 }
                 _ => {}
             }
         }
-        shape.origin = origin;
-        shape
+        layout.origin = origin;
+        layout
     }
 
-    /// The coordinates of `state` that the tree looks at, relative to the origin; all finite.
+    /// The coordinates of `state` that the tree uses, relative to the origin; all finite.
     #[inline]
     pub(super) fn embed<C: Embed>(&self, space: &C, state: &C::State) -> [f64; K] {
         let mut x = [0.0; K];
@@ -98,7 +98,7 @@ impl<const K: usize> Shape<K> {
             x.copy_from_slice(&all[..K]);
         }
         for (x, o) in x.iter_mut().zip(&self.origin) {
-            // Clamping never moves coordinates apart, and leaves room to square them in `f32`.
+            // Clamping never moves coordinates apart, and keeps their squares finite in `f32`.
             *x = if x.is_nan() { 0.0 } else { x.clamp(-1e17, 1e17) } - o;
         }
         x
