@@ -1,18 +1,17 @@
 //! Answers for people: what is hit, and where it would be free.
 
+use crate::shells::{Shells, search_shells};
 use crate::{Placement, RigidBody};
 use mp_collide::Contact;
 use mp_cspace::{Clearance, Space};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
-/// The first shell of the search, relative to the robot's size; each is larger than the last by
-/// [`GROWTH`].
+/// The radius of the first shell of a search, as a part of the robot's size.
 const FIRST_SHELL: f64 = 1e-3;
+/// How many times as large each shell is as the last.
 const GROWTH: f64 = 1.4;
 const MAX_SHELLS: usize = 100;
-/// How often the way back to the start of the search is halved.
-const HALVINGS: usize = 24;
 
 impl<P: Placement> RigidBody<P> {
     /// The obstacles the robot touches at `q`, in the order they were given, with an estimate of how deep
@@ -20,12 +19,12 @@ impl<P: Placement> RigidBody<P> {
     pub fn explain(&mut self, q: &P::State) -> Vec<Contact> {
         let pose = P::pose(q);
         let shared = &*self.shared;
-        let mut contacts = shared.scene.contacts(&mut self.query, &shared.robot, &pose);
-        if shared.shape.radius == 0.0 {
+        let mut contacts = shared.obstacles.scene.contacts(&mut self.query, &shared.robot, &pose);
+        if shared.radii.radius == 0.0 {
             // A point inside a solid touches nothing, but is as deep as the surface is far.
             let p = Point3::from(pose.translation.vector);
             for (body, solid) in shared.solids() {
-                if let Some(obstacle) = shared.scene.body(*body)
+                if let Some(obstacle) = shared.obstacles.scene.body(*body)
                     && contacts.iter().all(|c| c.body != *body)
                     && solid.contains(&p)
                 {
@@ -74,59 +73,21 @@ impl<P: Placement> RigidBody<P> {
                 && robot.clearance(p, margin.max(f64::MIN_POSITIVE)) >= margin.max(f64::MIN_POSITIVE)
                 && (!outside || robot.enclosing(p).is_empty())
         };
-        [true, false].into_iter().find_map(|outside| {
-            if suits(self, q, outside) {
-                return Some(q.clone());
-            }
-            let found = self.search_outward(q, space, |robot, p| suits(robot, p, outside))?;
-            // Back toward q, as far as it stays free.
-            let (mut free, mut hit) = (1.0, 0.0);
-            let mut best = found.clone();
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (free + hit);
-                let p = space.interpolate(q, &found, middle);
-                if suits(self, &p, outside) {
-                    (free, best) = (middle, p);
-                } else {
-                    hit = middle;
-                }
-            }
-            Some(best)
-        })
-    }
-
-    /// The configuration nearest to `q` among those that suit in the innermost shell that has any.
-    fn search_outward<C: Space<State = P::State>>(
-        &mut self,
-        q: &P::State,
-        space: &C,
-        mut suits: impl FnMut(&mut Self, &P::State) -> bool,
-    ) -> Option<P::State> {
         let pose = P::pose(q);
-        let far = space.extent();
-        let size = if self.radius() > 0.0 { self.radius() } else { 0.01 * far };
-        let mut reach = FIRST_SHELL * size;
-        for shell in 0..MAX_SHELLS {
-            let mut best: Option<(f64, P::State)> = None;
-            for (step, turn) in directions::<P>(shell) {
-                let angle = (reach / size).min(PI);
+        let size = if self.radius() > 0.0 { self.radius() } else { 0.01 * space.extent() };
+        let shells = Shells { first: FIRST_SHELL * size, growth: GROWTH, most: MAX_SHELLS };
+        let candidates = |shell: usize, radius: f64| {
+            let angle = (radius / size).min(PI);
+            let moved = |(step, turn): (Vector3<f64>, Vector3<f64>)| {
                 let rotation = UnitQuaternion::from_scaled_axis(turn * angle) * pose.rotation;
-                let translation = Translation3::from(pose.translation.vector + step * reach);
-                let p = P::configuration(&Isometry3::from_parts(translation, rotation));
-                let distance = space.distance(q, &p);
-                if best.as_ref().is_none_or(|(d, _)| distance < *d) && suits(self, &p) {
-                    best = Some((distance, p));
-                }
-            }
-            if let Some((_, p)) = best {
-                return Some(p);
-            }
-            if reach > far {
-                return None;
-            }
-            reach *= GROWTH;
-        }
-        None
+                let translation = Translation3::from(pose.translation.vector + step * radius);
+                P::configuration(&Isometry3::from_parts(translation, rotation))
+            };
+            directions::<P>(shell).into_iter().map(moved).collect()
+        };
+        [true, false]
+            .into_iter()
+            .find_map(|outside| search_shells(space, q, &shells, candidates, |p| suits(self, p, outside)))
     }
 }
 

@@ -22,20 +22,21 @@ impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
         let inside = self.point_inside(&pose);
         // A point deep inside has its surface farther than the reach.
         let enough = if inside { f64::INFINITY } else { reach };
-        let (clearance, nearest) = shared.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
-        let Some(body) = nearest.and_then(|id| shared.scene.body(id)) else { return clearance };
-        let (value, at, way) = if clearance > 0.0 {
+        let (clearance, nearest) =
+            shared.obstacles.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
+        let Some(body) = nearest.and_then(|id| shared.obstacles.scene.body(id)) else { return clearance };
+        let (value, at, direction) = if clearance > 0.0 {
             let apart = self.query.distance(&shared.robot, &pose, body.mesh(), body.pose());
             let sign = if inside { -1.0 } else { 1.0 };
             (sign * clearance, apart.point_a, (apart.point_a - apart.point_b) * sign)
         } else {
-            match self.way_out(&pose) {
+            match self.contact_depth(&pose) {
                 Some(found) => found,
                 None => return 0.0,
             }
         };
-        if let Some(way) = way.try_normalize(0.0) {
-            write::<P>(&pose, &at, &way, gradient);
+        if let Some(direction) = direction.try_normalize(0.0) {
+            write_gradient::<P>(&pose, &at, &direction, gradient);
         }
         value
     }
@@ -43,10 +44,10 @@ impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
 
 impl<P: Placement> RigidBody<P> {
     /// Minus the depth (m) of the first contact, where, and the way out.
-    fn way_out(&mut self, pose: &Isometry3<f64>) -> Option<(f64, Point3<f64>, Vector3<f64>)> {
+    fn contact_depth(&mut self, pose: &Isometry3<f64>) -> Option<(f64, Point3<f64>, Vector3<f64>)> {
         let shared = &*self.shared;
-        let ([a, b, c], touching) = shared.placed.iter().find_map(|(id, mesh)| {
-            let body = shared.scene.body(*id)?;
+        let ([a, b, c], touching) = shared.obstacles.placed.iter().find_map(|(id, mesh)| {
+            let body = shared.obstacles.scene.body(*id)?;
             let (own, other) =
                 self.query.intersecting_triangles(&shared.robot, pose, body.mesh(), body.pose())?;
             Some((mesh.triangle(other), shared.robot_mesh.triangle(own).map(|p| pose * p)))
@@ -56,7 +57,7 @@ impl<P: Placement> RigidBody<P> {
             true => normal,
             false => Vector3::new(normal.x, normal.y, 0.0).try_normalize(1e-9)?,
         };
-        let corners = &shared.shape.corners;
+        let corners = &shared.radii.corners;
         let middle = pose * Point3::from(corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / 8.0);
         let normal = if (middle - a).dot(&normal) < 0.0 { -normal } else { normal };
         let height = |p: &Point3<f64>| (p - a).dot(&normal);
@@ -66,9 +67,14 @@ impl<P: Placement> RigidBody<P> {
 }
 
 /// The derivative of the distance in the direction `way` (unit, world) of a point `at` (world) of the body.
-fn write<P: Placement>(pose: &Isometry3<f64>, at: &Point3<f64>, way: &Vector3<f64>, gradient: &mut [f64]) {
-    let turning = (at.coords - pose.translation.vector).cross(way);
-    let moves = P::MOVES.iter().map(|&axis| way[axis]);
+fn write_gradient<P: Placement>(
+    pose: &Isometry3<f64>,
+    at: &Point3<f64>,
+    direction: &Vector3<f64>,
+    gradient: &mut [f64],
+) {
+    let turning = (at.coords - pose.translation.vector).cross(direction);
+    let moves = P::MOVES.iter().map(|&axis| direction[axis]);
     let numbers = moves.chain(P::TURNS.iter().map(|&axis| turning[axis]));
     gradient.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
 }

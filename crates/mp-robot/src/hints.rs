@@ -9,8 +9,8 @@ impl<P: Placement> RigidBody<P> {
     /// The first obstacle touched at `q`, and which of its triangles.
     pub(crate) fn hit(&mut self, q: &P::State) -> Option<(usize, usize)> {
         let (pose, shared) = (P::pose(q), &*self.shared);
-        shared.placed.iter().enumerate().find_map(|(obstacle, (id, _))| {
-            let body = shared.scene.body(*id)?;
+        shared.obstacles.placed.iter().enumerate().find_map(|(obstacle, (id, _))| {
+            let body = shared.obstacles.scene.body(*id)?;
             let (_, triangle) =
                 self.query.intersecting_triangles(&shared.robot, &pose, body.mesh(), body.pose())?;
             Some((obstacle, triangle))
@@ -20,12 +20,12 @@ impl<P: Placement> RigidBody<P> {
     /// A triangle (world) of the first obstacle touched at `q`.
     fn hit_triangle(&mut self, q: &P::State) -> Option<[Point3<f64>; 3]> {
         let (obstacle, triangle) = self.hit(q)?;
-        Some(self.shared.placed[obstacle].1.triangle(triangle))
+        Some(self.shared.obstacles.placed[obstacle].1.triangle(triangle))
     }
 
     /// Any triangle (world) of any obstacle, each obstacle as likely.
     fn any_triangle(&self, rng: &mut Rng) -> Option<[Point3<f64>; 3]> {
-        let placed = &self.shared.placed;
+        let placed = &self.shared.obstacles.placed;
         if placed.is_empty() {
             return None;
         }

@@ -40,23 +40,27 @@
 
 mod arm;
 mod bounds;
+mod counters;
 mod explain;
+mod features;
 mod gradient;
 mod hints;
 mod moving;
-mod outlines;
+mod obstacles;
 mod placement;
 mod planar;
 mod rigid;
-mod solid;
+mod shells;
+mod solid_obstacle;
 mod verify;
 
 pub use arm::{
     Arm, ArmContact, ArmError, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Kinematics, Link, Mimic,
     UrdfError,
 };
+pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
-pub use placement::{Placement, Planar, Point, Shape, Spatial};
+pub use placement::{BodyRadii, Placement, Planar, Point, Spatial};
 pub use planar::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
-pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
+pub use rigid::{FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
 pub use verify::Verifier;

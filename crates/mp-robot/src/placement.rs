@@ -8,9 +8,9 @@ use mp_geom::{TriMesh, six_from_pose};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::fmt::Debug;
 
-/// What motion bounds know of the shape of a body. Lengths in metres, about the origin of its frame.
+/// What motion bounds know of the radii of a body. Lengths in metres, about the origin of its frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub struct BodyRadii {
     /// The largest distance of a point from the origin.
     pub radius: f64,
     /// The largest distance of a point from the Z axis.
@@ -19,8 +19,8 @@ pub struct Shape {
     pub corners: [Point3<f64>; 8],
 }
 
-impl Shape {
-    /// The shape of `mesh`.
+impl BodyRadii {
+    /// The radii of `mesh`.
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
         let from_z = mesh.vertices().iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
@@ -34,7 +34,7 @@ impl Shape {
     /// An upper bound on the distance of a point of the body from the line through the origin along the
     /// unit vector `axis`.
     #[must_use]
-    pub fn arm(&self, axis: &Vector3<f64>) -> f64 {
+    pub fn radius_about(&self, axis: &Vector3<f64>) -> f64 {
         // The distance from a line is convex: over a box it is largest at a corner.
         let square = self.corners.iter().map(|c| c.coords.cross(axis).norm_squared()).fold(0.0, f64::max);
         square.sqrt().min(self.radius)
@@ -52,10 +52,10 @@ pub trait Placement: Copy + Debug + Default + Send + Sync + 'static {
     /// The configuration nearest to a pose: what of it the robot cannot do is left out.
     fn configuration(pose: &Isometry3<f64>) -> Self::State;
 
-    /// An upper bound (m) on the length of the way of any point of `shape`, from `from` to `to` along the
+    /// An upper bound (m) on the length of the way of any point of `radii`, from `from` to `to` along the
     /// interpolation of the space: translation on a straight line, rotation about a fixed axis by the
     /// shorter way, both at constant speed.
-    fn travel(shape: &Shape, from: &Self::State, to: &Self::State) -> f64;
+    fn travel(radii: &BodyRadii, from: &Self::State, to: &Self::State) -> f64;
 
     /// World axes along which it can move.
     const MOVES: &'static [usize];
@@ -86,21 +86,21 @@ impl Placement for Spatial {
     /// the origin plus `θ·d` across the axis; with `v` split along and across the axis,
     /// `√(v∥² + (v⊥ + θ·d)²)` bounds its speed. With `d` at most the radius this is at most the customary
     /// `‖Δp‖ + radius·θ`.
-    fn travel(shape: &Shape, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+    fn travel(radii: &BodyRadii, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let velocity = to.translation.vector - from.translation.vector;
         let angle = rotation_angle(&from.rotation, &to.rotation);
         // Along the axis of the turn, in the frame of the body; its length is the sine of half the angle.
         let turn = (from.rotation.inverse() * to.rotation).imag();
         let sine = turn.norm();
         if sine < 1e-6 {
-            return (velocity.norm() + shape.radius * angle) * ROUND_UP;
+            return (velocity.norm() + radii.radius * angle) * ROUND_UP;
         }
         let axis = turn / sine;
         // The axis is known to 1e-16/sine rad; what that moves an arm by is added.
-        let arm = shape.arm(&axis) + shape.radius * 1e-9;
+        let lever = radii.radius_about(&axis) + radii.radius * 1e-9;
         let along = velocity.dot(&(from.rotation * axis));
         let across = (velocity.norm_squared() - along * along).max(0.0).sqrt() + velocity.norm() * 1e-9;
-        along.hypot(across + arm * angle) * ROUND_UP
+        along.hypot(across + lever * angle) * ROUND_UP
     }
 
     const MOVES: &'static [usize] = &[0, 1, 2];
@@ -124,9 +124,9 @@ impl Placement for Planar {
         Se2State::new(x, y, yaw)
     }
     #[inline]
-    fn travel(shape: &Shape, from: &Se2State, to: &Se2State) -> f64 {
+    fn travel(radii: &BodyRadii, from: &Se2State, to: &Se2State) -> f64 {
         let angle = angle_difference(from.angle, to.angle).abs();
-        ((to.translation - from.translation).norm() + shape.radius_about_z * angle) * ROUND_UP
+        ((to.translation - from.translation).norm() + radii.radius_about_z * angle) * ROUND_UP
     }
 
     const MOVES: &'static [usize] = &[0, 1];
@@ -149,7 +149,7 @@ impl Placement for Point {
         pose.translation.vector
     }
     #[inline]
-    fn travel(_: &Shape, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
+    fn travel(_: &BodyRadii, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
         (to - from).norm() * ROUND_UP
     }
 
@@ -170,11 +170,11 @@ mod tests {
     /// the fastest vertex), over the whole motion and over its parts.
     fn check<P: Placement, C: Space<State = P::State>>(
         space: &C,
-        (mesh, shape): (&TriMesh, &Shape),
+        (mesh, radii): (&TriMesh, &BodyRadii),
         from: &P::State,
         to: &P::State,
     ) -> Result<f64, TestCaseError> {
-        let bound = P::travel(shape, from, to);
+        let bound = P::travel(radii, from, to);
         let poses: Vec<_> =
             (0..=STEPS).map(|i| P::pose(&space.interpolate(from, to, i as f64 / STEPS as f64))).collect();
         let mut longest = 0.0_f64;
@@ -206,22 +206,22 @@ mod tests {
         #[test]
         fn no_point_travels_farther_in_space(mesh in mesh(), a in pose(), b in pose(), small in -9.0..0.0_f64) {
             let space = Se3::new([-5.0; 3], [5.0; 3]).unwrap();
-            let shape = Shape::of(&mesh);
-            check::<Spatial, _>(&space, (&mesh, &shape), &a, &b)?;
+            let radii = BodyRadii::of(&mesh);
+            check::<Spatial, _>(&space, (&mesh, &radii), &a, &b)?;
             let near = a.lerp_slerp(&b, 10.0_f64.powf(small));
-            check::<Spatial, _>(&space, (&mesh, &shape), &a, &near)?;
+            check::<Spatial, _>(&space, (&mesh, &radii), &a, &near)?;
             let customary = |p: &Isometry3<f64>, q: &Isometry3<f64>| {
                 (p.translation.vector - q.translation.vector).norm()
-                    + shape.radius * rotation_angle(&p.rotation, &q.rotation)
+                    + radii.radius * rotation_angle(&p.rotation, &q.rotation)
             };
-            prop_assert!(Spatial::travel(&shape, &a, &b) <= customary(&a, &b) * (1.0 + 1e-8));
+            prop_assert!(Spatial::travel(&radii, &a, &b) <= customary(&a, &b) * (1.0 + 1e-8));
         }
 
         #[test]
         fn no_point_travels_farther_in_the_plane(mesh in mesh(), a in prop::array::uniform3(-3.1..3.1_f64), b in prop::array::uniform3(-3.1..3.1_f64)) {
             let space = Se2::new([-5.0; 2], [5.0; 2]).unwrap();
             let [a, b] = [a, b].map(|[x, y, t]| Se2State::new(x, y, t));
-            check::<Planar, _>(&space, (&mesh, &Shape::of(&mesh)), &a, &b)?;
+            check::<Planar, _>(&space, (&mesh, &BodyRadii::of(&mesh)), &a, &b)?;
         }
 
         #[test]
@@ -239,17 +239,17 @@ mod tests {
     #[test]
     fn the_bound_is_tight() {
         let rod = mp_geom::primitives::cuboid(4.0, 0.02, 0.02).unwrap();
-        let shape = Shape::of(&rod);
+        let radii = BodyRadii::of(&rod);
         let space = Se3::new([-5.0; 3], [5.0; 3]).unwrap();
         let turn = |six| (Isometry3::identity(), pose_from_six(six));
         let (a, b) = turn([0.0, 0.0, 0.0, 2.0, 0.0, 0.0]);
-        assert!(check::<Spatial, _>(&space, (&rod, &shape), &a, &b).unwrap() > 0.999);
+        assert!(check::<Spatial, _>(&space, (&rod, &radii), &a, &b).unwrap() > 0.999);
         let (a, b) = turn([0.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
-        assert!(Spatial::travel(&shape, &a, &b) < 0.03);
+        assert!(Spatial::travel(&radii, &a, &b) < 0.03);
         let (a, b) = turn([3.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        assert!((Spatial::travel(&shape, &a, &b) - 3.0).abs() < 1e-11);
+        assert!((Spatial::travel(&radii, &a, &b) - 3.0).abs() < 1e-11);
         let line = Rn::<3>::new([0.0; 3], [1.0; 3]).unwrap();
         let (a, b) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(1.0, 0.0, 0.0));
-        assert!(check::<Point, _>(&line, (&rod, &shape), &a, &b).unwrap() > 0.999);
+        assert!(check::<Point, _>(&line, (&rod, &radii), &a, &b).unwrap() > 0.999);
     }
 }

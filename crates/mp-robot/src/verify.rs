@@ -1,11 +1,9 @@
 //! The independent check of motions.
 
-use crate::rigid::Reference;
-use crate::solid::Solid;
+use crate::solid_obstacle::SolidObstacle;
 use crate::{Placement, RigidBody};
 use mp_collide::reference::{RefMesh, Sweep, SweepCheck};
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space};
-use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -30,7 +28,7 @@ pub struct Verifier<'c, C, P> {
     robot: Arc<RefMesh>,
     world: Option<Arc<RefMesh>>,
     /// For a point; no others.
-    solids: Vec<Solid>,
+    solids: Vec<SolidObstacle>,
     radius: f64,
     tolerance: f64,
     sweep: Sweep,
@@ -63,17 +61,12 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             return Err(ParameterError { name, expected, value: tolerance });
         }
         let shared = &robot.shared;
-        let reference = shared.reference.get_or_init(|| Reference {
-            robot: Arc::new(RefMesh::new(&shared.robot_mesh)),
-            world: TriMesh::merged(shared.placed.iter().map(|(_, mesh)| &**mesh))
-                .map(|mesh| Arc::new(RefMesh::new(&mesh))),
-        });
-        let solids = if shared.shape.radius == 0.0 { shared.solids() } else { &[] };
+        let solids = if shared.radii.radius == 0.0 { shared.solids() } else { &[] };
         let from_origin = |p: &Point3<f64>| p.coords.norm();
         Ok(Self {
             space,
-            robot: Arc::clone(&reference.robot),
-            world: reference.world.clone(),
+            robot: shared.reference(),
+            world: shared.obstacles.reference(),
             solids: solids.iter().map(|(_, solid)| solid.clone()).collect(),
             radius: shared.robot_mesh.vertices().iter().map(from_origin).fold(0.0, f64::max),
             tolerance,

@@ -132,7 +132,7 @@ fn parted() -> Vec<common::Obstacle> {
 
 /// What is touched is touched with nothing else around, and nothing is where the robot is free; the far are free, turned
 /// anyhow.
-fn outlines<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBody<P>) {
+fn obstacle_geometry<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBody<P>) {
     let parts: Vec<TriMesh> =
         parted().iter().flat_map(|(_, mesh, pose)| mesh.transformed(pose).parts()).collect();
     assert_eq!(body.obstacles().len(), parts.len());
@@ -166,8 +166,8 @@ fn outlines<P: Placement, C: Space<State = P::State>>(space: &C, mut body: Rigid
 #[test]
 fn outlines_tell_what_is_touched_and_what_is_far() {
     let (low, high) = ([-4.0; 3], [4.0; 3]);
-    outlines(&Se3::new(low, high).unwrap(), FreeFlyer::new(&robot(), parted()).unwrap());
-    outlines(&Se2::new([-4.0; 2], [4.0; 2]).unwrap(), PlanarFlyer::new(&robot(), parted()).unwrap());
+    obstacle_geometry(&Se3::new(low, high).unwrap(), FreeFlyer::new(&robot(), parted()).unwrap());
+    obstacle_geometry(&Se2::new([-4.0; 2], [4.0; 2]).unwrap(), PlanarFlyer::new(&robot(), parted()).unwrap());
 }
 
 #[test]

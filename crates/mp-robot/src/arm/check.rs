@@ -11,7 +11,7 @@ impl Arm {
     /// Whether `q`, a configuration, is in collision.
     fn collides(&mut self, q: &[f64]) -> bool {
         self.counters.collision_checks += 1;
-        let Self { robot, world, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, .. } = self;
         if !robot.kinematics.is_configuration(q) {
             return true;
         }
@@ -20,7 +20,7 @@ impl Arm {
         // What is farthest from the base moves most.
         let moving = robot.bodies.iter().rev().filter(|body| body.frame > 0);
         for body in moving {
-            if world.scene.collides(query, &body.tree, &frames[body.frame]) {
+            if obstacles.scene.collides(query, &body.tree, &frames[body.frame]) {
                 return true;
             }
         }
@@ -47,7 +47,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     /// The least of the distances of links to obstacles and to each other.
     fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
         self.counters.clearance_checks += 1;
-        let Self { robot, world, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, .. } = self;
         if !robot.kinematics.is_configuration(q.as_slice()) {
             return 0.0;
         }
@@ -57,7 +57,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         let mut least = f64::INFINITY;
         for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
             let limit = enough.min(least);
-            least = least.min(world.scene.clearance(query, &body.tree, &frames[body.frame], limit).0);
+            least = least.min(obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0);
             if least <= 0.0 {
                 return 0.0;
             }
@@ -80,14 +80,14 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
 }
 
 /// How much of a motion is shown to be clear.
-struct Cover {
+struct ProvenPart {
     margin: f64,
     half: f64,
     /// To either side of the middle, as a fraction of the motion.
     part: f64,
 }
 
-impl Cover {
+impl ProvenPart {
     /// Takes into account a distance that changes by at most `near` over half the interval and at most `far`
     /// over the whole motion; over a smaller part of the interval by a smaller part of `near`. It is at least
     /// `known`, and otherwise to be asked for. An answer when the rest need not be looked at.
@@ -129,15 +129,15 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         if from.len() != kinematics.dof() || to.len() != kinematics.dof() {
             return f64::INFINITY;
         }
-        let ways = |i: usize| kinematics.way(i, from, to);
+        let travels = |i: usize| kinematics.travel(i, from, to);
         // `max` would lose NaN.
-        if !(0..kinematics.dof()).all(|i| ways(i).is_finite()) {
+        if !(0..kinematics.dof()).all(|i| travels(i).is_finite()) {
             return f64::INFINITY;
         }
-        let links = robot.bodies.iter().map(|body| body.chain.whole(ways)).fold(0.0, f64::max);
+        let links = robot.bodies.iter().map(|body| body.chain.whole(travels)).fold(0.0, f64::max);
         let pairs = robot.pairs.iter().filter(|pair| pair.steps.iter().all(|steps| *steps > 0)).map(|pair| {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i].chain);
-            a.part(pair.steps[0], ways) + b.part(pair.steps[1], ways)
+            a.part(pair.steps[0], travels) + b.part(pair.steps[1], travels)
         });
         pairs.fold(links, f64::max)
     }
@@ -146,7 +146,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Q>) -> IntervalClearance {
         self.counters.clearance_checks += 1;
         let [from, to, middle] = [interval.from, interval.to, interval.middle].map(Q::as_slice);
-        let Self { robot, world, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, .. } = self;
         let kinematics = &robot.kinematics;
         if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
             return IntervalClearance::Collision { at: 0.0 };
@@ -156,21 +156,22 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         scratch.balls.clear();
         scratch.far.clear();
         scratch.near.clear();
-        let ways = |i: usize| kinematics.way(i, from, to);
+        let travels = |i: usize| kinematics.travel(i, from, to);
         for body in &robot.bodies {
             let ball = body.ball_at(&scratch.frames);
-            body.chain.far(ways, &mut scratch.far);
-            body.chain.near(|i| ways(i) * interval.half, &ball, &scratch.axes, &mut scratch.near);
+            body.chain.far(travels, &mut scratch.far);
+            body.chain.near(|i| travels(i) * interval.half, &ball, &scratch.axes, &mut scratch.near);
             scratch.balls.push(ball);
         }
         let frames = &scratch.frames;
-        let mut cover = Cover { margin: interval.margin, half: interval.half, part: f64::INFINITY };
+        let mut proven = ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
         for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
             let last = body.first + body.chain.steps.len();
             let (near, far) = (scratch.near[last], scratch.far[last]);
-            let clearance = |limit| world.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
-            if let Some(room) = cover.add(near, far, f64::NEG_INFINITY, clearance) {
-                return room;
+            let clearance =
+                |limit| obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
+            if let Some(answer) = proven.add(near, far, f64::NEG_INFINITY, clearance) {
+                return answer;
             }
         }
         for pair in &robot.pairs {
@@ -180,11 +181,11 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             let apart = (ball_a.center - ball_b.center).norm() - ball_a.radius - ball_b.radius;
             let clearance =
                 |limit| query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
-            if let Some(room) = cover.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
-                return room;
+            if let Some(answer) = proven.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
+                return answer;
             }
         }
-        IntervalClearance::FreeOver { part: cover.part }
+        IntervalClearance::FreeOver { part: proven.part }
     }
 }
 
@@ -203,6 +204,6 @@ impl<Q: Coordinates> ObstacleHints<Q> for Arm {
     /// Each joint moved by as much as from `from` to `to`, the shorter way where it turns without end.
     fn carried(&self, q: &Q, from: &Q, to: &Q) -> Q {
         let (q, from, to) = (q.as_slice(), from.as_slice(), to.as_slice());
-        Q::from_fn(q.len(), |i| q[i] + self.robot.kinematics.step(i, from, to))
+        Q::from_fn(q.len(), |i| q[i] + self.robot.kinematics.displacement(i, from, to))
     }
 }

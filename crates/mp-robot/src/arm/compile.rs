@@ -1,6 +1,6 @@
 //! From the names of a model to a checked tree.
 
-use super::kinematics::{Coordinate, Frame, Kinematics, Place, is_pose, range};
+use super::kinematics::{AttachedLink, Coordinate, Frame, Kinematics, is_pose, range};
 use super::{ArmError, ArmModel, Joint, JointKind};
 use mp_cspace::JointRange;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
@@ -41,19 +41,19 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
         base: model.base,
         frames: Vec::new(),
         coordinates,
-        places: Vec::new(),
+        attached: Vec::new(),
         joined: tree.ends.clone(),
     };
-    let mut places: Vec<Option<Place>> = vec![None; model.links.len()];
+    let mut attached: Vec<Option<AttachedLink>> = vec![None; model.links.len()];
     let name = |link: usize| model.links[link].name.clone();
-    places[tree.root] = Some(Place { name: name(tree.root), frame: 0, pose: Isometry3::identity() });
+    attached[tree.root] = Some(AttachedLink { name: name(tree.root), frame: 0, pose: Isometry3::identity() });
     // A queue: every joint comes after the one its parent hangs on.
     let mut next = vec![tree.root];
     let mut at = 0;
     while at < next.len() {
         let link = next[at];
         at += 1;
-        let Some(Place { frame, pose, .. }) = places[link].clone() else { continue };
+        let Some(AttachedLink { frame, pose, .. }) = attached[link].clone() else { continue };
         for &j in &tree.below[link] {
             let (joint, child) = (&model.joints[j], tree.ends[j][1]);
             let origin = pose * joint.origin;
@@ -61,15 +61,15 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
                 Value::Fixed => (frame, origin),
                 Value::Held(value) => (frame, origin * motion(joint, value)),
                 Value::Follows(source) => {
-                    out.frames.push(moving(joint, frame, origin, source, &out.coordinates));
+                    out.frames.push(frame_of(joint, frame, origin, source, &out.coordinates));
                     (out.frames.len(), Isometry3::identity())
                 }
             };
-            places[child] = Some(Place { name: name(child), frame, pose });
+            attached[child] = Some(AttachedLink { name: name(child), frame, pose });
             next.push(child);
         }
     }
-    out.places = places.into_iter().flatten().collect();
+    out.attached = attached.into_iter().flatten().collect();
     Ok(out)
 }
 
@@ -271,8 +271,7 @@ fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<
             let ends = [(low - offset) / scale, (high - offset) / scale];
             *own_low = own_low.max(ends[0].min(ends[1]));
             *own_high = own_high.min(ends[0].max(ends[1]));
-            let room = *own_low < *own_high;
-            if room { Ok(()) } else { Err(wrong("the limits of both leave no room to move")) }
+            if *own_low < *own_high { Ok(()) } else { Err(wrong("the limits of both leave no room to move")) }
         }
     }
 }
@@ -286,7 +285,7 @@ fn motion(joint: &Joint, value: f64) -> Isometry3<f64> {
     }
 }
 
-fn moving(
+fn frame_of(
     joint: &Joint,
     parent: usize,
     origin: Isometry3<f64>,

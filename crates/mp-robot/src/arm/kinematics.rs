@@ -33,7 +33,7 @@ pub struct Coordinate {
 
 /// Where a link is.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct AttachedLink {
     pub(crate) name: String,
     /// The frame it is fixed to: 0 is the base, `i + 1` the frame of the joint `i`.
     pub(crate) frame: usize,
@@ -49,7 +49,7 @@ pub struct Kinematics {
     pub(crate) frames: Vec<Frame>,
     pub(crate) coordinates: Vec<Coordinate>,
     /// In the order of the model.
-    pub(crate) places: Vec<Place>,
+    pub(crate) attached: Vec<AttachedLink>,
     /// Pairs of links that a joint joins.
     pub(crate) joined: Vec<[usize; 2]>,
 }
@@ -77,7 +77,7 @@ impl Kinematics {
 
     /// The names of the links, in the order of the model.
     pub fn links(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.places.iter().map(|place| place.name.as_str())
+        self.attached.iter().map(|link| link.name.as_str())
     }
 
     /// The space of configurations: an interval for each joint with limits, a circle for each without.
@@ -112,7 +112,7 @@ impl Kinematics {
         let mut frames = Vec::new();
         self.is_configuration(q).then(|| {
             self.frames_into(q, &mut frames);
-            self.places.iter().map(|place| frames[place.frame] * place.pose).collect()
+            self.attached.iter().map(|link| frames[link.frame] * link.pose).collect()
         })
     }
 
@@ -134,13 +134,13 @@ impl Kinematics {
 
     /// How far the coordinate `i` goes from `from` to `to` in the [space](Self::space) of the arm.
     #[inline]
-    pub(crate) fn way(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
-        self.step(i, from, to).abs()
+    pub(crate) fn travel(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
+        self.displacement(i, from, to).abs()
     }
 
     /// The same with its sign.
     #[inline]
-    pub(crate) fn step(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
+    pub(crate) fn displacement(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
         let d = to[i] - from[i];
         match self.coordinates[i].range {
             JointRange::Circle if !(-std::f64::consts::PI..=std::f64::consts::PI).contains(&d) => {

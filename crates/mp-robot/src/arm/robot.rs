@@ -1,27 +1,24 @@
 //! An arm among obstacles that stand still.
 
 use super::kinematics::{Coordinate, Kinematics};
-use super::pairs::{Pair, pairs};
+use super::pairs::{LinkPair, pairs};
 use super::travel::Chain;
-use super::verify::Tree;
+use super::verify::ReferenceArm;
 use super::{ArmError, ArmModel};
 use crate::CheckCounters;
-use mp_collide::reference::RefMesh;
-use mp_collide::{BodyId, CollisionMesh, Counters, Query, Scene};
+use crate::obstacles::{MAX_TRIANGLES, Obstacles, resolved_tolerance};
+use mp_collide::{BodyId, CollisionMesh, Query, Scene};
 use mp_cspace::{Coordinates, Joints};
 use mp_geom::{Aabb, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::sync::{Arc, OnceLock};
-
-/// Most triangles: what a reference mesh can hold.
-const MAX_TRIANGLES: usize = 1 << 30;
 
 /// Largest link, metres.
 const MAX_RADIUS: f64 = 1e70;
 
 /// A link that can collide.
 #[derive(Debug)]
-pub(super) struct Body {
+pub(super) struct LinkBody {
     /// Which link of the model.
     pub(super) link: usize,
     /// What moves it: 0 for the base.
@@ -35,7 +32,7 @@ pub(super) struct Body {
     pub(super) first: usize,
 }
 
-impl Body {
+impl LinkBody {
     /// The ball around it in the world.
     #[inline]
     pub(super) fn ball_at(&self, frames: &[Isometry3<f64>]) -> Sphere {
@@ -45,24 +42,24 @@ impl Body {
 
 /// The arm itself: shared by all clones, whatever the obstacles.
 #[derive(Debug)]
-pub(super) struct Robot {
+pub(super) struct SharedArm {
     pub(super) kinematics: Kinematics,
     /// In the order of the links.
-    pub(super) bodies: Vec<Body>,
-    pub(super) pairs: Vec<Pair>,
+    pub(super) bodies: Vec<LinkBody>,
+    pub(super) pairs: Vec<LinkPair>,
     /// The largest distance of any of its points from the base in any configuration.
     pub(super) reach: f64,
     pub(super) model: ArmModel,
     /// For verifiers, made when the first one is.
-    pub(super) reference: OnceLock<Arc<Tree>>,
+    pub(super) reference: OnceLock<Arc<ReferenceArm>>,
 }
 
-impl Robot {
+impl SharedArm {
     fn new(model: &ArmModel) -> Result<Self, ArmError> {
         let kinematics = Kinematics::new(model)?;
         let mut bodies = Vec::new();
         let (mut first, mut count, mut reach) = (0, 0_usize, 0.0_f64);
-        for (i, (link, place)) in model.links.iter().zip(&kinematics.places).enumerate() {
+        for (i, (link, place)) in model.links.iter().zip(&kinematics.attached).enumerate() {
             if link.shapes.is_empty() {
                 continue;
             }
@@ -85,15 +82,24 @@ impl Robot {
             let entries = chain.steps.len() + 1;
             let (ball, tree) = (mesh.bounding_sphere(), CollisionMesh::new(&mesh));
             let ball = Sphere { radius: ball.radius * (1.0 + 1e-9), ..ball };
-            bodies.push(Body { link: i, frame: place.frame, mesh, tree, ball, chain, first });
+            bodies.push(LinkBody { link: i, frame: place.frame, mesh, tree, ball, chain, first });
             first += entries;
         }
         let pairs = pairs(&kinematics, &bodies, model)?;
         Ok(Self { kinematics, bodies, pairs, reach, model: model.clone(), reference: OnceLock::new() })
     }
 
+    /// The obstacles around this arm.
+    fn obstacles(
+        &self,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+    ) -> Result<Obstacles, ArmError> {
+        let triangles = self.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
+        Obstacles::new(obstacles, triangles, |count| ArmError::TooManyTriangles { count, max: MAX_TRIANGLES })
+    }
+
     pub(super) fn name(&self, body: usize) -> &str {
-        &self.kinematics.places[self.bodies[body].link].name
+        &self.kinematics.attached[self.bodies[body].link].name
     }
 }
 
@@ -110,37 +116,6 @@ fn reach_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> f64 {
         at = joint.parent;
     }
     reach
-}
-
-/// Obstacles: shared by all clones.
-#[derive(Debug)]
-pub(super) struct World {
-    pub(super) scene: Scene,
-    /// Every obstacle in the world.
-    pub(super) placed: Vec<(BodyId, Arc<TriMesh>)>,
-    pub(super) bounds: Aabb,
-    /// For verifiers, made when the first one is; nothing when there are no obstacles.
-    pub(super) reference: OnceLock<Option<Arc<RefMesh>>>,
-}
-
-impl World {
-    fn new(
-        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
-        triangles: usize,
-    ) -> Result<Self, ArmError> {
-        let (mut scene, mut placed, mut count) = (Scene::new(), Vec::new(), triangles);
-        for (name, mesh, pose) in obstacles {
-            count = count.saturating_add(mesh.triangles().len());
-            if count > MAX_TRIANGLES {
-                return Err(ArmError::TooManyTriangles { count, max: MAX_TRIANGLES });
-            }
-            let in_world = Arc::new(mesh.transformed(&pose));
-            placed.push((scene.insert(name, CollisionMesh::new(&mesh), pose)?, in_world));
-        }
-        scene.merge_static();
-        let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
-        Ok(Self { scene, placed, bounds, reference: OnceLock::new() })
-    }
 }
 
 /// Memory of one clone.
@@ -174,8 +149,8 @@ pub(super) struct Scratch {
 /// per thread. Nothing is allocated by checks once the scratch has grown.
 #[derive(Clone, Debug)]
 pub struct Arm {
-    pub(super) robot: Arc<Robot>,
-    pub(super) world: Arc<World>,
+    pub(super) robot: Arc<SharedArm>,
+    pub(super) obstacles: Arc<Obstacles>,
     pub(super) query: Query,
     pub(super) counters: CheckCounters,
     pub(super) scratch: Scratch,
@@ -190,12 +165,11 @@ impl Arm {
         model: &ArmModel,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, ArmError> {
-        let robot = Robot::new(model)?;
-        let triangles = robot.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
-        let world = World::new(obstacles, triangles)?;
+        let robot = SharedArm::new(model)?;
+        let obstacles = robot.obstacles(obstacles)?;
         Ok(Self {
             robot: Arc::new(robot),
-            world: Arc::new(world),
+            obstacles: Arc::new(obstacles),
             query: Query::default(),
             counters: CheckCounters::default(),
             scratch: Scratch::default(),
@@ -210,9 +184,8 @@ impl Arm {
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, ArmError> {
-        let triangles = self.robot.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
-        let world = Arc::new(World::new(obstacles, triangles)?);
-        let mut other = Self { world, ..self.clone() };
+        let obstacles = Arc::new(self.robot.obstacles(obstacles)?);
+        let mut other = Self { obstacles, ..self.clone() };
         other.take_counters();
         Ok(other)
     }
@@ -278,19 +251,19 @@ impl Arm {
     /// The obstacles, by name.
     #[must_use]
     pub fn scene(&self) -> &Scene {
-        &self.world.scene
+        &self.obstacles.scene
     }
 
     /// The obstacles in the world, with their names.
     pub fn obstacles(&self) -> impl Iterator<Item = (&str, &TriMesh)> {
-        let name = |id: &BodyId| self.world.scene.body(*id).map_or("", |body| body.name());
-        self.world.placed.iter().map(move |(id, mesh)| (name(id), &**mesh))
+        let name = |id: &BodyId| self.obstacles.scene.body(*id).map_or("", |body| body.name());
+        self.obstacles.placed.iter().map(move |(id, mesh)| (name(id), &**mesh))
     }
 
     /// The box around all obstacles; empty when there are none.
     #[must_use]
     pub fn obstacle_bounds(&self) -> Aabb {
-        self.world.bounds
+        self.obstacles.bounds
     }
 
     /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and never so small
@@ -298,24 +271,17 @@ impl Arm {
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         let base = self.kinematics().base.translation.vector.amax();
-        let bounds = &self.world.bounds;
-        let world =
-            if bounds.is_empty() { 0.0 } else { bounds.min.coords.amax().max(bounds.max.coords.amax()) };
-        let tolerance = (1e-4 * self.reach()).max(1e-9 * (base + world + self.reach()));
-        if tolerance > 0.0 { tolerance } else { 1e-6 }
+        resolved_tolerance(1e-4 * self.reach(), base + self.obstacles.farthest() + self.reach())
     }
 
-    /// What was done so far by this clone.
+    /// The checks made by this clone so far.
     #[must_use]
     pub fn counters(&self) -> CheckCounters {
-        CheckCounters { work: self.query.counters, ..self.counters }
+        self.counters.with(&self.query)
     }
 
-    /// Starts counting anew, returning the counts so far.
+    /// Sets the counters of this clone to zero. Returns the counts before.
     pub fn take_counters(&mut self) -> CheckCounters {
-        let counters = self.counters();
-        self.counters = CheckCounters::default();
-        self.query.counters = Counters::default();
-        counters
+        self.counters.take(&mut self.query)
     }
 }

@@ -73,20 +73,20 @@ impl Chain {
 
     /// Bounds (m) on how far the joints up to each step move a point of the link, over a whole motion; the
     /// last is that of the whole chain. The first is zero: by no joint at all.
-    pub(super) fn far(&self, ways: impl Fn(usize) -> f64, out: &mut Vec<f64>) {
+    pub(super) fn far(&self, travels: impl Fn(usize) -> f64, out: &mut Vec<f64>) {
         let mut sum = 0.0;
         out.push(sum);
         for step in &self.steps {
-            sum += ways(step.coordinate) * step.rate * step.reach * ROUND_UP;
+            sum += travels(step.coordinate) * step.rate * step.reach * ROUND_UP;
             out.push(sum);
         }
     }
 
-    /// The same over an interval of the motion that turns the joints by `ways` to either side of a configuration,
+    /// The same over an interval of the motion that turns the joints by `travels` to either side of a configuration,
     /// in which the link is within `ball` and the joints have these axes, all in the world.
     pub(super) fn near(
         &self,
-        ways: impl Fn(usize) -> f64,
+        travels: impl Fn(usize) -> f64,
         ball: &Sphere,
         axes: &[(Point3<f64>, Vector3<f64>)],
         out: &mut Vec<f64>,
@@ -94,8 +94,8 @@ impl Chain {
         let mut sum = 0.0;
         out.push(sum);
         for step in &self.steps {
-            let way = ways(step.coordinate) * step.rate;
-            if way > 0.0 {
+            let travel = travels(step.coordinate) * step.rate;
+            if travel > 0.0 {
                 let reach = if step.slides {
                     1.0
                 } else {
@@ -103,21 +103,21 @@ impl Chain {
                     let from_axis = (ball.center - origin).cross(axis).norm() + ball.radius;
                     step.reach.min(from_axis + sum)
                 };
-                sum += way * reach * ROUND_UP;
+                sum += travel * reach * ROUND_UP;
             }
             out.push(sum);
         }
     }
 
     /// Only the last of [`far`](Self::far).
-    pub(super) fn whole(&self, ways: impl Fn(usize) -> f64) -> f64 {
-        self.steps.iter().map(|step| ways(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
+    pub(super) fn whole(&self, travels: impl Fn(usize) -> f64) -> f64 {
+        self.steps.iter().map(|step| travels(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
     }
 
     /// As [`whole`](Self::whole) by the first `count` joints only.
-    pub(super) fn part(&self, count: usize, ways: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn part(&self, count: usize, travels: impl Fn(usize) -> f64) -> f64 {
         let steps = &self.steps[..count];
-        steps.iter().map(|step| ways(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
+        steps.iter().map(|step| travels(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
     }
 }
 
@@ -183,44 +183,45 @@ mod tests {
                     kinematics.frames_into(space.interpolate(&a, &b, t).as_slice(), &mut frames);
                     frames
                 };
-                let ways = |i: usize| kinematics.way(i, a.as_slice(), b.as_slice());
+                let travels = |i: usize| kinematics.travel(i, a.as_slice(), b.as_slice());
                 let middle = at(0.5);
                 let mut axes = Vec::new();
                 axes_into(&kinematics, &middle, &mut axes);
-                for (link, place) in model.links.iter().zip(&kinematics.places).skip(1) {
+                for (link, place) in model.links.iter().zip(&kinematics.attached).skip(1) {
                     let mesh = link.shapes[0].transformed(&place.pose);
                     let chain = Chain::new(&kinematics, &mesh, place.frame);
                     let ball = mesh.bounding_sphere();
                     let ball = Sphere { center: middle[place.frame] * ball.center, ..ball };
                     let (mut far, mut near) = (Vec::new(), Vec::new());
-                    chain.far(ways, &mut far);
-                    chain.near(|i| ways(i) * half, &ball, &axes, &mut near);
-                    assert_eq!(*far.last().unwrap(), chain.whole(ways));
+                    chain.far(travels, &mut far);
+                    chain.near(|i| travels(i) * half, &ball, &axes, &mut near);
+                    assert_eq!(*far.last().unwrap(), chain.whole(travels));
                     assert!(near.iter().zip(&far).all(|(near, far)| *near <= far * half * (1.0 + 1e-9)));
                     // Relative to each frame of the chain.
                     for (count, (near, far)) in near.iter().zip(&far).enumerate() {
                         let base = chain.steps.get(count).map_or(0, |step| step.frame);
-                        let way = |from: f64, to: f64| {
+                        let longest = |from: f64, to: f64| {
                             let steps = 200;
                             let place = |k: i32| {
                                 let frames = at(from + (to - from) * f64::from(k) / f64::from(steps));
                                 let pose = frames[base].inverse() * frames[place.frame];
                                 mesh.vertices().iter().map(|v| pose * v).collect::<Vec<_>>()
                             };
-                            let mut ways = vec![0.0; mesh.vertices().len()];
+                            let mut travels = vec![0.0; mesh.vertices().len()];
                             let mut last = place(0);
                             for k in 1..=steps {
                                 let next = place(k);
-                                ways.iter_mut()
+                                travels
+                                    .iter_mut()
                                     .zip(last.iter().zip(&next))
                                     .for_each(|(w, (p, q))| *w += (q - p).norm());
                                 last = next;
                             }
-                            ways.into_iter().fold(0.0, f64::max)
+                            travels.into_iter().fold(0.0, f64::max)
                         };
-                        let whole = way(0.0, 1.0);
+                        let whole = longest(0.0, 1.0);
                         assert!(whole <= far + 1e-12, "{whole} {far}");
-                        let sides = way(0.5, 0.5 + half).max(way(0.5, 0.5 - half));
+                        let sides = longest(0.5, 0.5 + half).max(longest(0.5, 0.5 - half));
                         assert!(sides <= near + 1e-12, "{sides} {near}");
                         if count > 0 {
                             best_far = best_far.max(whole / far);

@@ -79,7 +79,7 @@ impl ArmModel {
             }
             model.joints.push(made);
         }
-        model.make_room();
+        model.drop_conflicting_limits();
         let held = model.joints.iter().filter(|j| j.kind.held().is_some() && j.mimic.is_none());
         let held: Vec<_> = held.map(|j| j.name.clone()).collect();
         if !held.is_empty() {
@@ -90,7 +90,7 @@ impl ArmModel {
     }
 
     /// Sets the limits of followers aside where they leave no room to move: what they follow has limits of its own.
-    fn make_room(&mut self) {
+    fn drop_conflicting_limits(&mut self) {
         let mut aside = Vec::new();
         for i in 0..self.joints.len() {
             let Some(mimic) = &self.joints[i].mimic else { continue };
@@ -104,12 +104,12 @@ impl ArmModel {
             };
             let ends = [low, high].map(|x| x * mimic.multiplier + mimic.offset);
             let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-            let room = match low == high {
+            let can_move = match low == high {
                 true => (own_low..=own_high).contains(&low),
                 false => own_low.max(low) < own_high.min(high),
             };
             // Whoever releases what is held shall find followers that can follow.
-            if own_low > own_high || (room && own_low < own_high) {
+            if own_low > own_high || (can_move && own_low < own_high) {
                 continue;
             }
             self.joints[i].kind = match self.joints[i].kind {

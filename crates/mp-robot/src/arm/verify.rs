@@ -11,21 +11,21 @@ use std::sync::Arc;
 
 /// The arm as verifiers see it: made of the model anew, by names.
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(super) struct ReferenceArm {
     /// Parents before children.
-    links: Vec<Part>,
+    links: Vec<ReferenceLink>,
     coordinates: Vec<bool>,
     base: Matrix4<f64>,
 }
 
 /// A link and the joint it hangs on.
 #[derive(Debug)]
-struct Part {
+struct ReferenceLink {
     name: String,
     parent: Option<usize>,
     origin: Matrix4<f64>,
     axis: Vector3<f64>,
-    moves: Moves,
+    motion: JointMotion,
     /// Its value: coordinate, factor, offset.
     value: (usize, f64, f64),
     mesh: Option<RefMesh>,
@@ -34,13 +34,13 @@ struct Part {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Moves {
-    No,
+enum JointMotion {
+    Fixed,
     Turns,
     Slides,
 }
 
-impl Tree {
+impl ReferenceArm {
     pub(super) fn new(model: &ArmModel) -> Self {
         let own = model.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
         let own: Vec<_> = own.filter(|j| j.kind.held().is_none()).collect();
@@ -79,17 +79,17 @@ impl Tree {
                     return true;
                 }
                 let mesh = TriMesh::merged(&link.shapes);
-                let moves = match joint.map(|j| j.kind) {
-                    None | Some(JointKind::Fixed) => Moves::No,
-                    Some(JointKind::Prismatic { .. }) => Moves::Slides,
-                    Some(_) => Moves::Turns,
+                let motion = match joint.map(|j| j.kind) {
+                    None | Some(JointKind::Fixed) => JointMotion::Fixed,
+                    Some(JointKind::Prismatic { .. }) => JointMotion::Slides,
+                    Some(_) => JointMotion::Turns,
                 };
-                tree.links.push(Part {
+                tree.links.push(ReferenceLink {
                     name: link.name.clone(),
                     parent,
                     origin: joint.map_or_else(Matrix4::identity, |j| j.origin.to_homogeneous()),
                     axis: joint.map_or_else(Vector3::x, |j| j.axis.normalize()),
-                    moves,
+                    motion,
                     value: joint.map_or((0, 0.0, 0.0), |j| value(&j.name)),
                     radius: mesh
                         .iter()
@@ -108,16 +108,16 @@ impl Tree {
     }
 
     /// Where the links are, by homogeneous matrices.
-    fn place(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
+    fn poses_into(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
         out.clear();
         for link in &self.links {
             let above = link.parent.map_or(self.base, |p| out[p]);
             let value = q[link.value.0] * link.value.1 + link.value.2;
             let mut motion = Matrix4::identity();
-            match link.moves {
-                Moves::No => {}
-                Moves::Slides => motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value)),
-                Moves::Turns => {
+            match link.motion {
+                JointMotion::Fixed => {}
+                JointMotion::Slides => motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value)),
+                JointMotion::Turns => {
                     let across = link.axis.cross_matrix();
                     let turn =
                         Matrix3::identity() + across * value.sin() + across * across * (1.0 - value.cos());
@@ -129,25 +129,25 @@ impl Tree {
     }
 
     /// How far the joints below `stop` (not included; all when `None`) move a point of a link, relative to it,
-    /// while every coordinate goes `ways` from where the links are at `places`.
+    /// while every coordinate goes `ways` from where the links are at `poses`.
     ///
     /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
-    /// That distance is at most the one at `places` plus what the joints nearer to the link have moved it.
-    fn travel(&self, link: usize, stop: Option<usize>, ways: &[f64], places: &[Matrix4<f64>]) -> f64 {
-        let origin = |i: usize| Vector3::from(places[i].fixed_view::<3, 1>(0, 3));
+    /// That distance is at most the one at `poses` plus what the joints nearer to the link have moved it.
+    fn travel(&self, link: usize, stop: Option<usize>, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
+        let origin = |i: usize| Vector3::from(poses[i].fixed_view::<3, 1>(0, 3));
         let tip = origin(link);
         let mut moved = 0.0;
         let mut at = Some(link);
         while at != stop {
             let Some(i) = at else { break };
             let part = &self.links[i];
-            let way = ways[part.value.0] * part.value.1.abs();
-            match part.moves {
-                Moves::No => {}
-                Moves::Slides => moved += way,
-                Moves::Turns => {
+            let travel = travels[part.value.0] * part.value.1.abs();
+            match part.motion {
+                JointMotion::Fixed => {}
+                JointMotion::Slides => moved += travel,
+                JointMotion::Turns => {
                     let now = (tip - origin(i)).norm() + self.links[link].radius;
-                    moved += way * (now + moved);
+                    moved += travel * (now + moved);
                 }
             }
             at = part.parent;
@@ -167,13 +167,13 @@ impl Tree {
 
     /// Whether any joint above moves it.
     fn is_moved(&self, link: usize) -> bool {
-        self.above(link).into_iter().any(|i| self.links[i].moves != Moves::No)
+        self.above(link).into_iter().any(|i| self.links[i].motion != JointMotion::Fixed)
     }
 }
 
 /// What must be kept apart: a link, and another or the obstacles.
 #[derive(Clone, Copy, Debug)]
-struct Pair {
+struct CheckedPair {
     link: usize,
     other: Option<usize>,
     /// The nearest link that both hang on.
@@ -193,15 +193,15 @@ struct Pair {
 #[derive(Clone, Debug)]
 pub struct ArmVerifier<'c, C> {
     space: &'c C,
-    tree: Arc<Tree>,
+    tree: Arc<ReferenceArm>,
     world: Option<Arc<RefMesh>>,
-    pairs: Vec<Pair>,
+    pairs: Vec<CheckedPair>,
     tolerance: f64,
     parts: u64,
 }
 
 /// Motions of a coordinate longer than this (rad or m) are refused.
-const MAX_WAY: f64 = 1e6;
+const MAX_TRAVEL: f64 = 1e6;
 
 /// Motions are not cut into more parts than this.
 const MAX_PARTS: u64 = 1_000_000;
@@ -228,25 +228,23 @@ where
             let (name, expected) = ("the tolerance", "positive and finite");
             return Err(ParameterError { name, expected, value: tolerance });
         }
-        let tree = Arc::clone(arm.robot.reference.get_or_init(|| Arc::new(Tree::new(&arm.robot.model))));
-        let world = arm.world.reference.get_or_init(|| {
-            let merged = TriMesh::merged(arm.world.placed.iter().map(|(_, mesh)| &**mesh));
-            merged.map(|mesh| Arc::new(RefMesh::new(&mesh)))
-        });
+        let tree =
+            Arc::clone(arm.robot.reference.get_or_init(|| Arc::new(ReferenceArm::new(&arm.robot.model))));
+        let world = arm.obstacles.reference();
         let mut pairs = Vec::new();
         for link in (0..tree.links.len()).filter(|&i| tree.links[i].mesh.is_some() && tree.is_moved(i)) {
             if world.is_some() {
-                pairs.push(Pair { link, other: None, meet: None });
+                pairs.push(CheckedPair { link, other: None, meet: None });
             }
         }
         for [a, b] in arm.checked_pairs() {
             if let (Some(link), Some(other)) = (tree.find(a), tree.find(b)) {
                 let on_b = tree.above(other);
                 let meet = tree.above(link).into_iter().find(|i| on_b.contains(i));
-                pairs.push(Pair { link, other: Some(other), meet });
+                pairs.push(CheckedPair { link, other: Some(other), meet });
             }
         }
-        Ok(Self { space, tree, world: world.clone(), pairs, tolerance, parts: 0 })
+        Ok(Self { space, tree, world, pairs, tolerance, parts: 0 })
     }
 
     /// Motions found free keep links this far from everything (m).
@@ -263,40 +261,40 @@ where
 
     /// The way of each coordinate between two configurations: what is less than half a turn apart goes there
     /// directly.
-    fn ways(&self, a: &C::State, b: &C::State) -> Vec<f64> {
+    fn travels(&self, a: &C::State, b: &C::State) -> Vec<f64> {
         let (a, b) = (a.as_slice(), b.as_slice());
-        let way = |(i, endless): (usize, &bool)| {
+        let travel = |(i, endless): (usize, &bool)| {
             let d = (b[i] - a[i]).abs();
             if *endless && d > PI { (d % TAU).min(TAU - d % TAU) } else { d }
         };
-        self.tree.coordinates.iter().enumerate().map(way).collect()
+        self.tree.coordinates.iter().enumerate().map(travel).collect()
     }
 
     /// A bound on the distance of a pair, at least `enough`, or that of some of their triangles that is less.
-    fn distance(&self, pair: &Pair, places: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
+    fn distance(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
         let part = &self.tree.links[pair.link];
         let Some(mesh) = &part.mesh else { return Ok(f64::INFINITY) };
-        let pose = isometry(&places[pair.link]);
+        let pose = isometry(&poses[pair.link]);
         match pair.other {
             None => self.world.as_ref().map_or(Ok(f64::INFINITY), |world| {
                 mesh.at_least(&pose, world, &Isometry3::identity(), enough)
             }),
             Some(other) => self.tree.links[other].mesh.as_ref().map_or(Ok(f64::INFINITY), |mesh_b| {
-                mesh.at_least(&pose, mesh_b, &isometry(&places[other]), enough)
+                mesh.at_least(&pose, mesh_b, &isometry(&poses[other]), enough)
             }),
         }
     }
 
     /// How much nearer the two of a pair can come.
-    fn approach(&self, pair: &Pair, ways: &[f64], places: &[Matrix4<f64>]) -> f64 {
-        let moved = |link| self.tree.travel(link, pair.meet, ways, places);
+    fn approach(&self, pair: &CheckedPair, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
+        let moved = |link| self.tree.travel(link, pair.meet, travels, poses);
         moved(pair.link) + pair.other.map_or(0.0, moved)
     }
 
     /// Proves the motion, in longer and then in shorter parts.
     fn prove(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
         let mut least = f64::INFINITY;
-        let mut places = Vec::new();
+        let mut poses = Vec::new();
         let all: Vec<usize> = (0..self.pairs.len()).collect();
         let mut open = VecDeque::from([(0.0, 1.0, all)]);
         let limit = self.parts + MAX_PARTS;
@@ -307,17 +305,17 @@ where
                 return MotionCheck::Unproven { at };
             }
             let [qa, qm, qb] = [a, at, b].map(|t| self.space.interpolate(from, to, t));
-            let (before, after) = (self.ways(&qa, &qm), self.ways(&qm, &qb));
-            let ways: Vec<f64> = before.iter().zip(&after).map(|(x, y)| x.max(*y)).collect();
-            self.tree.place(qm.as_slice(), &mut places);
+            let (before, after) = (self.travels(&qa, &qm), self.travels(&qm, &qb));
+            let travels: Vec<f64> = before.iter().zip(&after).map(|(x, y)| x.max(*y)).collect();
+            self.tree.poses_into(qm.as_slice(), &mut poses);
             let mut near = Vec::new();
             for i in pairs {
                 let pair = &self.pairs[i];
-                let approach = self.approach(pair, &ways, &places);
-                match self.distance(pair, &places, approach + self.tolerance) {
+                let approach = self.approach(pair, &travels, &poses);
+                match self.distance(pair, &poses, approach + self.tolerance) {
                     Ok(distance) => least = least.min(distance - approach),
                     // What was found first need not be the nearest.
-                    Err(_) if self.distance(pair, &places, 0.0).is_err() => {
+                    Err(_) if self.distance(pair, &poses, 0.0).is_err() => {
                         return MotionCheck::Collision { at };
                     }
                     Err(distance) if distance < 2.0 * self.tolerance => {
@@ -336,9 +334,9 @@ where
 
     /// Whether anything touches at `q`.
     fn touches(&self, q: &C::State) -> bool {
-        let mut places = Vec::new();
-        self.tree.place(q.as_slice(), &mut places);
-        let touching = |pair| self.distance(pair, &places, self.tolerance).is_err_and(|d| d <= 0.0);
+        let mut poses = Vec::new();
+        self.tree.poses_into(q.as_slice(), &mut poses);
+        let touching = |pair| self.distance(pair, &poses, self.tolerance).is_err_and(|d| d <= 0.0);
         self.pairs.iter().any(touching)
     }
 }
@@ -360,8 +358,8 @@ where
         if !(is_sound(from.as_slice()) && is_sound(to.as_slice())) {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        let mut ways = from.as_slice().iter().zip(to.as_slice()).map(|(a, b)| (b - a).abs());
-        let provable = ways.all(|way| way < MAX_WAY);
+        let mut travels = from.as_slice().iter().zip(to.as_slice()).map(|(a, b)| (b - a).abs());
+        let provable = travels.all(|travel| travel < MAX_TRAVEL);
         if !provable {
             return MotionCheck::Unproven { at: 0.0 };
         }

@@ -1,6 +1,6 @@
 //! The independent check of motions among moving obstacles.
 
-use super::{AmongMoving, Mover};
+use super::{AmongMoving, MovingObstacle};
 use crate::{Placement, Verifier};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space, space_time::SpaceTime};
@@ -20,7 +20,7 @@ pub struct MovingVerifier<'c, C, P> {
     standing: Verifier<'c, C, P>,
     robot: Arc<RefMesh>,
     radius: f64,
-    movers: Arc<[Mover]>,
+    moving: Arc<[MovingObstacle]>,
     tolerance: f64,
 }
 
@@ -42,7 +42,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             standing,
             robot: Arc::new(RefMesh::new(mesh)),
             radius,
-            movers: Arc::clone(robot.movers()),
+            moving: Arc::clone(robot.moving()),
         })
     }
 
@@ -52,10 +52,10 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
         self.tolerance
     }
 
-    /// The clearance kept from one mover over the motion, or where it is not shown.
+    /// The clearance kept from one obstacle over the motion, or where it is not shown.
     fn against(
         &self,
-        mover: &Mover,
+        obstacle: &MovingObstacle,
         from: &(P::State, f64),
         to: &(P::State, f64),
         rate: f64,
@@ -66,11 +66,11 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             let (at, half) = (0.5 * (a + b), 0.5 * (b - a));
             let (q, time) = self.space.interpolate(from, to, at);
             let when = |t: f64| from.1 + (to.1 - from.1) * t;
-            let approach =
-                half * (rate + mover.trajectory.speed(mover.radius, when(a), when(b)) * (to.1 - from.1));
+            let approach = half
+                * (rate + obstacle.trajectory.speed(obstacle.radius, when(a), when(b)) * (to.1 - from.1));
             let needed = (approach + self.tolerance) * (1.0 + 1e-9);
             let pose: Isometry3<f64> = P::pose(&q);
-            match self.robot.at_least(&pose, &mover.reference, &mover.trajectory.pose(time), needed) {
+            match self.robot.at_least(&pose, &obstacle.reference, &obstacle.trajectory.pose(time), needed) {
                 Ok(distance) => least = least.min(distance - approach),
                 Err(distance) if distance <= 0.0 => return Err(MotionCheck::Collision { at }),
                 Err(distance) if distance < self.tolerance || half < SHORTEST => {
@@ -94,8 +94,8 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> f
         let [a, b] = [&from.0, &to.0].map(P::pose);
         let shift = (b.translation.vector - a.translation.vector).norm();
         let rate = shift + self.radius * a.rotation.angle_to(&b.rotation);
-        for mover in self.movers.iter() {
-            match self.against(mover, from, to, rate) {
+        for obstacle in self.moving.iter() {
+            match self.against(obstacle, from, to, rate) {
                 Ok(clearance) => least = least.min(clearance),
                 Err(check) => return check,
             }

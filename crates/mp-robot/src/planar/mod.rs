@@ -1,8 +1,8 @@
 //! Robots in the plane: discs and polygons in a [`PlanarWorld`](mp_geom::planar::PlanarWorld).
 
 mod disc;
+mod edge_list;
 mod hints;
-mod plain;
 mod polygon;
 mod verify;
 

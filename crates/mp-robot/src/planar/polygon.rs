@@ -44,22 +44,22 @@ pub struct PolygonRobot {
 
 /// Where the body is placed.
 #[derive(Clone, Copy)]
-struct Place {
+struct BodyPose {
     sin: f64,
     cos: f64,
     at: Vector2<f64>,
 }
 
-impl Place {
+impl BodyPose {
     fn of(q: &Se2State) -> Self {
         let (sin, cos) = q.angle.sin_cos();
         Self { sin, cos, at: q.translation }
     }
     #[inline]
-    fn put(&self, p: &Point2<f64>) -> Point2<f64> {
+    fn to_world(&self, p: &Point2<f64>) -> Point2<f64> {
         Point2::new(self.cos * p.x - self.sin * p.y + self.at.x, self.sin * p.x + self.cos * p.y + self.at.y)
     }
-    fn back(&self, p: &Point2<f64>) -> Point2<f64> {
+    fn to_body(&self, p: &Point2<f64>) -> Point2<f64> {
         let v = p.coords - self.at;
         Point2::new(self.cos * v.x + self.sin * v.y, self.cos * v.y - self.sin * v.x)
     }
@@ -106,11 +106,11 @@ impl PolygonRobot {
 
     /// The points of body and obstacles that are nearest to each other, and their distance, if that is below
     /// `enough`; nothing about which is inside of which.
-    fn nearest(&self, place: &Place, enough: f64) -> Option<(Point2<f64>, Point2<f64>, f64)> {
+    fn nearest(&self, pose: &BodyPose, enough: f64) -> Option<(Point2<f64>, Point2<f64>, f64)> {
         let mut best = None;
         let mut below = enough;
         for [a, b] in self.body.edges() {
-            if let Some(near) = self.world.nearest_to_segment(&place.put(&a), &place.put(&b), below) {
+            if let Some(near) = self.world.nearest_to_segment(&pose.to_world(&a), &pose.to_world(&b), below) {
                 below = near.distance;
                 best = Some((near.on_segment, near.point, near.distance));
                 if below <= 0.0 {
@@ -122,11 +122,11 @@ impl PolygonRobot {
     }
 
     /// Whether robot or obstacle is within the other, where their boundaries do not meet.
-    fn nested(&self, place: &Place) -> bool {
+    fn nested(&self, pose: &BodyPose) -> bool {
         let reach = Vector2::repeat(self.radius);
-        let around = [place.at - reach, place.at + reach].map(Point2::from);
-        self.body.rings().iter().any(|ring| self.world.contains(&place.put(&ring[0])))
-            || self.world.ring_in(around, |p| self.body.contains(&place.back(p))).is_some()
+        let around = [pose.at - reach, pose.at + reach].map(Point2::from);
+        self.body.rings().iter().any(|ring| self.world.contains(&pose.to_world(&ring[0])))
+            || self.world.ring_in(around, |p| self.body.contains(&pose.to_body(p))).is_some()
     }
 
     /// Whether the robot at `q` is at least `reach` from everything, as far as the circle around it tells.
@@ -142,9 +142,9 @@ impl PolygonRobot {
         if let Some(around) = self.far(q, enough) {
             return around;
         }
-        let place = Place::of(q);
-        let near = self.nearest(&place, enough);
-        if near.is_some_and(|n| n.2 <= 0.0) || self.nested(&place) {
+        let pose = BodyPose::of(q);
+        let near = self.nearest(&pose, enough);
+        if near.is_some_and(|n| n.2 <= 0.0) || self.nested(&pose) {
             return 0.0;
         }
         near.map_or(enough, |n| n.2)
@@ -156,20 +156,20 @@ impl PolygonRobot {
     /// the way out of it; else zeros. Infinite and zeros where there is nothing.
     #[must_use]
     pub fn clearance_and_gradient(&self, q: &Se2State) -> (f64, [f64; 3]) {
-        let place = Place::of(q);
+        let pose = BodyPose::of(q);
         let toward = |on_body: Point2<f64>, away: Vector2<f64>| {
             let arm = on_body.coords - q.translation;
             [away.x, away.y, arm.x * away.y - arm.y * away.x]
         };
-        let Some((on_body, on_obstacle, distance)) = self.nearest(&place, f64::INFINITY) else {
+        let Some((on_body, on_obstacle, distance)) = self.nearest(&pose, f64::INFINITY) else {
             return (f64::INFINITY, [0.0; 3]);
         };
-        if distance > 0.0 && !self.nested(&place) {
+        if distance > 0.0 && !self.nested(&pose) {
             return (distance, toward(on_body, (on_body - on_obstacle) / distance));
         }
         let mut deepest = (0.0, [0.0; 3]);
         for corner in self.body.rings().iter().flatten() {
-            let p = place.put(corner);
+            let p = pose.to_world(corner);
             if let Some(near) = self.world.nearest(&p).filter(|_| self.world.contains(&p))
                 && -near.distance < deepest.0
             {

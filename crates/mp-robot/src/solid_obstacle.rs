@@ -7,13 +7,13 @@ use std::sync::Arc;
 
 /// A closed, consistently oriented obstacle in the world.
 #[derive(Clone, Debug)]
-pub(crate) struct Solid {
+pub(crate) struct SolidObstacle {
     pub(crate) name: String,
     mesh: Arc<TriMesh>,
     bounds: Aabb,
 }
 
-impl Solid {
+impl SolidObstacle {
     /// `mesh`, in the world, if it is a solid: closed and oriented, outside out.
     pub(crate) fn new(name: &str, mesh: &Arc<TriMesh>) -> Option<Self> {
         let topology = mesh.topology();
@@ -48,8 +48,8 @@ mod tests {
     use mp_geom::primitives::{cuboid, torus};
     use proptest::prelude::*;
 
-    fn solid(mesh: TriMesh) -> Option<Solid> {
-        Solid::new("it", &Arc::new(mesh))
+    fn solid(mesh: TriMesh) -> Option<SolidObstacle> {
+        SolidObstacle::new("it", &Arc::new(mesh))
     }
 
     proptest! {

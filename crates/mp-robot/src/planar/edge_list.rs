@@ -11,7 +11,7 @@ type Around = [Point2<f64>; 2];
 
 /// Obstacles as lists of points.
 #[derive(Clone, Debug)]
-pub(super) struct Plain {
+pub(super) struct EdgeList {
     /// The rings of each polygon.
     polygons: Vec<Vec<Vec<Point2<f64>>>>,
     /// The box around each polygon.
@@ -24,7 +24,7 @@ pub(super) struct Plain {
     ends: Vec<usize>,
 }
 
-impl Plain {
+impl EdgeList {
     pub(super) fn new(world: &PlanarWorld) -> Self {
         let polygons: Vec<Vec<Vec<Point2<f64>>>> =
             world.polygons().iter().map(|p| p.rings().to_vec()).collect();
@@ -48,16 +48,16 @@ impl Plain {
         let beyond =
             |[low, high]: [Point2<f64>; 2]| !(low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y);
         let mut near = self.boxes.iter().zip(&self.polygons).filter(|(around, _)| !beyond(**around));
-        self.walls.is_some_and(beyond) || near.any(|(_, rings)| within(rings, p))
+        self.walls.is_some_and(beyond) || near.any(|(_, rings)| inside_rings(rings, p))
     }
 
     /// The distance of the nearest edge from a segment; infinite where there is none.
-    pub(super) fn nearest(&self, way: &Segment) -> f64 {
-        let here = around(way);
+    pub(super) fn nearest(&self, segment: &Segment) -> f64 {
+        let here = around(segment);
         let look = |edges: Range<usize>, least: f64| {
             let near = |least: f64, i: usize| {
                 if gap(&self.around[i], &here) < least {
-                    least.min(apart(&self.edges[i], way))
+                    least.min(segment_distance(&self.edges[i], segment))
                 } else {
                     least
                 }
@@ -83,7 +83,7 @@ impl Plain {
     }
 
     /// The first points of all rings.
-    pub(super) fn firsts(&self) -> impl Iterator<Item = &Point2<f64>> {
+    pub(super) fn first_points(&self) -> impl Iterator<Item = &Point2<f64>> {
         self.polygons.iter().flatten().filter_map(|ring| ring.first())
     }
 }
@@ -99,14 +99,14 @@ fn around<'a>(points: impl IntoIterator<Item = &'a Point2<f64>>) -> Around {
     points.into_iter().fold(none, |[low, high], p| [low.inf(p), high.sup(p)])
 }
 
-/// How far boxes are apart in the greater axis; below zero where they overlap.
+/// How far boxes are segment_distance in the greater axis; below zero where they overlap.
 fn gap([a, b]: &Around, [c, d]: &Around) -> f64 {
     let greater = |x: f64, y: f64| if x > y { x } else { y };
     greater(greater(c.x - b.x, a.x - d.x), greater(c.y - b.y, a.y - d.y))
 }
 
 /// Whether `p` is within `rings`, by upward rays.
-pub(super) fn within(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool {
+pub(super) fn inside_rings(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool {
     let mut crossings = 0_usize;
     for ring in rings {
         for [a, b] in sides(ring) {
@@ -125,7 +125,7 @@ pub(super) fn rings(polygon: &Polygon) -> Vec<Vec<Point2<f64>>> {
 }
 
 /// The distance between two segments: that of the origin from the parallelogram of their differences.
-pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
+pub(super) fn segment_distance(s: &Segment, t: &Segment) -> f64 {
     let corners: [Vector2<f64>; 4] = [t[0] - s[0], t[1] - s[0], t[1] - s[1], t[0] - s[1]];
     let (mut left, mut right, mut least) = (0, 0, f64::INFINITY);
     for i in 0..4 {
@@ -143,6 +143,6 @@ pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
 }
 
 /// A lower bound on the distance of two segments: that of the boxes around them, in the greater axis.
-pub(super) fn boxes_apart(s: &Segment, t: &Segment) -> f64 {
+pub(super) fn box_distance(s: &Segment, t: &Segment) -> f64 {
     gap(&around(s), &around(t))
 }

@@ -10,9 +10,9 @@ use mp_geom::{Features, NO_COMPONENT, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 
-/// The outlines of a robot and of the parts of its obstacles.
+/// The features of a robot and of the parts of its obstacles.
 #[derive(Debug)]
-pub(crate) struct Outlines {
+pub(crate) struct SceneFeatures {
     robot: (BodyFeatures, Surface),
     parts: Vec<BodyFeatures>,
     /// Of each part, in the world.
@@ -28,7 +28,7 @@ struct Surface {
     areas: Vec<f64>,
 }
 
-fn outline(features: &Features) -> BodyFeatures {
+fn body_features(features: &Features) -> BodyFeatures {
     BodyFeatures {
         center: features.center.coords,
         radius: features.radius,
@@ -68,31 +68,31 @@ impl Surface {
     }
 }
 
-impl Outlines {
+impl SceneFeatures {
     fn new(shared: &Shared) -> Self {
         let robot = &shared.robot_mesh;
-        let mut outlines = Self {
-            robot: (outline(&robot.features()), Surface::new(robot.clone())),
+        let mut features = Self {
+            robot: (body_features(&robot.features()), Surface::new(robot.clone())),
             parts: Vec::new(),
             surfaces: Vec::new(),
             of_triangle: Vec::new(),
         };
-        for (_, mesh) in &shared.placed {
+        for (_, mesh) in &shared.obstacles.placed {
             let topology = mesh.topology();
-            let first = outlines.parts.len();
-            outlines.of_triangle.push((first, topology.component));
+            let first = features.parts.len();
+            features.of_triangle.push((first, topology.component));
             for part in mesh.parts() {
-                outlines.parts.push(outline(&part.features()));
-                outlines.surfaces.push(Surface::new(part));
+                features.parts.push(body_features(&part.features()));
+                features.surfaces.push(Surface::new(part));
             }
         }
-        outlines
+        features
     }
 }
 
 impl<P: Placement> RigidBody<P> {
-    fn outlines(&self) -> &Outlines {
-        self.shared.outlines.get_or_init(|| Outlines::new(&self.shared))
+    fn features(&self) -> &SceneFeatures {
+        self.shared.features.get_or_init(|| SceneFeatures::new(&self.shared))
     }
 }
 
@@ -105,37 +105,37 @@ fn turn_to(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
     })
 }
 
-/// By the meshes: obstacles are what hangs together in them, and points are theirs. The outlines are made when first asked
+/// By the meshes: obstacles are what hangs together in them, and points are theirs. The features are made when first asked
 /// for, O(n log n) in the triangles, and shared by clones.
 impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     fn obstacles(&self) -> &[BodyFeatures] {
-        &self.outlines().parts
+        &self.features().parts
     }
 
     fn robot(&self) -> BodyFeatures {
-        self.outlines().robot.0
+        self.features().robot.0
     }
 
     fn touched(&mut self, q: &P::State) -> Option<usize> {
         if let Some((obstacle, triangle)) = self.hit(q) {
-            let (first, parts) = &self.outlines().of_triangle[obstacle];
+            let (first, parts) = &self.features().of_triangle[obstacle];
             let part = parts.get(triangle).filter(|part| **part != NO_COMPONENT).copied().unwrap_or(0);
             return Some(first + part as usize);
         }
         let around = self.solid_around(&P::pose(q))?;
-        let obstacle = self.shared.placed.iter().position(|(id, _)| *id == around)?;
-        Some(self.outlines().of_triangle[obstacle].0)
+        let obstacle = self.shared.obstacles.placed.iter().position(|(id, _)| *id == around)?;
+        Some(self.features().of_triangle[obstacle].0)
     }
 
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
-        let outlines = self.outlines();
-        let center = outlines.parts.get(obstacle)?.center;
-        Some(outlines.surfaces[obstacle].point(center, of, rng))
+        let features = self.features();
+        let center = features.parts.get(obstacle)?.center;
+        Some(features.surfaces[obstacle].point(center, of, rng))
     }
 
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
-        let (outline, surface) = &self.outlines().robot;
-        surface.point(outline.center, of, rng)
+        let (features, surface) = &self.features().robot;
+        surface.point(features.center, of, rng)
     }
 
     fn place_of(&self, q: &P::State, point: &Vector3<f64>) -> Vector3<f64> {
@@ -149,7 +149,7 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     }
 
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> P::State {
-        let robot = self.outlines().robot.0;
+        let robot = self.features().robot.0;
         let unit = |v: Vector3<f64>| Unit::try_new(v, 1e-12);
         let rotation = match P::TURNS {
             [_, _, _] => match unit(*direction) {
