@@ -13,9 +13,9 @@ impl Scene {
     /// When there is no such scene (with the most similar name), or as [`load`](Self::load).
     pub fn find(given: impl AsRef<Path>) -> Result<Self, Error> {
         match locate(given.as_ref())? {
-            Place::Disk(file) => Self::load(file),
+            Location::Disk(file) => Self::load(file),
             #[cfg(feature = "scenes")]
-            Place::Memory(file) => Self::load_from(&shipped_files(), Path::new(file)),
+            Location::Memory(file) => Self::load_from(&shipped_files(), Path::new(file)),
         }
     }
 
@@ -35,14 +35,14 @@ impl Scene {
 /// When there is no such scene, or it is not one of a rigid body among meshes.
 pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Error> {
     Ok(match locate(given.as_ref())? {
-        Place::Disk(file) => mp_io::RigidProblem::load(file)?,
+        Location::Disk(file) => mp_io::RigidProblem::load(file)?,
         #[cfg(feature = "scenes")]
-        Place::Memory(file) => mp_io::RigidProblem::load_from(&shipped_files(), Path::new(file))?,
+        Location::Memory(file) => mp_io::RigidProblem::load_from(&shipped_files(), Path::new(file))?,
     })
 }
 
 /// Where a scene is.
-enum Place {
+enum Location {
     Disk(PathBuf),
     #[cfg(feature = "scenes")]
     Memory(&'static str),
@@ -53,13 +53,13 @@ fn shipped_files() -> impl mp_io::Files {
     mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes))
 }
 
-fn locate(given: &Path) -> Result<Place, Error> {
+fn locate(given: &Path) -> Result<Location, Error> {
     if let Some(file) = file_of(given) {
-        return Ok(Place::Disk(file));
+        return Ok(Location::Disk(file));
     }
     #[cfg(feature = "scenes")]
     if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
-        return Ok(Place::Memory(scene.path));
+        return Ok(Location::Memory(scene.path));
     }
     if given.is_dir() {
         return Err(Error::new(format!("{} is a folder, not a scene file", given.display()))

@@ -22,9 +22,9 @@ pub(crate) struct Finished {
 }
 
 /// A check that finds nothing free any more once the flag is raised: whatever shortens with it comes to an end.
-struct Until<'a, S>(AnyCheck<'a, S>, &'a Cancel);
+struct Cancellable<'a, S>(AnyCheck<'a, S>, &'a Cancel);
 
-impl<S> MotionValidity<S> for Until<'_, S> {
+impl<S> MotionValidity<S> for Cancellable<'_, S> {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
         self.check_extension(from, to, KnownFree::Neither)
     }
@@ -50,13 +50,13 @@ pub fn shorten<K: RobotKind>(
     let _span = tracing::info_span!("shorten").entered();
     let certified: AnyCheck<'_, K::State> =
         Box::new(Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?);
-    Ok(shortened(kind.space(), Until(certified, cancel), path, seed))
+    Ok(shorten_by(kind.space(), Cancellable(certified, cancel), path, seed))
 }
 
 /// The same behind a pointer: compiled for each space, not for each robot.
-fn shortened<C: Factored>(
+fn shorten_by<C: Factored>(
     space: &C,
-    mut check: Until<'_, C::State>,
+    mut check: Cancellable<'_, C::State>,
     path: &Path<C::State>,
     seed: u64,
 ) -> Path<C::State> {
@@ -74,16 +74,16 @@ pub(crate) fn finish<K: RobotKind>(
     control.stage(Stage::Finishing);
     if request.finish == Finish::Shorten {
         let short = shorten(kind, found, request.seed, &control.cancel)?;
-        if let Some(finished) = written(kind, &short, true)? {
+        if let Some(finished) = verified_as_written(kind, &short, true)? {
             return Ok(Some(finished));
         }
         tracing::info!("the shortened path does not pass the verifier: the path as found is written");
     }
-    written(kind, found, false)
+    verified_as_written(kind, found, false)
 }
 
 /// `path` as it reads back from its text, if the verifier passes that.
-fn written<K: RobotKind>(
+fn verified_as_written<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
     shortened: bool,

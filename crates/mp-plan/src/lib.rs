@@ -49,13 +49,16 @@
 //! Units are metres, radians and seconds. Nothing is printed; what happens is told by `tracing`: spans `load`, `build`,
 //! `plan`, `relax`, `shorten`, `verify` and `check`.
 
+mod any_robot;
 mod check;
 mod counted;
 mod error;
+mod explain;
 mod find;
 mod finish;
 pub mod info;
 mod inputs;
+mod load;
 mod numbers;
 mod parallel;
 mod path;
@@ -64,18 +67,22 @@ mod picture;
 mod plan;
 mod planners;
 mod prepared;
+mod relax;
 mod report;
 mod request;
 mod roadmaps;
 mod robot;
+mod runs;
 mod scene;
 #[cfg(feature = "roadmaps")]
 mod scene_roadmap;
 mod search;
+mod sweep;
 mod watch;
 
-pub use check::{Explanation, Verdict};
+pub use check::Verdict;
 pub use error::Error;
+pub use explain::Explanation;
 pub use find::find_problem;
 pub use finish::shorten;
 pub use inputs::is_same_file;
@@ -85,17 +92,19 @@ pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{PICTURE_SIZE, PictureKind};
 pub use planners::{planners, wrappers};
-pub use report::{Medians, REPORT_VERSION, Report, Runs, StoppedBy, median, medians};
+pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, Metric, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
     PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, Touch,
 };
-pub use scene::{Scene, Sweep};
+pub use runs::{Medians, Runs, median, medians};
+pub use scene::Scene;
 #[cfg(feature = "roadmaps")]
 pub use scene_roadmap::SceneRoadmap;
 pub use search::{Search, search};
+pub use sweep::Sweep;
 pub use watch::{Control, SearchEvent, Stage, Watch};
 
 pub use mp_cspace::{

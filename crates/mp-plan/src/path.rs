@@ -1,6 +1,6 @@
 //! Paths as rows of named numbers.
 
-use crate::{Column, Error, PathFormat};
+use crate::{Column, Error, PathFormat, RobotKind};
 use mp_io::{JointPath, PathFile};
 use serde::Serialize;
 use std::path::Path;
@@ -128,4 +128,39 @@ impl PathRows {
             }
         }
     }
+}
+
+/// The states of rows that came from a file.
+pub(crate) fn states<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Vec<K::State>, Error> {
+    let columns = kind.columns().len();
+    match path.rows.iter().find(|row| row.len() != columns) {
+        None if path.rows.is_empty() => Err(Error::new("the path has no configurations")),
+        None => Ok(path.rows.iter().map(|row| kind.state(row)).collect()),
+        Some(row) => {
+            let (name, found) = (kind.name(), row.len());
+            let what = match found {
+                1 => "1 number".to_owned(),
+                n => format!("{n} numbers"),
+            };
+            Err(Error::new(format!(
+                "a configuration of the path has {what}, the robot of {name} has {columns}"
+            ))
+            .help("is this a path of another robot?"))
+        }
+    }
+}
+
+/// The configuration of one row.
+pub(crate) fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
+    let columns = RobotKind::columns(kind);
+    if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {
+        return Ok(kind.state(row));
+    }
+    let names: Vec<_> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+    Err(Error::new(format!(
+        "a configuration of {} has {} finite numbers",
+        RobotKind::name(kind),
+        columns.len()
+    ))
+    .help(format!("give in order: {}", names.join(", "))))
 }

@@ -22,7 +22,7 @@ pub enum PictureKind {
 impl Scene {
     /// Whether the scene is one of areas in the plane, which can be drawn as SVG.
     #[must_use]
-    pub fn is_flat(&self) -> bool {
+    pub fn is_planar_world(&self) -> bool {
         self.bodies().iter().any(|body| matches!(body.shape, BodyShape::Area(_)))
     }
 
@@ -35,7 +35,7 @@ impl Scene {
         let wrong = |what: String| Err(Error::new(what).help("end its name in .png"));
         match ending.as_str() {
             "png" => Ok(PictureKind::Png),
-            "svg" if self.is_flat() => Ok(PictureKind::Svg),
+            "svg" if self.is_planar_world() => Ok(PictureKind::Svg),
             "svg" => wrong(format!("only worlds in the plane are drawn as .svg, not for {}", file.display())),
             "" => wrong(format!("{} has no ending, which says what kind of picture it is", file.display())),
             _ => wrong(format!("cannot write a picture as .{ending}: {}", file.display())),
@@ -54,7 +54,7 @@ impl Scene {
         size: (usize, usize),
     ) -> Result<Vec<u8>, Error> {
         let failed = |e: mp_render::RenderError| Error::new(e.to_string());
-        Ok(match (self.is_flat(), kind) {
+        Ok(match (self.is_planar_world(), kind) {
             (true, PictureKind::Svg) => self.drawing(path, caption)?.svg(size).map_err(failed)?.into_bytes(),
             (true, PictureKind::Png) => self.drawing(path, caption)?.pixels(size).map_err(failed)?.to_png(),
             (false, _) => self.solid(path, caption)?.draw(size).map_err(failed)?.to_png(),

@@ -33,7 +33,7 @@ pub(crate) fn reported<K: RobotKind>(
         verified: false,
         stopped_by: None,
         why: None,
-        planner: crate::planners::PlannerSpec::new(&request.planner)?.to_string(),
+        planner: crate::planners::PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
         motion: request.motion.to_string(),
         seed: request.seed,

@@ -18,14 +18,14 @@ pub fn wrappers() -> &'static [mp_tree::MetaPlanner] {
 
 /// A planner by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum PlannerSpec {
+pub(crate) enum PlannerKind {
     /// Grows trees.
     Tree(mp_tree::PlannerSpec),
     /// Builds a roadmap.
     Roadmap(&'static PlannerInfo),
 }
 
-impl PlannerSpec {
+impl PlannerKind {
     /// The planner called `name`.
     pub(crate) fn new(name: &str) -> Result<Self, Error> {
         if let Some(info) = roadmaps::planner(name) {
@@ -51,7 +51,7 @@ impl PlannerSpec {
     /// Refuses settings that it does not have.
     pub(crate) fn check(&self, settings: &Settings) -> Result<(), Error> {
         match self {
-            Self::Tree(named) => named.check(settings)?,
+            Self::Tree(spec) => spec.check(settings)?,
             Self::Roadmap(info) => settings.check(info)?,
         }
         Ok(())
@@ -62,10 +62,10 @@ impl PlannerSpec {
     }
 }
 
-impl fmt::Display for PlannerSpec {
+impl fmt::Display for PlannerKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Tree(named) => named.fmt(f),
+            Self::Tree(spec) => spec.fmt(f),
             Self::Roadmap(info) => f.write_str(info.name),
         }
     }

@@ -324,7 +324,7 @@ impl Request {
     /// # Errors
     /// The first thing wrong.
     pub fn check(&self) -> Result<(), Error> {
-        let planner = crate::planners::PlannerSpec::new(&self.planner)?;
+        let planner = crate::planners::PlannerKind::new(&self.planner)?;
         planner.check(&self.settings())?;
         if let Some(time) = self.budget.time_s
             && (time.is_nan() || time <= 0.0)

@@ -15,9 +15,12 @@ use crate::{Error, Metric};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
     DefaultNn, Factored, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _, StateVector,
-    Validity, nn::Embed,
+    Validity,
+    nn::Embed,
+    obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::{Aabb, TriMesh};
+use mp_io::PlacedBody;
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use serde::{Deserialize, Serialize};
@@ -60,6 +63,13 @@ pub struct Body {
     /// Where it stands in the world; `None` for a body that moves with the robot:
     /// [`poses`](RobotKind::poses) tells where that is.
     pub pose: Option<Isometry3<f64>>,
+}
+
+impl Body {
+    /// An obstacle: a mesh that stands still.
+    pub(crate) fn obstacle(body: &PlacedBody) -> Self {
+        Self { name: body.name.clone(), shape: BodyShape::Mesh(body.mesh.clone()), pose: Some(body.pose) }
+    }
 }
 
 /// What a body looks like.
@@ -325,6 +335,22 @@ impl Mismatch {
 }
 
 pub use crate::counted::Counted;
+
+/// What checkers that `counted` makes know of obstacles: hints, and the clearance gradient.
+pub(crate) fn hints_and_gradient<'c, S, R>(counted: &dyn Fn() -> Counted<'c, R>) -> ObstacleKnowledge<'c, S>
+where
+    S: 'c,
+    R: ObstacleHints<S> + ClearanceGradient<S> + Queries + Send + 'c,
+{
+    let mut checker = counted();
+    let gradient =
+        move |q: &S, reach: f64, gradient: &mut [f64]| checker.clearance_gradient(q, reach, gradient);
+    ObstacleKnowledge {
+        hints: Some(Box::new(counted())),
+        gradient: Some(Box::new(gradient)),
+        ..ObstacleKnowledge::default()
+    }
+}
 
 /// An error for a metric that a robot does not have.
 pub(crate) fn no_metric(metric: Metric, robot: &str, has: &[Metric]) -> Error {

@@ -1,15 +1,15 @@
 //! Many queries to one roadmap of a scene.
 
-use crate::check::refused;
+use crate::explain::refused;
+use crate::path::state;
 use crate::plan::reported;
-use crate::planners::PlannerSpec;
+use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
-use crate::roadmaps::{Made, Roadmap, fingerprint};
-use crate::scene::state;
-use crate::search::{Search, relax_if_asked};
-use crate::watch::{Events, Telling};
+use crate::relax::relax_if_requested;
+use crate::roadmaps::{Roadmap, RoadmapFile};
+use crate::search::Search;
 use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::{Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
+use mp_cspace::{Outcome, Rng, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, RoadmapState};
 use std::fmt;
 use std::path::Path;
@@ -25,7 +25,7 @@ const NEIGHBOURS: usize = 20;
 ///
 /// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all it needs, and may go to another thread.
 pub struct SceneRoadmap {
-    pub(crate) roadmap: Box<dyn Answering>,
+    pub(crate) roadmap: Box<dyn AnySceneRoadmap>,
     /// The file of the scene.
     pub(crate) file: Option<String>,
 }
@@ -107,7 +107,7 @@ impl SceneRoadmap {
 }
 
 /// A roadmap of a robot of some kind, behind a pointer.
-pub(crate) trait Answering: Send {
+pub(crate) trait AnySceneRoadmap: Send {
     fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error>;
     fn grow(&mut self, budget: Budget, control: &mut Control<'_>) -> Result<(), Error>;
     fn verify(&mut self) -> Result<usize, Error>;
@@ -116,7 +116,7 @@ pub(crate) trait Answering: Send {
     fn save(&self, file: &Path) -> Result<(), Error>;
 }
 
-struct Of<K: RobotKind> {
+struct RobotRoadmap<K: RobotKind> {
     kind: Arc<K>,
     request: Request,
     roadmap: AnyRoadmap<K::State>,
@@ -127,19 +127,19 @@ pub(crate) fn build<K: RobotKind + 'static>(
     kind: Arc<K>,
     request: &Request,
     control: &mut Control<'_>,
-) -> Result<Box<dyn Answering>, Error> {
+) -> Result<Box<dyn AnySceneRoadmap>, Error> {
     request.check()?;
     let roadmap = grown(&*kind, request, None, control)?;
-    Ok(Box::new(Of { kind, request: request.clone(), roadmap }))
+    Ok(Box::new(RobotRoadmap { kind, request: request.clone(), roadmap }))
 }
 
 /// The planner of the request.
 fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
-    match PlannerSpec::new(&request.planner)? {
-        PlannerSpec::Roadmap(info) => Ok(info),
-        named @ PlannerSpec::Tree(_) => {
+    match PlannerKind::new(&request.planner)? {
+        PlannerKind::Roadmap(info) => Ok(info),
+        tree @ PlannerKind::Tree(_) => {
             let names: Vec<_> = crate::roadmaps::planners().iter().map(|p| p.name).collect();
-            Err(Error::new(format!("{named} builds no roadmap"))
+            Err(Error::new(format!("{tree} builds no roadmap"))
                 .help(format!("take one of: {}", names.join(", "))))
         }
     }
@@ -155,14 +155,12 @@ fn grown<K: RobotKind>(
     let info = planner(request)?;
     let _span = tracing::info_span!("roadmap", scene = kind.name(), planner = info.name, seed = request.seed)
         .entered();
-    let (settings, workers) = (request.settings(), Workers::new(request.threads)?);
-    let fingerprint = fingerprint(kind, request)?;
+    let workers = Workers::new(request.threads)?;
+    let file = RoadmapFile::of_request(kind, request)?;
     let prepared = Prepared::new(kind, request)?;
     control.stage(Stage::Planning);
     let began = Instant::now();
-    let problem = || prepared.problem();
-    let index = prepared.index.clone();
-    let mut made = Made::new(info, &problem, index, request, &settings, workers, fingerprint)?;
+    let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
     if let Some(map) = map {
         made.resume(map)?;
     }
@@ -171,21 +169,15 @@ fn grown<K: RobotKind>(
         0 => Rng::seed(request.seed),
         nodes => Rng::stream(request.seed, nodes as u64),
     };
-    let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
-    let telling = Telling::new(control.watch.as_deref_mut());
-    let mut events = Events { row: &|q| kind.row(q), telling: &telling, wanted };
-    let stop = prepared.stop(request, began, control.cancel.clone());
-    let mut stop = stop.or(control.stop.as_deref_mut()).or(&telling);
-    let reason = made.build(&mut rng, &mut stop, &mut events);
-    drop(stop);
-    let ([edges, components], map) = made.keep(request, fingerprint, true)?;
+    let reason = prepared.watched(control, began, |stop, events| made.build(&mut rng, stop, events));
+    let ([edges, components], map) = made.keep(file.as_ref(), true)?;
     drop(made);
     let map = map.unwrap_or_default();
     tracing::info!(nodes = map.len(), edges, components, by = StoppedBy::from(reason).word(), "built");
     Ok(AnyRoadmap::new(&prepared.space, map, prepared.index.clone(), NEIGHBOURS)?)
 }
 
-impl<K: RobotKind> Answering for Of<K> {
+impl<K: RobotKind> AnySceneRoadmap for RobotRoadmap<K> {
     fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error> {
         let (kind, request) = (&*self.kind, &self.request);
         let _span = tracing::info_span!("query", scene = kind.name()).entered();
@@ -198,17 +190,17 @@ impl<K: RobotKind> Answering for Of<K> {
         let prepared = Prepared::new(kind, request)?;
         control.stage(Stage::Planning);
         let began = Instant::now();
-        let mut steer = AnyEdgeChecker::of(prepared.problem()?);
-        let answer = K::State::answer(&mut self.roadmap, &mut steer, &start, &goal);
+        let mut checker = AnyEdgeChecker::of(prepared.problem()?);
+        let answer = K::State::answer(&mut self.roadmap, &mut checker, &start, &goal);
         let time = began.elapsed();
-        let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), steer.motions());
-        progress.rejected = steer.rejected();
-        // What the checkers have counted and not told yet.
-        drop(steer);
+        let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), checker.motions());
+        progress.rejected = checker.rejected();
+        // Checkers report their last queries when they are dropped.
+        drop(checker);
         let queries = prepared.queries.load(Ordering::Relaxed);
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
         let (outcome, why) = match answer {
-            Ok(path) => (Outcome::Solved(relax_if_asked(kind, request, path, control)?), None),
+            Ok(path) => (Outcome::Solved(relax_if_requested(kind, request, path, control)?), None),
             Err(why) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
         };
         let found = Search { outcome, progress, queries, time, first: None, map, roadmap: None };
@@ -225,8 +217,8 @@ impl<K: RobotKind> Answering for Of<K> {
     fn verify(&mut self) -> Result<usize, Error> {
         let _span = tracing::info_span!("verify", scene = self.kind.name()).entered();
         let prepared = Prepared::new(&*self.kind, &self.request)?;
-        let mut steer = AnyEdgeChecker::of(prepared.problem()?);
-        Ok(K::State::verify_roadmap(&mut self.roadmap, &mut steer))
+        let mut checker = AnyEdgeChecker::of(prepared.problem()?);
+        Ok(K::State::verify_roadmap(&mut self.roadmap, &mut checker))
     }
 
     fn size(&self) -> [usize; 2] {
@@ -238,8 +230,6 @@ impl<K: RobotKind> Answering for Of<K> {
     }
 
     fn save(&self, file: &Path) -> Result<(), Error> {
-        let request = Request { roadmap: Some(file.to_owned()), ..self.request.clone() };
-        let fingerprint = fingerprint(&*self.kind, &request)?.unwrap_or_default();
-        Ok(mp_io::write_atomic(file, &self.roadmap.map().to_bytes(fingerprint))?)
+        RoadmapFile::new(&*self.kind, file, self.request.metric)?.write(self.roadmap.map())
     }
 }

@@ -125,30 +125,30 @@ impl<'a> Control<'a> {
 }
 
 /// Iterations between two looks at the clock.
-const EVERY: u64 = 64;
+const ITERATIONS_PER_LOOK: u64 = 64;
 /// The least time between two reports of progress.
-const PAUSE: Duration = Duration::from_millis(100);
+const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Tells a watch of progress, as a [`Stop`] that never stops anything; and of events, as an [`Observer`]: planners are
 /// given one after the other, never both at a time.
-pub(crate) struct Telling<'w, 'a> {
+pub(crate) struct WatchAdapter<'w, 'a> {
     pub(crate) watch: std::cell::RefCell<Option<&'w mut (dyn Watch + 'a)>>,
-    told: std::cell::Cell<Instant>,
+    last_report: std::cell::Cell<Instant>,
 }
 
-impl<'w, 'a> Telling<'w, 'a> {
+impl<'w, 'a> WatchAdapter<'w, 'a> {
     pub(crate) fn new(watch: Option<&'w mut (dyn Watch + 'a)>) -> Self {
-        Self { watch: watch.into(), told: Instant::now().into() }
+        Self { watch: watch.into(), last_report: Instant::now().into() }
     }
 }
 
-impl Stop for &Telling<'_, '_> {
+impl Stop for &WatchAdapter<'_, '_> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
-        if progress.iterations.is_multiple_of(EVERY)
-            && self.told.get().elapsed() > PAUSE
+        if progress.iterations.is_multiple_of(ITERATIONS_PER_LOOK)
+            && self.last_report.get().elapsed() > REPORT_INTERVAL
             && let Some(watch) = &mut *self.watch.borrow_mut()
         {
-            self.told.set(Instant::now());
+            self.last_report.set(Instant::now());
             watch.progress(progress);
         }
         None
@@ -158,7 +158,7 @@ impl Stop for &Telling<'_, '_> {
 /// Translates the states of events to rows.
 pub(crate) struct Events<'t, 'w, 'a, S> {
     pub(crate) row: &'t dyn Fn(&S) -> Vec<f64>,
-    pub(crate) telling: &'t Telling<'w, 'a>,
+    pub(crate) adapter: &'t WatchAdapter<'w, 'a>,
     pub(crate) wanted: bool,
 }
 
@@ -180,7 +180,7 @@ impl<S> Observer<S> for Events<'_, '_, '_, S> {
             Event::Pruned { tree, survivors } => SearchEvent::Pruned { tree, survivors },
             _ => return,
         };
-        if let Some(watch) = &mut *self.telling.watch.borrow_mut() {
+        if let Some(watch) = &mut *self.adapter.watch.borrow_mut() {
             watch.event(event);
         }
     }

@@ -1,8 +1,10 @@
 //! Arms, and other trees of links, among meshes.
 
-use super::{Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, no_metric};
+use super::{
+    Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, hints_and_gradient, no_metric,
+};
 use crate::{Error, Metric, brief};
-use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric, obstacles::ClearanceGradient};
+use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
 use mp_geom::TriMesh;
 use mp_io::{PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};
@@ -172,8 +174,7 @@ fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 
 
 impl Queries for Arm {
     fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
+        self.counters().queries()
     }
 }
 
@@ -212,15 +213,7 @@ impl RobotKind for ArmScene {
         &'c self,
         counted: &dyn Fn() -> Counted<'c, Arm>,
     ) -> ObstacleKnowledge<'c, Configuration> {
-        let mut field = counted();
-        let gradient = move |q: &Configuration, reach: f64, gradient: &mut [f64]| {
-            field.clearance_gradient(q, reach, gradient)
-        };
-        ObstacleKnowledge {
-            hints: Some(Box::new(counted())),
-            gradient: Some(Box::new(gradient)),
-            ..ObstacleKnowledge::default()
-        }
+        hints_and_gradient(counted)
     }
     fn measured(&self, metric: Metric) -> Result<Measured<'_, Configuration>, Error> {
         match metric {
@@ -319,12 +312,7 @@ impl RobotKind for ArmScene {
         let name = |i: usize| self.arm.model().links[i].name.clone();
         let links = self.solid_links();
         let links = links.map(|(i, mesh)| Body { name: name(i), shape: BodyShape::Mesh(mesh), pose: None });
-        let still = self.obstacles.iter().map(|o| Body {
-            name: o.name.clone(),
-            shape: BodyShape::Mesh(o.mesh.clone()),
-            pose: Some(o.pose),
-        });
-        links.chain(still).collect()
+        links.chain(self.obstacles.iter().map(Body::obstacle)).collect()
     }
     fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
         let all = self.arm.kinematics().link_poses(q.as_slice()).unwrap_or_default();

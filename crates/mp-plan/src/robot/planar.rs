@@ -1,6 +1,9 @@
 //! Robots of the plane among polygons: a disc, or a polygon that turns.
 
-use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, Queries, RobotKind, Touch, no_metric};
+use super::{
+    Body, BodyShape, Checker, Column, Counted, End, Measured, Queries, RobotKind, Touch, hints_and_gradient,
+    no_metric,
+};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::CompiledIndex;
@@ -19,7 +22,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// Shortcuts keep this share of the robot's radius away from obstacles.
-const ROOM: f64 = 0.002;
+const SHORTCUT_CLEARANCE: f64 = 0.002;
 /// Between two copies of the robot in a picture its origin moves about this many radii.
 const PICTURE_SPACING: f64 = 1.5;
 /// Corners of the ring that a disc is drawn as.
@@ -74,15 +77,13 @@ pub trait PlanarBody:
 
 impl Queries for DiscRobot {
     fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
+        self.counters().queries()
     }
 }
 
 impl Queries for PolygonRobot {
     fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
+        self.counters().queries()
     }
 }
 
@@ -259,18 +260,10 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         self.tolerance().max(1e-4 * self.robot.radius())
     }
     fn shortcut_clearance(&self) -> f64 {
-        (ROOM * self.robot.radius()).max(self.tolerance())
+        (SHORTCUT_CLEARANCE * self.robot.radius()).max(self.tolerance())
     }
     fn obstacles<'c>(&'c self, counted: &dyn Fn() -> Counted<'c, B>) -> ObstacleKnowledge<'c, B::State> {
-        let mut field = counted();
-        let gradient = move |q: &B::State, reach: f64, gradient: &mut [f64]| {
-            field.clearance_gradient(q, reach, gradient)
-        };
-        ObstacleKnowledge {
-            hints: Some(Box::new(counted())),
-            gradient: Some(Box::new(gradient)),
-            ..ObstacleKnowledge::default()
-        }
+        hints_and_gradient(counted)
     }
     fn measured(&self, metric: Metric) -> Result<Measured<'_, B::State>, Error> {
         match metric {

@@ -14,7 +14,7 @@ const DEPTH: u32 = 10;
 /// Six-tuples (x, y, z, α, β, γ) along the motion through `segments + 1` poses, where `at(i, t)` is the pose
 /// at fraction `t` of segment `i`. Angles run on continuously, so they may leave (-π, π]. `radius` is the
 /// distance of the robot's farthest point from its origin.
-pub(crate) fn along(
+pub(crate) fn six_tuples(
     segments: usize,
     radius: f64,
     at: impl Fn(usize, f64) -> Isometry3<f64>,
@@ -80,7 +80,7 @@ mod tests {
             let (from, to) = (pose(0.0, a), pose(x, b));
             let Some(_) = from.try_lerp_slerp(&to, 0.5, 1e-9) else { return Ok(()) };
             let at = |_: usize, t: f64| from.try_lerp_slerp(&to, t, 1e-9).unwrap_or(from);
-            let tuples = along(1, 1.0, at);
+            let tuples = six_tuples(1, 1.0, at);
             prop_assert!(travel(&pose_from_six(tuples[0]), &from, 1.0) < 1e-7);
             prop_assert!(travel(&pose_from_six(tuples[tuples.len() - 1]), &to, 1.0) < 1e-7);
             let mut far = 0;
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn turning_round_and_round_keeps_counting() {
         let at = |i: usize, t: f64| pose_from_six([0.0, 0.0, 0.0, 2.0 * (i as f64 + t), 0.0, 0.0]);
-        let tuples = along(6, 1.0, at);
+        let tuples = six_tuples(6, 1.0, at);
         assert!((tuples[tuples.len() - 1][3] - 12.0).abs() < 1e-9);
         assert!(tuples.windows(2).all(|w| w[1][3] > w[0][3]));
     }
