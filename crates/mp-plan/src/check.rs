@@ -1,4 +1,4 @@
-//! Is a path free, by the checker that shares no code with the planner's? And of one configuration: what is wrong?
+//! Verifies a path, with code that shares nothing with the planner's checks.
 
 use crate::explain::list;
 use crate::numbers::brief;
@@ -12,22 +12,22 @@ use mp_cspace::{
 };
 use serde::{Deserialize, Serialize};
 
-/// What the check of a path found. Its JSON form is what `mp check --json` prints.
+/// The result of checking a path. `mp check --json` prints its JSON form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The scene, as it was named.
+    /// The name of the scene.
     pub scene: String,
-    /// The path, as it was named.
+    /// The name of the path.
     pub path: String,
-    /// Free all along, from the start of the scene to a goal.
+    /// Whether the path is free all along and leads from the start of the scene to a goal.
     pub free: bool,
-    /// How many configurations there are.
+    /// The number of configurations.
     pub configurations: usize,
-    /// In the metric of the space.
+    /// The length of the path, in the metric of the space.
     pub path_length: f64,
-    /// A lower bound all along, metres; 0 when not free.
+    /// A lower bound (m) on the clearance along the path; 0 when it is not free.
     pub clearance: f64,
-    /// What is wrong, if anything.
+    /// What is wrong. Empty when the path is free.
     pub faults: Vec<String>,
 }
 
@@ -49,19 +49,19 @@ impl Verdict {
     }
 }
 
-/// Verifies a path, edge by edge.
+/// Verifies a path edge by edge.
 pub(crate) fn verified<K: RobotKind>(kind: &K, path: &Path<K::State>) -> Result<PathReport, Error> {
     let mut verifier: AnyCheck<'_, K::State> = Box::new(kind.verifier()?);
     Ok(verify_path(kind.space(), path, &mut verifier))
 }
 
-/// A lower bound on the clearance (m) along a path that is free, so accurate.
+/// A lower bound on the clearance (m) along a free path, to within `accuracy` (m).
 pub(crate) fn clearance<K: RobotKind>(kind: &K, path: &Path<K::State>, accuracy: f64) -> Option<f64> {
     let mut checker = kind.checker().clone();
     least_clearance(kind.space(), &mut checker, path, accuracy).map(|tightest| tightest.clearance)
 }
 
-/// Verifies a path from the start to a goal.
+/// Checks that a path is free and leads from the start to a goal.
 pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, Error> {
     let _span = tracing::info_span!("check", scene = kind.name()).entered();
     let states = Path::straight(states(kind, path)?);
@@ -100,7 +100,7 @@ pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, 
     })
 }
 
-/// The fault with the configuration at which it is, and what touches.
+/// A fault as text, with the configuration at which it occurs and what touches there.
 fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: PathFault) -> String {
     let (edge, check) = match fault {
         PathFault::Motion { edge, check } => (edge, check),

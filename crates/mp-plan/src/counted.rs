@@ -1,4 +1,4 @@
-//! Checkers whose queries go into one sum, for reports and budgets.
+//! Checkers whose queries are added to a common count, for reports and budgets.
 
 use crate::Queries;
 use mp_cspace::{
@@ -9,19 +9,19 @@ use nalgebra::Vector3;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Queries that a checker may have been asked and not told yet: the sum is for budgets, and telling it takes time too.
+/// A checker adds its queries to the common count once there are this many, because each addition takes time.
 const MAX_UNREPORTED: u64 = 64;
 
-/// A checker whose queries go into a common sum: once in a while, and when it is dropped.
+/// A checker whose queries are added to a common count: now and then, and when it is dropped.
 pub struct Counted<'a, R: Queries> {
     checker: R,
-    /// What the checker had counted when it last told.
+    /// How many of the checker's queries are in the common count.
     reported: u64,
     queries: &'a AtomicU64,
 }
 
 impl<'a, R: Queries> Counted<'a, R> {
-    /// `checker`, whose queries from now on are added to `queries`.
+    /// Adds the queries that `checker` answers from now on to `queries`.
     pub fn new(checker: R, queries: &'a AtomicU64) -> Self {
         Self { reported: checker.queries(), checker, queries }
     }
@@ -32,7 +32,7 @@ impl<'a, R: Queries> Counted<'a, R> {
         self.reported = now;
     }
 
-    /// What the checker answers.
+    /// The answer of the checker to a query.
     fn query<T>(&mut self, query: impl FnOnce(&mut R) -> T) -> T {
         let answer = query(&mut self.checker);
         if self.checker.queries() - self.reported >= MAX_UNREPORTED {
@@ -42,7 +42,7 @@ impl<'a, R: Queries> Counted<'a, R> {
     }
 }
 
-/// Stops when so many queries were asked. What is done until then depends on no clock.
+/// Stops when the common count reaches a number of queries. Does not depend on a clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct QueryBudget<'a> {
     pub(crate) queries: &'a AtomicU64,

@@ -5,20 +5,20 @@ use crate::{End, Error, RobotKind, Touch};
 use mp_cspace::{Clearance, Space};
 use serde::{Deserialize, Serialize};
 
-/// What there is to say about one configuration.
+/// Why a configuration is free or not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
-    /// In bounds, and at least the tolerance from contact.
+    /// Whether the configuration is in bounds and at least the tolerance away from contact.
     pub free: bool,
-    /// Within the bounds of the space.
+    /// Whether it is within the bounds of the space.
     pub in_bounds: bool,
-    /// A lower bound on the distance to contact, metres; zero in collision.
+    /// A lower bound (m) on the distance to contact; zero in collision.
     pub clearance: f64,
     /// What touches what.
     pub touching: Vec<Touch>,
-    /// What is wrong, in a sentence after "the configuration is"; none when it is free.
+    /// What is wrong, to follow the words "the configuration is"; none when it is free.
     pub fault: Option<String>,
-    /// A free configuration nearby, of one that is not free.
+    /// A free configuration nearby, for one that is not free.
     pub nearest_free: Option<Vec<f64>>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn explain<K: RobotKind>(kind: &K, q: &K::State) -> Explanation {
     }
 }
 
-/// What is wrong with a configuration, after "the start is".
+/// What is wrong with a configuration, to follow the words "the start is".
 fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
     if !kind.space().contains(q) {
         return Some(kind.out_of_bounds(q));
@@ -60,7 +60,7 @@ fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
     })
 }
 
-/// Start and goals, and how messages call them.
+/// Start and goals, with the names that messages give them.
 fn ends<K: RobotKind>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)> {
     let many = kind.goals().len() > 1;
     let goals = kind.goals().iter().enumerate().map(move |(i, q)| {
@@ -70,7 +70,7 @@ fn ends<K: RobotKind>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)
     std::iter::once((End::Start, "the start".to_owned(), kind.start())).chain(goals)
 }
 
-/// What is wrong with a configuration that messages call `name`, and what to do; `None` when it is free.
+/// An error message and a remedy for the configuration that messages call `name`; `None` when it is free.
 pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Option<(String, String)> {
     let fault = fault(kind, q)?;
     let help = match kind.nearest_free(q) {
@@ -82,8 +82,8 @@ pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Optio
     Some((format!("{name} is {fault}"), help))
 }
 
-/// An error when start or a goal is not free: names what touches, how deep, and the nearest free configuration.
-/// Otherwise what is odd about them.
+/// An error if the start or a goal is not free: it says what touches, how deep, and the nearest free configuration.
+/// Otherwise returns what is odd about them.
 pub(crate) fn check_ends<K: RobotKind>(kind: &K) -> Result<Vec<String>, Error> {
     for (end, name, q) in ends(kind) {
         if let Some((message, help)) = refused(kind, &name, q) {

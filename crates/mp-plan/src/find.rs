@@ -1,4 +1,4 @@
-//! Finding scenes: by file, or by the name of a shipped one.
+//! Finding scenes: by file, or by the name of a shipped scene.
 
 use crate::{Error, Scene};
 use std::path::{Path, PathBuf};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 const ENDINGS: [&str; 4] = ["env", "txt", "cfg", "toml"];
 
 impl Scene {
-    /// The scene meant by `given`: a file, a file less its ending, or the name of a shipped scene. A file comes first.
+    /// The scene that `given` names: a file, a file without its ending, or a shipped scene. A file comes first.
     ///
     /// # Errors
-    /// When there is no such scene (with the most similar name), or as [`load`](Self::load).
+    /// When there is no such scene (the error suggests the most similar name), or as [`load`](Self::load).
     pub fn find(given: impl AsRef<Path>) -> Result<Self, Error> {
         match locate(given.as_ref())? {
             Location::Disk(file) => Self::load(file),
@@ -29,10 +29,10 @@ impl Scene {
     }
 }
 
-/// The problem of a rigid body meant by `given`, as [`Scene::find`] finds scenes: for who works with types.
+/// The rigid-body problem that `given` names, found as by [`Scene::find`]: for code that works with types.
 ///
 /// # Errors
-/// When there is no such scene, or it is not one of a rigid body among meshes.
+/// When there is no such scene, or its robot is not a rigid body among meshes.
 pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Error> {
     Ok(match locate(given.as_ref())? {
         Location::Disk(file) => mp_io::RigidProblem::load(file)?,
@@ -76,7 +76,7 @@ fn locate(given: &Path) -> Result<Location, Error> {
     Err(Error::new(format!("there is no scene {}", given.display())).help(help))
 }
 
-/// The file meant by `given`, with or without its ending.
+/// The file that `given` names, with or without its ending.
 fn file_of(given: &Path) -> Option<PathBuf> {
     if given.is_file() {
         return Some(given.to_owned());
@@ -100,7 +100,7 @@ fn scenes_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The name most like `given`, when one is like it at all.
+/// The name most similar to `given`, if one is similar enough.
 fn similar<'a>(given: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let allowed = given.chars().count().max(3) / 3 + 1;
     let near = names.map(|name| (edits(given, name), name));

@@ -1,4 +1,4 @@
-//! From a path of states to one that is written down: shortened, verified as it reads back.
+//! Finishing a path: shortens it, writes it as text, and verifies what the text says.
 
 use crate::check::{clearance, verified};
 use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage};
@@ -7,21 +7,21 @@ use mp_cspace::shorten::{Effort, simplify};
 use mp_cspace::{Cancel, Certified, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::Ordering;
 
-/// Which stream of random numbers shortening draws from: planning draws from another.
+/// The stream of random numbers for shortening. Planning uses another one.
 const STREAM: u64 = 1;
 
-/// A path that the verifier passed as it will be read.
+/// A path that passed the verifier after it was written as text and read again.
 #[derive(Clone, Debug)]
 pub(crate) struct Finished {
     pub(crate) path: PathRows,
-    /// In the metric of the space.
+    /// Its length, in the metric of the space.
     pub(crate) length: f64,
-    /// A lower bound all along, metres.
+    /// A lower bound (m) on the clearance along it.
     pub(crate) clearance: f64,
     pub(crate) shortened: bool,
 }
 
-/// A check that finds nothing free any more once the flag is raised: whatever shortens with it comes to an end.
+/// A check that finds no motion free once the flag is raised, so that shortening comes to an end.
 struct Cancellable<'a, S>(AnyCheck<'a, S>, &'a Cancel);
 
 impl<S> MotionValidity<S> for Cancellable<'_, S> {
@@ -36,11 +36,11 @@ impl<S> MotionValidity<S> for Cancellable<'_, S> {
     }
 }
 
-/// The path, shortened: every edge keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or was there
-/// before. The same seed gives the same path. Raising `cancel` ends it early.
+/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or is an
+/// edge of the given path. The same seed gives the same path. Raising `cancel` ends it early.
 ///
 /// # Errors
-/// When the tolerance of the robot makes no sense.
+/// When the tolerance of the robot is not valid.
 pub fn shorten<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
@@ -53,7 +53,7 @@ pub fn shorten<K: RobotKind>(
     Ok(shorten_by(kind.space(), Cancellable(certified, cancel), path, seed))
 }
 
-/// The same behind a pointer: compiled for each space, not for each robot.
+/// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
 fn shorten_by<C: Factored>(
     space: &C,
     mut check: Cancellable<'_, C::State>,
@@ -63,8 +63,8 @@ fn shorten_by<C: Factored>(
     simplify(space, &mut check, path, Effort::default(), &mut Rng::stream(seed, STREAM))
 }
 
-/// Shortens `found` if asked to, and verifies what will be written. Falls back to `found` itself; `None` when
-/// not even that is free after it has been through its text.
+/// Shortens `found` if the request says so, and verifies what will be written. If the shortened path does not pass, `found`
+/// itself is used; `None` if that, written and read again, does not pass either.
 pub(crate) fn finish<K: RobotKind>(
     kind: &K,
     found: &Path<K::State>,
@@ -82,7 +82,7 @@ pub(crate) fn finish<K: RobotKind>(
     verified_as_written(kind, found, false)
 }
 
-/// `path` as it reads back from its text, if the verifier passes that.
+/// `path` written as text and read again, if the verifier passes the result.
 fn verified_as_written<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,

@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::fmt;
 use std::path::Path;
 
-/// What is in a file. Its JSON form is what `mp info --json` prints: `kind` is `mesh`, `scene` or `path`.
+/// What is in a file. `mp info --json` prints its JSON form, in which `kind` is `mesh`, `scene` or `path`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Info {
@@ -26,10 +26,10 @@ pub enum Info {
 }
 
 impl Info {
-    /// Says what is in a file, or in a shipped scene of that name.
+    /// What is in a file, or in the shipped scene of that name.
     ///
     /// # Errors
-    /// When it cannot be read, is of no kind that is known, or makes no sense.
+    /// When the file cannot be read, is of an unknown kind, or is not valid.
     pub fn read(file: &Path) -> Result<Self, Error> {
         if !file.exists() {
             return Ok(Self::Scene(SceneInfo::of(&Scene::find(file)?)));
@@ -52,7 +52,7 @@ impl fmt::Display for Info {
     }
 }
 
-/// What a file holds.
+/// The kind of content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum FileContent {
     Mesh,
@@ -60,7 +60,7 @@ enum FileContent {
     Path(PathFormat),
 }
 
-/// Tells files apart by their ending, and `.txt` by how it begins.
+/// The content of a file, by its ending; for `.txt` by its first lines.
 fn content(file: &Path) -> Result<FileContent, Error> {
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {

@@ -11,12 +11,12 @@ impl Scene {
     /// in the plane (`.toml`).
     ///
     /// # Errors
-    /// When a file cannot be read or makes no sense: with file, line, column and remedy.
+    /// When a file cannot be read or is not valid: with file, line, column and remedy.
     pub fn load(file: impl AsRef<Path>) -> Result<Self, Error> {
         Self::load_from(&Disk, file.as_ref())
     }
 
-    /// The same of files from elsewhere, such as from memory.
+    /// As [`load`](Self::load), from other files than those on the disk, such as files in memory.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -52,8 +52,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Reads a scene from the text of a file of any kind: which, is seen by how it begins. Other files that it names are
-    /// looked for in `folder`; reports call it `name`.
+    /// Reads a scene from the text of a file. Its kind is recognized from its first lines. Other files that it names are
+    /// looked for in `folder`. Reports call the scene `name`.
     ///
     /// # Errors
     /// As [`load`](Self::load).
@@ -71,7 +71,7 @@ impl Scene {
     }
 }
 
-/// A text that is no file, among the files of the disk.
+/// A text in place of one file, among the files of the disk.
 #[derive(Debug)]
 struct OneText<'a> {
     file: &'a Path,
@@ -84,7 +84,7 @@ impl Files for OneText<'_> {
     }
 }
 
-/// An error for a file that names a robot or a map, but is no scene: which format to write around it.
+/// An error for a file that describes a robot or a map but is not a scene. It says which file to write around it.
 pub(crate) fn foreign(file: &Path) -> Error {
     let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();

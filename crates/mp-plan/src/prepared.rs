@@ -1,4 +1,4 @@
-//! A request made ready for a robot: the space, an index, a verifier, and problems made of them.
+//! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
 use crate::counted::{Counted, QueryBudget};
 use crate::roadmaps::{PlannerParts, RoadmapFile, RoadmapPlanner};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::time::{Duration, Instant};
 
-/// What problems of one request are made of.
+/// What the problems and planners of one request are made from.
 pub(crate) struct Prepared<'k, K: RobotKind> {
     kind: &'k K,
     request: &'k Request,
@@ -23,7 +23,7 @@ pub(crate) struct Prepared<'k, K: RobotKind> {
     /// An empty index of it.
     pub(crate) index: AnyIndex<K::State>,
     verifier: K::Verifier<'k>,
-    /// The queries that checkers were asked, all together.
+    /// The common count of the queries of all checkers.
     pub(crate) queries: AtomicU64,
 }
 
@@ -34,7 +34,7 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         Ok(Self { kind, request, space, index, verifier, queries })
     }
 
-    /// The problem of the scene: as often as there are threads.
+    /// The problem of the scene. Each thread makes its own.
     pub(crate) fn problem(&self) -> Result<AnyProblem<'_, K::State>, BuildError> {
         let kind = self.kind;
         let counted = || Counted::new(kind.checker().clone(), &self.queries);

@@ -9,12 +9,12 @@ use mp_snake::{Params, Repulsion, relax};
 use mp_tree::TreeState;
 use std::sync::atomic::AtomicU64;
 
-/// From how far obstacles push a path that is relaxed, as a part of the extent.
+/// The range of the repulsion of obstacles, as a part of the extent of the space.
 const RELAX_RANGE: f64 = 0.03;
-/// How much longer relaxing may make what is left after needless states.
+/// How many times as long relaxing may make the path that is left without needless states.
 const MOST_STRETCH: f64 = 1.15;
 
-/// The path as it is, or [relaxed].
+/// The path, [relaxed] if the request says so.
 pub(crate) fn relax_if_requested<K: RobotKind>(
     kind: &K,
     request: &Request,
@@ -28,8 +28,8 @@ pub(crate) fn relax_if_requested<K: RobotKind>(
     relaxed(kind, path)
 }
 
-/// The path without the states it does not need, relaxed by a snake: where that is not free by the verifier, the path
-/// itself. In the own metric of the space it is no longer than the path.
+/// The path without the states that it does not need, relaxed by a snake; the path itself if the result does not pass the
+/// verifier. In the metric of the space itself the result is no longer than the path.
 fn relaxed<K: RobotKind>(kind: &K, path: Path<K::State>) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("relax").entered();
     let unused = AtomicU64::new(0);
@@ -42,7 +42,7 @@ fn relaxed<K: RobotKind>(kind: &K, path: Path<K::State>) -> Result<Path<K::State
     relaxed_by(&AnySpace::new(kind.space()), check, Box::new(kind.verifier()?), gradient, path)
 }
 
-/// The same behind pointers: compiled for each kind of state, not of robot.
+/// [`relaxed`] behind pointers: compiled for each kind of state instead of each kind of robot.
 fn relaxed_by<S: TreeState>(
     space: &AnySpace<'_, S>,
     mut check: AnyCheck<'_, S>,
@@ -55,7 +55,7 @@ fn relaxed_by<S: TreeState>(
     let short = reduce(space, &mut check, &path);
     let [found, least] = [&path, &short].map(|path| path.length(space));
     let params = Params { straighten: 0.5, iterations: 200, ..Params::for_range(range)? };
-    // Safety may cost some length, of what was saved.
+    // Clearance may cost some of the length that was saved.
     let stretch = if least > 0.0 { (found / least).clamp(1.0, MOST_STRETCH) } else { 1.0 };
     let relaxed = relax(space, &mut check, &mut field, &short, params, stretch)?.path;
     let verified = verify_path(space, &relaxed, &mut verifier);

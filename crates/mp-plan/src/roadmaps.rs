@@ -1,4 +1,4 @@
-//! Planners that build roadmaps, where the feature `roadmaps` compiles them; without it there are none.
+//! Planners that build roadmaps, with the feature `roadmaps`. Without it there are none.
 
 use crate::{Error, Metric, Request, RobotKind};
 use mp_cspace::erased::AnyIndex;
@@ -10,7 +10,7 @@ use mp_cspace::{
 use mp_cspace::{Observer, Rng, Stop, StopReason};
 use std::path::Path;
 
-/// A planner that builds a roadmap, and what became of the file that it is kept in.
+/// A planner that builds a roadmap.
 pub(crate) struct RoadmapPlanner<'p, S> {
     #[cfg(feature = "roadmaps")]
     planner: mp_roadmap::AnyPlanner<'p, S, ()>,
@@ -73,7 +73,7 @@ impl RoadmapFile<'_> {
     }
 }
 
-/// What a planner by name is made of.
+/// What a planner of roadmaps is made from.
 #[cfg_attr(not(feature = "roadmaps"), expect(dead_code, reason = "no roadmap is built"))]
 pub(crate) struct PlannerParts<'m, 'p, S: RoadmapState> {
     /// Makes the problem, once for each thread.
@@ -93,7 +93,7 @@ pub(crate) fn planner(name: &str) -> Option<&'static PlannerInfo> {
 
 #[cfg(feature = "roadmaps")]
 impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, S> {
-    /// The planner of `request`, going on with the roadmap that is kept.
+    /// The planner `info`. It begins with the roadmap in `file`, if there is one.
     pub(crate) fn new(
         info: &PlannerInfo,
         parts: PlannerParts<'_, 'p, S>,
@@ -112,7 +112,7 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
         &mut *self.planner
     }
 
-    /// Builds until stopped, whether or not start and goal get connected.
+    /// Builds until stopped, whether or not start and goal are connected.
     pub(crate) fn build(
         &mut self,
         rng: &mut Rng,
@@ -122,17 +122,18 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
         self.planner.build(rng, stop, observer)
     }
 
-    /// How many nodes there are.
+    /// The number of nodes.
     pub(crate) fn nodes(&self) -> usize {
         self.planner.map().len()
     }
 
-    /// Goes on with this roadmap.
+    /// Continues with this roadmap.
     pub(crate) fn resume(&mut self, map: Roadmap<S>) -> Result<(), Error> {
         Ok(self.planner.resume(map)?)
     }
 
-    /// Writes the roadmap to the file that it is kept in; its edges and components, and itself if wanted.
+    /// Writes the roadmap to `file`, if one is given. Returns the numbers of edges and of components, and the roadmap itself
+    /// if it is `wanted`.
     pub(crate) fn keep(
         &mut self,
         file: Option<&RoadmapFile<'_>>,
@@ -146,13 +147,13 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
     }
 }
 
-/// Without the feature `roadmaps` any state will do.
+/// Without the feature `roadmaps`: any state.
 #[cfg(not(feature = "roadmaps"))]
 pub trait RoadmapState: Clone + std::fmt::Debug + PartialEq + Send + Sync {}
 #[cfg(not(feature = "roadmaps"))]
 impl<S: Clone + std::fmt::Debug + PartialEq + Send + Sync> RoadmapState for S {}
 
-/// Without the feature `roadmaps` there is none.
+/// Without the feature `roadmaps`: a type without values.
 #[cfg(not(feature = "roadmaps"))]
 #[derive(Clone, Debug)]
 pub struct Roadmap<S>(std::convert::Infallible, std::marker::PhantomData<S>);

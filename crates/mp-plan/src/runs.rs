@@ -3,22 +3,22 @@
 use crate::{REPORT_VERSION, Report};
 use serde::{Deserialize, Serialize};
 
-/// What the runs on one scene came to. Medians are over the solved runs.
+/// A summary of the runs on one scene. Medians are over the solved runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Medians {
     /// The name of the scene.
     pub scene: String,
-    /// How many runs there were.
+    /// The number of runs.
     pub runs: usize,
     /// How many found a path.
     pub solved: usize,
-    /// Planning alone, seconds.
+    /// The time of planning alone, seconds.
     pub time_s: Option<f64>,
     /// Iterations.
     pub iterations: Option<f64>,
     /// Nodes.
     pub nodes: Option<f64>,
-    /// Collision and clearance queries.
+    /// The number of collision and clearance queries.
     pub collision_checks: Option<f64>,
     /// The length of the path, in the metric of the space.
     pub path_length: Option<f64>,
@@ -40,7 +40,7 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// The runs with their medians.
+    /// Computes the medians of the runs.
     #[must_use]
     pub fn new(runs: Vec<Report>) -> Self {
         let solved = runs.iter().filter(|r| r.solved).count();
@@ -48,7 +48,7 @@ impl Runs {
     }
 }
 
-/// The middle value; the mean of the two middle ones when there is an even number. `None` of nothing.
+/// The middle value, or the mean of the two middle values of an even number of values. `None` if there are no values.
 #[must_use]
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.into_iter().collect();

@@ -1,4 +1,4 @@
-//! A scene of any kind, and everything one does with it.
+//! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
 use crate::robot::{PlanarScene, RigidScene};
@@ -16,7 +16,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A scene made ready to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share it.
+/// A scene to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share the data.
 ///
 /// ```no_run
 /// use mp_plan::{Request, Scene};
@@ -41,15 +41,15 @@ impl fmt::Debug for Scene {
 }
 
 impl Scene {
-    /// A scene of a robot of your own kind, or of one of this crate's: [`RigidScene`], [`ArmScene`](crate::ArmScene), [`PlanarScene`].
+    /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`], [`ArmScene`](crate::ArmScene), [`PlanarScene`].
     pub fn new(robot: impl RobotKind + 'static) -> Self {
         Self { robot: Arc::new(robot), file: None, inputs: Arc::default() }
     }
 
-    /// A rigid body among meshes.
+    /// A scene of a rigid body among meshes.
     ///
     /// # Errors
-    /// When the bounds of the position are empty, or a mesh or pose makes no sense.
+    /// When the bounds of the position are empty, or a mesh or pose is not valid.
     pub fn from_problem(problem: RigidProblem) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         Ok(match problem.space {
@@ -58,10 +58,10 @@ impl Scene {
         })
     }
 
-    /// A robot of the plane among polygons.
+    /// A scene of a robot in the plane among polygons.
     ///
     /// # Errors
-    /// When world, robot or bounds make no sense.
+    /// When world, robot or bounds are not valid.
     pub fn from_world(problem: PlanarProblem) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
         Ok(match problem.file.robot {
@@ -70,7 +70,7 @@ impl Scene {
         })
     }
 
-    /// The same, said by reports to come from this file.
+    /// Sets the file that reports name as the source of the scene.
     #[must_use]
     pub fn with_file(self, file: impl Into<PathBuf>) -> Self {
         Self { file: Some(file.into()), ..self }
@@ -82,71 +82,72 @@ impl Scene {
         self.robot.name()
     }
 
-    /// The file it came from.
+    /// The file that the scene was read from.
     #[must_use]
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }
 
-    /// The space: `SE3`, `SE2`, `R2`, `6 joints`.
+    /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
     #[must_use]
     pub fn space(&self) -> String {
         self.robot.space_name()
     }
 
-    /// What the numbers of a configuration are.
+    /// The meaning of each number of a configuration.
     #[must_use]
     pub fn columns(&self) -> Vec<Column> {
         self.robot.columns()
     }
 
-    /// The least and the largest value of each number of a configuration; `None` where it turns without end.
+    /// The least and the largest value of each number of a configuration; `None` for an angle without limits.
     #[must_use]
     pub fn limits(&self) -> Vec<Option<[f64; 2]>> {
         self.robot.limits()
     }
 
-    /// What there is to say of the robot beside, for people: name and text.
+    /// Further facts about the robot, for people: name and text.
     #[must_use]
     pub fn details(&self) -> Vec<(String, String)> {
         self.robot.details()
     }
 
-    /// The share of the space in which the robot is free, by so many samples: the same for the same scene.
+    /// The fraction of the space in which the robot is free, estimated from `samples` samples. The same scene gives the same
+    /// fraction.
     #[must_use]
     pub fn free_share(&self, samples: u32) -> f64 {
         self.robot.free_share(samples)
     }
 
-    /// How its paths are written as text.
+    /// The format in which its paths are written as text.
     #[must_use]
     pub fn path_format(&self) -> PathFormat {
         self.robot.path_format()
     }
 
-    /// Where paths begin.
+    /// The start configuration.
     #[must_use]
     pub fn start(&self) -> Vec<f64> {
         self.robot.start()
     }
 
-    /// Where they may end.
+    /// The goal configurations.
     #[must_use]
     pub fn goals(&self) -> Vec<Vec<f64>> {
         self.robot.goals()
     }
 
-    /// Plans: looks for a path, shortens it, verifies it as it will be written. The same scene and request give the
-    /// same report but for its times, on any number of threads.
+    /// Plans a path: searches for it, shortens it, and verifies it as it will be written. The same scene and request give
+    /// the same report except for its times, on any number of threads.
     ///
     /// # Errors
-    /// When start or goal is not free (with what is in the way, how deep, and the nearest free configuration), or the
-    /// request makes no sense. Not finding a path is no error: see [`Report::stopped_by`].
+    /// When start or goal is not free (the error says what touches, how deep, and the nearest free configuration), or the
+    /// request is not valid. Not finding a path is not an error: see [`Report::stopped_by`].
     pub fn plan(&self, request: &Request) -> Result<Report, Error> {
         self.plan_with(request, &mut Control::default())
     }
 
-    /// The same, watched and stopped from outside.
+    /// As [`plan`](Self::plan), with progress reports and a stop.
     ///
     /// # Errors
     /// As [`plan`](Self::plan).
@@ -157,9 +158,9 @@ impl Scene {
         Ok(report)
     }
 
-    /// Builds a roadmap, for many queries: with the planner of the request, which must be one of roadmaps, until its
-    /// budget is spent. Start and goal of the scene are not looked at. Where the request names a file with a roadmap, that
-    /// one is gone on with, and the file is written in the end.
+    /// Builds a roadmap for many queries, with the planner of the request, which must build roadmaps, until its budget is
+    /// used up. Start and goal of the scene are not used. If the request names a file with a roadmap, building continues
+    /// with that roadmap, and the file is written at the end.
     ///
     /// ```
     /// use mp_plan::{Request, Scene};
@@ -174,13 +175,13 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// When the planner builds no roadmap, the request makes no sense, or the file cannot be read or written.
+    /// When the planner does not build roadmaps, the request is not valid, or the file cannot be read or written.
     #[cfg(feature = "roadmaps")]
     pub fn roadmap(&self, request: &Request) -> Result<SceneRoadmap, Error> {
         self.roadmap_with(request, &mut Control::default())
     }
 
-    /// The same, watched and stopped from outside.
+    /// As [`roadmap`](Self::roadmap), with progress reports and a stop.
     ///
     /// # Errors
     /// As [`roadmap`](Self::roadmap).
@@ -190,63 +191,62 @@ impl Scene {
         Ok(SceneRoadmap { roadmap, file: self.file.as_ref().map(|file| file.display().to_string()) })
     }
 
-    /// Verifies a path from the start to a goal, by a checker that shares no code with the planners'.
+    /// Verifies a path from the start to a goal, with a verifier that shares no code with the planners' checks.
     ///
     /// # Errors
-    /// When the path is one of another robot. Not being free is no error: see [`Verdict::free`].
+    /// When the path is of another robot. A path that is not free is not an error: see [`Verdict::free`].
     pub fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
         self.robot.check(path)
     }
 
-    /// Says what is to be said about a configuration: free or not, how near to contact, what touches, and where it
-    /// would be free.
+    /// Explains a configuration: whether it is free, how near to contact, what touches, and where it would be free.
     ///
     /// # Errors
-    /// When it has another number of numbers than the robot.
+    /// When the row does not have as many numbers as the robot's configurations.
     pub fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
         self.robot.explain(row)
     }
 
-    /// Refuses a scene whose start or goal is not free. Otherwise says what is odd about them.
+    /// Checks that start and goals are free. Returns what is odd about them.
     ///
     /// # Errors
-    /// When one is not free: what is in the way, how deep, and the nearest free configuration.
+    /// When one is not free: what touches, how deep, and the nearest free configuration.
     pub fn check_ends(&self) -> Result<Vec<String>, Error> {
         self.robot.check_ends()
     }
 
-    /// What is wrong or odd about the scene, in sentences; nothing when all is well.
+    /// What is wrong or odd about the scene, in sentences. Empty when nothing is.
     #[must_use]
     pub fn lint(&self) -> Vec<String> {
         self.robot.lint()
     }
 
-    /// The bodies: those of the robot first, then what stands still.
+    /// The bodies: those of the robot first, then the obstacles.
     #[must_use]
     pub fn bodies(&self) -> Vec<Body> {
         self.robot.bodies()
     }
 
-    /// Where the bodies of the robot are at a configuration, in the order of [`bodies`](Self::bodies).
+    /// The poses of the bodies of the robot at a configuration, in the order of [`bodies`](Self::bodies).
     ///
     /// # Errors
-    /// When it has another number of numbers than the robot.
+    /// When the row does not have as many numbers as the robot's configurations.
     pub fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
         self.robot.poses(row)
     }
 
-    /// Poses of the robot along a path, or at start and goal alone without one.
+    /// Poses of the robot along a path; without a path, at start and goal only.
     ///
     /// # Errors
-    /// When the path is one of another robot.
+    /// When the path is of another robot.
     pub fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
         self.robot.sweep(path)
     }
 
-    /// Writes the problem to `folder` as one JSON and two OFF files for other planners; returns the former.
+    /// Writes the problem to `folder` as one JSON file and two OFF files for other planners. Returns the JSON file.
     ///
     /// # Errors
-    /// When it is no rigid body among meshes, or a file cannot be written.
+    /// When the robot is not a rigid body among meshes, or a file cannot be written.
     pub fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
         self.robot.export(folder)
     }
@@ -257,7 +257,7 @@ impl Scene {
         self.robot.is_planar()
     }
 
-    /// Where the origin of the robot may be, for pictures that show it.
+    /// The bounds of the robot's origin, for pictures that show them.
     #[must_use]
     pub fn picture_bounds(&self) -> Option<Aabb> {
         self.robot.picture_bounds()

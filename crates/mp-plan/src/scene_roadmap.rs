@@ -1,4 +1,4 @@
-//! Many queries to one roadmap of a scene.
+//! A roadmap of a scene that answers many queries.
 
 use crate::explain::refused;
 use crate::path::state;
@@ -17,13 +17,13 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-/// To so many nodes nearest to it a start or goal is connected at most.
+/// A start or goal is connected to at most this many nearest nodes.
 const NEIGHBOURS: usize = 20;
 
-/// A roadmap of a scene, which answers queries from any free configuration to any other. It does not grow by them, but
-/// learns: an edge that was verified once is not verified again, and one that fails is blocked for good.
+/// A roadmap of a scene, which answers queries between any two free configurations. Queries do not add nodes. Verification
+/// results are kept: each edge is verified at most once, and an edge that fails is blocked for good.
 ///
-/// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all it needs, and may go to another thread.
+/// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all its data and may be sent to another thread.
 pub struct SceneRoadmap {
     pub(crate) roadmap: Box<dyn AnySceneRoadmap>,
     /// The file of the scene.
@@ -38,17 +38,18 @@ impl fmt::Debug for SceneRoadmap {
 }
 
 impl SceneRoadmap {
-    /// A path from one configuration to another, finished and verified as one of [`Scene::plan`](crate::Scene::plan) is,
-    /// by the request that the roadmap was built with. The budget of that request was for building: a query ends by itself.
+    /// A path from one configuration to another, finished and verified as by [`Scene::plan`](crate::Scene::plan), according
+    /// to the request that the roadmap was built with. The budget of that request is for building only: a query ends by
+    /// itself.
     ///
     /// # Errors
-    /// When an end is not free: with what is in the way, how deep, and the nearest free configuration. That the
-    /// roadmap has no path is no error: [`Report::why`] says whether it needs more nodes near an end or between.
+    /// When an end is not free: what touches, how deep, and the nearest free configuration. It is not an error that the
+    /// roadmap has no path: [`Report::why`] says whether more nodes are needed near an end or between.
     pub fn query(&mut self, start: &[f64], goal: &[f64]) -> Result<Report, Error> {
         self.query_with(start, goal, &mut Control::default())
     }
 
-    /// The same, watched and stopped from outside. Stopping ends what is done to the path that was found.
+    /// As [`query`](Self::query), with progress reports and a stop. The stop ends what is done to the path found.
     ///
     /// # Errors
     /// As [`query`](Self::query).
@@ -63,7 +64,7 @@ impl SceneRoadmap {
         Ok(report)
     }
 
-    /// Goes on building until this budget is spent; its nodes are counted with those there are. No file is written: see
+    /// Continues building until this budget is used up. Its nodes include those that exist already. No file is written: see
     /// [`save`](Self::save).
     ///
     /// # Errors
@@ -72,35 +73,35 @@ impl SceneRoadmap {
         self.roadmap.grow(budget, control)
     }
 
-    /// Verifies all edges now, so that no query waits for it. How many failed, and are blocked.
+    /// Verifies all edges now, so that queries need not. Returns how many failed and are blocked.
     ///
     /// # Errors
-    /// When the request makes no sense for the robot.
+    /// When the request is not valid for the robot.
     pub fn verify(&mut self) -> Result<usize, Error> {
         self.roadmap.verify()
     }
 
-    /// How many nodes there are.
+    /// The number of nodes.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.roadmap.size()[0]
     }
 
-    /// How many edges there are that are not blocked.
+    /// The number of edges that are not blocked.
     #[must_use]
     pub fn edges(&self) -> usize {
         self.roadmap.size()[1]
     }
 
-    /// How many connected components there are.
+    /// The number of connected components.
     pub fn components(&mut self) -> usize {
         self.roadmap.components()
     }
 
-    /// Writes it to a file, from which [`Request::roadmap`] goes on.
+    /// Writes it to a file, with which [`Request::roadmap`] can continue.
     ///
     /// # Errors
-    /// When roadmaps of such robots are not kept, or the file cannot be written.
+    /// When roadmaps of such robots cannot be saved, or the file cannot be written.
     pub fn save(&self, file: impl AsRef<Path>) -> Result<(), Error> {
         self.roadmap.save(file.as_ref())
     }
@@ -122,7 +123,7 @@ struct RobotRoadmap<K: RobotKind> {
     roadmap: AnyRoadmap<K::State>,
 }
 
-/// Builds a roadmap by the planner of the request.
+/// Builds a roadmap with the planner of the request.
 pub(crate) fn build<K: RobotKind + 'static>(
     kind: Arc<K>,
     request: &Request,
@@ -133,7 +134,7 @@ pub(crate) fn build<K: RobotKind + 'static>(
     Ok(Box::new(RobotRoadmap { kind, request: request.clone(), roadmap }))
 }
 
-/// The planner of the request.
+/// The planner of the request, which must build roadmaps.
 fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
     match PlannerKind::new(&request.planner)? {
         PlannerKind::Roadmap(info) => Ok(info),
@@ -145,7 +146,7 @@ fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
     }
 }
 
-/// Grows `map`, or the one in the file of the request, or a new one, until the budget is spent.
+/// Grows `map`, or the roadmap in the file of the request, or a new one, until the budget is used up.
 fn grown<K: RobotKind>(
     kind: &K,
     request: &Request,
@@ -164,7 +165,7 @@ fn grown<K: RobotKind>(
     if let Some(map) = map {
         made.resume(map)?;
     }
-    // One that is gone on with draws other numbers than those it was made of.
+    // A roadmap that is continued draws other random numbers than those it was built from.
     let mut rng = match made.nodes() {
         0 => Rng::seed(request.seed),
         nodes => Rng::stream(request.seed, nodes as u64),

@@ -12,22 +12,22 @@ use mp_tree::{TreeState, improve};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-/// What a planner came back with.
+/// The result of running a planner.
 #[derive(Clone, Debug)]
 pub struct Search<S> {
-    /// The path, verified by the planner, or why there is none.
+    /// The path, verified by the planner, or the reason why there is none.
     pub outcome: Outcome<Path<S>>,
-    /// What was done.
+    /// The counts of what was done.
     pub progress: Progress,
-    /// Collision and clearance queries asked.
+    /// The number of collision and clearance queries.
     pub queries: u64,
     /// How long it took.
     pub time: Duration,
-    /// Of a planner that keeps improving: when it found its first path, how long that was in the metric, and the path.
+    /// For an anytime planner: when it found its first path, the length of that path in the metric, and the path.
     pub first: Option<(Duration, f64, Path<S>)>,
-    /// Edges and connected components, of a planner that builds a roadmap.
+    /// For a planner that builds a roadmap: the numbers of edges and of connected components.
     pub map: Option<[usize; 2]>,
-    /// The roadmap itself, if [asked for](Control::keep_roadmap).
+    /// The roadmap itself, if [requested](Control::keep_roadmap).
     pub roadmap: Option<Roadmap<S>>,
 }
 
@@ -46,10 +46,11 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> NamedPlanner<'p, S>
     }
 }
 
-/// Runs the planner of a request, and relaxes the path if that is asked for; neither shortens it nor writes it down.
+/// Runs the planner of a request, and relaxes the path if the request says so. The path is neither shortened nor written
+/// as text.
 ///
 /// # Errors
-/// When the request makes no sense for this robot, or a roadmap cannot be read or written.
+/// When the request is not valid for this robot, or a roadmap cannot be read or written.
 pub fn search<K: RobotKind>(
     kind: &K,
     request: &Request,
@@ -110,10 +111,10 @@ pub fn search<K: RobotKind>(
     })
 }
 
-/// The last path found and why it is not the end, and the first of a planner that keeps improving.
+/// The last path found, the reason for stopping, and the first path of an anytime planner.
 type Solved<S> = (Option<Path<S>>, Option<StopReason>, Option<(Duration, f64, Path<S>)>);
 
-/// Runs the planner. Compiled for each kind of state, not of robot.
+/// Runs the planner. Compiled for each kind of state instead of each kind of robot.
 fn solved<S: TreeState>(
     planner: &mut dyn Planner<S, Edge = ()>,
     request: &Request,

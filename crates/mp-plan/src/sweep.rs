@@ -6,16 +6,16 @@ use mp_cspace::{MotionClearance, Space};
 use mp_geom::evenly;
 use nalgebra::{Isometry3, Point3};
 
-/// What a path came to as pictures need it: poses of the moving bodies along it.
+/// The poses of the moving bodies along a path, as pictures need them.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// Poses of the robot's bodies at the start of the path, or of the scene.
     pub start: Vec<Isometry3<f64>>,
-    /// The same at its end, or at the first goal.
+    /// Poses of the robot's bodies at the end of the path, or at the first goal.
     pub goal: Vec<Isometry3<f64>>,
     /// Poses between, spread evenly by how far the robot moves.
     pub between: Vec<Vec<Isometry3<f64>>>,
-    /// The way of one point of the robot.
+    /// The curve of one point of the robot.
     pub trace: Vec<Point3<f64>>,
 }
 

@@ -1,4 +1,4 @@
-//! Answers for people: what is hit, and where it would be free.
+//! Answers for people: what a rigid body touches, and where it would be free.
 
 use crate::shells::{Shells, search_shells};
 use crate::{Placement, RigidBody};
@@ -14,14 +14,14 @@ const GROWTH: f64 = 1.4;
 const MAX_SHELLS: usize = 100;
 
 impl<P: Placement> RigidBody<P> {
-    /// The obstacles the robot touches at `q`, in the order they were given, with an estimate of how deep
-    /// (m). Empty when it is free. Slow: for messages.
+    /// The obstacles that the robot touches at `q`, in the order in which they were given, each with an estimate of the
+    /// depth (m). Empty when `q` is free. Slow: meant for messages.
     pub fn explain(&mut self, q: &P::State) -> Vec<Contact> {
         let pose = P::pose(q);
         let shared = &*self.shared;
         let mut contacts = shared.obstacles.scene.contacts(&mut self.query, &shared.robot, &pose);
         if shared.radii.radius == 0.0 {
-            // A point inside a solid touches nothing, but is as deep as the surface is far.
+            // A point inside a solid touches no triangle. Its depth is its distance from the surface.
             let p = Point3::from(pose.translation.vector);
             for (body, solid) in shared.solids() {
                 if let Some(obstacle) = shared.obstacles.scene.body(*body)
@@ -42,9 +42,8 @@ impl<P: Placement> RigidBody<P> {
         contacts
     }
 
-    /// Names of the solid obstacles (closed, triangles facing outward) that the robot at `q` is inside of,
-    /// judged by its first vertex. A robot that touches nothing there counts as free, but can never
-    /// leave: worth a warning.
+    /// The names of the solid obstacles (closed, triangles facing outward) that contain the first vertex of the robot at
+    /// `q`. A robot inside an obstacle that touches nothing counts as free, but can never leave: worth a warning.
     #[must_use]
     pub fn enclosing(&self, q: &P::State) -> Vec<&str> {
         let vertex = P::pose(q) * self.shared.robot_mesh.vertices()[0];
@@ -53,12 +52,12 @@ impl<P: Placement> RigidBody<P> {
     }
 
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the
-    /// [tolerance](RigidBody::tolerance) is a good one): `q` itself when it has that, else the nearest
+    /// [tolerance](RigidBody::tolerance) is a good value): `q` itself if it has that clearance, else the nearest
     /// found, or `None`.
     ///
-    /// Searches outward in shells, by moves and turns in many directions, then back toward `q`; first
-    /// outside of solids, then anywhere. The same input finds the same. Some thousands of clearance
-    /// queries: for messages.
+    /// The search moves and turns the robot in many directions by growing amounts, then goes back toward `q`. It looks
+    /// outside of solids first, then anywhere. The same input gives the same result. Some thousands of clearance
+    /// queries: meant for messages.
     pub fn nearest_free<C: Space<State = P::State>>(
         &mut self,
         q: &P::State,
@@ -91,9 +90,9 @@ impl<P: Placement> RigidBody<P> {
     }
 }
 
-/// Pairs of a unit step and a unit turn (or zero, not both): along and between the axes the robot can move
-/// along, each with a turn either way about each axis it can turn about. Turned with every shell, so that
-/// more directions are tried as the search goes on.
+/// Pairs of a step and a turn, each a unit vector or zero, but not both zero. Steps are along and between the axes along
+/// which the robot can move, each with a turn either way about each axis about which it can turn. The steps are rotated
+/// with every shell, so that further shells try other directions.
 fn directions<P: Placement>(shell: usize) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let axes = |free: &[usize]| {
         let mut all = vec![Vector3::zeros()];

@@ -1,4 +1,4 @@
-//! What robot and obstacles look like from afar, and how to place the one about the other.
+//! Geometric features of robot and obstacles, and how to place the robot relative to an obstacle.
 
 use crate::rigid::Shared;
 use crate::{Placement, RigidBody};
@@ -10,20 +10,20 @@ use mp_geom::{Features, NO_COMPONENT, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 
-/// The features of a robot and of the parts of its obstacles.
+/// The features and surfaces of a robot and of the connected parts of its obstacles.
 #[derive(Debug)]
 pub(crate) struct SceneFeatures {
-    robot: (BodyFeatures, Surface),
+    robot: (BodyFeatures, SurfaceSampler),
     parts: Vec<BodyFeatures>,
-    /// Of each part, in the world.
-    surfaces: Vec<Surface>,
-    /// Of each obstacle: its first part, and the part of each triangle, counted from there.
+    /// The surface of each part, in the world.
+    surfaces: Vec<SurfaceSampler>,
+    /// For each obstacle: the index of its first part, and the part of each of its triangles, counted from that index.
     of_triangle: Vec<(usize, Vec<u32>)>,
 }
 
-/// A mesh and the areas of its triangles, summed up.
+/// A mesh with the running sums of its triangle areas, to draw points from.
 #[derive(Debug)]
-struct Surface {
+struct SurfaceSampler {
     mesh: TriMesh,
     areas: Vec<f64>,
 }
@@ -37,7 +37,7 @@ fn body_features(features: &Features) -> BodyFeatures {
     }
 }
 
-impl Surface {
+impl SurfaceSampler {
     fn new(mesh: TriMesh) -> Self {
         let areas = (0..mesh.triangles().len()).scan(0.0, |sum, i| {
             *sum += mesh.triangle_area(i);
@@ -72,7 +72,7 @@ impl SceneFeatures {
     fn new(shared: &Shared) -> Self {
         let robot = &shared.robot_mesh;
         let mut features = Self {
-            robot: (body_features(&robot.features()), Surface::new(robot.clone())),
+            robot: (body_features(&robot.features()), SurfaceSampler::new(robot.clone())),
             parts: Vec::new(),
             surfaces: Vec::new(),
             of_triangle: Vec::new(),
@@ -83,7 +83,7 @@ impl SceneFeatures {
             features.of_triangle.push((first, topology.component));
             for part in mesh.parts() {
                 features.parts.push(body_features(&part.features()));
-                features.surfaces.push(Surface::new(part));
+                features.surfaces.push(SurfaceSampler::new(part));
             }
         }
         features
@@ -99,14 +99,14 @@ impl<P: Placement> RigidBody<P> {
 /// The rotation that takes the unit vector `from` to the unit vector `to`, by the shorter way.
 fn turn_to(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(from, to).unwrap_or_else(|| {
-        // Opposite: about anything across.
+        // Opposite vectors: any axis perpendicular to them.
         let across = from.cross(&Vector3::ith(from.iamin(), 1.0));
         UnitQuaternion::from_axis_angle(&Unit::new_normalize(across), std::f64::consts::PI)
     })
 }
 
-/// By the meshes: obstacles are what hangs together in them, and points are theirs. The features are made when first asked
-/// for, O(n log n) in the triangles, and shared by clones.
+/// From the meshes: each connected part of an obstacle's mesh is an obstacle here, and points are drawn from these parts.
+/// The features are computed at the first call, in O(n log n) of the triangles, and shared by clones.
 impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     fn obstacles(&self) -> &[BodyFeatures] {
         &self.features().parts

@@ -1,4 +1,4 @@
-//! Where configurations put a rigid body, and how far they move it.
+//! Where configurations place a rigid body, and how far motions move it.
 
 use mp_cspace::{
     Se2State,
@@ -8,14 +8,14 @@ use mp_geom::{TriMesh, six_from_pose};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::fmt::Debug;
 
-/// What motion bounds know of the radii of a body. Lengths in metres, about the origin of its frame.
+/// The radii and corners of a body, from which its travel is bounded. Metres, in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyRadii {
-    /// The largest distance of a point from the origin.
+    /// The largest distance of a point of the body from the origin.
     pub radius: f64,
-    /// The largest distance of a point from the Z axis.
+    /// The largest distance of a point of the body from the Z axis.
     pub radius_about_z: f64,
-    /// The corners of a box around it.
+    /// The corners of a box around the body.
     pub corners: [Point3<f64>; 8],
 }
 
@@ -41,7 +41,7 @@ impl BodyRadii {
     }
 }
 
-/// How configurations of a kind place a rigid body in the world.
+/// How a kind of configuration places a rigid body in the world.
 pub trait Placement: Copy + Debug + Default + Send + Sync + 'static {
     /// A configuration.
     type State: Clone + Debug + Send + Sync;
@@ -49,24 +49,24 @@ pub trait Placement: Copy + Debug + Default + Send + Sync + 'static {
     /// The pose of the body in the world.
     fn pose(q: &Self::State) -> Isometry3<f64>;
 
-    /// The configuration nearest to a pose: what of it the robot cannot do is left out.
+    /// The configuration nearest to a pose: movements that the robot cannot make are left out.
     fn configuration(pose: &Isometry3<f64>) -> Self::State;
 
-    /// An upper bound (m) on the length of the way of any point of `radii`, from `from` to `to` along the
-    /// interpolation of the space: translation on a straight line, rotation about a fixed axis by the
+    /// An upper bound (m) on the length of the path of any point of a body with these radii, from `from` to `to` along
+    /// the interpolation of the space: translation on a straight line, rotation about a fixed axis by the
     /// shorter way, both at constant speed.
     fn travel(radii: &BodyRadii, from: &Self::State, to: &Self::State) -> f64;
 
-    /// World axes along which it can move.
+    /// The world axes along which the body can move.
     const MOVES: &'static [usize];
-    /// World axes about which it can turn.
+    /// The world axes about which the body can turn.
     const TURNS: &'static [usize];
 }
 
 /// Bounds are enlarged by this factor against rounding.
 const ROUND_UP: f64 = 1.0 + 1e-12;
 
-/// Anywhere in space, turned anyhow: SE(3).
+/// Any position and rotation in space: SE(3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spatial;
 
@@ -96,7 +96,7 @@ impl Placement for Spatial {
             return (velocity.norm() + radii.radius * angle) * ROUND_UP;
         }
         let axis = turn / sine;
-        // The axis is known to 1e-16/sine rad; what that moves an arm by is added.
+        // The direction of the axis is known to 1e-16/sine rad. The lever is enlarged by the error this causes.
         let lever = radii.radius_about(&axis) + radii.radius * 1e-9;
         let along = velocity.dot(&(from.rotation * axis));
         let across = (velocity.norm_squared() - along * along).max(0.0).sqrt() + velocity.norm() * 1e-9;
@@ -107,7 +107,7 @@ impl Placement for Spatial {
     const TURNS: &'static [usize] = &[0, 1, 2];
 }
 
-/// In the plane z = 0, turned about Z: SE(2), as planar problems of 3D meshes are set.
+/// Positions in the plane z = 0, rotated about Z: SE(2), for planar problems of 3D meshes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Planar;
 
@@ -133,7 +133,7 @@ impl Placement for Planar {
     const TURNS: &'static [usize] = &[2];
 }
 
-/// Anywhere in space, never turned: R³.
+/// Any position in space, never rotated: R³.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Point;
 
@@ -166,8 +166,8 @@ mod tests {
 
     const STEPS: usize = 60;
 
-    /// Compares the bound with the polygonal ways of all vertices (other points are between, and slower than
-    /// the fastest vertex), over the whole motion and over its parts.
+    /// Compares the bound with the polygonal paths of all vertices, over the whole motion and over its parts. Other points
+    /// lie between vertices, and are slower than the fastest vertex.
     fn check<P: Placement, C: Space<State = P::State>>(
         space: &C,
         (mesh, radii): (&TriMesh, &BodyRadii),
@@ -235,7 +235,7 @@ mod tests {
         }
     }
 
-    /// The bound is reached where it can be, and a thin rod turning about itself hardly travels.
+    /// The bound is reached by some motions, and a thin rod that turns about its own axis hardly travels.
     #[test]
     fn the_bound_is_tight() {
         let rod = mp_geom::primitives::cuboid(4.0, 0.02, 0.02).unwrap();

@@ -13,17 +13,17 @@ use std::marker::PhantomData;
 use std::sync::{Arc, OnceLock};
 use thiserror::Error;
 
-/// Why a robot could not be put among its obstacles.
+/// Why a robot and its obstacles could not be put together.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RobotError {
-    /// An obstacle's pose is no pose, or its mesh is too large.
+    /// The pose of an obstacle is not valid, or its mesh is too large.
     #[error("cannot place an obstacle: {0}")]
     Obstacle(#[from] SceneError),
-    /// A mesh that is none.
+    /// A mesh is not valid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// More triangles than trees can name.
+    /// There are more triangles than trees can index.
     #[error("robot and obstacles have {count} triangles; at most {max} can be handled")]
     TooManyTriangles {
         /// How many there are.
@@ -34,25 +34,25 @@ pub enum RobotError {
     /// The robot is too large to compute with.
     #[error("the robot is too large: {radius:e} m from its origin; at most {max:e} m can be handled")]
     TooLarge {
-        /// Its largest distance from the origin of its frame.
+        /// The largest distance (m) of a point of it from the origin of its frame.
         radius: f64,
-        /// The largest possible.
+        /// The largest possible (m).
         max: f64,
     },
 }
 
-/// What never changes: shared by all clones.
+/// The immutable part of a [`RigidBody`], shared by all clones.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub(crate) robot_mesh: TriMesh,
     pub(crate) robot: CollisionMesh,
     pub(crate) radii: BodyRadii,
     pub(crate) obstacles: Obstacles,
-    /// Made when first asked for.
+    /// Made at the first use.
     solids: OnceLock<Vec<(BodyId, SolidObstacle)>>,
     /// The robot as verifiers see it, made for the first one.
     reference: OnceLock<Arc<RefMesh>>,
-    /// Made when first asked for.
+    /// Made at the first use.
     pub(crate) features: OnceLock<SceneFeatures>,
 }
 
@@ -76,12 +76,11 @@ impl Shared {
 
 /// A rigid body among named obstacles that stand still.
 ///
-/// A configuration is free when the surfaces of robot and obstacles have no point in common: touching is
-/// collision, and a robot wholly inside a closed obstacle is free, as in a room, though it can never leave.
-/// Only a [`PointRobot`] is in collision inside a solid: see there.
+/// A configuration is free when the surfaces of robot and obstacles have no point in common. Touching is
+/// collision. A robot wholly inside a closed obstacle is free, as in a room, though it can never leave.
+/// Only a [`PointRobot`] is in collision inside a solid.
 ///
-/// Meshes and trees are shared between clones; counters and scratch memory are each clone's own, so clone
-/// it per thread.
+/// Clones share meshes and trees. Each clone has its own counters and scratch memory, so clone it for each thread.
 #[derive(Clone, Debug)]
 pub struct RigidBody<P: Placement> {
     pub(crate) shared: Arc<Shared>,
@@ -91,27 +90,27 @@ pub struct RigidBody<P: Placement> {
     placement: PhantomData<P>,
 }
 
-/// A mesh moving freely in space. Configurations are poses of its frame in the world.
+/// A mesh that moves freely in space. Configurations are poses of its frame in the world.
 pub type FreeFlyer = RigidBody<Spatial>;
 
-/// A mesh moving in the plane z = 0 and turning about Z, among obstacles of any height.
+/// A mesh that moves in the plane z = 0 and turns about Z, among obstacles of any height.
 pub type PlanarFlyer = RigidBody<Planar>;
 
-/// A point moving in space.
+/// A point that moves in space.
 ///
-/// A point meets a surface only by rare chance, so here the inside counts too: of obstacles that are solids
-/// (closed, consistently oriented, triangles facing outward). Rooms, whose triangles face inward, and
-/// open sheets are surfaces as for all robots: there only certified motion checks are of use.
+/// A point lies exactly on a surface only by rare chance. For this robot the inside of solid obstacles (closed, consistently
+/// oriented, triangles facing outward) therefore counts as collision too. Rooms, whose triangles face inward, and open
+/// sheets remain surfaces: among them only certified motion checks are useful.
 pub type PointRobot = RigidBody<Point>;
 
 /// Largest robot, metres.
 const MAX_RADIUS: f64 = 1e75;
 
 impl FreeFlyer {
-    /// `robot`, in its own frame, among obstacles: name, mesh and pose in the world each.
+    /// `robot`, in its own frame, among obstacles: each a name, a mesh and its pose in the world.
     ///
     /// # Errors
-    /// When a pose is no rigid motion, or a mesh is too large to compute with.
+    /// When a pose is not a rigid motion, or a mesh is too large to compute with.
     pub fn new(
         robot: &TriMesh,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
@@ -121,10 +120,10 @@ impl FreeFlyer {
 }
 
 impl PlanarFlyer {
-    /// `robot`, in its own frame, among obstacles: name, mesh and pose in the world each.
+    /// `robot`, in its own frame, among obstacles: each a name, a mesh and its pose in the world.
     ///
     /// # Errors
-    /// When a pose is no rigid motion, or a mesh is too large to compute with.
+    /// When a pose is not a rigid motion, or a mesh is too large to compute with.
     pub fn new(
         robot: &TriMesh,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
@@ -134,10 +133,10 @@ impl PlanarFlyer {
 }
 
 impl PointRobot {
-    /// A point among obstacles: name, mesh and pose in the world each.
+    /// A point among obstacles: each a name, a mesh and its pose in the world.
     ///
     /// # Errors
-    /// When a pose is no rigid motion, or a mesh is too large to compute with.
+    /// When a pose is not a rigid motion, or a mesh is too large to compute with.
     pub fn new(
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, RobotError> {
@@ -146,11 +145,11 @@ impl PointRobot {
 }
 
 impl<P: Placement> RigidBody<P> {
-    /// `robot`, in its own frame, among obstacles: name, mesh and pose in the world each. For code that is
-    /// generic over the placement; else use `FreeFlyer::new` and its kin.
+    /// `robot`, in its own frame, among obstacles: each a name, a mesh and its pose in the world. For code that is
+    /// generic over the placement; otherwise use [`FreeFlyer::new`], [`PlanarFlyer::new`] or [`PointRobot::new`].
     ///
     /// # Errors
-    /// When a pose is no rigid motion, or a mesh is too large to compute with.
+    /// When a pose is not a rigid motion, or a mesh is too large to compute with.
     pub fn among(
         robot: &TriMesh,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
@@ -185,7 +184,7 @@ impl<P: Placement> RigidBody<P> {
         &self.shared.robot_mesh
     }
 
-    /// What motion bounds know of the robot.
+    /// The radii and corners from which the travel of the robot is bounded.
     #[must_use]
     pub fn radii(&self) -> &BodyRadii {
         &self.shared.radii
@@ -220,10 +219,9 @@ impl<P: Placement> RigidBody<P> {
         self.counters.take(&mut self.query)
     }
 
-    /// The default tolerance (m) of certified motion checks, to the scale of the robot: 1e-4 of its radius
-    /// (for a point, 1e-6 of the size of the obstacles), and never so small that coordinates could
-    /// not resolve it. A [`Verifier`](crate::Verifier) works to a tenth of it, so that it proves whatever
-    /// [`Certified`](mp_cspace::Certified) accepts at this tolerance.
+    /// The default tolerance (m) of certified motion checks: 1e-4 of the robot's radius (for a point, 1e-6 of the
+    /// size of the obstacles), and at least what coordinates can resolve. A [`Verifier`](crate::Verifier) uses a tenth of
+    /// it, so that it proves whatever [`Certified`](mp_cspace::Certified) accepts at this tolerance.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         let (obstacles, radius) = (&self.shared.obstacles, self.radius());
@@ -232,7 +230,7 @@ impl<P: Placement> RigidBody<P> {
         resolved_tolerance(wanted, obstacles.farthest() + radius)
     }
 
-    /// The solid that a point robot is inside of.
+    /// The solid that a point robot at `pose` is inside of.
     pub(crate) fn solid_around(&self, pose: &Isometry3<f64>) -> Option<BodyId> {
         if self.shared.radii.radius > 0.0 {
             return None;
@@ -295,9 +293,9 @@ impl<P: Placement> MotionClearance<P::State> for RigidBody<P> {
     fn motion_bound(&self, from: &P::State, to: &P::State) -> f64 {
         P::travel(&self.shared.radii, from, to)
     }
-    /// By one sweep over the interval, in which each part of the body moves as far as it does and as it does
-    /// toward the obstacles: an interval found clear so may be much longer than the clearance in its middle. The sweep
-    /// ends where it comes upon contact.
+    /// By one sweep over the interval. It takes into account how far each part of the body moves, and in which direction,
+    /// so an interval shown free may be much longer than the clearance in its middle. The sweep ends at the first
+    /// contact.
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, P::State>) -> IntervalClearance {
         let MotionInterval { travel, margin, half, .. } = *interval;
         let [from, to, middle] = [interval.from, interval.to, interval.middle].map(P::pose);

@@ -21,10 +21,9 @@ use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use std::fmt::Debug;
 
-/// A path begins at the start and ends at the goal if no point of the robot is farther off than this, in radii of the
-/// robot.
+/// The ends of a path match start and goal if no point of the robot is farther off than this, in radii of the robot.
 const END_TOLERANCE: f64 = 1e-3;
-/// A number of a planar path that must be zero may be this far from it.
+/// How far from zero a number of a planar path may be that must be zero.
 const PLANE_TOLERANCE: f64 = 1e-9;
 /// Between two copies of the robot in a picture its points move about this many radii.
 const PICTURE_SPACING: f64 = 0.55;
@@ -33,7 +32,7 @@ const PICTURE_SPACING: f64 = 0.55;
 pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateState + StateVector> {
     /// The space of its configurations.
     type Space: Factored + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
-    /// The metric of the farthest moving point.
+    /// The metric of the point that moves farthest.
     type Displacement: SpaceMetric<Self::Space, Nn: 'static>
         + TrueMetric<Self::Space>
         + Clone
@@ -47,7 +46,7 @@ pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateStat
     /// # Errors
     /// When the bounds are empty.
     fn space(bounds: &Aabb) -> Result<Self::Space, Error>;
-    /// The Euclidean metric with radians times `radius`.
+    /// The Euclidean metric in which radians count times `radius`.
     ///
     /// # Errors
     /// When the radius is zero.
@@ -57,7 +56,7 @@ pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateStat
     /// # Errors
     /// When the robot has no points.
     fn displacement(robot: &TriMesh) -> Result<Self::Displacement, Error>;
-    /// About how much volume the robot sweeps.
+    /// The approximate volume that the robot sweeps.
     ///
     /// # Errors
     /// When the robot has no triangles.
@@ -119,10 +118,10 @@ pub struct RigidScene<M: RigidSpace> {
 }
 
 impl<M: RigidSpace> RigidScene<M> {
-    /// Makes `problem` ready.
+    /// The scene of `problem`.
     ///
     /// # Errors
-    /// When the bounds of the position are empty, or a mesh or pose makes no sense.
+    /// When the bounds of the position are empty, or a mesh or pose is not valid.
     pub fn new(problem: RigidProblem) -> Result<Self, Error> {
         let space = M::space(&problem.position_bounds())?;
         let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
@@ -132,7 +131,7 @@ impl<M: RigidSpace> RigidScene<M> {
         Ok(Self { problem, space, robot, start, goals: [goal], radius })
     }
 
-    /// What it was made of.
+    /// The problem that it was made from.
     #[must_use]
     pub fn problem(&self) -> &RigidProblem {
         &self.problem
@@ -144,7 +143,7 @@ impl<M: RigidSpace> RigidScene<M> {
         &self.robot
     }
 
-    /// Distance of the robot's farthest point from its origin, metres; above zero.
+    /// The distance (m) of the robot's farthest point from its origin; for a point robot, 1e-3 of the extent of the space.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
@@ -209,7 +208,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
                 let space = WithMetric::new(space, M::displacement(robot)?);
                 Measured { index: AnyIndex::by_metric(&space), space: AnySpace::new(&space) }
             }
-            // No true metric: every state is looked at.
+            // Not a true metric: the index compares every state.
             Metric::SweptVolume => {
                 let space = WithMetric::new(space, M::swept(robot)?);
                 Measured { index: AnyIndex::new(&space, Linear::default()), space: AnySpace::new(&space) }

@@ -1,4 +1,4 @@
-//! From the names of a model to a checked tree.
+//! Compiles a model, whose links and joints refer to each other by name, to a checked kinematic tree.
 
 use super::kinematics::{AttachedLink, Coordinate, Frame, Kinematics, is_pose, range};
 use super::{ArmError, ArmModel, Joint, JointKind};
@@ -6,20 +6,21 @@ use mp_cspace::JointRange;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
 use std::collections::HashMap;
 
-/// Largest coordinate of an origin and largest limit.
+/// The largest coordinate of an origin, and the largest limit.
 pub(crate) const MAX_LENGTH: f64 = 1e70;
 
 /// What gives a joint its value.
 #[derive(Clone, Copy)]
 enum Value {
-    /// It has none.
+    /// A fixed joint has no value.
     Fixed,
-    /// Its limits are equal, or those of what it follows.
+    /// The limits of the joint are equal, or those of the joint that it mimics.
     Held(f64),
+    /// A coordinate gives the value.
     Follows(Source),
 }
 
-/// Which coordinate a joint follows and how.
+/// The coordinate that gives a joint its value: coordinate times `scale` plus `offset`.
 #[derive(Clone, Copy)]
 struct Source {
     coordinate: usize,
@@ -47,7 +48,7 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
     let mut attached: Vec<Option<AttachedLink>> = vec![None; model.links.len()];
     let name = |link: usize| model.links[link].name.clone();
     attached[tree.root] = Some(AttachedLink { name: name(tree.root), frame: 0, pose: Isometry3::identity() });
-    // A queue: every joint comes after the one its parent hangs on.
+    // Breadth first: every joint comes after the joint above its parent link.
     let mut next = vec![tree.root];
     let mut at = 0;
     while at < next.len() {
@@ -73,7 +74,7 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
     Ok(out)
 }
 
-/// Names to indices.
+/// The index of each name.
 fn numbered<'a>(
     what: &'static str,
     names: impl Iterator<Item = &'a str>,
@@ -87,7 +88,7 @@ fn numbered<'a>(
     Ok(numbers)
 }
 
-/// The joint by itself.
+/// Checks a joint without regard to the others.
 fn check(joint: &Joint) -> Result<(), ArmError> {
     let name = || joint.name.clone();
     if !is_pose(&joint.origin, MAX_LENGTH) {
@@ -109,7 +110,7 @@ fn check(joint: &Joint) -> Result<(), ArmError> {
     }
 }
 
-/// Which link hangs on which.
+/// The tree of links.
 struct Tree {
     root: usize,
     /// The joints below each link, in the order of the model.
@@ -155,7 +156,7 @@ impl Tree {
             }
             (None, _) => return Err(if model.links.is_empty() { ArmError::NoLinks } else { looped(0) }),
         };
-        // What the root does not reach goes round in a circle.
+        // Links that cannot be reached from the root are in a loop.
         let mut reached = vec![false; model.links.len()];
         let mut stack = vec![root];
         while let Some(link) = stack.pop() {
@@ -210,7 +211,7 @@ fn coordinates(
     }
 }
 
-/// From joint to joint until one follows no other.
+/// The value of the joint `start`: follows mimics from joint to joint until one mimics no other.
 fn follow(
     model: &ArmModel,
     joints: &HashMap<&str, usize>,
@@ -248,7 +249,7 @@ fn follow(
     Err(ArmError::Mimic { joint: joint.name.clone(), of, why: "that leads back to itself" })
 }
 
-/// Lets a coordinate go no farther than a joint that follows it can.
+/// Narrows the range of a coordinate to the limits of a joint that follows it.
 fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<(), ArmError> {
     let Some(mimic) = &joint.mimic else { return Ok(()) };
     let wrong = |why| ArmError::Mimic { joint: joint.name.clone(), of: mimic.joint.clone(), why };
@@ -276,7 +277,7 @@ fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<
     }
 }
 
-/// How far a joint of that value is from its origin.
+/// The motion of a joint from its origin at the value `value`.
 fn motion(joint: &Joint, value: f64) -> Isometry3<f64> {
     let axis = Unit::new_normalize(joint.axis);
     match joint.kind {

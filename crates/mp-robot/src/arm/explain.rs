@@ -1,4 +1,4 @@
-//! Answers for people: which link hits what, and where the arm would be free.
+//! Answers for people: what each link touches, and where the arm would be free.
 
 use super::Arm;
 use crate::shells::{Shells, search_shells};
@@ -12,9 +12,9 @@ pub struct ArmContact {
     pub link: String,
     /// What it touches: an obstacle or another link.
     pub other: String,
-    /// Whether that is a link of the arm.
+    /// Whether `other` is a link of the arm.
     pub with_itself: bool,
-    /// An estimate of how deep (m).
+    /// An estimate of the depth (m).
     pub depth: f64,
 }
 
@@ -27,8 +27,8 @@ const MAX_SHELLS: usize = 60;
 const DIRECTIONS: usize = 60;
 
 impl Arm {
-    /// What the arm touches at `q`: links and obstacles in the order of the links, then pairs of links. Empty when
-    /// it is free, and when `q` is no configuration. Slow: for messages.
+    /// The contacts at `q`: of links with obstacles in the order of the links, then of links with links. Empty when `q` is
+    /// free, or not a configuration. Slow: meant for messages.
     pub fn explain(&mut self, q: &[f64]) -> Vec<ArmContact> {
         let Self { robot, obstacles, query, scratch, .. } = self;
         let mut contacts = Vec::new();
@@ -60,10 +60,10 @@ impl Arm {
     }
 
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the
-    /// [tolerance](Arm::tolerance) is a good one): `q` itself when it has that, else the nearest found, or `None`.
+    /// [tolerance](Arm::tolerance) is a good value): `q` itself if it has that clearance, else the nearest found, or `None`.
     ///
-    /// Searches outward in shells, along each coordinate and in many other directions, then back toward `q`. The
-    /// same input finds the same. Some thousands of clearance queries: for messages.
+    /// The search moves along each coordinate and in many other directions by growing amounts, then goes back toward `q`.
+    /// The same input gives the same result. Some thousands of clearance queries: meant for messages.
     pub fn nearest_free<C>(&mut self, q: &C::State, space: &C, margin: f64) -> Option<C::State>
     where
         C: Space,

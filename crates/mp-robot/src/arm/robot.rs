@@ -19,38 +19,38 @@ const MAX_RADIUS: f64 = 1e70;
 /// A link that can collide.
 #[derive(Debug)]
 pub(super) struct LinkBody {
-    /// Which link of the model.
+    /// The index of the link in the model.
     pub(super) link: usize,
-    /// What moves it: 0 for the base.
+    /// The index of the frame to which it is fixed; 0 is the base.
     pub(super) frame: usize,
-    /// In that frame.
+    /// Its mesh, in that frame.
     pub(super) mesh: TriMesh,
     pub(super) tree: CollisionMesh,
     pub(super) ball: Sphere,
     pub(super) chain: Chain,
-    /// Where its entries begin in [`Scratch::far`] and [`Scratch::near`].
+    /// The index of its first entry in [`Scratch::far`] and [`Scratch::near`].
     pub(super) first: usize,
 }
 
 impl LinkBody {
-    /// The ball around it in the world.
+    /// The ball around it, in the world.
     #[inline]
     pub(super) fn ball_at(&self, frames: &[Isometry3<f64>]) -> Sphere {
         Sphere { center: frames[self.frame] * self.ball.center, radius: self.ball.radius }
     }
 }
 
-/// The arm itself: shared by all clones, whatever the obstacles.
+/// The arm without its obstacles: shared by all clones, also among other obstacles.
 #[derive(Debug)]
 pub(super) struct SharedArm {
     pub(super) kinematics: Kinematics,
     /// In the order of the links.
     pub(super) bodies: Vec<LinkBody>,
     pub(super) pairs: Vec<LinkPair>,
-    /// The largest distance of any of its points from the base in any configuration.
+    /// An upper bound (m) on the distance of any of its points from the base in any configuration.
     pub(super) reach: f64,
     pub(super) model: ArmModel,
-    /// For verifiers, made when the first one is.
+    /// The arm as verifiers see it, made for the first one.
     pub(super) reference: OnceLock<Arc<ReferenceArm>>,
 }
 
@@ -63,7 +63,7 @@ impl SharedArm {
             if link.shapes.is_empty() {
                 continue;
             }
-            // No mesh of finite shapes means a shape moved by a pose that is none, or too many triangles.
+            // Shapes are finite, so merging fails only for a shape moved by an invalid pose, or for too many triangles.
             let too_large = |radius| ArmError::TooLarge { link: link.name.clone(), radius, max: MAX_RADIUS };
             let merged = TriMesh::merged(&link.shapes).ok_or_else(|| too_large(f64::NAN))?;
             count = count.saturating_add(merged.triangles().len());
@@ -103,10 +103,10 @@ impl SharedArm {
     }
 }
 
-/// The largest distance of a point of `mesh`, in the frame `frame`, from the base in any configuration.
+/// An upper bound on the distance of a point of `mesh`, given in the frame `frame`, from the base in any configuration.
 fn reach_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> f64 {
     let mut reach = mesh.vertices().iter().map(|p| p.coords.norm()).fold(0.0, |a: f64, b| {
-        // `max` would lose NaN.
+        // `max` would drop NaN.
         if b > a || b.is_nan() { b } else { a }
     });
     let mut at = frame;
@@ -118,7 +118,7 @@ fn reach_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> f64 {
     reach
 }
 
-/// Memory of one clone.
+/// Scratch memory of one clone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     pub(super) frames: Vec<Isometry3<f64>>,
@@ -133,20 +133,20 @@ pub(super) struct Scratch {
 /// A configuration is a list of joint values (`SVector<f64, N>` or `DVector<f64>`), one for each
 /// [coordinate](Arm::coordinates); its space is [`space`](Arm::space). It is free when
 ///
-/// - no link that can move has a point in common with an obstacle. Links that stand still are not compared with
-///   obstacles, which stand still too: a table may touch the base it carries;
-/// - no two links have a point in common, but for pairs that never move relative to each other, pairs that a
-///   joint joins (at a joint links touch), and pairs that may touch: those of
+/// - no link that can move has a point in common with an obstacle. Links that stand still are not tested against
+///   obstacles, which stand still too: a table may touch the base that it carries;
+/// - no two links have a point in common, except pairs that never move relative to each other, pairs joined by a
+///   joint (links touch at a joint), and pairs that may touch: those of
 ///   [`ArmModel::may_touch`] if given, else those that touch at each of 100 configurations, the neutral one and
 ///   99 of the Halton sequence.
 ///
-/// Surfaces count, as for [`RigidBody`](crate::RigidBody): touching is collision, and what is wholly inside of
-/// something closed is free. Limits are the business of the space.
+/// Only surfaces count, as for [`RigidBody`](crate::RigidBody): touching is collision, and a link wholly inside a
+/// closed obstacle is free. The space checks the limits.
 ///
-/// Distances between links count as clearance like those to obstacles.
+/// Distances between links count as clearance, like those to obstacles.
 ///
-/// Meshes and trees are shared between clones; counters and scratch memory are each clone's own, so clone it
-/// per thread. Nothing is allocated by checks once the scratch has grown.
+/// Clones share meshes and trees. Each clone has its own counters and scratch memory, so clone it for each thread.
+/// Checks allocate nothing once the scratch memory has grown.
 #[derive(Clone, Debug)]
 pub struct Arm {
     pub(super) robot: Arc<SharedArm>,
@@ -157,10 +157,10 @@ pub struct Arm {
 }
 
 impl Arm {
-    /// The arm of `model` among obstacles: name, mesh and pose in the world each.
+    /// The arm of `model` among obstacles: each a name, a mesh and its pose in the world.
     ///
     /// # Errors
-    /// When the model makes no sense (see [`ArmError`]), or an obstacle has no pose or is too large.
+    /// When the model is not valid (see [`ArmError`]), or an obstacle has an invalid pose or is too large.
     pub fn new(
         model: &ArmModel,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
@@ -179,7 +179,7 @@ impl Arm {
     /// The same arm among other obstacles. Counters start at zero.
     ///
     /// # Errors
-    /// When an obstacle has no pose or is too large.
+    /// When an obstacle has an invalid pose or is too large.
     pub fn among(
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
@@ -190,7 +190,7 @@ impl Arm {
         Ok(other)
     }
 
-    /// What it was made of.
+    /// The model that it was made from.
     #[must_use]
     pub fn model(&self) -> &ArmModel {
         &self.robot.model
@@ -222,8 +222,8 @@ impl Arm {
         self.kinematics().space()
     }
 
-    /// The links that can collide: name, mesh in the world at `q`. Nothing when `q` is no configuration. Slow:
-    /// for pictures.
+    /// The name of each link that can collide, and its mesh in the world at `q`. Empty when `q` is not a configuration.
+    /// Slow: meant for pictures.
     #[must_use]
     pub fn meshes_at(&self, q: &[f64]) -> Vec<(&str, TriMesh)> {
         let mut frames = Vec::new();
@@ -241,8 +241,8 @@ impl Arm {
         self.robot.pairs.iter().map(|pair| pair.bodies.map(|body| self.robot.name(body))).collect()
     }
 
-    /// The largest distance (m) of any of its points from the base, in any configuration: a bound by the
-    /// lengths of its links.
+    /// An upper bound (m) on the distance of any of its points from the base in any configuration, from the lengths of
+    /// its links.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.robot.reach
@@ -266,8 +266,8 @@ impl Arm {
         self.obstacles.bounds
     }
 
-    /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and never so small
-    /// that coordinates could not resolve it. An [`ArmVerifier`](crate::ArmVerifier) works to a tenth of it.
+    /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and at least what
+    /// coordinates can resolve. An [`ArmVerifier`](crate::ArmVerifier) uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         let base = self.kinematics().base.translation.vector.amax();

@@ -1,13 +1,13 @@
 //! How far a motion of the joints moves a link.
 //!
-//! A point of a link has the speed of each joint above it times its distance from that joint's axis, added up.
-//! The distance is bounded twice:
+//! The speed of a point of a link is at most the sum, over the joints above it, of the joint's speed times the distance
+//! of the point from the joint's axis. This distance is bounded in two ways:
 //!
-//! - once and for all, by the lengths of the chain between: [`Chain::new`];
-//! - about a configuration, by the distance there and how far the joints between have moved the point since:
+//! - for all configurations, by the lengths of the chain between: [`Chain::new`];
+//! - near one configuration, by the distance there plus how far the joints between have moved the point since:
 //!   [`Chain::near`].
 //!
-//! The second is the smaller where the arm is folded, and both are taken.
+//! The second is smaller where the arm is folded. The smaller of the two is used.
 
 use super::kinematics::Kinematics;
 use mp_geom::{Sphere, TriMesh};
@@ -16,21 +16,21 @@ use nalgebra::{Isometry3, Point3, Vector3};
 /// Bounds are enlarged by this factor against rounding.
 const ROUND_UP: f64 = 1.0 + 1e-12;
 
-/// The joints above a link, the nearest first.
+/// The joints above a link, nearest to the link first.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
     pub(super) steps: Vec<Step>,
 }
 
-/// One of them.
+/// A joint of a chain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     /// The frame behind the joint.
     pub(super) frame: usize,
     coordinate: usize,
-    /// Radians or metres of the joint for one of the coordinate.
+    /// How far (rad or m) the joint moves for each unit of the coordinate.
     rate: f64,
-    /// The largest distance of a point of the link from the axis in any configuration; 1 where the joint slides.
+    /// An upper bound on the distance of a point of the link from the axis in any configuration; 1 for a prismatic joint.
     reach: f64,
     slides: bool,
 }
@@ -38,12 +38,12 @@ pub(super) struct Step {
 impl Chain {
     /// The joints above `mesh`, which is given in the frame `frame`.
     ///
-    /// The largest distance of its points from the axis of a joint is at most that of the next joint's origin
-    /// plus that of the points from there, and so on along the chain; at the last joint it is taken from the
-    /// vertices themselves.
+    /// The distance of its points from the axis of a joint is at most the distance of the next joint's origin from that
+    /// axis plus the distance of the points from that origin, and so on along the chain. At the last joint it is computed
+    /// from the vertices.
     pub(super) fn new(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> Self {
         let vertices = || mesh.vertices().iter().map(|p| p.coords);
-        // Of the points from the origin of the frame, and from the axis of the joint.
+        // The largest distances of the points from the origin of the frame and from the axis of the joint.
         let mut from_origin = vertices().map(|v| v.norm()).fold(0.0, f64::max);
         let mut steps = Vec::new();
         let mut at = frame;
@@ -62,7 +62,7 @@ impl Chain {
                 reach: if joint.slides { 1.0 } else { reach * ROUND_UP },
                 slides: joint.slides,
             });
-            // Now in the frame above.
+            // Continue in the frame above.
             let beyond = from_origin + joint.slide;
             lower = Some((joint.origin.translation.vector, beyond));
             from_origin = joint.origin.translation.vector.norm() + beyond;
@@ -71,8 +71,8 @@ impl Chain {
         Self { steps }
     }
 
-    /// Bounds (m) on how far the joints up to each step move a point of the link, over a whole motion; the
-    /// last is that of the whole chain. The first is zero: by no joint at all.
+    /// Appends bounds (m) on how far the first k joints of the chain move a point of the link over a whole motion, for
+    /// k from 0 (a bound of zero) to the length of the chain. `travels` gives how far each coordinate goes.
     pub(super) fn far(&self, travels: impl Fn(usize) -> f64, out: &mut Vec<f64>) {
         let mut sum = 0.0;
         out.push(sum);
@@ -82,8 +82,8 @@ impl Chain {
         }
     }
 
-    /// The same over an interval of the motion that turns the joints by `travels` to either side of a configuration,
-    /// in which the link is within `ball` and the joints have these axes, all in the world.
+    /// As [`far`](Self::far) over an interval of the motion that moves the coordinates by `travels` to either side of a
+    /// configuration at which the link is within `ball` and the joints have these axes, all in the world.
     pub(super) fn near(
         &self,
         travels: impl Fn(usize) -> f64,
@@ -109,12 +109,12 @@ impl Chain {
         }
     }
 
-    /// Only the last of [`far`](Self::far).
+    /// The last bound of [`far`](Self::far): of the whole chain.
     pub(super) fn whole(&self, travels: impl Fn(usize) -> f64) -> f64 {
         self.steps.iter().map(|step| travels(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
     }
 
-    /// As [`whole`](Self::whole) by the first `count` joints only.
+    /// As [`whole`](Self::whole), for the first `count` joints only.
     pub(super) fn part(&self, count: usize, travels: impl Fn(usize) -> f64) -> f64 {
         let steps = &self.steps[..count];
         steps.iter().map(|step| travels(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
@@ -141,7 +141,7 @@ mod tests {
     use nalgebra::{DVector, UnitQuaternion};
     use rand::RngExt;
 
-    /// A chain of joints of all kinds with boxes off their axes.
+    /// A chain of joints of all kinds, with boxes away from their axes.
     fn chain(rng: &mut Rng) -> ArmModel {
         let mut next = move || rng.random_range(-1.0..1.0);
         let mut model = ArmModel { links: vec![Link::new("0")], ..ArmModel::default() };
@@ -164,8 +164,8 @@ mod tests {
         model
     }
 
-    /// Every vertex of every link, on its way through small steps: never longer than either bound, and the
-    /// bounds are not far off.
+    /// No vertex of any link travels farther than the bounds, measured in small steps, and the bounds are close to what is
+    /// measured.
     #[test]
     fn no_vertex_moves_farther_than_the_bounds() {
         let mut rng = Rng::seed(1);

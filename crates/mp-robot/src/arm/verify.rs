@@ -9,7 +9,7 @@ use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// The arm as verifiers see it: made of the model anew, by names.
+/// The arm as verifiers see it: built from the model a second time, by the names of links and joints.
 #[derive(Debug)]
 pub(super) struct ReferenceArm {
     /// Parents before children.
@@ -18,7 +18,7 @@ pub(super) struct ReferenceArm {
     base: Matrix4<f64>,
 }
 
-/// A link and the joint it hangs on.
+/// A link and the joint above it.
 #[derive(Debug)]
 struct ReferenceLink {
     name: String,
@@ -26,7 +26,7 @@ struct ReferenceLink {
     origin: Matrix4<f64>,
     axis: Vector3<f64>,
     motion: JointMotion,
-    /// Its value: coordinate, factor, offset.
+    /// The value of the joint: coordinate, factor, offset.
     value: (usize, f64, f64),
     mesh: Option<RefMesh>,
     /// The largest distance of a point of its mesh from its origin.
@@ -50,7 +50,7 @@ impl ReferenceArm {
             base: model.base.to_homogeneous(),
         };
         let coordinate = |name: &str| own.iter().position(|j| j.name == name);
-        // What a joint follows, however long that takes: the model is known to have no loops.
+        // Follows mimics to the end. The model has been checked: there are no loops.
         let value = |name: &str| {
             let (mut at, mut factor, mut offset) = (name.to_owned(), 1.0, 0.0);
             loop {
@@ -59,7 +59,7 @@ impl ReferenceArm {
                 }
                 let joint = model.joints.iter().find(|j| j.name == at);
                 let Some(mimic) = joint.and_then(|j| j.mimic.as_ref()) else {
-                    // It has one value only, if it has one.
+                    // A fixed or held joint has at most one value.
                     let held = joint.and_then(|j| j.kind.held()).unwrap_or(0.0);
                     return (0, 0.0, offset + factor * held);
                 };
@@ -107,7 +107,7 @@ impl ReferenceArm {
         tree
     }
 
-    /// Where the links are, by homogeneous matrices.
+    /// The poses of the links in the world, as homogeneous matrices.
     fn poses_into(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
         out.clear();
         for link in &self.links {
@@ -128,11 +128,11 @@ impl ReferenceArm {
         }
     }
 
-    /// How far the joints below `stop` (not included; all when `None`) move a point of a link, relative to it,
-    /// while every coordinate goes `ways` from where the links are at `poses`.
+    /// An upper bound (m) on how far the joints below the link `stop` move a point of `link` relative to `stop` (all joints
+    /// when it is `None`), while every coordinate goes as far as `travels` says and the links start at `poses`.
     ///
     /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
-    /// That distance is at most the one at `poses` plus what the joints nearer to the link have moved it.
+    /// That distance is at most the one at `poses` plus how far the joints nearer to the link have moved the point.
     fn travel(&self, link: usize, stop: Option<usize>, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
         let origin = |i: usize| Vector3::from(poses[i].fixed_view::<3, 1>(0, 3));
         let tip = origin(link);
@@ -152,11 +152,11 @@ impl ReferenceArm {
             }
             at = part.parent;
         }
-        // Rounding.
+        // Enlarged against rounding.
         moved * (1.0 + 1e-9)
     }
 
-    /// The links above `link`, itself first.
+    /// The links from `link` up to the root, `link` first.
     fn above(&self, link: usize) -> Vec<usize> {
         std::iter::successors(Some(link), |&i| self.links[i].parent).collect()
     }
@@ -165,29 +165,30 @@ impl ReferenceArm {
         self.links.iter().position(|link| link.name == name)
     }
 
-    /// Whether any joint above moves it.
+    /// Whether any joint above the link moves it.
     fn is_moved(&self, link: usize) -> bool {
         self.above(link).into_iter().any(|i| self.links[i].motion != JointMotion::Fixed)
     }
 }
 
-/// What must be kept apart: a link, and another or the obstacles.
+/// A link and another link, or a link and the obstacles: they must not touch.
 #[derive(Clone, Copy, Debug)]
 struct CheckedPair {
     link: usize,
     other: Option<usize>,
-    /// The nearest link that both hang on.
+    /// The nearest link above both.
     meet: Option<usize>,
 }
 
-/// Proves motions of an [`Arm`] free of collision, by other code than planners use: its own kinematic tree, made
-/// anew of the names of the model and multiplied out as homogeneous matrices; its own bounds on how far links
-/// move; its own subdivision; and the sphere trees of `mp_collide::reference`. Shared are only the space, whose
-/// interpolation is what a motion *is*, and the list of [pairs of links](Arm::checked_pairs) that must not touch.
+/// Proves motions of an [`Arm`] free of collision, with other code than planners use: its own kinematic tree, built from
+/// the names in the model and multiplied out as homogeneous matrices; its own bounds on how far links
+/// move; its own subdivision; and the sphere trees of `mp_collide::reference`. It shares with the checker only the space,
+/// whose interpolation defines what a motion is, and the list of [pairs of links](Arm::checked_pairs) that must not
+/// touch.
 ///
-/// - free means: links keep at least the tolerance from obstacles and from each other all along;
-/// - a motion with a tested state of less than twice the tolerance is [`Undecided`](MotionCheck::Unproven), as
-///   are motions that take more than a million parts, or of a million radians.
+/// - free means that links keep at least the tolerance from obstacles and from each other all along;
+/// - a motion with a tested state of less than twice the tolerance is [`Unproven`](MotionCheck::Unproven), as
+///   are motions that take more than a million parts, and motions of a million radians or metres.
 ///
 /// Coordinates must go at constant speed, and by no more than a turn, as in [`Arm::space`].
 #[derive(Clone, Debug)]
@@ -211,18 +212,18 @@ where
     C: Space,
     C::State: Coordinates,
 {
-    /// A verifier for `arm` in `space`, to a tenth of the arm's [tolerance](Arm::tolerance).
+    /// A verifier for `arm` in `space` with a tenth of the arm's [tolerance](Arm::tolerance).
     ///
     /// # Errors
-    /// When the tolerance is not positive and finite, which that of an arm always is.
+    /// When the tolerance is not positive and finite. The tolerance of an arm always is.
     pub fn new(space: &'c C, arm: &Arm) -> Result<Self, ParameterError> {
         Self::with_tolerance(space, arm, arm.tolerance() * 0.1)
     }
 
-    /// A verifier to a tolerance of your own (m).
+    /// A verifier with the tolerance `tolerance` (m).
     ///
     /// # Errors
-    /// When it is not positive and finite.
+    /// When the tolerance is not positive and finite.
     pub fn with_tolerance(space: &'c C, arm: &Arm, tolerance: f64) -> Result<Self, ParameterError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             let (name, expected) = ("the tolerance", "positive and finite");
@@ -247,20 +248,19 @@ where
         Ok(Self { space, tree, world, pairs, tolerance, parts: 0 })
     }
 
-    /// Motions found free keep links this far from everything (m).
+    /// The clearance (m) that motions found free keep between links and everything else.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// Parts of motions looked at so far.
+    /// How many parts of motions have been tested so far.
     #[must_use]
     pub fn parts(&self) -> u64 {
         self.parts
     }
 
-    /// The way of each coordinate between two configurations: what is less than half a turn apart goes there
-    /// directly.
+    /// How far each coordinate goes between two configurations. Continuous joints turn by the shorter way.
     fn travels(&self, a: &C::State, b: &C::State) -> Vec<f64> {
         let (a, b) = (a.as_slice(), b.as_slice());
         let travel = |(i, endless): (usize, &bool)| {
@@ -270,7 +270,8 @@ where
         self.tree.coordinates.iter().enumerate().map(travel).collect()
     }
 
-    /// A bound on the distance of a pair, at least `enough`, or that of some of their triangles that is less.
+    /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
+    /// triangles that is less.
     fn distance(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
         let part = &self.tree.links[pair.link];
         let Some(mesh) = &part.mesh else { return Ok(f64::INFINITY) };
@@ -285,13 +286,13 @@ where
         }
     }
 
-    /// How much nearer the two of a pair can come.
+    /// How much nearer to each other the two of a pair can come.
     fn approach(&self, pair: &CheckedPair, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
         let moved = |link| self.tree.travel(link, pair.meet, travels, poses);
         moved(pair.link) + pair.other.map_or(0.0, moved)
     }
 
-    /// Proves the motion, in longer and then in shorter parts.
+    /// Proves the motion in parts, longer parts first.
     fn prove(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
         let mut least = f64::INFINITY;
         let mut poses = Vec::new();
@@ -314,7 +315,7 @@ where
                 let approach = self.approach(pair, &travels, &poses);
                 match self.distance(pair, &poses, approach + self.tolerance) {
                     Ok(distance) => least = least.min(distance - approach),
-                    // What was found first need not be the nearest.
+                    // The first distance found need not be the least.
                     Err(_) if self.distance(pair, &poses, 0.0).is_err() => {
                         return MotionCheck::Collision { at };
                     }
@@ -332,7 +333,7 @@ where
         MotionCheck::Free { clearance: least }
     }
 
-    /// Whether anything touches at `q`.
+    /// Whether any pair touches at `q`.
     fn touches(&self, q: &C::State) -> bool {
         let mut poses = Vec::new();
         self.tree.poses_into(q.as_slice(), &mut poses);

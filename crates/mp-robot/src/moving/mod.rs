@@ -1,4 +1,4 @@
-//! A rigid body among obstacles some of which move on known trajectories.
+//! A rigid body among obstacles, some of which move on known trajectories.
 
 mod trajectory;
 mod verify;
@@ -14,24 +14,24 @@ use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::sync::Arc;
 
-/// A moving obstacle. The scene holds it alone, at its own origin: the robot is asked about where it is
-/// as seen from there.
+/// A moving obstacle. Its scene holds it alone, with its frame at the origin; queries give the pose of the robot in that
+/// frame.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingObstacle {
     scene: Arc<Scene>,
     pub(crate) trajectory: Trajectory,
-    /// The largest distance of a point from the origin of its frame.
+    /// The largest distance (m) of one of its points from the origin of its frame.
     pub(crate) radius: f64,
     pub(crate) reference: Arc<RefMesh>,
 }
 
 /// A [`RigidBody`] and the bodies that move around it, each on its [`Trajectory`] whatever the robot does.
 ///
-/// States are pairs, a configuration and a time (s), as in [`SpaceTime`](mp_cspace::space_time::SpaceTime). One is free
-/// where the robot touches neither what stands still nor the surface of what moves; a robot that is inside a
-/// moving body to begin with, even a point, is not in contact with it. Motion bounds hold for the robot and
-/// the fastest of the obstacles together, so [`Certified`](mp_cspace::Certified) misses neither, however
-/// thin; [`Forward`](mp_cspace::space_time::Forward) around it keeps time running forward.
+/// A state is a pair of a configuration and a time (s), as in [`SpaceTime`](mp_cspace::space_time::SpaceTime). It is free
+/// if the robot touches neither the obstacles that stand still nor the surface of a moving one. A robot that is inside a
+/// moving body from the beginning, even a point, is not in contact with it. Motion bounds are for the robot and the
+/// fastest obstacle together, so [`Certified`](mp_cspace::Certified) misses no obstacle, however thin.
+/// [`Forward`](mp_cspace::space_time::Forward) around it keeps time running forward.
 #[derive(Clone, Debug)]
 pub struct AmongMoving<P: Placement> {
     body: RigidBody<P>,
@@ -44,8 +44,8 @@ pub struct AmongMoving<P: Placement> {
 const ROUND_UP: f64 = 1.0 + 1e-9;
 
 impl<P: Placement> AmongMoving<P> {
-    /// `body` among its obstacles that stand still, and `moving`: name, mesh in its own frame, and
-    /// trajectory of that frame in the world each.
+    /// `body` among its obstacles that stand still, and the obstacles `moving`: each a name, a mesh in its own frame, and
+    /// the trajectory of that frame in the world.
     ///
     /// # Errors
     /// When a mesh is too large to compute with.
@@ -68,13 +68,14 @@ impl<P: Placement> AmongMoving<P> {
         Ok(Self { body, moving: moving.into(), query: Query::default(), counters: CheckCounters::default() })
     }
 
-    /// The robot among what stands still.
+    /// The robot among the obstacles that stand still.
     #[must_use]
     pub fn body(&self) -> &RigidBody<P> {
         &self.body
     }
 
-    /// What was done so far by this clone: against what stands still and what moves, each counted.
+    /// The checks made by this clone so far. Those against obstacles that stand still and against each that moves count
+    /// separately.
     #[must_use]
     pub fn counters(&self) -> CheckCounters {
         let mut counters = self.body.counters();
@@ -126,7 +127,7 @@ impl<P: Placement> Clearance<(P::State, f64)> for AmongMoving<P> {
 }
 
 impl<P: Placement> MotionClearance<(P::State, f64)> for AmongMoving<P> {
-    /// How far the robot and the fastest of the moving obstacles travel together.
+    /// How far the robot and the fastest moving obstacle travel, added.
     fn motion_bound(&self, from: &(P::State, f64), to: &(P::State, f64)) -> f64 {
         let speed = |obstacle: &MovingObstacle| obstacle.trajectory.speed(obstacle.radius, from.1, to.1);
         let fastest = self.moving.iter().map(speed).fold(0.0, f64::max);

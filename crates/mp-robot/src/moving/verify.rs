@@ -7,13 +7,14 @@ use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space, space_time::
 use nalgebra::Isometry3;
 use std::sync::Arc;
 
-/// Proves motions in space and time free of collision, by other code than planners use: a [`Verifier`]
-/// for what stands still, and for each moving obstacle distances by sphere trees against how far robot and
-/// obstacle can come nearer, halving the motion until all of it is shown free. Only the space and the
-/// trajectories are shared: they are what the motions *are*.
+/// Proves motions in space and time free of collision, with other code than planners use.
 ///
-/// It answers [`Undecided`](MotionCheck::Unproven) to motions back in time and beyond the speed limit, and
-/// to those with a tested moment of less clearance than its tolerance.
+/// A [`Verifier`] checks against the obstacles that stand still. For each moving obstacle, distances from sphere trees are
+/// compared with how much nearer robot and obstacle can come, and the motion is halved until all of it is shown free.
+/// Only the space and the trajectories are shared with the checker: they define what the motions are.
+///
+/// The answer is [`Unproven`](MotionCheck::Unproven) for motions back in time or beyond the speed limit, and for
+/// motions with a tested moment of less clearance than the tolerance.
 #[derive(Clone, Debug)]
 pub struct MovingVerifier<'c, C, P> {
     space: &'c SpaceTime<C>,
@@ -24,14 +25,14 @@ pub struct MovingVerifier<'c, C, P> {
     tolerance: f64,
 }
 
-/// Parts of a motion shorter than this are not looked at: what is not shown free by then is not free.
+/// Parts of a motion shorter than this are not tested. What is not shown free by then is not free.
 const SHORTEST: f64 = 1e-12;
 
 impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
-    /// A verifier for `robot` in `space`, to a tenth of its [tolerance](crate::RigidBody::tolerance).
+    /// A verifier for `robot` in `space` with a tenth of its [tolerance](crate::RigidBody::tolerance).
     ///
     /// # Errors
-    /// When the tolerance is not positive and finite, which that of a robot always is.
+    /// When the tolerance is not positive and finite. The tolerance of a robot always is.
     pub fn new(space: &'c SpaceTime<C>, robot: &AmongMoving<P>) -> Result<Self, ParameterError> {
         let standing = Verifier::new(space.positions(), robot.body())?;
         let mesh = robot.body().mesh();
@@ -46,13 +47,14 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
         })
     }
 
-    /// Motions found free keep this far from every obstacle (m).
+    /// The clearance (m) that motions found free keep from every obstacle.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// The clearance kept from one obstacle over the motion, or where it is not shown.
+    /// The clearance kept from one moving obstacle over the motion, or the check that failed. `rate` is how far a point of
+    /// the robot moves over the motion.
     fn against(
         &self,
         obstacle: &MovingObstacle,
@@ -90,7 +92,7 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> f
         }
         let standing = self.standing.check_motion(&from.0, &to.0);
         let MotionCheck::Free { clearance: mut least } = standing else { return standing };
-        // The origin on a line and turning about it, both at constant speed.
+        // The origin moves on a line and the body turns about it, both at constant speed.
         let [a, b] = [&from.0, &to.0].map(P::pose);
         let shift = (b.translation.vector - a.translation.vector).norm();
         let rate = shift + self.radius * a.rotation.angle_to(&b.rotation);

@@ -12,8 +12,8 @@ use std::sync::Arc;
 /// [`Se2`](mp_cspace::Se2).
 ///
 /// Touching is collision, and so is a robot in an obstacle, or around one. Motions are certified by conservative
-/// advancement: [`Certified`](mp_cspace::Certified) at its [tolerance](PolygonRobot::tolerance). The world is shared
-/// between clones; counters are each clone's own.
+/// advancement: [`Certified`](mp_cspace::Certified) at its [tolerance](PolygonRobot::tolerance). Clones share the world;
+/// each has its own counters.
 ///
 /// ```
 /// use mp_cspace::{Certified, MotionValidity, Se2, Se2State};
@@ -42,7 +42,7 @@ pub struct PolygonRobot {
     counters: CheckCounters,
 }
 
-/// Where the body is placed.
+/// The pose of the body, with the sine and cosine of its angle.
 #[derive(Clone, Copy)]
 struct BodyPose {
     sin: f64,
@@ -73,7 +73,7 @@ impl PolygonRobot {
         Self { world: world.into(), body: body.into(), radius, counters: CheckCounters::default() }
     }
 
-    /// What it moves in.
+    /// The world in which it moves.
     #[must_use]
     pub fn world(&self) -> &Arc<PlanarWorld> {
         &self.world
@@ -91,21 +91,21 @@ impl PolygonRobot {
         self.radius
     }
 
-    /// The default tolerance (m) of certified motion checks: 1e-4 of the radius, and never so small that coordinates
-    /// could not resolve it. The verifier asks for a tenth of it.
+    /// The default tolerance (m) of certified motion checks: 1e-4 of the radius, and at least what coordinates can
+    /// resolve. The verifier uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         (1e-4 * self.radius).max(super::tolerance(&self.world, self.radius))
     }
 
-    /// What was done so far by this clone.
+    /// The checks made by this clone so far.
     #[must_use]
     pub fn counters(&self) -> CheckCounters {
         self.counters
     }
 
-    /// The points of body and obstacles that are nearest to each other, and their distance, if that is below
-    /// `enough`; nothing about which is inside of which.
+    /// The nearest points on the boundaries of body and obstacles, and their distance, if it is below `enough`. Does not
+    /// test whether one is inside the other.
     fn nearest(&self, pose: &BodyPose, enough: f64) -> Option<(Point2<f64>, Point2<f64>, f64)> {
         let mut best = None;
         let mut below = enough;
@@ -121,7 +121,7 @@ impl PolygonRobot {
         best
     }
 
-    /// Whether robot or obstacle is within the other, where their boundaries do not meet.
+    /// Whether the robot is inside an obstacle or around one. For boundaries that do not meet.
     fn nested(&self, pose: &BodyPose) -> bool {
         let reach = Vector2::repeat(self.radius);
         let around = [pose.at - reach, pose.at + reach].map(Point2::from);
@@ -129,7 +129,7 @@ impl PolygonRobot {
             || self.world.ring_in(around, |p| self.body.contains(&pose.to_body(p))).is_some()
     }
 
-    /// Whether the robot at `q` is at least `reach` from everything, as far as the circle around it tells.
+    /// The distance of the circle around the robot from the nearest obstacle, if it is at least `reach`.
     fn far(&self, q: &Se2State, reach: f64) -> Option<f64> {
         let around = self.world.signed_distance(&Point2::from(q.translation)) - self.radius;
         (around >= reach).then_some(around)
@@ -152,8 +152,8 @@ impl PolygonRobot {
 
     /// The distance (m) between robot and obstacles, and how it changes with x, y and angle (m/m, m/m, m/rad).
     ///
-    /// In collision minus the depth of the deepest corner of one in the other, where there is such a corner, and
-    /// the way out of it; else zeros. Infinite and zeros where there is nothing.
+    /// In collision: minus the depth of the robot corner that is deepest in an obstacle, and the gradient that leads it out;
+    /// zeros if no corner is in an obstacle. Infinite and zeros if there are no obstacles.
     #[must_use]
     pub fn clearance_and_gradient(&self, q: &Se2State) -> (f64, [f64; 3]) {
         let pose = BodyPose::of(q);

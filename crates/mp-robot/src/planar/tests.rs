@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 use rand::RngExt;
 use std::sync::Arc;
 
-/// Triangles and rectangles in a room of 4 × 3 m, some overlapping.
+/// Triangles and rectangles within walls of 4 × 3 m, some overlapping.
 fn world(rng: &mut Rng, obstacles: usize) -> Arc<PlanarWorld> {
     let mut polygons = Vec::new();
     for _ in 0..obstacles {
@@ -25,8 +25,8 @@ fn world(rng: &mut Rng, obstacles: usize) -> Arc<PlanarWorld> {
     PlanarWorld::new(polygons, Some([[0.0, 0.0], [4.0, 3.0]])).unwrap().into()
 }
 
-/// What the two checks of a disc say agrees with places along the way, and with each other but for what is within
-/// the tolerance.
+/// The two checks of a disc agree with sampled configurations along the motion, and with each other except within the
+/// tolerance.
 #[test]
 fn discs_pass_exactly_where_they_keep_clear() {
     let mut rng = Rng::seed(3);
@@ -43,7 +43,7 @@ fn discs_pass_exactly_where_they_keep_clear() {
             let b = a + (b - a) * rng.random_range(0.0..1.0);
             let (ours, theirs) = (robot.check_motion(&a, &b), verifier.check_motion(&a, &b));
             assert_eq!(certified.check_motion(&a, &b).is_free(), ours.is_free());
-            // To stay where it is.
+            // The motion that stays in place.
             let clearance = robot.signed_clearance(&a);
             match robot.check_motion(&a, &a) {
                 MotionCheck::Free { .. } => assert!(clearance > robot.tolerance()),
@@ -59,7 +59,7 @@ fn discs_pass_exactly_where_they_keep_clear() {
             match theirs {
                 MotionCheck::Free { clearance } => {
                     passed += 1;
-                    // Between places a distance is less by at most half a step.
+                    // Between two samples the distance is less by at most half a step.
                     assert!(
                         clearance <= sampled + 1e-12 && clearance >= sampled - (b - a).norm() / 400.0 - 1e-12
                     );
@@ -207,7 +207,7 @@ fn what_is_no_number_is_not_free() {
     }
 }
 
-/// Hints run along what is hit.
+/// Hints lead along the boundary that is hit.
 #[test]
 fn hints_lead_along_boundaries() {
     let mut rng = Rng::seed(7);

@@ -6,10 +6,11 @@ use mp_cspace::{MotionCheck, MotionValidity, Se2State, Space};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
-/// Proves straight motions of a disc, by looking at every edge: no grid, other formulas than the robot's.
+/// Proves straight motions of a disc free of collision, by a test of every edge: no grid, and other formulas than the
+/// robot's.
 ///
-/// Free means: clearance of at least the tolerance all along, a tenth of the robot's, so that it proves whatever
-/// [`DiscRobot`] accepts. O(edges) for each motion.
+/// Free means a clearance of at least the tolerance all along. The tolerance is a tenth of the robot's, so that the verifier
+/// proves whatever [`DiscRobot`] accepts. O(edges) for each motion.
 #[derive(Clone, Debug)]
 pub struct DiscVerifier {
     obstacles: Arc<EdgeList>,
@@ -25,7 +26,7 @@ impl DiscVerifier {
         Self { obstacles, radius: robot.radius(), tolerance: 0.1 * robot.tolerance() }
     }
 
-    /// Motions found free keep this far from every obstacle (m).
+    /// The clearance (m) that motions found free keep from every obstacle.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -53,7 +54,7 @@ impl MotionValidity<Vector2<f64>> for DiscVerifier {
 }
 
 impl DiscVerifier {
-    /// About where on its way the disc is nearest to an obstacle: by trying places.
+    /// About the fraction of the motion at which the disc is nearest to an obstacle, from 65 samples.
     fn nearest_fraction(&self, segment: &[Point2<f64>; 2]) -> f64 {
         let clearance = |t: f64| {
             let p = segment[0] + (segment[1] - segment[0]) * t;
@@ -64,13 +65,14 @@ impl DiscVerifier {
     }
 }
 
-/// How deep a motion is halved.
+/// How often a motion is halved at most.
 const MAX_DEPTH: u32 = 40;
 
-/// Proves motions of a polygon, by looking at every edge near the way: no grid, other formulas and another bound
-/// on motion than planners use. Only the space is shared: its interpolation is what a motion *is*.
+/// Proves motions of a polygon free of collision, by a test of every edge near the motion: no grid, and other formulas and
+/// another motion bound than planners use. Only the space is shared with the checker: its interpolation defines what a
+/// motion is.
 ///
-/// Free means: clearance of at least the tolerance all along, a tenth of the robot's. The space must move the
+/// Free means a clearance of at least the tolerance all along, a tenth of the robot's. The space must move the
 /// origin on a straight line and turn by at most half a turn, both at constant speed, as [`Se2`](mp_cspace::Se2) does.
 #[derive(Clone, Debug)]
 pub struct PolygonVerifier<'c, C> {
@@ -91,7 +93,7 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
         Self { space, obstacles, body: Arc::new(body), radius, tolerance: 0.1 * robot.tolerance() }
     }
 
-    /// Motions found free keep this far from every obstacle (m).
+    /// The clearance (m) that motions found free keep from every obstacle.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -114,7 +116,7 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
         least
     }
 
-    /// Whether one is in the other, their boundaries being apart.
+    /// Whether the robot is inside an obstacle or around one. For boundaries that do not meet.
     fn nested(&self, q: &Se2State) -> bool {
         let placed = self.placed(q);
         placed.iter().any(|ring| self.obstacles.inside(&ring[0]))
@@ -134,14 +136,14 @@ impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_
         if self.nested(from) {
             return MotionCheck::Collision { at: 0.0 };
         }
-        // Edges that the robot can come near to.
+        // The edges to which the robot can come near.
         let reach = self.radius + self.tolerance;
         let edges = self.obstacles.edges.iter().filter(|e| box_distance(e, &segment) <= 2.0 * reach);
         let near: Vec<[Point2<f64>; 2]> = edges.copied().collect();
         let turn = (to.angle - from.angle).rem_euclid(std::f64::consts::TAU);
         let turn = turn.min(std::f64::consts::TAU - turn);
         let mut open = vec![(0.0, 1.0, 0)];
-        // All edges left out are at least this far.
+        // All other edges are at least this far away.
         let mut least = reach;
         while let Some((a, b, depth)) = open.pop() {
             let at = 0.5 * (a + b);
