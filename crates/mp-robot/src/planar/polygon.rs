@@ -56,10 +56,10 @@ impl BodyPose {
         Self { sin, cos, at: q.translation }
     }
     #[inline]
-    fn to_world(&self, p: &Point2<f64>) -> Point2<f64> {
+    fn in_world(&self, p: &Point2<f64>) -> Point2<f64> {
         Point2::new(self.cos * p.x - self.sin * p.y + self.at.x, self.sin * p.x + self.cos * p.y + self.at.y)
     }
-    fn to_body(&self, p: &Point2<f64>) -> Point2<f64> {
+    fn in_body(&self, p: &Point2<f64>) -> Point2<f64> {
         let v = p.coords - self.at;
         Point2::new(self.cos * v.x + self.sin * v.y, self.cos * v.y - self.sin * v.x)
     }
@@ -110,7 +110,7 @@ impl PolygonRobot {
         let mut best = None;
         let mut below = enough;
         for [a, b] in self.body.edges() {
-            if let Some(near) = self.world.nearest_to_segment(&pose.to_world(&a), &pose.to_world(&b), below) {
+            if let Some(near) = self.world.nearest_to_segment(&pose.in_world(&a), &pose.in_world(&b), below) {
                 below = near.distance;
                 best = Some((near.on_segment, near.point, near.distance));
                 if below <= 0.0 {
@@ -125,8 +125,8 @@ impl PolygonRobot {
     fn nested(&self, pose: &BodyPose) -> bool {
         let reach = Vector2::repeat(self.radius);
         let around = [pose.at - reach, pose.at + reach].map(Point2::from);
-        self.body.rings().iter().any(|ring| self.world.contains(&pose.to_world(&ring[0])))
-            || self.world.ring_in(around, |p| self.body.contains(&pose.to_body(p))).is_some()
+        self.body.rings().iter().any(|ring| self.world.contains(&pose.in_world(&ring[0])))
+            || self.world.ring_in(around, |p| self.body.contains(&pose.in_body(p))).is_some()
     }
 
     /// The distance of the circle around the robot from the nearest obstacle, if it is at least `reach`.
@@ -169,7 +169,7 @@ impl PolygonRobot {
         }
         let mut deepest = (0.0, [0.0; 3]);
         for corner in self.body.rings().iter().flatten() {
-            let p = pose.to_world(corner);
+            let p = pose.in_world(corner);
             if let Some(near) = self.world.nearest(&p).filter(|_| self.world.contains(&p))
                 && -near.distance < deepest.0
             {
