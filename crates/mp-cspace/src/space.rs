@@ -17,7 +17,7 @@ pub use se3::Se3;
 pub use so3::So3;
 pub(crate) use so3::twice;
 
-use crate::{Rng, nn::Layout};
+use crate::{Rng, layout::Layout};
 use std::fmt::Debug;
 
 /// Marks a distance that is symmetric and satisfies the triangle inequality: that of the space itself, or that of a

@@ -1,4 +1,4 @@
-//! Checkers whose queries go into one sum, for reports and budgets.
+//! Checkers whose queries are added to a common count, for reports and budgets.
 
 use crate::Queries;
 use mp_cspace::{
@@ -9,40 +9,40 @@ use nalgebra::Vector3;
 use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Queries that a checker may have been asked and not told yet: the sum is for budgets, and telling it takes time too.
-const UNTOLD: u64 = 64;
+/// A checker adds its queries to the common count once there are this many, because each addition takes time.
+const MAX_UNREPORTED: u64 = 64;
 
-/// A checker whose queries go into a common sum: once in a while, and when it is dropped.
+/// A checker whose queries are added to a common count: now and then, and when it is dropped.
 pub struct Counted<'a, R: Queries> {
     checker: R,
-    /// What the checker had counted when it last told.
-    before: u64,
+    /// How many of the checker's queries are in the common count.
+    reported: u64,
     queries: &'a AtomicU64,
 }
 
 impl<'a, R: Queries> Counted<'a, R> {
-    /// `checker`, whose queries from now on are added to `queries`.
+    /// Adds the queries that `checker` answers from now on to `queries`.
     pub fn new(checker: R, queries: &'a AtomicU64) -> Self {
-        Self { before: checker.queries(), checker, queries }
+        Self { reported: checker.queries(), checker, queries }
     }
 
-    fn tell(&mut self) {
+    fn report(&mut self) {
         let now = self.checker.queries();
-        self.queries.fetch_add(now - self.before, Ordering::Relaxed);
-        self.before = now;
+        self.queries.fetch_add(now - self.reported, Ordering::Relaxed);
+        self.reported = now;
     }
 
-    /// What the checker answers.
-    fn asked<T>(&mut self, ask: impl FnOnce(&mut R) -> T) -> T {
-        let answer = ask(&mut self.checker);
-        if self.checker.queries() - self.before >= UNTOLD {
-            self.tell();
+    /// The answer of the checker to a query.
+    fn query<T>(&mut self, query: impl FnOnce(&mut R) -> T) -> T {
+        let answer = query(&mut self.checker);
+        if self.checker.queries() - self.reported >= MAX_UNREPORTED {
+            self.report();
         }
         answer
     }
 }
 
-/// Stops when so many queries were asked. What is done until then depends on no clock.
+/// Stops when the common count reaches a number of queries. Does not depend on a clock.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct QueryBudget<'a> {
     pub(crate) queries: &'a AtomicU64,
@@ -63,7 +63,7 @@ impl<R: Queries + Clone> Clone for Counted<'_, R> {
 
 impl<R: Queries> Drop for Counted<'_, R> {
     fn drop(&mut self) {
-        self.tell();
+        self.report();
     }
 }
 
@@ -75,10 +75,10 @@ impl<R: Queries + fmt::Debug> fmt::Debug for Counted<'_, R> {
 
 impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
     fn is_valid(&mut self, q: &S) -> bool {
-        self.asked(|checker| checker.is_valid(q))
+        self.query(|checker| checker.is_valid(q))
     }
     fn first_invalid(&mut self, states: &[S]) -> Option<usize> {
-        self.asked(|checker| checker.first_invalid(states))
+        self.query(|checker| checker.first_invalid(states))
     }
     fn batch_size(&self) -> usize {
         self.checker.batch_size()
@@ -87,10 +87,10 @@ impl<S, R: Validity<S> + Queries> Validity<S> for Counted<'_, R> {
 
 impl<S, R: Clearance<S> + Queries> Clearance<S> for Counted<'_, R> {
     fn clearance(&mut self, q: &S, enough: f64) -> f64 {
-        self.asked(|checker| checker.clearance(q, enough))
+        self.query(|checker| checker.clearance(q, enough))
     }
     fn in_contact(&mut self, q: &S) -> bool {
-        self.asked(|checker| checker.in_contact(q))
+        self.query(|checker| checker.in_contact(q))
     }
 }
 
@@ -99,7 +99,7 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
         self.checker.motion_bound(from, to)
     }
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, S>) -> IntervalClearance {
-        self.asked(|checker| checker.interval_clearance(interval))
+        self.query(|checker| checker.interval_clearance(interval))
     }
     fn contact_first(&self) -> bool {
         self.checker.contact_first()
@@ -108,10 +108,10 @@ impl<S, R: MotionClearance<S> + Queries> MotionClearance<S> for Counted<'_, R> {
 
 impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
     fn touches(&mut self, q: &S) -> bool {
-        self.asked(|checker| checker.touches(q))
+        self.query(|checker| checker.touches(q))
     }
     fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        self.asked(|checker| checker.along(from, toward, hit, rng))
+        self.query(|checker| checker.along(from, toward, hit, rng))
     }
     fn carried(&self, q: &S, from: &S, to: &S) -> S {
         self.checker.carried(q, from, to)
@@ -120,7 +120,7 @@ impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
 
 impl<S, R: ClearanceGradient<S> + Queries> ClearanceGradient<S> for Counted<'_, R> {
     fn clearance_gradient(&mut self, q: &S, reach: f64, gradient: &mut [f64]) -> f64 {
-        self.asked(|checker| checker.clearance_gradient(q, reach, gradient))
+        self.query(|checker| checker.clearance_gradient(q, reach, gradient))
     }
 }
 
@@ -132,7 +132,7 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
         self.checker.robot()
     }
     fn touched(&mut self, q: &S) -> Option<usize> {
-        self.asked(|checker| checker.touched(q))
+        self.query(|checker| checker.touched(q))
     }
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
         self.checker.obstacle_point(obstacle, of, rng)

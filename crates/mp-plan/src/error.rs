@@ -1,11 +1,11 @@
-//! The one error of this crate: what is wrong, where, and what to do about it.
+//! The error type of this crate: what is wrong, where, and what to do about it.
 
 use std::fmt;
 
-/// Bad input: what is wrong, in which scene or file, and what to do.
+/// An error about bad input: what is wrong, in which scene or file, and what to do.
 ///
-/// [`Display`](fmt::Display) gives one line; [`report`](Self::report) a few, for a person, with the line of the file
-/// where there is one.
+/// [`Display`](fmt::Display) gives one line. [`report`](Self::report) gives a few lines for a person, with the line of the
+/// file, if there is one.
 #[derive(Debug)]
 pub struct Error(Box<Inner>);
 
@@ -18,26 +18,26 @@ struct Inner {
 }
 
 impl Error {
-    /// An error that says `message`: lower case, no full stop.
+    /// An error with this message: lower case, no full stop.
     pub fn new(message: impl Into<String>) -> Self {
         Self(Box::new(Inner { context: Vec::new(), message: message.into(), help: None, file: None }))
     }
 
-    /// The same with what to do about it.
+    /// Adds what to do about it.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.0.help = Some(help.into());
         self
     }
 
-    /// The same, said to have happened while doing `what`: "cannot plan in cubicles".
+    /// Adds what failed because of it, such as "cannot plan in cubicles".
     #[must_use]
     pub fn context(mut self, what: impl Into<String>) -> Self {
         self.0.context.insert(0, what.into());
         self
     }
 
-    /// What is wrong, without context, place and remedy.
+    /// What is wrong, without context, location and remedy.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.0.message
@@ -49,7 +49,7 @@ impl Error {
         self.0.help.as_deref().or_else(|| self.0.file.as_ref().and_then(mp_io::Error::remedy))
     }
 
-    /// The file that is wrong, with line and column, when it is a file.
+    /// The error in a file, with line and column, if the error is in a file.
     #[must_use]
     pub fn file(&self) -> Option<&mp_io::Error> {
         self.0.file.as_ref()

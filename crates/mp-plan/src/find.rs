@@ -1,4 +1,4 @@
-//! Finding scenes: by file, or by the name of a shipped one.
+//! Finding scenes: by file, or by the name of a shipped scene.
 
 use crate::{Error, Scene};
 use std::path::{Path, PathBuf};
@@ -7,15 +7,15 @@ use std::path::{Path, PathBuf};
 const ENDINGS: [&str; 4] = ["env", "txt", "cfg", "toml"];
 
 impl Scene {
-    /// The scene meant by `given`: a file, a file less its ending, or the name of a shipped scene. A file comes first.
+    /// The scene that `given` names: a file, a file without its ending, or a shipped scene. A file comes first.
     ///
     /// # Errors
-    /// When there is no such scene (with the most similar name), or as [`load`](Self::load).
+    /// When there is no such scene (the error suggests the most similar name), or as [`load`](Self::load).
     pub fn find(given: impl AsRef<Path>) -> Result<Self, Error> {
         match locate(given.as_ref())? {
-            Place::Disk(file) => Self::load(file),
+            Location::Disk(file) => Self::load(file),
             #[cfg(feature = "scenes")]
-            Place::Memory(file) => Self::load_from(&shipped_files(), Path::new(file)),
+            Location::Memory(file) => Self::load_from(&shipped_files(), Path::new(file)),
         }
     }
 
@@ -29,20 +29,20 @@ impl Scene {
     }
 }
 
-/// The problem of a rigid body meant by `given`, as [`Scene::find`] finds scenes: for who works with types.
+/// The rigid-body problem that `given` names, found as by [`Scene::find`]: for code that works with types.
 ///
 /// # Errors
-/// When there is no such scene, or it is not one of a rigid body among meshes.
+/// When there is no such scene, or its robot is not a rigid body among meshes.
 pub fn find_problem(given: impl AsRef<Path>) -> Result<mp_io::RigidProblem, Error> {
     Ok(match locate(given.as_ref())? {
-        Place::Disk(file) => mp_io::RigidProblem::load(file)?,
+        Location::Disk(file) => mp_io::RigidProblem::load(file)?,
         #[cfg(feature = "scenes")]
-        Place::Memory(file) => mp_io::RigidProblem::load_from(&shipped_files(), Path::new(file))?,
+        Location::Memory(file) => mp_io::RigidProblem::load_from(&shipped_files(), Path::new(file))?,
     })
 }
 
 /// Where a scene is.
-enum Place {
+enum Location {
     Disk(PathBuf),
     #[cfg(feature = "scenes")]
     Memory(&'static str),
@@ -53,13 +53,13 @@ fn shipped_files() -> impl mp_io::Files {
     mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes))
 }
 
-fn locate(given: &Path) -> Result<Place, Error> {
+fn locate(given: &Path) -> Result<Location, Error> {
     if let Some(file) = file_of(given) {
-        return Ok(Place::Disk(file));
+        return Ok(Location::Disk(file));
     }
     #[cfg(feature = "scenes")]
     if let Some(scene) = given.to_str().and_then(mp_scenes::scene) {
-        return Ok(Place::Memory(scene.path));
+        return Ok(Location::Memory(scene.path));
     }
     if given.is_dir() {
         return Err(Error::new(format!("{} is a folder, not a scene file", given.display()))
@@ -76,7 +76,7 @@ fn locate(given: &Path) -> Result<Place, Error> {
     Err(Error::new(format!("there is no scene {}", given.display())).help(help))
 }
 
-/// The file meant by `given`, with or without its ending.
+/// The file that `given` names, with or without its ending.
 fn file_of(given: &Path) -> Option<PathBuf> {
     if given.is_file() {
         return Some(given.to_owned());
@@ -100,7 +100,7 @@ fn scenes_in(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The name most like `given`, when one is like it at all.
+/// The name most similar to `given`, if one is similar enough.
 fn similar<'a>(given: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let allowed = given.chars().count().max(3) / 3 + 1;
     let near = names.map(|name| (edits(given, name), name));

@@ -1,4 +1,4 @@
-//! From a path of states to one that is written down: shortened, verified as it reads back.
+//! Finishing a path: shortens it, writes it as text, and verifies what the text says.
 
 use crate::check::{clearance, verified};
 use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage};
@@ -7,24 +7,24 @@ use mp_cspace::shorten::{Effort, simplify};
 use mp_cspace::{Cancel, Certified, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::Ordering;
 
-/// Which stream of random numbers shortening draws from: planning draws from another.
+/// The stream of random numbers for shortening. Planning uses another one.
 const STREAM: u64 = 1;
 
-/// A path that the verifier passed as it will be read.
+/// A path that passed the verifier after it was written as text and read again.
 #[derive(Clone, Debug)]
 pub(crate) struct Finished {
     pub(crate) path: PathRows,
-    /// In the metric of the space.
+    /// Its length, in the metric of the space.
     pub(crate) length: f64,
-    /// A lower bound all along, metres.
+    /// A lower bound (m) on the clearance along it.
     pub(crate) clearance: f64,
     pub(crate) shortened: bool,
 }
 
-/// A check that finds nothing free any more once the flag is raised: whatever shortens with it comes to an end.
-struct Until<'a, S>(AnyCheck<'a, S>, &'a Cancel);
+/// A check that finds no motion free once the flag is raised, so that shortening comes to an end.
+struct Cancellable<'a, S>(AnyCheck<'a, S>, &'a Cancel);
 
-impl<S> MotionValidity<S> for Until<'_, S> {
+impl<S> MotionValidity<S> for Cancellable<'_, S> {
     fn check_motion(&mut self, from: &S, to: &S) -> MotionCheck {
         self.check_extension(from, to, KnownFree::Neither)
     }
@@ -36,11 +36,11 @@ impl<S> MotionValidity<S> for Until<'_, S> {
     }
 }
 
-/// The path, shortened: every edge keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or was there
-/// before. The same seed gives the same path. Raising `cancel` ends it early.
+/// Shortens a path. Every edge of the result keeps the [clearance of shortcuts](RobotKind::shortcut_clearance) or is an
+/// edge of the given path. The same seed gives the same path. Raising `cancel` ends it early.
 ///
 /// # Errors
-/// When the tolerance of the robot makes no sense.
+/// When the tolerance of the robot is not valid.
 pub fn shorten<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
@@ -50,21 +50,21 @@ pub fn shorten<K: RobotKind>(
     let _span = tracing::info_span!("shorten").entered();
     let certified: AnyCheck<'_, K::State> =
         Box::new(Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?);
-    Ok(shortened(kind.space(), Until(certified, cancel), path, seed))
+    Ok(shorten_by(kind.space(), Cancellable(certified, cancel), path, seed))
 }
 
-/// The same behind a pointer: compiled for each space, not for each robot.
-fn shortened<C: Factored>(
+/// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
+fn shorten_by<C: Factored>(
     space: &C,
-    mut check: Until<'_, C::State>,
+    mut check: Cancellable<'_, C::State>,
     path: &Path<C::State>,
     seed: u64,
 ) -> Path<C::State> {
     simplify(space, &mut check, path, Effort::default(), &mut Rng::stream(seed, STREAM))
 }
 
-/// Shortens `found` if asked to, and verifies what will be written. Falls back to `found` itself; `None` when
-/// not even that is free after it has been through its text.
+/// Shortens `found` if the request says so, and verifies what will be written. If the shortened path does not pass, `found`
+/// itself is used; `None` if that, written and read again, does not pass either.
 pub(crate) fn finish<K: RobotKind>(
     kind: &K,
     found: &Path<K::State>,
@@ -74,16 +74,16 @@ pub(crate) fn finish<K: RobotKind>(
     control.stage(Stage::Finishing);
     if request.finish == Finish::Shorten {
         let short = shorten(kind, found, request.seed, &control.cancel)?;
-        if let Some(finished) = written(kind, &short, true)? {
+        if let Some(finished) = verified_as_written(kind, &short, true)? {
             return Ok(Some(finished));
         }
         tracing::info!("the shortened path does not pass the verifier: the path as found is written");
     }
-    written(kind, found, false)
+    verified_as_written(kind, found, false)
 }
 
-/// `path` as it reads back from its text, if the verifier passes that.
-fn written<K: RobotKind>(
+/// `path` written as text and read again, if the verifier passes the result.
+fn verified_as_written<K: RobotKind>(
     kind: &K,
     path: &Path<K::State>,
     shortened: bool,

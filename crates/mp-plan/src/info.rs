@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::fmt;
 use std::path::Path;
 
-/// What is in a file. Its JSON form is what `mp info --json` prints: `kind` is `mesh`, `scene` or `path`.
+/// What is in a file. `mp info --json` prints its JSON form, in which `kind` is `mesh`, `scene` or `path`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Info {
@@ -26,18 +26,18 @@ pub enum Info {
 }
 
 impl Info {
-    /// Says what is in a file, or in a shipped scene of that name.
+    /// What is in a file, or in the shipped scene of that name.
     ///
     /// # Errors
-    /// When it cannot be read, is of no kind that is known, or makes no sense.
+    /// When the file cannot be read, is of an unknown kind, or is not valid.
     pub fn read(file: &Path) -> Result<Self, Error> {
         if !file.exists() {
             return Ok(Self::Scene(SceneInfo::of(&Scene::find(file)?)));
         }
-        Ok(match kind(file)? {
-            Kind::Mesh => Self::Mesh(MeshInfo::read(file)?),
-            Kind::Scene => Self::Scene(SceneInfo::of(&Scene::load(file)?)),
-            Kind::Path(format) => Self::Path(PathInfo::of(file, &PathRows::read(file, format)?)),
+        Ok(match content(file)? {
+            FileContent::Mesh => Self::Mesh(MeshInfo::read(file)?),
+            FileContent::Scene => Self::Scene(SceneInfo::of(&Scene::load(file)?)),
+            FileContent::Path(format) => Self::Path(PathInfo::of(file, &PathRows::read(file, format)?)),
         })
     }
 }
@@ -52,43 +52,42 @@ impl fmt::Display for Info {
     }
 }
 
-/// What a file holds.
+/// The kind of content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum FileContent {
     Mesh,
     Scene,
     Path(PathFormat),
 }
 
-/// Tells files apart by their ending, and `.txt` by how it begins.
-fn kind(file: &Path) -> Result<Kind, Error> {
+/// The content of a file, by its ending; for `.txt` by its first lines.
+fn content(file: &Path) -> Result<FileContent, Error> {
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
-        "env" | "cfg" | "toml" => return Ok(Kind::Scene),
-        "urdf" | "xacro" | "yaml" | "yml" | "srdf" => return Err(crate::scene::foreign(file)),
-        "csv" => return Ok(Kind::Path(PathFormat::Joints)),
+        "env" | "cfg" | "toml" => return Ok(FileContent::Scene),
+        "urdf" | "xacro" | "yaml" | "yml" | "srdf" => return Err(crate::load::foreign(file)),
+        "csv" => return Ok(FileContent::Path(PathFormat::Joints)),
         "json" => {
             let poses = PathRows::read(file, PathFormat::Poses).is_ok();
-            return Ok(Kind::Path(if poses { PathFormat::Poses } else { PathFormat::Joints }));
+            return Ok(FileContent::Path(if poses { PathFormat::Poses } else { PathFormat::Joints }));
         }
-        "off" | "stl" | "obj" | "dae" => return Ok(Kind::Mesh),
+        "off" | "stl" | "obj" | "dae" => return Ok(FileContent::Mesh),
         _ => {}
     }
-    let (name, bytes) = mp_io::read_text(file)?;
+    let (_, bytes) = mp_io::read_text(file)?;
     if PathFileKind::of(file).is_err() && bytes.starts_with(b"<?xml") {
-        return Err(crate::scene::foreign(file));
+        return Err(crate::load::foreign(file));
     }
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
     let mut lines = head.lines().map(str::trim).filter(|l| !l.is_empty());
     let (first, second) = (lines.next().unwrap_or_default(), lines.next().unwrap_or_default());
     let counts: Vec<Option<usize>> = first.split_whitespace().map(|w| w.parse().ok()).collect();
     let numbers = second.split_whitespace().count();
-    let _ = name;
     Ok(match (counts.as_slice(), numbers) {
-        ([Some(_), Some(joints)], numbers) if *joints == numbers => Kind::Path(PathFormat::Joints),
-        ([Some(_)], 6) => Kind::Path(PathFormat::Poses),
-        _ if first == "Robot" => Kind::Scene,
-        _ => Kind::Mesh,
+        ([Some(_), Some(joints)], numbers) if *joints == numbers => FileContent::Path(PathFormat::Joints),
+        ([Some(_)], 6) => FileContent::Path(PathFormat::Poses),
+        _ if first == "Robot" => FileContent::Scene,
+        _ => FileContent::Mesh,
     })
 }
 
@@ -100,18 +99,18 @@ mod tests {
     fn txt_files_are_told_apart_by_how_they_begin() {
         let dir = tempfile::tempdir().unwrap();
         let cases = [
-            ("Robot\nr.off\n", Kind::Scene),
-            ("\n  2 \n0 0 0 0 0 0\n1 0 0 0 0 0\n", Kind::Path(PathFormat::Poses)),
-            ("1\n0 0 0 1 0 0 0 1 0\n", Kind::Mesh),
-            ("2 3\n0 0 0\n1 0 0\n", Kind::Path(PathFormat::Joints)),
-            ("OFF\n3 1 0\n", Kind::Mesh),
-            ("", Kind::Mesh),
+            ("Robot\nr.off\n", FileContent::Scene),
+            ("\n  2 \n0 0 0 0 0 0\n1 0 0 0 0 0\n", FileContent::Path(PathFormat::Poses)),
+            ("1\n0 0 0 1 0 0 0 1 0\n", FileContent::Mesh),
+            ("2 3\n0 0 0\n1 0 0\n", FileContent::Path(PathFormat::Joints)),
+            ("OFF\n3 1 0\n", FileContent::Mesh),
+            ("", FileContent::Mesh),
         ];
         for (text, expected) in cases {
             let file = dir.path().join("x.txt");
             std::fs::write(&file, text).unwrap();
-            assert_eq!(kind(&file).unwrap(), expected, "{text:?}");
+            assert_eq!(content(&file).unwrap(), expected, "{text:?}");
         }
-        assert!(kind(dir.path()).is_err());
+        assert!(content(dir.path()).is_err());
     }
 }

@@ -1,11 +1,11 @@
-//! Which files a scene was read from: an output must not be one of them.
+//! The files that a scene was read from. An output must not overwrite them.
 
 use crate::Scene;
 use mp_io::{Error, Files};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// Files that remember which of them were read.
+/// Files, with a record of those that were read.
 #[derive(Debug)]
 pub(crate) struct Recording<'a> {
     pub(crate) files: &'a dyn Files,
@@ -30,7 +30,7 @@ impl Scene {
         &self.inputs
     }
 
-    /// The input that writing `output` would overwrite, if it is one.
+    /// The input file that writing `output` would overwrite, if any.
     #[must_use]
     pub fn input_at(&self, output: &Path) -> Option<&Path> {
         let same = |input: &&PathBuf| is_same_file(input, output);
@@ -38,7 +38,7 @@ impl Scene {
     }
 }
 
-/// Whether two names mean the same file, which need not exist.
+/// Whether two paths name the same file, which need not exist.
 #[must_use]
 pub fn is_same_file(a: &Path, b: &Path) -> bool {
     let place = |path: &Path| {

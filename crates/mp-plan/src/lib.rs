@@ -1,7 +1,7 @@
-//! A scene in, a verified path out.
+//! Motion planning from a scene to a verified path.
 //!
-//! This crate is what a program with a window, a script or a cluster builds on: it knows scenes and names of planners,
-//! and hands out plain data.
+//! This crate is the base for programs with a window, scripts and clusters. It takes scenes and names of planners, and
+//! returns plain data.
 //!
 //! ```
 //! use mp_geom::primitives::cuboid;
@@ -34,28 +34,31 @@
 //! | to | use |
 //! |---|---|
 //! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::parse`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
-//! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what becomes of the path |
-//! | plan | [`Scene::plan`]; watched and stopped from outside: [`Scene::plan_with`], [`Control`], [`Watch`] |
-//! | build a roadmap once and ask it many times | [`Scene::roadmap`], [`SceneRoadmap`] |
-//! | read what came of it | [`Report`], with a documented JSON form |
+//! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what is done to the path found |
+//! | plan | [`Scene::plan`]; with progress reports and a stop: [`Scene::plan_with`], [`Control`], [`Watch`] |
+//! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
+//! | read the result | [`Report`], with a documented JSON form |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
-//! | know why a configuration is not free | [`Scene::explain`] |
-//! | know what is odd about a scene | [`Scene::lint`] |
-//! | know what is in a file | [`info::Info`] |
+//! | find out why a configuration is not free | [`Scene::explain`] |
+//! | find out what is odd about a scene | [`Scene::lint`] |
+//! | find out what is in a file | [`info::Info`] |
 //! | draw | `Scene::picture` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
-//! | bring a kind of robot of your own | [`RobotKind`] |
-//! | have states in your hands instead of rows | [`search`], [`shorten`] with a [`RobotKind`] |
+//! | add your own kind of robot | [`RobotKind`] |
+//! | work with states instead of rows of numbers | [`search`], [`shorten`] with a [`RobotKind`] |
 //!
-//! Units are metres, radians and seconds. Nothing is printed; what happens is told by `tracing`: spans `load`, `build`,
-//! `plan`, `relax`, `shorten`, `verify` and `check`.
+//! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
+//! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify` and `check`.
 
+mod any_robot;
 mod check;
 mod counted;
 mod error;
+mod explain;
 mod find;
 mod finish;
 pub mod info;
 mod inputs;
+mod load;
 mod numbers;
 mod output;
 mod parallel;
@@ -65,18 +68,22 @@ mod picture;
 mod plan;
 mod planners;
 mod prepared;
+mod relax;
 mod report;
 mod request;
 mod roadmaps;
 mod robot;
+mod runs;
 mod scene;
 #[cfg(feature = "roadmaps")]
 mod scene_roadmap;
 mod search;
+mod sweep;
 mod watch;
 
-pub use check::{Explanation, Verdict};
+pub use check::Verdict;
 pub use error::Error;
+pub use explain::Explanation;
 pub use find::find_problem;
 pub use finish::shorten;
 pub use inputs::is_same_file;
@@ -87,17 +94,19 @@ pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners};
-pub use report::{Medians, REPORT_VERSION, Report, Runs, StoppedBy, median, medians};
+pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, Metric, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
     PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, Touch,
 };
-pub use scene::{Scene, Sweep};
+pub use runs::{Medians, Runs, median, medians};
+pub use scene::Scene;
 #[cfg(feature = "roadmaps")]
 pub use scene_roadmap::SceneRoadmap;
 pub use search::{Search, search};
+pub use sweep::Sweep;
 pub use watch::{Control, SearchEvent, Stage, Watch};
 
 pub use mp_cspace::{

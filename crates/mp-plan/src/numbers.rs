@@ -1,6 +1,6 @@
-//! Numbers for people.
+//! Numbers as text for people, and a hash of numbers.
 
-/// A number with four digits or so.
+/// A number with about four digits.
 #[must_use]
 pub fn brief(v: f64) -> String {
     let magnitude = v.abs();
@@ -33,14 +33,14 @@ pub fn positive_number(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A hash of the bits of numbers (XXH3): the one that roadmaps are kept with.
+/// A hash of the bits of numbers (XXH3), as saved roadmaps have it.
 pub(crate) fn fingerprint(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let mut hash = xxhash_rust::xxh3::Xxh3::new();
     numbers.into_iter().for_each(|x| hash.update(&x.to_le_bytes()));
     hash.digest()
 }
 
-/// A number as a scene file has it: nine decimals, none that are zero, no negative zero.
+/// A number as in scene files: at most nine decimals, no trailing zeros, no negative zero.
 pub(crate) fn plain(v: f64) -> String {
     ((v * 1e9).round() / 1e9 + 0.0).to_string()
 }

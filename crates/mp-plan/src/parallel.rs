@@ -1,12 +1,12 @@
-//! Many runs at the same time.
+//! Runs jobs in parallel.
 
 use mp_cspace::Cancel;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Does `count` jobs, numbered from 0, on so many threads, and returns what they came to in the order of their
-/// numbers. Jobs that `cancel` kept from beginning are `None`. Give each job a seed of its own, and results do not
-/// depend on the number of threads.
+/// Runs `count` jobs, numbered from 0, on `threads` threads, and returns their results in the order of their numbers.
+/// A job that did not begin because of `cancel` gives `None`. If each job has its own seed, results do not depend on the
+/// number of threads.
 ///
 /// ```
 /// let squares = mp_plan::in_parallel(4, 2, &mp_plan::Cancel::new(), |i| i * i);

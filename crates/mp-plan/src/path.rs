@@ -1,23 +1,24 @@
 //! Paths as rows of named numbers.
 
-use crate::{Column, Error, PathFormat};
+use crate::{Column, Error, PathFormat, RobotKind};
 use mp_io::{JointPath, PathFile};
 use serde::Serialize;
 use std::path::Path;
 
-/// A path as rows of numbers, one configuration a row, start first: what is written, read and shown.
+/// A path as rows of numbers, one configuration in each row, start first: the form in which paths are written, read and
+/// shown.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PathRows {
-    /// How it is written as text.
+    /// The format in which it is written as text.
     #[serde(skip)]
     pub format: PathFormat,
-    /// What the numbers are; empty when it was read from a file that does not say.
+    /// The meaning of each number; empty if the path was read from a file that does not say.
     pub columns: Vec<Column>,
     /// The configurations.
     pub rows: Vec<Vec<f64>>,
 }
 
-/// A kind of file that paths are written to and read from.
+/// A kind of file for paths.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PathFileKind {
     /// `.txt`, `.path`: the text form of the robot.
@@ -29,10 +30,10 @@ pub enum PathFileKind {
 }
 
 impl PathFileKind {
-    /// The kind of file that a name says by its ending.
+    /// The kind of a file, by the ending of its name.
     ///
     /// # Errors
-    /// When it has another ending, or none.
+    /// When the name has another ending, or none.
     pub fn of(file: &Path) -> Result<Self, Error> {
         let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         match ending.as_str() {
@@ -76,7 +77,7 @@ impl PathRows {
         mp_io::csv_text(&self.columns.iter().map(name).collect::<Vec<_>>(), &self.rows)
     }
 
-    /// The path as a file of this kind holds it.
+    /// The content of a file of this kind with the path.
     #[must_use]
     pub fn to_file(&self, kind: PathFileKind) -> String {
         match kind {
@@ -86,20 +87,20 @@ impl PathRows {
         }
     }
 
-    /// Reads the path of a robot whose text has this format from a file: `.json`, `.csv`, all else as text.
+    /// Reads a path from a file: `.json`, `.csv`, anything else as text in the format `format`.
     ///
     /// # Errors
-    /// When the file cannot be read, or holds no path: with file, line and column.
+    /// When the file cannot be read, or does not hold a path: with file, line and column.
     pub fn read(file: impl AsRef<Path>, format: PathFormat) -> Result<Self, Error> {
         let (name, bytes) = mp_io::read_text(file.as_ref())?;
         let kind = PathFileKind::of(file.as_ref()).unwrap_or(PathFileKind::Text);
         Self::parse(&name, &bytes, kind, format)
     }
 
-    /// Reads a path from the content of a file that errors call `name`.
+    /// Reads a path from the content of a file. Errors call the file `name`.
     ///
     /// # Errors
-    /// When it holds no path: with line and column.
+    /// When the content is not a path: with line and column.
     pub fn parse(name: &str, bytes: &[u8], kind: PathFileKind, format: PathFormat) -> Result<Self, Error> {
         let sixes = |path: PathFile| path.configurations.iter().map(|six| six.to_vec()).collect();
         let rows = match (kind, format) {
@@ -112,13 +113,13 @@ impl PathRows {
         Ok(Self { format, columns: Vec::new(), rows })
     }
 
-    /// What reads back from the text.
+    /// The path written as text and read again.
     pub(crate) fn read_back(&self) -> Result<Self, Error> {
         let read = Self::parse("the path", self.to_text().as_bytes(), PathFileKind::Text, self.format)?;
         Ok(Self { columns: self.columns.clone(), ..read })
     }
 
-    /// The path as six-tuples, if that is its format.
+    /// The path as six-tuples, if its format is [`PathFormat::Poses`].
     fn poses(&self) -> Option<PathFile> {
         let six = |row: &Vec<f64>| <[f64; 6]>::try_from(row.as_slice()).ok();
         match self.format {
@@ -128,4 +129,39 @@ impl PathRows {
             }
         }
     }
+}
+
+/// The states of the rows of a path from a file.
+pub(crate) fn states<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Vec<K::State>, Error> {
+    let columns = kind.columns().len();
+    match path.rows.iter().find(|row| row.len() != columns) {
+        None if path.rows.is_empty() => Err(Error::new("the path has no configurations")),
+        None => Ok(path.rows.iter().map(|row| kind.state(row)).collect()),
+        Some(row) => {
+            let (name, found) = (kind.name(), row.len());
+            let what = match found {
+                1 => "1 number".to_owned(),
+                n => format!("{n} numbers"),
+            };
+            Err(Error::new(format!(
+                "a configuration of the path has {what}, the robot of {name} has {columns}"
+            ))
+            .help("is this a path of another robot?"))
+        }
+    }
+}
+
+/// The configuration of one row.
+pub(crate) fn state<K: RobotKind>(kind: &K, row: &[f64]) -> Result<K::State, Error> {
+    let columns = RobotKind::columns(kind);
+    if row.len() == columns.len() && row.iter().all(|v| v.is_finite()) {
+        return Ok(kind.state(row));
+    }
+    let names: Vec<_> = columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect();
+    Err(Error::new(format!(
+        "a configuration of {} has {} finite numbers",
+        RobotKind::name(kind),
+        columns.len()
+    ))
+    .help(format!("give in order: {}", names.join(", "))))
 }

@@ -1,4 +1,4 @@
-//! Pictures of scenes and paths: the glue between scenes and `mp-render`.
+//! Pictures of scenes and paths, made with `mp-render`.
 
 use crate::{BodyShape, Error, PathRows, Scene};
 use mp_geom::TriMesh;
@@ -7,45 +7,45 @@ use mp_render::{Drawing, Item};
 use nalgebra::{Isometry3, Point2, Point3};
 use std::path::Path;
 
-/// The size of pictures when none is given, pixels.
+/// The default size of pictures, in pixels.
 pub const PICTURE_SIZE: (usize, usize) = (1280, 960);
 
 /// A kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PictureKind {
-    /// Pixels.
+    /// A PNG: pixels.
     Png,
-    /// Lines and areas; of worlds in the plane only.
+    /// An SVG: lines and areas. Only for worlds in the plane.
     Svg,
 }
 
 impl Scene {
-    /// Whether the scene is one of areas in the plane, which can be drawn as SVG.
+    /// Whether the scene is a world of areas in the plane, which can be drawn as SVG.
     #[must_use]
-    pub fn is_flat(&self) -> bool {
+    pub fn is_planar_world(&self) -> bool {
         self.bodies().iter().any(|body| matches!(body.shape, BodyShape::Area(_)))
     }
 
-    /// The kind of picture that the name of a file says by its ending.
+    /// The kind of picture for a file, by the ending of its name.
     ///
     /// # Errors
-    /// When it is none that this scene can be drawn as.
+    /// When this scene cannot be drawn as such a file.
     pub fn picture_kind(&self, file: &Path) -> Result<PictureKind, Error> {
         let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
         let wrong = |what: String| Err(Error::new(what).help("end its name in .png"));
         match ending.as_str() {
             "png" => Ok(PictureKind::Png),
-            "svg" if self.is_flat() => Ok(PictureKind::Svg),
+            "svg" if self.is_planar_world() => Ok(PictureKind::Svg),
             "svg" => wrong(format!("only worlds in the plane are drawn as .svg, not for {}", file.display())),
             "" => wrong(format!("{} has no ending, which says what kind of picture it is", file.display())),
             _ => wrong(format!("cannot write a picture as .{ending}: {}", file.display())),
         }
     }
 
-    /// The bytes of a picture of the scene, with a path through it if there is one, and a `caption` below its name.
+    /// The bytes of a picture of the scene, with the path if one is given, and `caption` below the name of the scene.
     ///
     /// # Errors
-    /// When the path is one of another robot, or the size is none a picture can have.
+    /// When the path is of another robot, or the size is not possible.
     pub fn picture(
         &self,
         path: Option<&PathRows>,
@@ -54,14 +54,14 @@ impl Scene {
         size: (usize, usize),
     ) -> Result<Vec<u8>, Error> {
         let failed = |e: mp_render::RenderError| Error::new(e.to_string());
-        Ok(match (self.is_flat(), kind) {
+        Ok(match (self.is_planar_world(), kind) {
             (true, PictureKind::Svg) => self.drawing(path, caption)?.svg(size).map_err(failed)?.into_bytes(),
             (true, PictureKind::Png) => self.drawing(path, caption)?.pixels(size).map_err(failed)?.to_png(),
             (false, _) => self.solid(path, caption)?.draw(size).map_err(failed)?.to_png(),
         })
     }
 
-    /// The scene in space.
+    /// The picture of a scene in space.
     fn solid(&self, path: Option<&PathRows>, caption: &str) -> Result<mp_render::Scene, Error> {
         let bodies = self.bodies();
         let mesh = |body: &crate::Body| match &body.shape {
@@ -70,7 +70,7 @@ impl Scene {
         };
         let robot: Vec<TriMesh> = bodies.iter().filter(|b| b.pose.is_none()).filter_map(mesh).collect();
         let still = bodies.iter().filter_map(|body| Some(mp_render::Body::new(&mesh(body)?, body.pose?)));
-        // A robot of one body is one model in many places; of several, each place has its own.
+        // A robot of one body is one model at many poses. A robot of several bodies is merged anew for each configuration.
         let single = match robot.as_slice() {
             [only] => Some(mp_render::Body::new(only, Isometry3::identity())),
             _ => None,
@@ -100,7 +100,7 @@ impl Scene {
         })
     }
 
-    /// The world in the plane.
+    /// The picture of a world in the plane.
     fn drawing(&self, path: Option<&PathRows>, caption: &str) -> Result<Drawing, Error> {
         let sweep = self.sweep(path)?;
         let (mut low, mut high) = match self.picture_bounds() {

@@ -1,4 +1,4 @@
-//! From a request to a report.
+//! Planning: runs a request, finishes the path and makes the report.
 
 use crate::finish::finish;
 use crate::search::{Search, search};
@@ -6,7 +6,7 @@ use crate::{Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedB
 use mp_cspace::Outcome;
 use std::time::Instant;
 
-/// Plans, finishes, reports.
+/// Plans, finishes the path, and makes the report.
 pub(crate) fn plan<K: RobotKind>(
     kind: &K,
     request: &Request,
@@ -16,7 +16,8 @@ pub(crate) fn plan<K: RobotKind>(
     reported(kind, request, found, None, control)
 }
 
-/// The report of a search: finishes the path, if there is one. `why` says better than the outcome why there is none.
+/// Finishes the path of a search, if there is one, and makes the report. `why` is a better reason than the outcome gives
+/// why there is no path.
 pub(crate) fn reported<K: RobotKind>(
     kind: &K,
     request: &Request,
@@ -33,7 +34,7 @@ pub(crate) fn reported<K: RobotKind>(
         verified: false,
         stopped_by: None,
         why: None,
-        planner: crate::planners::PlannerSpec::new(&request.planner)?.to_string(),
+        planner: crate::planners::PlannerKind::new(&request.planner)?.to_string(),
         metric: request.metric.to_string(),
         motion: request.motion.to_string(),
         seed: request.seed,

@@ -1,16 +1,16 @@
-//! Planners by name: trees, wrapped or not, and roadmaps.
+//! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
 use crate::{Error, roadmaps};
 use mp_cspace::registry::{PlannerInfo, Settings};
 use std::fmt;
 
-/// All planners by name, trees first. Before the name of a tree may stand `or-`, `restart-` and, before `rrt`,
-/// `shared-`: see [`meta_planners`].
+/// All planners by name, planners of trees first. The name of a planner of trees may have the prefix `or-` or `restart-`,
+/// and `rrt` also `shared-`: see [`meta_planners`].
 pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
     mp_tree::planners().iter().chain(roadmaps::planners())
 }
 
-/// What may stand before the name of a planner.
+/// The meta-planners, whose names are prefixes of the name of a planner.
 #[must_use]
 pub fn meta_planners() -> &'static [mp_tree::MetaPlanner] {
     mp_tree::meta_planners()
@@ -18,21 +18,21 @@ pub fn meta_planners() -> &'static [mp_tree::MetaPlanner] {
 
 /// A planner by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum PlannerSpec {
+pub(crate) enum PlannerKind {
     /// Grows trees.
     Tree(mp_tree::PlannerSpec),
     /// Builds a roadmap.
     Roadmap(&'static PlannerInfo),
 }
 
-impl PlannerSpec {
+impl PlannerKind {
     /// The planner called `name`.
     pub(crate) fn new(name: &str) -> Result<Self, Error> {
         if let Some(info) = roadmaps::planner(name) {
             return Ok(Self::Roadmap(info));
         }
         mp_tree::PlannerSpec::new(name).map(Self::Tree).map_err(|error| {
-            // The trees know only trees.
+            // The error of mp-tree lists only planners of trees.
             let names = planners().flat_map(|p| [p.name].into_iter().chain(p.aliases.iter().copied()));
             let known = planners().map(|p| p.name).collect::<Vec<_>>().join(", ");
             match (error, mp_cspace::registry::closest(name, names)) {
@@ -48,10 +48,10 @@ impl PlannerSpec {
         })
     }
 
-    /// Refuses settings that it does not have.
+    /// Refuses settings that the planner does not have.
     pub(crate) fn check(&self, settings: &Settings) -> Result<(), Error> {
         match self {
-            Self::Tree(named) => named.check(settings)?,
+            Self::Tree(spec) => spec.check(settings)?,
             Self::Roadmap(info) => settings.check(info)?,
         }
         Ok(())
@@ -62,10 +62,10 @@ impl PlannerSpec {
     }
 }
 
-impl fmt::Display for PlannerSpec {
+impl fmt::Display for PlannerKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Tree(named) => named.fmt(f),
+            Self::Tree(spec) => spec.fmt(f),
             Self::Roadmap(info) => f.write_str(info.name),
         }
     }

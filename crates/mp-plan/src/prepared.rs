@@ -1,45 +1,49 @@
-//! A request made ready for a robot: the space, an index, a verifier, and problems made of them.
+//! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
 use crate::counted::{Counted, QueryBudget};
-use crate::{Error, Length, Measured, MotionValidator, Request, RobotKind};
+use crate::roadmaps::{PlannerParts, RoadmapFile, RoadmapPlanner};
+use crate::watch::{Events, WatchAdapter};
+use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
     AnyProblem, BuildError, Cancel, Certified, Deadline, Discrete, Goals, Iterations, Nodes, ParameterError,
-    Problem, Resolution, Stop, Straight,
+    Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
 };
+use mp_tree::TreeState;
+use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 use std::time::{Duration, Instant};
 
-/// What problems of one request are made of.
+/// What the problems and planners of one request are made from.
 pub(crate) struct Prepared<'k, K: RobotKind> {
     kind: &'k K,
-    motion: MotionValidator,
+    request: &'k Request,
     /// The space under the metric of the request.
     pub(crate) space: AnySpace<'k, K::State>,
     /// An empty index of it.
     pub(crate) index: AnyIndex<K::State>,
     verifier: K::Verifier<'k>,
-    /// The queries that checkers were asked, all together.
+    /// The common count of the queries of all checkers.
     pub(crate) queries: AtomicU64,
 }
 
 impl<'k, K: RobotKind> Prepared<'k, K> {
-    pub(crate) fn new(kind: &'k K, request: &Request) -> Result<Self, Error> {
+    pub(crate) fn new(kind: &'k K, request: &'k Request) -> Result<Self, Error> {
         let Measured { space, index } = kind.measured(request.metric)?;
         let (verifier, queries) = (kind.verifier()?, AtomicU64::new(0));
-        Ok(Self { kind, motion: request.motion, space, index, verifier, queries })
+        Ok(Self { kind, request, space, index, verifier, queries })
     }
 
-    /// The problem of the scene: as often as there are threads.
+    /// The problem of the scene. Each thread makes its own.
     pub(crate) fn problem(&self) -> Result<AnyProblem<'_, K::State>, BuildError> {
         let kind = self.kind;
         let counted = || Counted::new(kind.checker().clone(), &self.queries);
-        let check: AnyCheck<'_, K::State> = match self.motion {
+        let check: AnyCheck<'_, K::State> = match self.request.motion {
             MotionValidator::Certified => {
-                Box::new(unmade(Certified::new(kind.space(), counted(), kind.tolerance()))?)
+                Box::new(build_error(Certified::new(kind.space(), counted(), kind.tolerance()))?)
             }
             MotionValidator::Discrete(length) => {
-                Box::new(unmade(Discrete::new(&self.space, counted(), resolution(length)))?)
+                Box::new(build_error(Discrete::new(&self.space, counted(), resolution(length)))?)
             }
         };
         let goals = Goals::states(kind.goals().iter().cloned());
@@ -49,9 +53,51 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         Ok(problem.with_obstacles(kind.obstacles(&counted)))
     }
 
+    /// The planner of trees called `name`.
+    pub(crate) fn tree_planner(
+        &self,
+        name: &str,
+        workers: &Workers,
+    ) -> Result<mp_tree::AnyPlanner<'_, K::State, ()>, Error> {
+        let (index, settings) = (self.index.clone(), self.request.settings());
+        Ok(TreeState::tree_planner(name, Arc::new(|| self.problem()), index, &settings, workers)?)
+    }
+
+    /// A planner of roadmaps. It begins with the roadmap in `file`, if there is one.
+    pub(crate) fn roadmap_planner(
+        &self,
+        info: &PlannerInfo,
+        workers: Workers,
+        file: Option<&RoadmapFile<'_>>,
+    ) -> Result<RoadmapPlanner<'_, K::State>, Error> {
+        let parts = PlannerParts {
+            problem: &|| self.problem(),
+            index: self.index.clone(),
+            settings: self.request.settings(),
+            workers,
+            threads: self.request.threads,
+        };
+        RoadmapPlanner::new(info, parts, file)
+    }
+
+    /// Calls `run` with the stop and the observer of a run that began at `began`. It is stopped by the budget of the
+    /// request and by `control`, and reported to the watch of `control`.
+    pub(crate) fn watched<T>(
+        &self,
+        control: &mut Control<'_>,
+        began: Instant,
+        run: impl FnOnce(&mut dyn Stop, &mut Events<'_, '_, '_, K::State>) -> T,
+    ) -> T {
+        let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
+        let adapter = WatchAdapter::new(control.watch.as_deref_mut());
+        let stop = self.stop(began, control.cancel.clone());
+        let mut stop = stop.or(control.stop.as_deref_mut()).or(&adapter);
+        run(&mut stop, &mut Events { row: &|q| self.kind.row(q), adapter: &adapter, wanted })
+    }
+
     /// When a run that began at `began` stops: by `cancel`, or by the budget of the request.
-    pub(crate) fn stop(&self, request: &Request, began: Instant, cancel: Cancel) -> impl Stop {
-        let budget = request.budget;
+    fn stop(&self, began: Instant, cancel: Cancel) -> impl Stop {
+        let budget = &self.request.budget;
         let deadline = budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
         cancel
             .or(budget.iterations.map(Iterations))
@@ -61,7 +107,7 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
     }
 }
 
-fn unmade<T>(made: Result<T, ParameterError>) -> Result<T, BuildError> {
+fn build_error<T>(made: Result<T, ParameterError>) -> Result<T, BuildError> {
     made.map_err(|e| BuildError::Unmade { reason: e.to_string() })
 }
 

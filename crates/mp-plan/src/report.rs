@@ -1,14 +1,14 @@
-//! What a run came to: plain data.
+//! The result of a run: plain data.
 
 use crate::{Column, Error};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// The version of the JSON form of a [`Report`]. It grows when a member changes its meaning or goes; new members do
+/// The version of the JSON form of a [`Report`]. It grows when a member changes its meaning or is removed. New members do
 /// not change it.
 pub const REPORT_VERSION: u32 = 1;
 
-/// The outcome of one run. Its JSON form is what `mp plan --json` prints; docs/formats/report.md describes it.
+/// The result of one run. `mp plan --json` prints its JSON form, which docs/formats/report.md describes.
 ///
 /// Lengths of paths are in the metric of the space, clearances in metres, times in seconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,17 +17,17 @@ pub struct Report {
     pub version: u32,
     /// The name of the scene.
     pub scene: String,
-    /// The file of the scene, where there is one.
+    /// The file of the scene, if there is one.
     pub scene_file: Option<String>,
-    /// The space: `SE3`, `SE2`, `R2`, `6 joints`.
+    /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
     pub space: String,
-    /// A path was found, and what is in `path` passed the verifier.
+    /// Whether a path was found and `path` passed the verifier.
     pub solved: bool,
-    /// The path passed the independent verifier, as it is written. The same as `solved`: there are no other paths.
+    /// Whether the path, as it is written, passed the independent verifier. Always the same as `solved`.
     pub verified: bool,
     /// What ended a run without a path.
     pub stopped_by: Option<StoppedBy>,
-    /// The same in a sentence.
+    /// `stopped_by` in a sentence.
     pub why: Option<String>,
     /// The name of the planner.
     pub planner: String,
@@ -37,47 +37,47 @@ pub struct Report {
     pub motion: String,
     /// The seed.
     pub seed: u64,
-    /// Iterations of the planner's loop.
+    /// The number of iterations of the planner's loop.
     pub iterations: u64,
-    /// Nodes of its trees or roadmap.
+    /// The number of nodes of its trees or roadmap.
     pub nodes: usize,
-    /// Edges of a roadmap.
+    /// The number of edges of a roadmap.
     pub edges: Option<usize>,
-    /// Connected components of a roadmap.
+    /// The number of connected components of a roadmap.
     pub components: Option<usize>,
-    /// Motions asked of the local planner.
+    /// The number of motions that the local planner checked.
     pub motion_checks: u64,
-    /// Collision and clearance queries.
+    /// The number of collision and clearance queries.
     pub collision_checks: u64,
-    /// Candidate paths that the verifier did not pass.
+    /// The number of candidate paths that the verifier did not pass.
     pub rejected: u64,
-    /// Planning alone.
+    /// The time of planning alone.
     pub time_s: f64,
-    /// Shortening and verifying.
+    /// The time of shortening and verifying.
     pub finish_s: f64,
-    /// When a planner that keeps improving found its first path.
+    /// When an anytime planner found its first path.
     pub first_s: Option<f64>,
-    /// The length of that path.
+    /// The length of the first path.
     pub first_length: Option<f64>,
-    /// That path, as `path`; verified by the planner, before its numbers were written down.
+    /// The first path, as rows like `path`. The planner verified it before its numbers were written.
     pub first_path: Option<Vec<Vec<f64>>>,
-    /// The length of the path as the planner found it; the last, if it keeps improving.
+    /// The length of the path as the planner found it; for an anytime planner, of the last path.
     pub path_length_found: Option<f64>,
     /// The length of `path`.
     pub path_length: Option<f64>,
-    /// A lower bound on the clearance all along `path`.
+    /// A lower bound on the clearance along `path`.
     pub clearance: Option<f64>,
     /// Whether `path` was shortened.
     pub shortened: bool,
-    /// A hash of the numbers of `path`: two runs with the same one found the same path, to the bit.
+    /// A hash of the numbers of `path`. Two runs with the same hash found the same path, to the bit.
     pub fingerprint: Option<String>,
-    /// Where a front end wrote the path.
+    /// The file to which a front end wrote the path.
     pub path_file: Option<String>,
-    /// Where a front end wrote a picture.
+    /// The file to which a front end wrote a picture.
     pub picture_file: Option<String>,
-    /// What the numbers of a configuration are, in order.
+    /// The meaning of each number of a configuration, in order.
     pub columns: Vec<Column>,
-    /// The path, one configuration a row, start first.
+    /// The path, one configuration in each row, start first.
     pub path: Option<Vec<Vec<f64>>>,
 }
 
@@ -91,18 +91,18 @@ pub enum StoppedBy {
     Iterations,
     /// Another budget.
     Budget,
-    /// Somebody asked it to stop.
+    /// It was cancelled from outside.
     Interrupted,
-    /// The planner itself: it has tried all it can at its resolution, or by its own rule.
+    /// The planner itself: it has tried everything at its resolution, or stops by its own rule.
     Exhausted,
-    /// The path found did not pass the verifier once its numbers were written down.
+    /// The path found, written as text and read again, did not pass the verifier.
     Verification,
-    /// The roadmap that was asked has no such path.
+    /// The roadmap has no path between the given configurations.
     Unanswered,
 }
 
 impl StoppedBy {
-    /// Its word in JSON.
+    /// The word for it in JSON.
     #[must_use]
     pub fn word(self) -> &'static str {
         match self {
@@ -149,7 +149,7 @@ impl Report {
     /// The report as one line of JSON.
     ///
     /// # Errors
-    /// Never, unless a number is not finite.
+    /// Only if a number is not finite.
     pub fn to_json(&self) -> Result<String, Error> {
         serde_json::to_string(self)
             .map_err(|e| Error::new(format!("the report cannot be written as JSON: {e}")))
@@ -158,7 +158,7 @@ impl Report {
     /// Reads a report back.
     ///
     /// # Errors
-    /// When the text is no report, or one of a later version.
+    /// When the text is not a report, or a report of a later version.
     pub fn from_json(text: &str) -> Result<Self, Error> {
         let report: Self =
             serde_json::from_str(text).map_err(|e| Error::new(format!("not a report: {e}")))?;
@@ -168,90 +168,4 @@ impl Report {
                 .help(format!("this program reads versions up to {REPORT_VERSION}"))),
         }
     }
-}
-
-/// What the runs on one scene came to. Medians are over the solved runs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Medians {
-    /// The name of the scene.
-    pub scene: String,
-    /// How many runs there were.
-    pub runs: usize,
-    /// How many found a path.
-    pub solved: usize,
-    /// Planning alone, seconds.
-    pub time_s: Option<f64>,
-    /// Iterations.
-    pub iterations: Option<f64>,
-    /// Nodes.
-    pub nodes: Option<f64>,
-    /// Collision and clearance queries.
-    pub collision_checks: Option<f64>,
-    /// The length of the path, in the metric of the space.
-    pub path_length: Option<f64>,
-    /// A lower bound on the clearance, metres.
-    pub clearance: Option<f64>,
-}
-
-/// Several runs, as `mp plan --json` prints them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Runs {
-    /// [`REPORT_VERSION`].
-    pub version: u32,
-    /// How many found a path.
-    pub solved: usize,
-    /// One for each scene, in order of appearance.
-    pub medians: Vec<Medians>,
-    /// The reports.
-    pub runs: Vec<Report>,
-}
-
-impl Runs {
-    /// The runs with their medians.
-    #[must_use]
-    pub fn new(runs: Vec<Report>) -> Self {
-        let solved = runs.iter().filter(|r| r.solved).count();
-        Self { version: REPORT_VERSION, solved, medians: medians(&runs), runs }
-    }
-}
-
-/// The middle value; the mean of the two middle ones when there is an even number. `None` of nothing.
-#[must_use]
-pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.into_iter().collect();
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    match (n, n % 2) {
-        (0, _) => None,
-        (_, 1) => Some(values[n / 2]),
-        _ => Some(0.5 * (values[n / 2 - 1] + values[n / 2])),
-    }
-}
-
-/// The medians of each scene, in order of appearance.
-#[must_use]
-pub fn medians(reports: &[Report]) -> Vec<Medians> {
-    let mut scenes: Vec<&str> = Vec::new();
-    for r in reports {
-        if !scenes.contains(&r.scene.as_str()) {
-            scenes.push(&r.scene);
-        }
-    }
-    let of = |scene: &str| {
-        let runs = reports.iter().filter(|r| r.scene == scene).count();
-        let solved: Vec<&Report> = reports.iter().filter(|r| r.scene == scene && r.solved).collect();
-        let over = |f: fn(&Report) -> Option<f64>| median(solved.iter().filter_map(|r| f(r)));
-        Medians {
-            scene: scene.to_owned(),
-            runs,
-            solved: solved.len(),
-            time_s: over(|r| Some(r.time_s)),
-            iterations: over(|r| Some(r.iterations as f64)),
-            nodes: over(|r| Some(r.nodes as f64)),
-            collision_checks: over(|r| Some(r.collision_checks as f64)),
-            path_length: over(|r| r.path_length),
-            clearance: over(|r| r.clearance),
-        }
-    };
-    scenes.into_iter().map(of).collect()
 }

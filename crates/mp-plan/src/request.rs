@@ -8,7 +8,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// How to plan in a scene. Plain data: make one by [`Request::new`] and the methods below, or read it from JSON, where
+/// How to plan in a scene. Plain data: make it with [`Request::new`] and the methods below, or read it from JSON, where
 /// every member may be left out.
 ///
 /// ```
@@ -24,30 +24,30 @@ use std::str::FromStr;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Request {
-    /// The name of the planner: [`planners`](crate::planners) lists them. With `or-` before it independent runs of it
-    /// race on all threads; with `restart-` it begins anew when it takes too long.
+    /// The name of the planner; [`planners`](crate::planners) lists them. With the prefix `or-`, independent runs race on all
+    /// threads; with `restart-`, it starts again when it takes too long.
     pub planner: String,
     /// Parameters of the planner, by name.
     pub settings: BTreeMap<String, String>,
     /// How far apart two configurations are.
     pub metric: Metric,
-    /// How motions are checked while planning. What is returned is verified by other means in any case.
+    /// How motions are checked while planning. The path returned is always verified with other code.
     pub motion: MotionValidator,
     /// When to give up.
     pub budget: Budget,
-    /// All randomness flows from this number.
+    /// The seed of all randomness.
     pub seed: u64,
     /// Threads that the planner may use, 1 to 1024. Results do not depend on it.
     pub threads: usize,
-    /// What becomes of the path that the planner found.
+    /// What is done to the path that the planner found.
     pub finish: Finish,
-    /// Stop at the first path, also with a planner that keeps improving.
+    /// Whether to stop at the first path, also with an anytime planner.
     pub first_only: bool,
-    /// The file of a roadmap: read when it is there, grown, and written in the end. For planners that build roadmaps.
+    /// The file of a roadmap: read if it exists, grown, and written at the end. For planners that build roadmaps.
     pub roadmap: Option<PathBuf>,
 }
 
-/// When to give up. Iterations and queries are the same on every machine; time is not, but it only ends a run and
+/// When to give up. Iterations and queries are the same on every machine. Time is not, but it only ends a run and
 /// changes nothing that was computed before.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -62,20 +62,20 @@ pub struct Budget {
     pub nodes: Option<usize>,
 }
 
-/// What becomes of the path that a planner found.
+/// What is done to the path that a planner found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Finish {
-    /// It stays as it is.
+    /// The path stays as it is.
     AsFound,
-    /// It is shortened and its corners are rounded, at some distance from obstacles.
+    /// The path is shortened and its corners are rounded, at some distance from obstacles.
     #[default]
     Shorten,
-    /// What it does not need is left out, and a snake relaxes it away from obstacles.
+    /// States that the path does not need are left out, and a snake relaxes it away from obstacles.
     Relax,
 }
 
-/// What a distance between configurations means. Of arms `θ` and `Δp` are the changes of joints.
+/// How the distance between two configurations is measured. For arms, `θ` and `Δp` are the changes of the joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Metric {
@@ -88,9 +88,9 @@ pub enum Metric {
     Scaled,
     /// |Δx| + |Δy| + |Δz| + θ.
     Manhattan,
-    /// The farthest that any point of the robot moves.
+    /// How far the point of the robot moves that moves farthest.
     MaxDisplacement,
-    /// About how much volume the robot sweeps, m³.
+    /// Approximately the volume that the robot sweeps, m³.
     SweptVolume,
 }
 
@@ -138,13 +138,13 @@ impl FromStr for Metric {
     }
 }
 
-/// A distance of the metric, or a share of the extent of the space. As text `0.5` and `20%`.
+/// A distance in the metric, or a fraction of the extent of the space. As text, `0.5` or `20%`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Length {
-    /// In the unit of the metric.
+    /// A distance in the unit of the metric.
     Absolute(f64),
-    /// Of the extent, 1 being all of it.
+    /// A fraction of the extent; 1 is the whole extent.
     Fraction(f64),
 }
 
@@ -179,14 +179,14 @@ fn positive(s: &str) -> Result<f64, Error> {
     }
 }
 
-/// How motions are checked while planning. As text `certified`, `discrete:1%` and `discrete:0.05`.
+/// How motions are checked while planning. As text, `certified`, `discrete:1%` or `discrete:0.05`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum MotionValidator {
-    /// Clearance against bounds of the motion: no wall is missed, however thin.
+    /// By comparing clearance with bounds on the motion: no wall is missed, however thin.
     #[default]
     Certified,
-    /// At configurations this far apart.
+    /// By testing configurations at this distance from each other.
     Discrete(Length),
 }
 
@@ -254,77 +254,76 @@ impl Default for Request {
 }
 
 impl Request {
-    /// The planner called `planner`, all else by default.
+    /// A request for the planner called `planner`, with defaults for everything else.
     #[must_use]
     pub fn new(planner: impl Into<String>) -> Self {
         Self { planner: planner.into(), ..Self::default() }
     }
 
-    /// The same with a parameter of the planner.
+    /// Sets a parameter of the planner.
     #[must_use]
     pub fn set(mut self, name: impl Into<String>, value: impl ToString) -> Self {
         self.settings.insert(name.into(), value.to_string());
         self
     }
 
-    /// The same with another seed.
+    /// Sets the seed.
     #[must_use]
     pub fn seed(self, seed: u64) -> Self {
         Self { seed, ..self }
     }
 
-    /// The same with another metric.
+    /// Sets the metric.
     #[must_use]
     pub fn metric(self, metric: Metric) -> Self {
         Self { metric, ..self }
     }
 
-    /// The same with another motion check.
+    /// Sets how motions are checked.
     #[must_use]
     pub fn motion(self, motion: MotionValidator) -> Self {
         Self { motion, ..self }
     }
 
-    /// The same for at most so many seconds.
+    /// Sets the budget of time, in seconds.
     #[must_use]
     pub fn time(mut self, seconds: f64) -> Self {
         self.budget.time_s = Some(seconds);
         self
     }
 
-    /// The same for at most so many iterations.
+    /// Sets the budget of iterations.
     #[must_use]
     pub fn iterations(mut self, iterations: u64) -> Self {
         self.budget.iterations = Some(iterations);
         self
     }
 
-    /// The same for at most so many nodes of trees or roadmap.
+    /// Sets the budget of nodes of trees or roadmap.
     #[must_use]
     pub fn nodes(mut self, nodes: usize) -> Self {
         self.budget.nodes = Some(nodes);
         self
     }
 
-    /// The same on so many threads.
+    /// Sets the number of threads.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
 
-    /// The same with something else done to the path that was found.
+    /// Sets what is done to the path found.
     #[must_use]
     pub fn finish(self, finish: Finish) -> Self {
         Self { finish, ..self }
     }
 
-    /// What is wrong with it whatever the scene, if anything: a planner or a setting there is none of, a budget that
-    /// is no number.
+    /// Checks what does not depend on the scene: whether planner and settings exist, and the budget is a number.
     ///
     /// # Errors
-    /// The first thing wrong.
+    /// The first fault found.
     pub fn check(&self) -> Result<(), Error> {
-        let planner = crate::planners::PlannerSpec::new(&self.planner)?;
+        let planner = crate::planners::PlannerKind::new(&self.planner)?;
         planner.check(&self.settings())?;
         if let Some(time) = self.budget.time_s
             && (time.is_nan() || time <= 0.0)

@@ -1,6 +1,6 @@
-//! Planners that build roadmaps, where the feature `roadmaps` compiles them; without it there are none.
+//! Planners that build roadmaps, with the feature `roadmaps`. Without it there are none.
 
-use crate::{Error, Request};
+use crate::{Error, Metric, Request, RobotKind};
 use mp_cspace::erased::AnyIndex;
 use mp_cspace::{
     AnyProblem, BuildError, Planner, Workers,
@@ -8,31 +8,81 @@ use mp_cspace::{
 };
 #[cfg(feature = "roadmaps")]
 use mp_cspace::{Observer, Rng, Stop, StopReason};
+use std::path::Path;
 
-/// A planner that builds a roadmap, and what became of the file that it is kept in.
-pub(crate) struct Made<'p, S> {
+/// A planner that builds a roadmap.
+pub(crate) struct RoadmapPlanner<'p, S> {
     #[cfg(feature = "roadmaps")]
     planner: mp_roadmap::AnyPlanner<'p, S, ()>,
     #[cfg(not(feature = "roadmaps"))]
     none: (std::convert::Infallible, std::marker::PhantomData<&'p S>),
 }
 
-/// The problem of a run, made as often as there are threads.
-pub(crate) type Make<'m, 'c, S> = &'m dyn Fn() -> Result<AnyProblem<'c, S>, BuildError>;
+/// Makes the problem of a run, once for each thread.
+pub(crate) type MakeProblem<'m, 'c, S> = &'m dyn Fn() -> Result<AnyProblem<'c, S>, BuildError>;
 
 #[cfg(feature = "roadmaps")]
 pub(crate) use mp_roadmap::planners;
 #[cfg(feature = "roadmaps")]
 pub use mp_roadmap::{Roadmap, RoadmapState};
 
-/// What a roadmap in a file of the request must be one of, where it names a file.
-pub(crate) fn fingerprint<K: crate::RobotKind>(kind: &K, request: &Request) -> Result<Option<u64>, Error> {
-    let Some(_) = &request.roadmap else { return Ok(None) };
-    let Some(fingerprint) = kind.fingerprint(request.metric) else {
-        let help = "leave the file of the roadmap out";
-        return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));
-    };
-    Ok(Some(fingerprint))
+/// The file in which a roadmap is kept.
+#[cfg_attr(not(feature = "roadmaps"), expect(dead_code, reason = "no roadmap is read or written"))]
+pub(crate) struct RoadmapFile<'r> {
+    path: &'r Path,
+    /// A hash of scene, robot and metric, which the roadmap in the file must have.
+    fingerprint: u64,
+}
+
+impl<'r> RoadmapFile<'r> {
+    /// The file at `path` for roadmaps of this robot under this metric.
+    ///
+    /// # Errors
+    /// When roadmaps of such robots cannot be kept.
+    pub(crate) fn new<K: RobotKind>(kind: &K, path: &'r Path, metric: Metric) -> Result<Self, Error> {
+        let Some(fingerprint) = kind.fingerprint(metric) else {
+            let help = "leave the file of the roadmap out";
+            return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));
+        };
+        Ok(Self { path, fingerprint })
+    }
+
+    /// The file that the request names, if it names one.
+    pub(crate) fn of_request<K: RobotKind>(kind: &K, request: &'r Request) -> Result<Option<Self>, Error> {
+        request.roadmap.as_ref().map(|path| Self::new(kind, path, request.metric)).transpose()
+    }
+}
+
+#[cfg(feature = "roadmaps")]
+impl RoadmapFile<'_> {
+    /// The roadmap in the file; `None` when there is no file yet.
+    fn read<S: RoadmapState + mp_cspace::StateVector>(&self) -> Result<Option<Roadmap<S>>, Error> {
+        if !self.path.exists() {
+            return Ok(None);
+        }
+        let help = "name another file, or delete it to begin anew";
+        Roadmap::load(self.path, self.fingerprint).map(Some).map_err(|e| Error::new(e.to_string()).help(help))
+    }
+
+    /// Writes the roadmap to the file.
+    pub(crate) fn write<S: RoadmapState + mp_cspace::StateVector>(
+        &self,
+        map: &Roadmap<S>,
+    ) -> Result<(), Error> {
+        Ok(mp_io::write_atomic(self.path, &map.to_bytes(self.fingerprint))?)
+    }
+}
+
+/// What a planner of roadmaps is made from.
+#[cfg_attr(not(feature = "roadmaps"), expect(dead_code, reason = "no roadmap is built"))]
+pub(crate) struct PlannerParts<'m, 'p, S: RoadmapState> {
+    /// Makes the problem, once for each thread.
+    pub(crate) problem: MakeProblem<'m, 'p, S>,
+    /// An empty index of the space.
+    pub(crate) index: AnyIndex<S>,
+    pub(crate) settings: Settings,
+    pub(crate) workers: Workers,
+    pub(crate) threads: usize,
 }
 
 /// The planner called `name`, if there is one.
@@ -42,25 +92,17 @@ pub(crate) fn planner(name: &str) -> Option<&'static PlannerInfo> {
 }
 
 #[cfg(feature = "roadmaps")]
-impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> Made<'p, S> {
-    /// The planner of `request`, going on with the roadmap that is kept.
+impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, S> {
+    /// The planner `info`. It begins with the roadmap in `file`, if there is one.
     pub(crate) fn new(
         info: &PlannerInfo,
-        make: Make<'_, 'p, S>,
-        index: AnyIndex<S>,
-        request: &Request,
-        settings: &Settings,
-        workers: Workers,
-        fingerprint: Option<u64>,
+        parts: PlannerParts<'_, 'p, S>,
+        file: Option<&RoadmapFile<'_>>,
     ) -> Result<Self, Error> {
-        let team = mp_roadmap::ParallelProblem::new(workers, request.threads, make)?;
-        let mut planner = S::roadmap_planner(info.name, team, index, settings)?;
-        if let (Some(file), Some(fingerprint)) = (&request.roadmap, fingerprint)
-            && file.exists()
-        {
-            let map = Roadmap::load(file, fingerprint).map_err(|e| {
-                Error::new(e.to_string()).help("name another file, or delete it to begin anew")
-            })?;
+        let PlannerParts { problem, index, settings, workers, threads } = parts;
+        let problem = mp_roadmap::ParallelProblem::new(workers, threads, problem)?;
+        let mut planner = S::roadmap_planner(info.name, problem, index, &settings)?;
+        if let Some(map) = file.map(RoadmapFile::read).transpose()?.flatten() {
             planner.resume(map)?;
         }
         Ok(Self { planner })
@@ -70,7 +112,7 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> Made<'p, S> {
         &mut *self.planner
     }
 
-    /// Builds until stopped, whether or not start and goal get connected.
+    /// Builds until stopped, whether or not start and goal are connected.
     pub(crate) fn build(
         &mut self,
         rng: &mut Rng,
@@ -80,38 +122,38 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> Made<'p, S> {
         self.planner.build(rng, stop, observer)
     }
 
-    /// How many nodes there are.
+    /// The number of nodes.
     pub(crate) fn nodes(&self) -> usize {
         self.planner.map().len()
     }
 
-    /// Goes on with this roadmap.
+    /// Continues with this roadmap.
     pub(crate) fn resume(&mut self, map: Roadmap<S>) -> Result<(), Error> {
         Ok(self.planner.resume(map)?)
     }
 
-    /// Writes the roadmap to the file that it is kept in; its edges and components, and itself if wanted.
+    /// Writes the roadmap to `file`, if one is given. Returns the numbers of edges and of components, and the roadmap itself
+    /// if it is `wanted`.
     pub(crate) fn keep(
         &mut self,
-        request: &Request,
-        fingerprint: Option<u64>,
+        file: Option<&RoadmapFile<'_>>,
         wanted: bool,
     ) -> Result<([usize; 2], Option<Roadmap<S>>), Error> {
-        if let (Some(file), Some(fingerprint)) = (&request.roadmap, fingerprint) {
-            mp_io::write_atomic(file, &self.planner.map().to_bytes(fingerprint))?;
+        if let Some(file) = file {
+            file.write(self.planner.map())?;
         }
         let map = [self.planner.map().edges(), self.planner.map_mut().components()];
         Ok((map, wanted.then(|| self.planner.map().clone())))
     }
 }
 
-/// Without the feature `roadmaps` any state will do.
+/// Without the feature `roadmaps`: any state.
 #[cfg(not(feature = "roadmaps"))]
 pub trait RoadmapState: Clone + std::fmt::Debug + PartialEq + Send + Sync {}
 #[cfg(not(feature = "roadmaps"))]
 impl<S: Clone + std::fmt::Debug + PartialEq + Send + Sync> RoadmapState for S {}
 
-/// Without the feature `roadmaps` there is none.
+/// Without the feature `roadmaps`: a type without values.
 #[cfg(not(feature = "roadmaps"))]
 #[derive(Clone, Debug)]
 pub struct Roadmap<S>(std::convert::Infallible, std::marker::PhantomData<S>);
@@ -127,16 +169,11 @@ pub(crate) fn planner(_: &str) -> Option<&'static PlannerInfo> {
 }
 
 #[cfg(not(feature = "roadmaps"))]
-impl<'p, S: RoadmapState> Made<'p, S> {
-    #[allow(clippy::too_many_arguments)]
+impl<'p, S: RoadmapState> RoadmapPlanner<'p, S> {
     pub(crate) fn new(
         info: &PlannerInfo,
-        _: Make<'_, 'p, S>,
-        _: AnyIndex<S>,
-        _: &Request,
-        _: &Settings,
-        _: Workers,
-        _: Option<u64>,
+        _: PlannerParts<'_, 'p, S>,
+        _: Option<&RoadmapFile<'_>>,
     ) -> Result<Self, Error> {
         Err(Error::new(format!("{} is not in this program", info.name)))
     }
@@ -145,8 +182,7 @@ impl<'p, S: RoadmapState> Made<'p, S> {
     }
     pub(crate) fn keep(
         &mut self,
-        _: &Request,
-        _: Option<u64>,
+        _: Option<&RoadmapFile<'_>>,
         _: bool,
     ) -> Result<([usize; 2], Option<Roadmap<S>>), Error> {
         match self.none.0 {}

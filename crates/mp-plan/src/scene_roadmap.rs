@@ -1,15 +1,15 @@
-//! Many queries to one roadmap of a scene.
+//! A roadmap of a scene that answers many queries.
 
-use crate::check::refused;
+use crate::explain::refused;
+use crate::path::state;
 use crate::plan::reported;
-use crate::planners::PlannerSpec;
+use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
-use crate::roadmaps::{Made, Roadmap, fingerprint};
-use crate::scene::state;
-use crate::search::{Search, relax_if_asked};
-use crate::watch::{Events, Telling};
+use crate::relax::relax_if_requested;
+use crate::roadmaps::{Roadmap, RoadmapFile};
+use crate::search::Search;
 use crate::{Budget, Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
-use mp_cspace::{Outcome, Rng, Stop, StopReason, Workers, registry::PlannerInfo};
+use mp_cspace::{Outcome, Rng, StopReason, Workers, registry::PlannerInfo};
 use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE, RoadmapState};
 use std::fmt;
 use std::path::Path;
@@ -17,15 +17,15 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-/// To so many nodes nearest to it a start or goal is connected at most.
+/// A start or goal is connected to at most this many nearest nodes.
 const NEIGHBOURS: usize = 20;
 
-/// A roadmap of a scene, which answers queries from any free configuration to any other. It does not grow by them, but
-/// learns: an edge that was verified once is not verified again, and one that fails is blocked for good.
+/// A roadmap of a scene, which answers queries between any two free configurations. Queries do not add nodes. Verification
+/// results are kept: each edge is verified at most once, and an edge that fails is blocked for good.
 ///
-/// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all it needs, and may go to another thread.
+/// [`Scene::roadmap`](crate::Scene::roadmap) builds it. It owns all its data and may be sent to another thread.
 pub struct SceneRoadmap {
-    pub(crate) roadmap: Box<dyn Answering>,
+    pub(crate) roadmap: Box<dyn AnySceneRoadmap>,
     /// The file of the scene.
     pub(crate) file: Option<String>,
 }
@@ -38,17 +38,18 @@ impl fmt::Debug for SceneRoadmap {
 }
 
 impl SceneRoadmap {
-    /// A path from one configuration to another, finished and verified as one of [`Scene::plan`](crate::Scene::plan) is,
-    /// by the request that the roadmap was built with. The budget of that request was for building: a query ends by itself.
+    /// A path from one configuration to another, finished and verified as by [`Scene::plan`](crate::Scene::plan), according
+    /// to the request that the roadmap was built with. The budget of that request is for building only: a query ends by
+    /// itself.
     ///
     /// # Errors
-    /// When an end is not free: with what is in the way, how deep, and the nearest free configuration. That the
-    /// roadmap has no path is no error: [`Report::why`] says whether it needs more nodes near an end or between.
+    /// When an end is not free: what touches, how deep, and the nearest free configuration. It is not an error that the
+    /// roadmap has no path: [`Report::why`] says whether more nodes are needed near an end or between.
     pub fn query(&mut self, start: &[f64], goal: &[f64]) -> Result<Report, Error> {
         self.query_with(start, goal, &mut Control::default())
     }
 
-    /// The same, watched and stopped from outside. Stopping ends what is done to the path that was found.
+    /// As [`query`](Self::query), with progress reports and a stop. The stop ends what is done to the path found.
     ///
     /// # Errors
     /// As [`query`](Self::query).
@@ -63,7 +64,7 @@ impl SceneRoadmap {
         Ok(report)
     }
 
-    /// Goes on building until this budget is spent; its nodes are counted with those there are. No file is written: see
+    /// Continues building until this budget is used up. Its nodes include those that exist already. No file is written: see
     /// [`save`](Self::save).
     ///
     /// # Errors
@@ -72,42 +73,42 @@ impl SceneRoadmap {
         self.roadmap.grow(budget, control)
     }
 
-    /// Verifies all edges now, so that no query waits for it. How many failed, and are blocked.
+    /// Verifies all edges now, so that queries need not. Returns how many failed and are blocked.
     ///
     /// # Errors
-    /// When the request makes no sense for the robot.
+    /// When the request is not valid for the robot.
     pub fn verify(&mut self) -> Result<usize, Error> {
         self.roadmap.verify()
     }
 
-    /// How many nodes there are.
+    /// The number of nodes.
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.roadmap.size()[0]
     }
 
-    /// How many edges there are that are not blocked.
+    /// The number of edges that are not blocked.
     #[must_use]
     pub fn edges(&self) -> usize {
         self.roadmap.size()[1]
     }
 
-    /// How many connected components there are.
+    /// The number of connected components.
     pub fn components(&mut self) -> usize {
         self.roadmap.components()
     }
 
-    /// Writes it to a file, from which [`Request::roadmap`] goes on.
+    /// Writes it to a file, with which [`Request::roadmap`] can continue.
     ///
     /// # Errors
-    /// When roadmaps of such robots are not kept, or the file cannot be written.
+    /// When roadmaps of such robots cannot be saved, or the file cannot be written.
     pub fn save(&self, file: impl AsRef<Path>) -> Result<(), Error> {
         self.roadmap.save(file.as_ref())
     }
 }
 
 /// A roadmap of a robot of some kind, behind a pointer.
-pub(crate) trait Answering: Send {
+pub(crate) trait AnySceneRoadmap: Send {
     fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error>;
     fn grow(&mut self, budget: Budget, control: &mut Control<'_>) -> Result<(), Error>;
     fn verify(&mut self) -> Result<usize, Error>;
@@ -116,36 +117,36 @@ pub(crate) trait Answering: Send {
     fn save(&self, file: &Path) -> Result<(), Error>;
 }
 
-struct Of<K: RobotKind> {
+struct RobotRoadmap<K: RobotKind> {
     kind: Arc<K>,
     request: Request,
     roadmap: AnyRoadmap<K::State>,
 }
 
-/// Builds a roadmap by the planner of the request.
+/// Builds a roadmap with the planner of the request.
 pub(crate) fn build<K: RobotKind + 'static>(
     kind: Arc<K>,
     request: &Request,
     control: &mut Control<'_>,
-) -> Result<Box<dyn Answering>, Error> {
+) -> Result<Box<dyn AnySceneRoadmap>, Error> {
     request.check()?;
     let roadmap = grown(&*kind, request, None, control)?;
-    Ok(Box::new(Of { kind, request: request.clone(), roadmap }))
+    Ok(Box::new(RobotRoadmap { kind, request: request.clone(), roadmap }))
 }
 
-/// The planner of the request.
+/// The planner of the request, which must build roadmaps.
 fn planner(request: &Request) -> Result<&'static PlannerInfo, Error> {
-    match PlannerSpec::new(&request.planner)? {
-        PlannerSpec::Roadmap(info) => Ok(info),
-        named @ PlannerSpec::Tree(_) => {
+    match PlannerKind::new(&request.planner)? {
+        PlannerKind::Roadmap(info) => Ok(info),
+        tree @ PlannerKind::Tree(_) => {
             let names: Vec<_> = crate::roadmaps::planners().iter().map(|p| p.name).collect();
-            Err(Error::new(format!("{named} builds no roadmap"))
+            Err(Error::new(format!("{tree} builds no roadmap"))
                 .help(format!("take one of: {}", names.join(", "))))
         }
     }
 }
 
-/// Grows `map`, or the one in the file of the request, or a new one, until the budget is spent.
+/// Grows `map`, or the roadmap in the file of the request, or a new one, until the budget is used up.
 fn grown<K: RobotKind>(
     kind: &K,
     request: &Request,
@@ -155,37 +156,29 @@ fn grown<K: RobotKind>(
     let info = planner(request)?;
     let _span = tracing::info_span!("roadmap", scene = kind.name(), planner = info.name, seed = request.seed)
         .entered();
-    let (settings, workers) = (request.settings(), Workers::new(request.threads)?);
-    let fingerprint = fingerprint(kind, request)?;
+    let workers = Workers::new(request.threads)?;
+    let file = RoadmapFile::of_request(kind, request)?;
     let prepared = Prepared::new(kind, request)?;
     control.stage(Stage::Planning);
     let began = Instant::now();
-    let problem = || prepared.problem();
-    let index = prepared.index.clone();
-    let mut made = Made::new(info, &problem, index, request, &settings, workers, fingerprint)?;
+    let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
     if let Some(map) = map {
         made.resume(map)?;
     }
-    // One that is gone on with draws other numbers than those it was made of.
+    // A roadmap that is continued draws other random numbers than those it was built from.
     let mut rng = match made.nodes() {
         0 => Rng::seed(request.seed),
         nodes => Rng::stream(request.seed, nodes as u64),
     };
-    let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
-    let telling = Telling::new(control.watch.as_deref_mut());
-    let mut events = Events { row: &|q| kind.row(q), telling: &telling, wanted };
-    let stop = prepared.stop(request, began, control.cancel.clone());
-    let mut stop = stop.or(control.stop.as_deref_mut()).or(&telling);
-    let reason = made.build(&mut rng, &mut stop, &mut events);
-    drop(stop);
-    let ([edges, components], map) = made.keep(request, fingerprint, true)?;
+    let reason = prepared.watched(control, began, |stop, events| made.build(&mut rng, stop, events));
+    let ([edges, components], map) = made.keep(file.as_ref(), true)?;
     drop(made);
     let map = map.unwrap_or_default();
     tracing::info!(nodes = map.len(), edges, components, by = StoppedBy::from(reason).word(), "built");
     Ok(AnyRoadmap::new(&prepared.space, map, prepared.index.clone(), NEIGHBOURS)?)
 }
 
-impl<K: RobotKind> Answering for Of<K> {
+impl<K: RobotKind> AnySceneRoadmap for RobotRoadmap<K> {
     fn query(&mut self, start: &[f64], goal: &[f64], control: &mut Control<'_>) -> Result<Report, Error> {
         let (kind, request) = (&*self.kind, &self.request);
         let _span = tracing::info_span!("query", scene = kind.name()).entered();
@@ -203,12 +196,12 @@ impl<K: RobotKind> Answering for Of<K> {
         let time = began.elapsed();
         let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), checker.motions());
         progress.rejected = checker.rejected();
-        // What the checkers have counted and not told yet.
+        // Checkers report their last queries when they are dropped.
         drop(checker);
         let queries = prepared.queries.load(Ordering::Relaxed);
         let map = Some([self.roadmap.map().edges(), self.roadmap.map_mut().components()]);
         let (outcome, why) = match answer {
-            Ok(path) => (Outcome::Solved(relax_if_asked(kind, request, path, control)?), None),
+            Ok(path) => (Outcome::Solved(relax_if_requested(kind, request, path, control)?), None),
             Err(why) => (Outcome::Stopped(StopReason::Exhausted), Some(why.to_string())),
         };
         let found = Search { outcome, progress, queries, time, first: None, map, roadmap: None };
@@ -238,8 +231,6 @@ impl<K: RobotKind> Answering for Of<K> {
     }
 
     fn save(&self, file: &Path) -> Result<(), Error> {
-        let request = Request { roadmap: Some(file.to_owned()), ..self.request.clone() };
-        let fingerprint = fingerprint(&*self.kind, &request)?.unwrap_or_default();
-        Ok(mp_io::write_atomic(file, &self.roadmap.map().to_bytes(fingerprint))?)
+        RoadmapFile::new(&*self.kind, file, self.request.metric)?.write(self.roadmap.map())
     }
 }

@@ -1,40 +1,40 @@
-//! Watching a run and stopping it.
+//! Progress reports of a run, and how to stop it.
 
 use mp_cspace::{Cancel, Event, NodeId, Observer, Progress, Stop, StopReason};
 use std::time::{Duration, Instant};
 
-/// What a run is doing.
+/// The stages of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Stage {
-    /// Looking for a path.
+    /// Searching for a path.
     Planning,
-    /// Relaxing the path found, by a snake.
+    /// Relaxing the path found with a snake.
     Relaxing,
     /// Shortening the path and verifying what will be written.
     Finishing,
 }
 
-/// Told of a run while it goes on, in the thread that plans. The defaults do nothing.
+/// Receives reports during a run, in the thread that plans. The default methods do nothing.
 pub trait Watch {
     /// A stage begins.
     fn stage(&mut self, _stage: Stage) {}
-    /// What was done so far; ten times a second at most.
+    /// The counts so far; at most ten times a second.
     fn progress(&mut self, _progress: &Progress) {}
-    /// A path was found, of this length in the metric. A planner that keeps improving finds several.
+    /// A path of this length in the metric was found. An anytime planner finds several.
     fn found(&mut self, _length: f64) {}
-    /// Whether [`event`](Self::event) is to be called. Looked at once, when planning begins: that costs time.
+    /// Whether [`event`](Self::event) is to be called, which costs time. Called once, when planning begins.
     fn wants_events(&self) -> bool {
         false
     }
-    /// Something happened in the search.
+    /// An event of the search.
     fn event(&mut self, _event: SearchEvent<'_>) {}
 }
 
 /// Watches nothing.
 impl Watch for () {}
 
-/// What happens in a search, with configurations as rows of numbers: for viewers and logs.
+/// An event of a search, with configurations as rows of numbers: for viewers and logs.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SearchEvent<'a> {
@@ -58,7 +58,7 @@ pub enum SearchEvent<'a> {
         /// Its configuration.
         row: Vec<f64>,
     },
-    /// A node hangs on another parent now.
+    /// A node got another parent.
     Rewired {
         /// Which tree.
         tree: usize,
@@ -90,18 +90,18 @@ pub enum SearchEvent<'a> {
     },
 }
 
-/// How a run is watched and stopped. The default watches nothing and stops by the budget of the request alone.
+/// How a run is watched and stopped. By default nothing watches it, and only the budget of the request stops it.
 ///
-/// A clone of `cancel` stops it from another thread: what was found until then is kept.
+/// A clone of `cancel` stops it from another thread. What was found until then is kept.
 #[derive(Default)]
 pub struct Control<'a> {
     /// Stops the run when it is raised.
     pub cancel: Cancel,
-    /// Told of the run.
+    /// Receives reports of the run.
     pub watch: Option<&'a mut dyn Watch>,
-    /// A stop of your own, beside the budget of the request.
+    /// A stop of your own, in addition to the budget of the request.
     pub stop: Option<&'a mut dyn Stop>,
-    /// Whether [`search`](crate::search) hands out the roadmap.
+    /// Whether [`search`](crate::search) returns the roadmap.
     pub keep_roadmap: bool,
 }
 
@@ -124,41 +124,41 @@ impl<'a> Control<'a> {
     }
 }
 
-/// Iterations between two looks at the clock.
-const EVERY: u64 = 64;
+/// The number of iterations between two looks at the clock.
+const ITERATIONS_PER_LOOK: u64 = 64;
 /// The least time between two reports of progress.
-const PAUSE: Duration = Duration::from_millis(100);
+const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Tells a watch of progress, as a [`Stop`] that never stops anything; and of events, as an [`Observer`]: planners are
-/// given one after the other, never both at a time.
-pub(crate) struct Telling<'w, 'a> {
+/// Passes progress to a watch, as a [`Stop`] that never stops anything, and events, as the [`Observer`] [`Events`]. A planner
+/// never uses both at the same time.
+pub(crate) struct WatchAdapter<'w, 'a> {
     pub(crate) watch: std::cell::RefCell<Option<&'w mut (dyn Watch + 'a)>>,
-    told: std::cell::Cell<Instant>,
+    last_report: std::cell::Cell<Instant>,
 }
 
-impl<'w, 'a> Telling<'w, 'a> {
+impl<'w, 'a> WatchAdapter<'w, 'a> {
     pub(crate) fn new(watch: Option<&'w mut (dyn Watch + 'a)>) -> Self {
-        Self { watch: watch.into(), told: Instant::now().into() }
+        Self { watch: watch.into(), last_report: Instant::now().into() }
     }
 }
 
-impl Stop for &Telling<'_, '_> {
+impl Stop for &WatchAdapter<'_, '_> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
-        if progress.iterations.is_multiple_of(EVERY)
-            && self.told.get().elapsed() > PAUSE
+        if progress.iterations.is_multiple_of(ITERATIONS_PER_LOOK)
+            && self.last_report.get().elapsed() > REPORT_INTERVAL
             && let Some(watch) = &mut *self.watch.borrow_mut()
         {
-            self.told.set(Instant::now());
+            self.last_report.set(Instant::now());
             watch.progress(progress);
         }
         None
     }
 }
 
-/// Translates the states of events to rows.
+/// Passes events to a watch, with states as rows of numbers.
 pub(crate) struct Events<'t, 'w, 'a, S> {
     pub(crate) row: &'t dyn Fn(&S) -> Vec<f64>,
-    pub(crate) telling: &'t Telling<'w, 'a>,
+    pub(crate) adapter: &'t WatchAdapter<'w, 'a>,
     pub(crate) wanted: bool,
 }
 
@@ -180,7 +180,7 @@ impl<S> Observer<S> for Events<'_, '_, '_, S> {
             Event::Pruned { tree, survivors } => SearchEvent::Pruned { tree, survivors },
             _ => return,
         };
-        if let Some(watch) = &mut *self.telling.watch.borrow_mut() {
+        if let Some(watch) = &mut *self.adapter.watch.borrow_mut() {
             watch.event(event);
         }
     }

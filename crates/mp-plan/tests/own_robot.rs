@@ -27,7 +27,7 @@ struct Crane {
 #[derive(Clone, Debug)]
 struct Load {
     posts: Vec<Vector2<f64>>,
-    asked: u64,
+    queries: u64,
 }
 
 fn place(q: &Configuration) -> Vector2<f64> {
@@ -41,7 +41,7 @@ impl Validity<Configuration> for Load {
 }
 impl Clearance<Configuration> for Load {
     fn clearance(&mut self, q: &Configuration, _: f64) -> f64 {
-        self.asked += 1;
+        self.queries += 1;
         let load = place(q);
         self.posts.iter().map(|post| (post - load).norm() - LOAD).fold(f64::INFINITY, f64::min)
     }
@@ -53,7 +53,7 @@ impl MotionClearance<Configuration> for Load {
 }
 impl Queries for Load {
     fn queries(&self) -> u64 {
-        self.asked
+        self.queries
     }
 }
 
@@ -168,7 +168,7 @@ fn crane(goal: [f64; 2]) -> Crane {
         ends: [DVector::from_vec(vec![-1.0, 4.0]), DVector::from_vec(goal.to_vec())],
         check: Load {
             posts: (0..8).map(|i| Vector2::new(1.6 + 0.4 * f64::from(i), 0.0)).collect(),
-            asked: 0,
+            queries: 0,
         },
     }
 }

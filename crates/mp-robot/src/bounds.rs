@@ -1,14 +1,15 @@
-//! Where a robot may be when nobody says.
+//! Default bounds for the position of a rigid body.
 
 use crate::{Placement, RigidBody};
 use mp_geom::Aabb;
 use nalgebra::Point3;
 
 impl<P: Placement> RigidBody<P> {
-    /// Bounds for the origin of the robot's frame when a problem gives none: the box around the obstacles
-    /// and the given configurations (start and goals), enlarged on every side by the robot's diameter about
-    /// that origin, so that it can go around everything. For a point, and whenever that is more, enlarged by
-    /// a tenth of the box's diagonal; by 1 m when that is nothing. In the plane only x and y matter.
+    /// Bounds for the origin of the robot's frame, for problems that give none.
+    ///
+    /// The box around the obstacles and the given configurations (start and goals) is enlarged on every side by twice
+    /// the robot's radius about that origin, so that the robot can go around everything, or by a tenth of the box's
+    /// diagonal if that is more; by 1 m if both are zero. In the plane only x and y matter.
     #[must_use]
     pub fn default_bounds<'a>(&self, configurations: impl IntoIterator<Item = &'a P::State>) -> Aabb
     where

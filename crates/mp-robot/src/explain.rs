@@ -1,31 +1,30 @@
-//! Answers for people: what is hit, and where it would be free.
+//! Answers for people: what a rigid body touches, and where it would be free.
 
+use crate::shells::{Shells, search_shells};
 use crate::{Placement, RigidBody};
 use mp_collide::Contact;
 use mp_cspace::{Clearance, Space};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
-/// The first shell of the search, relative to the robot's size; each is larger than the last by
-/// [`GROWTH`].
+/// The radius of the first shell of a search, as a part of the robot's size.
 const FIRST_SHELL: f64 = 1e-3;
+/// How many times as large each shell is as the last.
 const GROWTH: f64 = 1.4;
 const MAX_SHELLS: usize = 100;
-/// How often the way back to the start of the search is halved.
-const HALVINGS: usize = 24;
 
 impl<P: Placement> RigidBody<P> {
-    /// The obstacles the robot touches at `q`, in the order they were given, with an estimate of how deep
-    /// (m). Empty when it is free. Slow: for messages.
+    /// The obstacles that the robot touches at `q`, in the order in which they were given, each with an estimate of the
+    /// depth (m). Empty when `q` is free. Slow: meant for messages.
     pub fn explain(&mut self, q: &P::State) -> Vec<Contact> {
         let pose = P::pose(q);
         let shared = &*self.shared;
-        let mut contacts = shared.scene.contacts(&mut self.query, &shared.robot, &pose);
-        if shared.shape.radius == 0.0 {
-            // A point inside a solid touches nothing, but is as deep as the surface is far.
+        let mut contacts = shared.obstacles.scene.contacts(&mut self.query, &shared.robot, &pose);
+        if shared.radii.radius == 0.0 {
+            // A point inside a solid touches no triangle. Its depth is its distance from the surface.
             let p = Point3::from(pose.translation.vector);
             for (body, solid) in shared.solids() {
-                if let Some(obstacle) = shared.scene.body(*body)
+                if let Some(obstacle) = shared.obstacles.scene.body(*body)
                     && contacts.iter().all(|c| c.body != *body)
                     && solid.contains(&p)
                 {
@@ -43,9 +42,8 @@ impl<P: Placement> RigidBody<P> {
         contacts
     }
 
-    /// Names of the solid obstacles (closed, triangles facing outward) that the robot at `q` is inside of,
-    /// judged by its first vertex. A robot that touches nothing there counts as free, but can never
-    /// leave: worth a warning.
+    /// The names of the solid obstacles (closed, triangles facing outward) that contain the first vertex of the robot at
+    /// `q`. A robot inside an obstacle that touches nothing counts as free, but can never leave: worth a warning.
     #[must_use]
     pub fn enclosing(&self, q: &P::State) -> Vec<&str> {
         let vertex = P::pose(q) * self.shared.robot_mesh.vertices()[0];
@@ -54,12 +52,12 @@ impl<P: Placement> RigidBody<P> {
     }
 
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the
-    /// [tolerance](RigidBody::tolerance) is a good one): `q` itself when it has that, else the nearest
+    /// [tolerance](RigidBody::tolerance) is a good value): `q` itself if it has that clearance, else the nearest
     /// found, or `None`.
     ///
-    /// Searches outward in shells, by moves and turns in many directions, then back toward `q`; first
-    /// outside of solids, then anywhere. The same input finds the same. Some thousands of clearance
-    /// queries: for messages.
+    /// The search moves and turns the robot in many directions by growing amounts, then goes back toward `q`. It looks
+    /// outside of solids first, then anywhere. The same input gives the same result. Some thousands of clearance
+    /// queries: meant for messages.
     pub fn nearest_free<C: Space<State = P::State>>(
         &mut self,
         q: &P::State,
@@ -74,65 +72,27 @@ impl<P: Placement> RigidBody<P> {
                 && robot.clearance(p, margin.max(f64::MIN_POSITIVE)) >= margin.max(f64::MIN_POSITIVE)
                 && (!outside || robot.enclosing(p).is_empty())
         };
-        [true, false].into_iter().find_map(|outside| {
-            if suits(self, q, outside) {
-                return Some(q.clone());
-            }
-            let found = self.search_outward(q, space, |robot, p| suits(robot, p, outside))?;
-            // Back toward q, as far as it stays free.
-            let (mut free, mut hit) = (1.0, 0.0);
-            let mut best = found.clone();
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (free + hit);
-                let p = space.interpolate(q, &found, middle);
-                if suits(self, &p, outside) {
-                    (free, best) = (middle, p);
-                } else {
-                    hit = middle;
-                }
-            }
-            Some(best)
-        })
-    }
-
-    /// The configuration nearest to `q` among those that suit in the innermost shell that has any.
-    fn search_outward<C: Space<State = P::State>>(
-        &mut self,
-        q: &P::State,
-        space: &C,
-        mut suits: impl FnMut(&mut Self, &P::State) -> bool,
-    ) -> Option<P::State> {
         let pose = P::pose(q);
-        let far = space.extent();
-        let size = if self.radius() > 0.0 { self.radius() } else { 0.01 * far };
-        let mut reach = FIRST_SHELL * size;
-        for shell in 0..MAX_SHELLS {
-            let mut best: Option<(f64, P::State)> = None;
-            for (step, turn) in directions::<P>(shell) {
-                let angle = (reach / size).min(PI);
+        let size = if self.radius() > 0.0 { self.radius() } else { 0.01 * space.extent() };
+        let shells = Shells { first: FIRST_SHELL * size, growth: GROWTH, most: MAX_SHELLS };
+        let candidates = |shell: usize, radius: f64| {
+            let angle = (radius / size).min(PI);
+            let moved = |(step, turn): (Vector3<f64>, Vector3<f64>)| {
                 let rotation = UnitQuaternion::from_scaled_axis(turn * angle) * pose.rotation;
-                let translation = Translation3::from(pose.translation.vector + step * reach);
-                let p = P::configuration(&Isometry3::from_parts(translation, rotation));
-                let distance = space.distance(q, &p);
-                if best.as_ref().is_none_or(|(d, _)| distance < *d) && suits(self, &p) {
-                    best = Some((distance, p));
-                }
-            }
-            if let Some((_, p)) = best {
-                return Some(p);
-            }
-            if reach > far {
-                return None;
-            }
-            reach *= GROWTH;
-        }
-        None
+                let translation = Translation3::from(pose.translation.vector + step * radius);
+                P::configuration(&Isometry3::from_parts(translation, rotation))
+            };
+            directions::<P>(shell).into_iter().map(moved).collect()
+        };
+        [true, false]
+            .into_iter()
+            .find_map(|outside| search_shells(space, q, &shells, candidates, |p| suits(self, p, outside)))
     }
 }
 
-/// Pairs of a unit step and a unit turn (or zero, not both): along and between the axes the robot can move
-/// along, each with a turn either way about each axis it can turn about. Turned with every shell, so that
-/// more directions are tried as the search goes on.
+/// Pairs of a step and a turn, each a unit vector or zero, but not both zero. Steps are along and between the axes along
+/// which the robot can move, each with a turn either way about each axis about which it can turn. The steps are rotated
+/// with every shell, so that further shells try other directions.
 fn directions<P: Placement>(shell: usize) -> Vec<(Vector3<f64>, Vector3<f64>)> {
     let axes = |free: &[usize]| {
         let mut all = vec![Vector3::zeros()];

@@ -1,18 +1,17 @@
-//! Which way the clearance of a robot grows: of a rigid body by nearest points, of an arm by differences.
+//! Gradients of the clearance: of a rigid body from nearest points, of an arm from differences.
 
 use crate::{Arm, Placement, RigidBody};
 use mp_cspace::{Clearance, Coordinates, obstacles::ClearanceGradient};
 use nalgebra::{Isometry3, Point3, Vector3};
 
-/// By the nearest points of robot and obstacles.
+/// From the nearest points of robot and obstacles.
 ///
-/// Free: the exact distance (m), and its derivative. In collision meshes have no depth, so what is told is rough:
-/// of the first pair of triangles found to intersect, how far the robot's reaches through the plane of the
-/// obstacle's, and the way back along the normal of that plane, to the side on which the robot has its middle. A
-/// point inside a solid is led out by the nearest way, which is exact.
+/// Where the robot is free: the exact distance (m) and its derivative. In collision the value is rough, because meshes
+/// have no depth. It comes from the first pair of triangles found to intersect: how far the robot's triangle reaches
+/// through the plane of the obstacle's triangle, and the direction along the normal of that plane, to the side on which
+/// the robot's middle is. For a point inside a solid, depth and direction to the surface are exact.
 ///
-/// One distance query where something is within `reach`, else one bound; in collision one intersection query
-/// besides.
+/// Costs one distance query if something is within `reach`, else one bound; in collision one more intersection query.
 impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
     fn clearance_gradient(&mut self, q: &P::State, reach: f64, gradient: &mut [f64]) -> f64 {
         gradient.fill(0.0);
@@ -20,33 +19,34 @@ impl<P: Placement> ClearanceGradient<P::State> for RigidBody<P> {
         let pose = P::pose(q);
         let shared = std::sync::Arc::clone(&self.shared);
         let inside = self.point_inside(&pose);
-        // A point deep inside has its surface farther than the reach.
+        // For a point deep inside, the surface may be farther away than the reach.
         let enough = if inside { f64::INFINITY } else { reach };
-        let (clearance, nearest) = shared.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
-        let Some(body) = nearest.and_then(|id| shared.scene.body(id)) else { return clearance };
-        let (value, at, way) = if clearance > 0.0 {
+        let (clearance, nearest) =
+            shared.obstacles.scene.clearance(&mut self.query, &shared.robot, &pose, enough);
+        let Some(body) = nearest.and_then(|id| shared.obstacles.scene.body(id)) else { return clearance };
+        let (value, at, direction) = if clearance > 0.0 {
             let apart = self.query.distance(&shared.robot, &pose, body.mesh(), body.pose());
             let sign = if inside { -1.0 } else { 1.0 };
             (sign * clearance, apart.point_a, (apart.point_a - apart.point_b) * sign)
         } else {
-            match self.way_out(&pose) {
+            match self.first_contact(&pose) {
                 Some(found) => found,
                 None => return 0.0,
             }
         };
-        if let Some(way) = way.try_normalize(0.0) {
-            write::<P>(&pose, &at, &way, gradient);
+        if let Some(direction) = direction.try_normalize(0.0) {
+            write_gradient::<P>(&pose, &at, &direction, gradient);
         }
         value
     }
 }
 
 impl<P: Placement> RigidBody<P> {
-    /// Minus the depth (m) of the first contact, where, and the way out.
-    fn way_out(&mut self, pose: &Isometry3<f64>) -> Option<(f64, Point3<f64>, Vector3<f64>)> {
+    /// The first contact found: minus its depth (m), the deepest point, and the unit direction out of the obstacle.
+    fn first_contact(&mut self, pose: &Isometry3<f64>) -> Option<(f64, Point3<f64>, Vector3<f64>)> {
         let shared = &*self.shared;
-        let ([a, b, c], touching) = shared.placed.iter().find_map(|(id, mesh)| {
-            let body = shared.scene.body(*id)?;
+        let ([a, b, c], touching) = shared.obstacles.placed.iter().find_map(|(id, mesh)| {
+            let body = shared.obstacles.scene.body(*id)?;
             let (own, other) =
                 self.query.intersecting_triangles(&shared.robot, pose, body.mesh(), body.pose())?;
             Some((mesh.triangle(other), shared.robot_mesh.triangle(own).map(|p| pose * p)))
@@ -56,7 +56,7 @@ impl<P: Placement> RigidBody<P> {
             true => normal,
             false => Vector3::new(normal.x, normal.y, 0.0).try_normalize(1e-9)?,
         };
-        let corners = &shared.shape.corners;
+        let corners = &shared.radii.corners;
         let middle = pose * Point3::from(corners.iter().map(|p| p.coords).sum::<Vector3<f64>>() / 8.0);
         let normal = if (middle - a).dot(&normal) < 0.0 { -normal } else { normal };
         let height = |p: &Point3<f64>| (p - a).dot(&normal);
@@ -65,16 +65,22 @@ impl<P: Placement> RigidBody<P> {
     }
 }
 
-/// The derivative of the distance in the direction `way` (unit, world) of a point `at` (world) of the body.
-fn write<P: Placement>(pose: &Isometry3<f64>, at: &Point3<f64>, way: &Vector3<f64>, gradient: &mut [f64]) {
-    let turning = (at.coords - pose.translation.vector).cross(way);
-    let moves = P::MOVES.iter().map(|&axis| way[axis]);
+/// Writes the derivative, by the configuration, of how far the point `at` of the body has moved along the unit vector
+/// `direction` (both in the world).
+fn write_gradient<P: Placement>(
+    pose: &Isometry3<f64>,
+    at: &Point3<f64>,
+    direction: &Vector3<f64>,
+    gradient: &mut [f64],
+) {
+    let turning = (at.coords - pose.translation.vector).cross(direction);
+    let moves = P::MOVES.iter().map(|&axis| direction[axis]);
     let numbers = moves.chain(P::TURNS.iter().map(|&axis| turning[axis]));
     gradient.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
 }
 
-/// By differences: clearance queries at `q` and beside it, one more than there are joints. In collision zeros: an
-/// arm knows no depth.
+/// From differences of the clearance at `q` and beside it: one more clearance query than there are joints. Zero in
+/// collision, because the depth of an arm is not known.
 impl<Q: Coordinates> ClearanceGradient<Q> for Arm {
     fn clearance_gradient(&mut self, q: &Q, reach: f64, gradient: &mut [f64]) -> f64 {
         gradient.fill(0.0);
@@ -84,7 +90,7 @@ impl<Q: Coordinates> ClearanceGradient<Q> for Arm {
         }
         let mut beside = q.clone();
         for (k, slope) in gradient.iter_mut().enumerate().take(q.as_slice().len()) {
-            // Toward the inside where a joint is at its limit.
+            // The other direction where a joint is at its limit.
             for step in [1e-5, -1e-5] {
                 beside.as_mut_slice()[k] = q.as_slice()[k] + step;
                 let there = self.clearance(&beside, 2.0 * here + 1.0);

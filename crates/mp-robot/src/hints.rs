@@ -1,4 +1,4 @@
-//! Along which way an obstacle runs, by its triangles.
+//! Directions along obstacles, from their triangles.
 
 use crate::{Placement, RigidBody};
 use mp_cspace::{Rng, obstacles::ObstacleHints};
@@ -6,11 +6,11 @@ use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 
 impl<P: Placement> RigidBody<P> {
-    /// The first obstacle touched at `q`, and which of its triangles.
+    /// The first obstacle touched at `q`, and the triangle of it that is touched.
     pub(crate) fn hit(&mut self, q: &P::State) -> Option<(usize, usize)> {
         let (pose, shared) = (P::pose(q), &*self.shared);
-        shared.placed.iter().enumerate().find_map(|(obstacle, (id, _))| {
-            let body = shared.scene.body(*id)?;
+        shared.obstacles.placed.iter().enumerate().find_map(|(obstacle, (id, _))| {
+            let body = shared.obstacles.scene.body(*id)?;
             let (_, triangle) =
                 self.query.intersecting_triangles(&shared.robot, &pose, body.mesh(), body.pose())?;
             Some((obstacle, triangle))
@@ -20,12 +20,12 @@ impl<P: Placement> RigidBody<P> {
     /// A triangle (world) of the first obstacle touched at `q`.
     fn hit_triangle(&mut self, q: &P::State) -> Option<[Point3<f64>; 3]> {
         let (obstacle, triangle) = self.hit(q)?;
-        Some(self.shared.placed[obstacle].1.triangle(triangle))
+        Some(self.shared.obstacles.placed[obstacle].1.triangle(triangle))
     }
 
-    /// Any triangle (world) of any obstacle, each obstacle as likely.
+    /// A random triangle (world) of a random obstacle. Each obstacle is equally likely.
     fn any_triangle(&self, rng: &mut Rng) -> Option<[Point3<f64>; 3]> {
-        let placed = &self.shared.placed;
+        let placed = &self.shared.obstacles.placed;
         if placed.is_empty() {
             return None;
         }
@@ -35,8 +35,8 @@ impl<P: Placement> RigidBody<P> {
     }
 }
 
-/// A unit vector along the triangle that the robot can follow, drawn: one of the edges, either way. A robot that
-/// stays in the plane follows the line in which the triangle cuts the plane.
+/// A random unit vector along the triangle: the direction of one of its edges, either way. For a robot that stays in the
+/// plane: of the line in which the triangle cuts the plane.
 fn along<P: Placement>([a, b, c]: [Point3<f64>; 3], rng: &mut Rng) -> Option<Vector3<f64>> {
     let edges = [b - a, c - b, a - c];
     let first = rng.random_range(0..3_usize);
@@ -53,14 +53,14 @@ fn along<P: Placement>([a, b, c]: [Point3<f64>; 3], rng: &mut Rng) -> Option<Vec
     edge.map(|v| v * sign)
 }
 
-/// By the triangles of the obstacles: where the robot touches one, along that triangle.
+/// From the triangles of the obstacles: along the triangle that the robot touches.
 impl<P: Placement> ObstacleHints<P::State> for RigidBody<P> {
     fn touches(&mut self, q: &P::State) -> bool {
         !mp_cspace::Validity::is_valid(self, q)
     }
 
-    /// In the direction of an edge of the triangle hit, or of any triangle, either way; in the plane, of the line
-    /// in which the triangle cuts it. A point inside a solid touches no triangle.
+    /// Moves in the direction of an edge of the triangle hit, or of any triangle, either way; in the plane, of the line
+    /// in which the triangle cuts the plane. `None` for a point inside a solid: it touches no triangle.
     fn along(
         &mut self,
         from: &P::State,
@@ -78,7 +78,7 @@ impl<P: Placement> ObstacleHints<P::State> for RigidBody<P> {
         Some(P::configuration(&Isometry3::from_parts(translation, pose.rotation)))
     }
 
-    /// Rotations are carried in the world: by the turn that leads from one to the other.
+    /// Rotates in the world frame, by the rotation that leads from `from` to `to`.
     fn carried(&self, q: &P::State, from: &P::State, to: &P::State) -> P::State {
         let [q, from, to] = [q, from, to].map(P::pose);
         let shift = to.translation.vector - from.translation.vector;

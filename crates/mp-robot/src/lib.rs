@@ -1,4 +1,4 @@
-//! Robots: what a configuration places where, and when it is free.
+//! Robots: where a configuration places them, and whether it is free.
 //!
 //! | robot | its configurations | moves |
 //! |---|---|---|
@@ -9,14 +9,15 @@
 //! | [`DiscRobot`] | `Vector2<f64>`, in R² | a disc among polygons |
 //! | [`PolygonRobot`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a polygon among polygons |
 //!
-//! The first three are a [`RigidBody`]. Obstacles stand still, but for those of [`AmongMoving`], a rigid body
-//! in space and time among bodies on known trajectories. Robots answer the questions of planners:
-//! [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
-//! [`MotionClearance`](mp_cspace::MotionClearance), by the trees of `mp-collide`; a [`RigidBody`] gives
+//! The first three are a [`RigidBody`]. Obstacles stand still, except those of [`AmongMoving`]: a rigid body
+//! in space and time among bodies on known trajectories.
+//!
+//! For planners, robots implement [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
+//! [`MotionClearance`](mp_cspace::MotionClearance), with the trees of `mp-collide`. A [`RigidBody`] also implements
 //! [`ObstacleHints`](mp_cspace::obstacles::ObstacleHints), [`ObstacleGeometry`](mp_cspace::obstacles::ObstacleGeometry) and
-//! [`ClearanceGradient`](mp_cspace::obstacles::ClearanceGradient) too; and of people:
+//! [`ClearanceGradient`](mp_cspace::obstacles::ClearanceGradient). For messages to people there are
 //! [`explain`](RigidBody::explain) and [`nearest_free`](RigidBody::nearest_free). A [`Verifier`] or
-//! [`ArmVerifier`] proves finished paths by other means.
+//! [`ArmVerifier`] proves finished paths with other code.
 //!
 //! ```
 //! use mp_cspace::{Certified, MotionValidity, Se3, Validity};
@@ -40,23 +41,27 @@
 
 mod arm;
 mod bounds;
+mod counters;
 mod explain;
+mod features;
 mod gradient;
 mod hints;
 mod moving;
-mod outlines;
+mod obstacles;
 mod placement;
 mod planar;
 mod rigid;
-mod solid;
+mod shells;
+mod solid_obstacle;
 mod verify;
 
 pub use arm::{
     Arm, ArmContact, ArmError, ArmModel, ArmVerifier, Coordinate, Joint, JointKind, Kinematics, Link, Mimic,
     UrdfError,
 };
+pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
-pub use placement::{Placement, Planar, Point, Shape, Spatial};
+pub use placement::{BodyRadii, Placement, Planar, Point, Spatial};
 pub use planar::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
-pub use rigid::{CheckCounters, FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
+pub use rigid::{FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
 pub use verify::Verifier;

@@ -1,4 +1,4 @@
-//! Where configurations put a rigid body, and how far they move it.
+//! Where configurations place a rigid body, and how far motions move it.
 
 use mp_cspace::{
     Se2State,
@@ -8,19 +8,19 @@ use mp_geom::{TriMesh, six_from_pose};
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use std::fmt::Debug;
 
-/// What motion bounds know of the shape of a body. Lengths in metres, about the origin of its frame.
+/// The radii and corners of a body, from which its travel is bounded. Metres, in the frame of the body.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
-    /// The largest distance of a point from the origin.
+pub struct BodyRadii {
+    /// The largest distance of a point of the body from the origin.
     pub radius: f64,
-    /// The largest distance of a point from the Z axis.
+    /// The largest distance of a point of the body from the Z axis.
     pub radius_about_z: f64,
-    /// The corners of a box around it.
+    /// The corners of a box around the body.
     pub corners: [Point3<f64>; 8],
 }
 
-impl Shape {
-    /// The shape of `mesh`.
+impl BodyRadii {
+    /// The radii of `mesh`.
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
         let from_z = mesh.vertices().iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
@@ -34,14 +34,14 @@ impl Shape {
     /// An upper bound on the distance of a point of the body from the line through the origin along the
     /// unit vector `axis`.
     #[must_use]
-    pub fn arm(&self, axis: &Vector3<f64>) -> f64 {
+    pub fn radius_about(&self, axis: &Vector3<f64>) -> f64 {
         // The distance from a line is convex: over a box it is largest at a corner.
         let square = self.corners.iter().map(|c| c.coords.cross(axis).norm_squared()).fold(0.0, f64::max);
         square.sqrt().min(self.radius)
     }
 }
 
-/// How configurations of a kind place a rigid body in the world.
+/// How a kind of configuration places a rigid body in the world.
 pub trait Placement: Copy + Debug + Default + Send + Sync + 'static {
     /// A configuration.
     type State: Clone + Debug + Send + Sync;
@@ -49,24 +49,24 @@ pub trait Placement: Copy + Debug + Default + Send + Sync + 'static {
     /// The pose of the body in the world.
     fn pose(q: &Self::State) -> Isometry3<f64>;
 
-    /// The configuration nearest to a pose: what of it the robot cannot do is left out.
+    /// The configuration nearest to a pose: movements that the robot cannot make are left out.
     fn configuration(pose: &Isometry3<f64>) -> Self::State;
 
-    /// An upper bound (m) on the length of the way of any point of `shape`, from `from` to `to` along the
-    /// interpolation of the space: translation on a straight line, rotation about a fixed axis by the
+    /// An upper bound (m) on the length of the path of any point of a body with these radii, from `from` to `to` along
+    /// the interpolation of the space: translation on a straight line, rotation about a fixed axis by the
     /// shorter way, both at constant speed.
-    fn travel(shape: &Shape, from: &Self::State, to: &Self::State) -> f64;
+    fn travel(radii: &BodyRadii, from: &Self::State, to: &Self::State) -> f64;
 
-    /// World axes along which it can move.
+    /// The world axes along which the body can move.
     const MOVES: &'static [usize];
-    /// World axes about which it can turn.
+    /// The world axes about which the body can turn.
     const TURNS: &'static [usize];
 }
 
 /// Bounds are enlarged by this factor against rounding.
 const ROUND_UP: f64 = 1.0 + 1e-12;
 
-/// Anywhere in space, turned anyhow: SE(3).
+/// Any position and rotation in space: SE(3).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spatial;
 
@@ -86,28 +86,28 @@ impl Placement for Spatial {
     /// the origin plus `θ·d` across the axis; with `v` split along and across the axis,
     /// `√(v∥² + (v⊥ + θ·d)²)` bounds its speed. With `d` at most the radius this is at most the customary
     /// `‖Δp‖ + radius·θ`.
-    fn travel(shape: &Shape, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
+    fn travel(radii: &BodyRadii, from: &Isometry3<f64>, to: &Isometry3<f64>) -> f64 {
         let velocity = to.translation.vector - from.translation.vector;
         let angle = rotation_angle(&from.rotation, &to.rotation);
         // Along the axis of the turn, in the frame of the body; its length is the sine of half the angle.
         let turn = (from.rotation.inverse() * to.rotation).imag();
         let sine = turn.norm();
         if sine < 1e-6 {
-            return (velocity.norm() + shape.radius * angle) * ROUND_UP;
+            return (velocity.norm() + radii.radius * angle) * ROUND_UP;
         }
         let axis = turn / sine;
-        // The axis is known to 1e-16/sine rad; what that moves an arm by is added.
-        let arm = shape.arm(&axis) + shape.radius * 1e-9;
+        // The direction of the axis is known to 1e-16/sine rad. The lever is enlarged by the error this causes.
+        let lever = radii.radius_about(&axis) + radii.radius * 1e-9;
         let along = velocity.dot(&(from.rotation * axis));
         let across = (velocity.norm_squared() - along * along).max(0.0).sqrt() + velocity.norm() * 1e-9;
-        along.hypot(across + arm * angle) * ROUND_UP
+        along.hypot(across + lever * angle) * ROUND_UP
     }
 
     const MOVES: &'static [usize] = &[0, 1, 2];
     const TURNS: &'static [usize] = &[0, 1, 2];
 }
 
-/// In the plane z = 0, turned about Z: SE(2), as planar problems of 3D meshes are set.
+/// Positions in the plane z = 0, rotated about Z: SE(2), for planar problems of 3D meshes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Planar;
 
@@ -124,16 +124,16 @@ impl Placement for Planar {
         Se2State::new(x, y, yaw)
     }
     #[inline]
-    fn travel(shape: &Shape, from: &Se2State, to: &Se2State) -> f64 {
+    fn travel(radii: &BodyRadii, from: &Se2State, to: &Se2State) -> f64 {
         let angle = angle_difference(from.angle, to.angle).abs();
-        ((to.translation - from.translation).norm() + shape.radius_about_z * angle) * ROUND_UP
+        ((to.translation - from.translation).norm() + radii.radius_about_z * angle) * ROUND_UP
     }
 
     const MOVES: &'static [usize] = &[0, 1];
     const TURNS: &'static [usize] = &[2];
 }
 
-/// Anywhere in space, never turned: R³.
+/// Any position in space, never rotated: R³.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Point;
 
@@ -149,7 +149,7 @@ impl Placement for Point {
         pose.translation.vector
     }
     #[inline]
-    fn travel(_: &Shape, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
+    fn travel(_: &BodyRadii, from: &Vector3<f64>, to: &Vector3<f64>) -> f64 {
         (to - from).norm() * ROUND_UP
     }
 
@@ -166,15 +166,15 @@ mod tests {
 
     const STEPS: usize = 60;
 
-    /// Compares the bound with the polygonal ways of all vertices (other points are between, and slower than
-    /// the fastest vertex), over the whole motion and over its parts.
+    /// Compares the bound with the polygonal paths of all vertices, over the whole motion and over its parts. Other points
+    /// lie between vertices, and are slower than the fastest vertex.
     fn check<P: Placement, C: Space<State = P::State>>(
         space: &C,
-        (mesh, shape): (&TriMesh, &Shape),
+        (mesh, radii): (&TriMesh, &BodyRadii),
         from: &P::State,
         to: &P::State,
     ) -> Result<f64, TestCaseError> {
-        let bound = P::travel(shape, from, to);
+        let bound = P::travel(radii, from, to);
         let poses: Vec<_> =
             (0..=STEPS).map(|i| P::pose(&space.interpolate(from, to, i as f64 / STEPS as f64))).collect();
         let mut longest = 0.0_f64;
@@ -206,22 +206,22 @@ mod tests {
         #[test]
         fn no_point_travels_farther_in_space(mesh in mesh(), a in pose(), b in pose(), small in -9.0..0.0_f64) {
             let space = Se3::new([-5.0; 3], [5.0; 3]).unwrap();
-            let shape = Shape::of(&mesh);
-            check::<Spatial, _>(&space, (&mesh, &shape), &a, &b)?;
+            let radii = BodyRadii::of(&mesh);
+            check::<Spatial, _>(&space, (&mesh, &radii), &a, &b)?;
             let near = a.lerp_slerp(&b, 10.0_f64.powf(small));
-            check::<Spatial, _>(&space, (&mesh, &shape), &a, &near)?;
+            check::<Spatial, _>(&space, (&mesh, &radii), &a, &near)?;
             let customary = |p: &Isometry3<f64>, q: &Isometry3<f64>| {
                 (p.translation.vector - q.translation.vector).norm()
-                    + shape.radius * rotation_angle(&p.rotation, &q.rotation)
+                    + radii.radius * rotation_angle(&p.rotation, &q.rotation)
             };
-            prop_assert!(Spatial::travel(&shape, &a, &b) <= customary(&a, &b) * (1.0 + 1e-8));
+            prop_assert!(Spatial::travel(&radii, &a, &b) <= customary(&a, &b) * (1.0 + 1e-8));
         }
 
         #[test]
         fn no_point_travels_farther_in_the_plane(mesh in mesh(), a in prop::array::uniform3(-3.1..3.1_f64), b in prop::array::uniform3(-3.1..3.1_f64)) {
             let space = Se2::new([-5.0; 2], [5.0; 2]).unwrap();
             let [a, b] = [a, b].map(|[x, y, t]| Se2State::new(x, y, t));
-            check::<Planar, _>(&space, (&mesh, &Shape::of(&mesh)), &a, &b)?;
+            check::<Planar, _>(&space, (&mesh, &BodyRadii::of(&mesh)), &a, &b)?;
         }
 
         #[test]
@@ -235,21 +235,21 @@ mod tests {
         }
     }
 
-    /// The bound is reached where it can be, and a thin rod turning about itself hardly travels.
+    /// The bound is reached by some motions, and a thin rod that turns about its own axis hardly travels.
     #[test]
     fn the_bound_is_tight() {
         let rod = mp_geom::primitives::cuboid(4.0, 0.02, 0.02).unwrap();
-        let shape = Shape::of(&rod);
+        let radii = BodyRadii::of(&rod);
         let space = Se3::new([-5.0; 3], [5.0; 3]).unwrap();
         let turn = |six| (Isometry3::identity(), pose_from_six(six));
         let (a, b) = turn([0.0, 0.0, 0.0, 2.0, 0.0, 0.0]);
-        assert!(check::<Spatial, _>(&space, (&rod, &shape), &a, &b).unwrap() > 0.999);
+        assert!(check::<Spatial, _>(&space, (&rod, &radii), &a, &b).unwrap() > 0.999);
         let (a, b) = turn([0.0, 0.0, 0.0, 0.0, 0.0, 2.0]);
-        assert!(Spatial::travel(&shape, &a, &b) < 0.03);
+        assert!(Spatial::travel(&radii, &a, &b) < 0.03);
         let (a, b) = turn([3.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        assert!((Spatial::travel(&shape, &a, &b) - 3.0).abs() < 1e-11);
+        assert!((Spatial::travel(&radii, &a, &b) - 3.0).abs() < 1e-11);
         let line = Rn::<3>::new([0.0; 3], [1.0; 3]).unwrap();
         let (a, b) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(1.0, 0.0, 0.0));
-        assert!(check::<Point, _>(&line, (&rod, &shape), &a, &b).unwrap() > 0.999);
+        assert!(check::<Point, _>(&line, (&rod, &radii), &a, &b).unwrap() > 0.999);
     }
 }

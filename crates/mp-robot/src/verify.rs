@@ -1,36 +1,34 @@
 //! The independent check of motions.
 
-use crate::rigid::Reference;
-use crate::solid::Solid;
+use crate::solid_obstacle::SolidObstacle;
 use crate::{Placement, RigidBody};
 use mp_collide::reference::{RefMesh, Sweep, SweepCheck};
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space};
-use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-/// Proves motions of a rigid body free of collision, by other code than planners use: its own motion bound,
-/// its own subdivision, and `mp_collide::reference` (sphere trees). Only the space is shared: its interpolation
-/// is what a motion *is*.
+/// Proves motions of a rigid body free of collision, with other code than planners use: its own motion bound,
+/// its own subdivision, and `mp_collide::reference` (sphere trees). Only the space is shared with the checker: its
+/// interpolation defines what a motion is.
 ///
-/// The proof is a [`Sweep`], to a margin of the tolerance. So:
+/// The proof is a [`Sweep`] with the tolerance as its margin. Therefore:
 ///
-/// - free means: clearance of at least the tolerance all along, however thin the obstacles;
-/// - a motion with clearance of at least twice the tolerance all along is found free;
-/// - a motion with a tested state of less is [`Undecided`](MotionCheck::Unproven), as are motions longer
-///   than 10⁹ tolerances or that take a sweep too long.
+/// - free means a clearance of at least the tolerance all along, however thin the obstacles are;
+/// - a motion with a clearance of at least twice the tolerance all along is found free;
+/// - a motion with a tested state of less clearance is [`Unproven`](MotionCheck::Unproven), as are motions longer
+///   than 10⁹ tolerances and motions for which the sweep takes too long.
 ///
 /// Interpolation in the space must move the origin on a straight line and turn by at most half a turn about
-/// a fixed axis, both at constant speed, as `Se3`, `Se2` and `Rn` do. Obstacles are surfaces; for a point,
-/// which can touch one only by chance, motions that begin inside a solid collide too.
+/// a fixed axis, both at constant speed, as `Se3`, `Se2` and `Rn` do. Obstacles are surfaces. A point can touch a surface
+/// only by chance; for a point, motions that begin inside a solid collide too.
 #[derive(Clone, Debug)]
 pub struct Verifier<'c, C, P> {
     space: &'c C,
     robot: Arc<RefMesh>,
     world: Option<Arc<RefMesh>>,
-    /// For a point; no others.
-    solids: Vec<Solid>,
+    /// Of a point robot only; empty for others.
+    solids: Vec<SolidObstacle>,
     radius: f64,
     tolerance: f64,
     sweep: Sweep,
@@ -41,18 +39,18 @@ pub struct Verifier<'c, C, P> {
 const MAX_LENGTH: f64 = 1e9;
 
 impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
-    /// A verifier for `robot` in `space`, to a tenth of the robot's [tolerance](RigidBody::tolerance).
+    /// A verifier for `robot` in `space` with a tenth of the robot's [tolerance](RigidBody::tolerance).
     ///
     /// # Errors
-    /// When the tolerance is not positive and finite, which that of a robot always is.
+    /// When the tolerance is not positive and finite. The tolerance of a robot always is.
     pub fn new(space: &'c C, robot: &RigidBody<P>) -> Result<Self, ParameterError> {
         Self::with_tolerance(space, robot, robot.tolerance() * 0.1)
     }
 
-    /// A verifier to a tolerance of your own (m).
+    /// A verifier with the tolerance `tolerance` (m).
     ///
     /// # Errors
-    /// When it is not positive and finite.
+    /// When the tolerance is not positive and finite.
     pub fn with_tolerance(
         space: &'c C,
         robot: &RigidBody<P>,
@@ -63,17 +61,12 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
             return Err(ParameterError { name, expected, value: tolerance });
         }
         let shared = &robot.shared;
-        let reference = shared.reference.get_or_init(|| Reference {
-            robot: Arc::new(RefMesh::new(&shared.robot_mesh)),
-            world: TriMesh::merged(shared.placed.iter().map(|(_, mesh)| &**mesh))
-                .map(|mesh| Arc::new(RefMesh::new(&mesh))),
-        });
-        let solids = if shared.shape.radius == 0.0 { shared.solids() } else { &[] };
+        let solids = if shared.radii.radius == 0.0 { shared.solids() } else { &[] };
         let from_origin = |p: &Point3<f64>| p.coords.norm();
         Ok(Self {
             space,
-            robot: Arc::clone(&reference.robot),
-            world: reference.world.clone(),
+            robot: shared.reference(),
+            world: shared.obstacles.reference(),
             solids: solids.iter().map(|(_, solid)| solid.clone()).collect(),
             radius: shared.robot_mesh.vertices().iter().map(from_origin).fold(0.0, f64::max),
             tolerance,
@@ -82,13 +75,13 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         })
     }
 
-    /// Motions found free keep this far from every obstacle (m).
+    /// The clearance (m) that motions found free keep from every obstacle.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// Pairs of boxes compared so far.
+    /// How many pairs of boxes have been compared so far.
     #[must_use]
     pub fn comparisons(&self) -> u64 {
         self.sweep.compared()
@@ -101,9 +94,9 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         touching.is_err_and(|distance| distance <= 0.0)
     }
 
-    /// How far apart two poses can put a point of the robot.
+    /// An upper bound (m) on the distance between the places of a robot point at two poses.
     fn displacement(&self, a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
-        // The imaginary part of the quaternion between has the sine of half the angle for length.
+        // The length of the imaginary part of the relative quaternion is the sine of half the angle.
         let half_turn_sine = (a.rotation.quaternion().conjugate() * b.rotation.quaternion()).imag().norm();
         (a.translation.vector - b.translation.vector).norm() + 2.0 * self.radius * half_turn_sine
     }

@@ -19,8 +19,8 @@ fn world_triangles() -> Vec<[Point3<f64>; 3]> {
     meshes.flat_map(|m| (0..m.triangles().len()).map(|i| m.triangle(i)).collect::<Vec<_>>()).collect()
 }
 
-fn parallel(way: &Vector3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> bool {
-    (b - a).cross(&(c - a)).normalize().dot(way).abs() < 1e-9
+fn parallel(direction: &Vector3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> bool {
+    (b - a).cross(&(c - a)).normalize().dot(direction).abs() < 1e-9
 }
 
 /// Each hint at a hit is parallel to a triangle of an obstacle that the robot touches there, as long as asked, and
@@ -39,17 +39,17 @@ fn hints<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBod
             offset(to).normalize()
         };
         let any = body.along(&from, &toward, None, &mut rng).unwrap();
-        let way = checked(&any);
-        assert!(triangles.iter().any(|t| parallel(&way, t)));
+        let direction = checked(&any);
+        assert!(triangles.iter().any(|t| parallel(&direction, t)));
         let along = body.along(&from, &toward, Some(&q), &mut rng);
         assert_eq!(along.is_some(), touching);
         let Some(along) = along else { continue };
-        let way = checked(&along);
+        let direction = checked(&along);
         let placed = body.mesh().transformed(&P::pose(&q));
         let touched = |t: &&[Point3<f64>; 3]| {
             (0..placed.triangles().len()).any(|i| triangle_distance(&placed.triangle(i), t) < 1e-9)
         };
-        assert!(triangles.iter().filter(touched).any(|t| parallel(&way, t)), "{way:?}");
+        assert!(triangles.iter().filter(touched).any(|t| parallel(&direction, t)), "{direction:?}");
         hit += 1;
     }
     assert!(hit > 20, "{hit}");
@@ -132,7 +132,7 @@ fn parted() -> Vec<common::Obstacle> {
 
 /// What is touched is touched with nothing else around, and nothing is where the robot is free; the far are free, turned
 /// anyhow.
-fn outlines<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBody<P>) {
+fn obstacle_geometry<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBody<P>) {
     let parts: Vec<TriMesh> =
         parted().iter().flat_map(|(_, mesh, pose)| mesh.transformed(pose).parts()).collect();
     assert_eq!(body.obstacles().len(), parts.len());
@@ -166,8 +166,8 @@ fn outlines<P: Placement, C: Space<State = P::State>>(space: &C, mut body: Rigid
 #[test]
 fn outlines_tell_what_is_touched_and_what_is_far() {
     let (low, high) = ([-4.0; 3], [4.0; 3]);
-    outlines(&Se3::new(low, high).unwrap(), FreeFlyer::new(&robot(), parted()).unwrap());
-    outlines(&Se2::new([-4.0; 2], [4.0; 2]).unwrap(), PlanarFlyer::new(&robot(), parted()).unwrap());
+    obstacle_geometry(&Se3::new(low, high).unwrap(), FreeFlyer::new(&robot(), parted()).unwrap());
+    obstacle_geometry(&Se2::new([-4.0; 2], [4.0; 2]).unwrap(), PlanarFlyer::new(&robot(), parted()).unwrap());
 }
 
 #[test]
@@ -192,9 +192,9 @@ fn the_robot_is_put_where_it_is_asked() {
         }
         assert!((rotation_angle(&a.rotation, &b.rotation) - 0.7).abs() < 1e-7);
 
-        let flat = planar.aligned(&place, &direction, 0.0);
-        assert!((planar.place_of(&flat, &robot.center) - place).xy().norm() < 1e-12);
-        let along = (flat.to_isometry3(0.0).rotation * robot.axis).xy().normalize();
+        let turned = planar.aligned(&place, &direction, 0.0);
+        assert!((planar.place_of(&turned, &robot.center) - place).xy().norm() < 1e-12);
+        let along = (turned.to_isometry3(0.0).rotation * robot.axis).xy().normalize();
         assert!((along - direction.xy().normalize()).norm() < 1e-6);
 
         // On the box of the clutter, 1 by 0.5 by 2.

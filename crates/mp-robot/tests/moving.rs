@@ -21,7 +21,7 @@ fn there_and_back() -> Trajectory {
     .unwrap()
 }
 
-fn movers() -> Vec<(String, TriMesh, Trajectory)> {
+fn moving_bodies() -> Vec<(String, TriMesh, Trajectory)> {
     let circling = (0..=8).map(|i| {
         let a = f64::from(i) * 0.7;
         (0.6 * f64::from(i), pose_from_six([a.cos(), a.sin(), 0.1, a, 0.0, 0.0]))
@@ -72,12 +72,12 @@ fn checks_and_verifier_agree_with_dense_sampling() {
     let space = SpaceTime::new(positions, 5.0, 4.0).unwrap();
     let body = FreeFlyer::new(&robot(), clutter()).unwrap();
     let tolerance = 1e-3;
-    let mut among = AmongMoving::new(body, movers()).unwrap();
+    let mut among = AmongMoving::new(body, moving_bodies()).unwrap();
     let mut verifier = MovingVerifier::new(&space, &among).unwrap();
     let certified = Certified::new(&space, among.clone(), tolerance).unwrap();
     let mut check = Forward { space: &space, check: certified };
     let mut rng = Rng::seed(11);
-    let (mut free, mut hit, mut by_mover) = (0, 0, 0);
+    let (mut free, mut hit, mut by_moving) = (0, 0, 0);
     while free < 60 || hit < 60 {
         let from = space.sample_uniform(&mut rng);
         let to = space.interpolate(&from, &space.sample_uniform(&mut rng), 0.4);
@@ -105,7 +105,7 @@ fn checks_and_verifier_agree_with_dense_sampling() {
             _ => {
                 assert!(least < tolerance + slack, "{least}");
                 hit += 1;
-                by_mover += u32::from(
+                by_moving += u32::from(
                     verified != MotionCheck::Unproven { at: 0.0 }
                         && among.body().clone().clearance(&from.0, 1.0) > 0.0,
                 );
@@ -115,7 +115,7 @@ fn checks_and_verifier_agree_with_dense_sampling() {
             assert!(clearance <= least + 1e-9);
         }
     }
-    assert!(by_mover > 5 && among.counters().collision_checks > 0);
+    assert!(by_moving > 5 && among.counters().collision_checks > 0);
 }
 
 /// A wall of a hundredth of a millimetre comes the other way: whoever moves, they meet.

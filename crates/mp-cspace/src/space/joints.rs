@@ -2,7 +2,7 @@
 
 use super::{Factored, Space, TrueMetric, lerp, scale};
 use crate::angle::{angle_at, angle_difference, angle_lerp, wrap_angle};
-use crate::{Rng, SpaceError, nn::Layout};
+use crate::{Rng, SpaceError, layout::Layout};
 use nalgebra::{DVector, SVector};
 use rand::RngExt;
 use std::f64::consts::PI;

@@ -1,7 +1,7 @@
 //! Products of two spaces; nest them for more.
 
 use super::{Factored, Joints, Rn, Space, TrueMetric};
-use crate::{Rng, SpaceError, error::weight, nn::Layout};
+use crate::{Rng, SpaceError, error::weight, layout::Layout};
 use nalgebra::{DVector, SVector};
 
 /// The product of two spaces. Its states are pairs.

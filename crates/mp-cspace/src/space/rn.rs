@@ -1,7 +1,7 @@
 //! R^n, its dimension known at compile time.
 
 use super::{Factored, Space, TrueMetric, ellipsoid, lerp, scale};
-use crate::{Rng, SpaceError, error::diagonal, nn::Layout};
+use crate::{Rng, SpaceError, error::diagonal, layout::Layout};
 use nalgebra::SVector;
 use rand::RngExt;
 

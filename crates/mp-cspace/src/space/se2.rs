@@ -3,7 +3,7 @@
 use super::poses::pose_space;
 use super::{Factored, Rn, Space, TrueMetric};
 use crate::angle::{angle_at, angle_difference, angle_lerp, wrap_angle};
-use crate::{Rng, nn::Layout};
+use crate::{Rng, layout::Layout};
 use nalgebra::{Isometry2, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 use rand::RngExt;
 use std::f64::consts::PI;

@@ -4,7 +4,7 @@ use super::poses::pose_space;
 use super::so3::{is_unit, rotation_at, turn, turned, twice};
 use super::{Factored, Rn, Space, TrueMetric};
 use crate::angle::{rotation_angle, slerp};
-use crate::{Rng, nn::Layout};
+use crate::{Rng, layout::Layout};
 use nalgebra::{Isometry3, Vector3};
 use rand::RngExt;
 use std::f64::consts::PI;

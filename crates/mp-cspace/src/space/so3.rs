@@ -2,7 +2,7 @@
 
 use super::{Factored, Space, TrueMetric};
 use crate::angle::{rotation_angle, slerp};
-use crate::{Rng, nn::Layout};
+use crate::{Rng, layout::Layout};
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use rand::RngExt;
 use std::f64::consts::{PI, TAU};

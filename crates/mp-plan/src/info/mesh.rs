@@ -11,45 +11,45 @@ use std::path::Path;
 pub struct MeshInfo {
     /// The file.
     pub file: String,
-    /// What is known of the mesh.
+    /// The properties of the mesh.
     #[serde(flatten)]
     pub surface: Surface,
 }
 
-/// What is known of a mesh. Metres; counts of defects are 0 for a sound solid.
+/// The properties of a mesh, in metres. Counts of defects are 0 for a sound solid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Surface {
-    /// `metres`.
+    /// Always `metres`.
     pub units: &'static str,
-    /// Triangles.
+    /// The number of triangles.
     pub triangles: usize,
-    /// Vertices.
+    /// The number of vertices.
     pub vertices: usize,
-    /// Least corner of the box around it.
+    /// The lower corner of the box around it.
     pub min: [f64; 3],
-    /// Greatest corner of the box around it.
+    /// The upper corner of the box around it.
     pub max: [f64; 3],
-    /// Area of its surface, m².
+    /// The area of its surface, m².
     pub area: f64,
-    /// Every edge has two sides, oriented one way: it bounds a volume.
+    /// Whether it bounds a volume: every edge joins two triangles of the same orientation.
     pub watertight: bool,
-    /// Every edge joins at most two triangles, and no vertex joins parts.
+    /// Whether every edge joins at most two triangles, and no vertex joins parts.
     pub manifold: bool,
-    /// Neighbours are turned the same way.
+    /// Whether neighbouring triangles have the same orientation.
     pub oriented: bool,
-    /// Parts that do not hang together.
+    /// The number of connected parts.
     pub parts: usize,
-    /// Edges of one triangle.
+    /// The number of edges that belong to one triangle only.
     pub boundary_edges: usize,
-    /// Edges of more than two triangles.
+    /// The number of edges that belong to more than two triangles.
     pub crowded_edges: usize,
-    /// Edges whose triangles are turned against each other.
+    /// The number of edges whose triangles have opposite orientations.
     pub misoriented_edges: usize,
-    /// Vertices where parts of the surface touch in a point.
+    /// The number of vertices where parts of the surface touch in a point.
     pub pinched_vertices: usize,
-    /// Triangles without area.
+    /// The number of triangles without area.
     pub degenerate_triangles: usize,
-    /// Triangles that are there twice.
+    /// The number of triangles that occur twice.
     pub duplicate_triangles: usize,
     /// What is wrong with it, in words.
     pub warnings: Vec<String>,
@@ -59,7 +59,7 @@ impl MeshInfo {
     /// Reads a mesh file.
     ///
     /// # Errors
-    /// When it cannot be read, or is no mesh.
+    /// When the file cannot be read, or does not hold a valid mesh.
     pub fn read(file: &Path) -> Result<Self, Error> {
         let mesh = mp_io::read_mesh(file)?;
         Ok(Self { file: file.display().to_string(), surface: Surface::of(&mesh) })
@@ -67,7 +67,7 @@ impl MeshInfo {
 }
 
 impl Surface {
-    /// What is known of a mesh.
+    /// The properties of a mesh.
     #[must_use]
     pub fn of(mesh: &TriMesh) -> Self {
         let (t, aabb) = (mesh.topology(), mesh.aabb());

@@ -12,28 +12,28 @@ use std::path::Path;
 pub struct PathInfo {
     /// The file.
     pub file: String,
-    /// How many configurations there are.
+    /// The number of configurations.
     pub configurations: usize,
-    /// How many numbers each has.
+    /// How many numbers each configuration has.
     pub numbers: usize,
-    /// The first.
+    /// The first configuration.
     pub start: Vec<f64>,
-    /// The last.
+    /// The last configuration.
     pub goal: Vec<f64>,
-    /// The least of each number.
+    /// The least value of each number.
     pub min: Vec<f64>,
-    /// The largest of each number.
+    /// The largest value of each number.
     pub max: Vec<f64>,
-    /// Of a rigid body: the length of the way of its origin, metres.
+    /// For a rigid body: the length of the path of its origin, metres.
     pub length: Option<f64>,
-    /// Of a rigid body: the sum of the angles it turns, radians.
+    /// For a rigid body: the sum of the angles by which it turns, radians.
     pub turned: Option<f64>,
     /// What is odd about it.
     pub warnings: Vec<String>,
 }
 
 impl PathInfo {
-    /// What there is to say of a path.
+    /// The properties of a path.
     #[must_use]
     pub fn of(file: &Path, path: &PathRows) -> Self {
         let all = &path.rows;

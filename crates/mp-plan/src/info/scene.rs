@@ -13,60 +13,60 @@ pub struct SceneInfo {
     pub file: Option<String>,
     /// Its name.
     pub name: String,
-    /// The space.
+    /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
     pub space: String,
-    /// What the numbers of a configuration are.
+    /// The meaning of each number of a configuration.
     pub columns: Vec<ColumnInfo>,
-    /// Where paths begin.
+    /// The start configuration.
     pub start: Vec<f64>,
-    /// Where they may end.
+    /// The goal configurations.
     pub goals: Vec<Vec<f64>>,
     /// The bodies, those of the robot first.
     pub bodies: Vec<BodyInfo>,
-    /// Triangles of all obstacles together.
+    /// The number of triangles of all obstacles.
     pub triangles: usize,
-    /// The share of the space that is free, by samples.
+    /// The fraction of the space that is free, estimated from samples.
     pub free: f64,
-    /// What else there is to say of such robots.
+    /// Further facts about the robot: name and text.
     pub details: Vec<(String, String)>,
     /// What is wrong or odd about it.
     pub warnings: Vec<String>,
 }
 
-/// What one number of a configuration is.
+/// The meaning of one number of a configuration.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnInfo {
     /// Its name.
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// The least and the largest value; none where it turns without end.
+    /// The least and the largest value; none for an angle without limits.
     pub limits: Option<[f64; 2]>,
 }
 
-/// What is known of a body.
+/// The properties of a body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BodyInfo {
     /// Its name.
     pub name: String,
     /// Whether it belongs to the robot.
     pub moves: bool,
-    /// Where it stands: x y z α β γ.
+    /// The pose of a body that stands still: x y z α β γ.
     pub pose: Option<[f64; 6]>,
     /// Its mesh, if it has one.
     pub mesh: Option<Surface>,
-    /// Corners, of an area in the plane.
+    /// The number of corners, for an area in the plane.
     pub corners: Option<usize>,
 }
 
 impl SceneInfo {
-    /// What there is to say of a scene. Takes some thousands of collision queries.
+    /// The properties of a scene. Takes some thousands of collision queries.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let bodies: Vec<BodyInfo> = scene.bodies().iter().map(BodyInfo::of).collect();
         let mut warnings: Vec<String> = Vec::new();
         for body in &bodies {
-            // One line for each body: surfaces of drawing programs have every one of these faults.
+            // One line for each body: meshes from drawing programs often have all of these defects.
             let defects = body.mesh.as_ref().map(|mesh| mesh.warnings.join("; ")).unwrap_or_default();
             warnings.extend((!defects.is_empty()).then(|| format!("{}: {defects}", body.name)));
         }
@@ -116,7 +116,7 @@ impl BodyInfo {
     }
 }
 
-/// Bodies listed before the rest is only counted.
+/// How many bodies are listed. The others are only counted.
 const LISTED: usize = 40;
 
 impl fmt::Display for SceneInfo {

@@ -1,15 +1,17 @@
 //! Arms, and other trees of links, among meshes.
 
-use super::{Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, no_metric};
+use super::{
+    Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, hints_and_gradient, no_metric,
+};
 use crate::{Error, Metric, brief};
-use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric, obstacles::ClearanceGradient};
+use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
 use mp_geom::TriMesh;
 use mp_io::{PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};
 use nalgebra::{DVector, Isometry3};
 use std::path::PathBuf;
 
-/// Between two copies of the arm in a picture no point moves farther than this share of its reach.
+/// Between two copies of the arm in a picture no point moves farther than this fraction of its reach.
 const PICTURE_SPACING: f64 = 0.12;
 
 /// The joint values of an arm.
@@ -24,18 +26,18 @@ pub struct ArmScene {
     space: Joints<Configuration>,
     start: Configuration,
     goals: Vec<Configuration>,
-    /// The file it came from, for the place of errors.
+    /// The problem that it was made from, to locate errors in its file.
     source: Option<Box<RobotProblem>>,
     mesh_files: Vec<PathBuf>,
 }
 
 impl ArmScene {
-    /// The arm of `model` among obstacles. Configurations have one number for each joint that moves: radians, or metres
-    /// where it slides.
+    /// The arm of `model` among obstacles. Configurations have one number for each coordinate: radians, or metres for a
+    /// prismatic joint.
     ///
     /// # Errors
-    /// When the model makes no sense, an obstacle cannot be placed, there is no goal, or a configuration has another
-    /// number of joints than the arm.
+    /// When the model is not valid, an obstacle cannot be placed, there is no goal, or the length of a configuration does not
+    /// fit the arm.
     pub fn new(
         name: impl Into<String>,
         model: &ArmModel,
@@ -59,7 +61,7 @@ impl ArmScene {
         Ok(Arm::new(model, bodies)?)
     }
 
-    /// The scene of configurations whose length was checked.
+    /// The scene, from configurations whose length has been checked.
     fn assembled(
         name: String,
         arm: Arm,
@@ -76,11 +78,11 @@ impl ArmScene {
         Ok(Self { name, arm, obstacles, space, start, goals, source: None, mesh_files: Vec::new() })
     }
 
-    /// Makes the problem of a file ready.
+    /// The scene of the problem of a file.
     ///
     /// # Errors
-    /// When the URDF, the SRDF or the limits make no sense, or a configuration has another number of joints than the
-    /// robot: with the place in the file.
+    /// When the URDF, the SRDF or the limits are not valid, or the length of a configuration does not fit the robot: with the
+    /// line of the file.
     pub fn from_problem(problem: RobotProblem) -> Result<Self, Error> {
         let what = format!("cannot make a robot of {}", problem.urdf_file.display());
         let of = &|e: Error| e.context(what.clone());
@@ -136,20 +138,20 @@ impl ArmScene {
         &self.mesh_files
     }
 
-    /// The problem of the file it came from.
+    /// The problem that it was made from, if it was made from a file.
     #[must_use]
     pub fn problem(&self) -> Option<&RobotProblem> {
         self.source.as_deref()
     }
 
-    /// The links that have a shape, by index in the model.
+    /// The links that have a shape: index in the model, and mesh.
     fn solid_links(&self) -> impl Iterator<Item = (usize, TriMesh)> {
         let links = self.arm.model().links.iter().enumerate();
         links.filter_map(|(i, link)| Some((i, TriMesh::merged(link.shapes.iter())?)))
     }
 }
 
-/// The model of a URDF, whose meshes are found by `mesh`.
+/// The model of a URDF. `mesh` finds its meshes.
 #[cfg(feature = "urdf")]
 fn from_urdf(urdf: &str, mesh: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<ArmModel, Error> {
     ArmModel::from_urdf(urdf, mesh).map_err(|e| Error::new(e.to_string()))
@@ -161,7 +163,7 @@ fn from_urdf(_: &str, _: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<
         .help("build it with the feature, which is on by default"))
 }
 
-/// What is wrong with the length of a configuration, and what to do.
+/// An error message and a remedy if a configuration has the wrong length.
 fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 2]> {
     let (found, joints) = (values.len(), names.len());
     (found != joints).then(|| {
@@ -172,8 +174,7 @@ fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 
 
 impl Queries for Arm {
     fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
+        self.counters().queries()
     }
 }
 
@@ -212,19 +213,11 @@ impl RobotKind for ArmScene {
         &'c self,
         counted: &dyn Fn() -> Counted<'c, Arm>,
     ) -> ObstacleKnowledge<'c, Configuration> {
-        let mut field = counted();
-        let gradient = move |q: &Configuration, reach: f64, gradient: &mut [f64]| {
-            field.clearance_gradient(q, reach, gradient)
-        };
-        ObstacleKnowledge {
-            hints: Some(Box::new(counted())),
-            gradient: Some(Box::new(gradient)),
-            ..ObstacleKnowledge::default()
-        }
+        hints_and_gradient(counted)
     }
     fn measured(&self, metric: Metric) -> Result<Measured<'_, Configuration>, Error> {
         match metric {
-            // The metric of the space is the Euclidean one.
+            // The default metric of the space is the Euclidean metric.
             Metric::Default | Metric::Euclidean => Ok(Measured::compiled(&self.space)),
             Metric::Manhattan => {
                 Ok(Measured::by_coordinates(&WithMetric::new(self.space.clone(), Manhattan)))
@@ -319,19 +312,14 @@ impl RobotKind for ArmScene {
         let name = |i: usize| self.arm.model().links[i].name.clone();
         let links = self.solid_links();
         let links = links.map(|(i, mesh)| Body { name: name(i), shape: BodyShape::Mesh(mesh), pose: None });
-        let still = self.obstacles.iter().map(|o| Body {
-            name: o.name.clone(),
-            shape: BodyShape::Mesh(o.mesh.clone()),
-            pose: Some(o.pose),
-        });
-        links.chain(still).collect()
+        links.chain(self.obstacles.iter().map(Body::obstacle)).collect()
     }
     fn poses(&self, q: &Configuration) -> Vec<Isometry3<f64>> {
         let all = self.arm.kinematics().link_poses(q.as_slice()).unwrap_or_default();
         self.solid_links().filter_map(|(i, _)| all.get(i).copied()).collect()
     }
     fn traced(&self, q: &Configuration) -> nalgebra::Point3<f64> {
-        // Of links the last is the farthest down the tree, in most files.
+        // In most files the last link is the one farthest down the tree.
         let all = self.arm.kinematics().link_poses(q.as_slice()).unwrap_or_default();
         all.last().map_or(nalgebra::Point3::origin(), |pose| pose.translation.vector.into())
     }

@@ -1,6 +1,9 @@
-//! Robots of the plane among polygons: a disc, or a polygon that turns.
+//! Robots in the plane among polygons: a disc, or a polygon that turns.
 
-use super::{Body, BodyShape, Checker, Column, Counted, End, Measured, Queries, RobotKind, Touch, no_metric};
+use super::{
+    Body, BodyShape, Checker, Column, Counted, End, Measured, Queries, RobotKind, Touch, hints_and_gradient,
+    no_metric,
+};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, Metric};
 use mp_cspace::erased::CompiledIndex;
@@ -18,14 +21,14 @@ use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Shortcuts keep this share of the robot's radius away from obstacles.
-const ROOM: f64 = 0.002;
+/// The clearance that shortcuts keep, as a fraction of the robot's radius.
+const SHORTCUT_CLEARANCE: f64 = 0.002;
 /// Between two copies of the robot in a picture its origin moves about this many radii.
 const PICTURE_SPACING: f64 = 1.5;
 /// Corners of the ring that a disc is drawn as.
 const CORNERS: u32 = 48;
 
-/// A robot of the plane: [`DiscRobot`] or [`PolygonRobot`].
+/// A robot in the plane: [`DiscRobot`] or [`PolygonRobot`].
 pub trait PlanarBody:
     Checker<Self::State> + ObstacleHints<Self::State> + ClearanceGradient<Self::State> + Debug + 'static
 {
@@ -33,30 +36,30 @@ pub trait PlanarBody:
     type State: TreeState + RoadmapState + StateVector + 'static;
     /// The space of configurations.
     type Space: Factored + CompiledIndex + Space<State = Self::State> + Debug;
-    /// The independent checker.
+    /// The independent check of finished paths.
     type Verifier<'c>: MotionValidity<Self::State> + Clone + Send + Sync
     where
         Self: 'c;
-    /// What reports call the space.
+    /// The name of the space in reports.
     const SPACE: &'static str;
-    /// What the numbers of a configuration are.
+    /// The name and the unit of each number of a configuration.
     const COLUMNS: &'static [(&'static str, &'static str)];
 
-    /// The robot of a file in a world.
+    /// The robot with the shape `body` in a world.
     ///
     /// # Errors
-    /// When it is the other kind of robot, or has no size.
+    /// When the shape is that of the other kind of robot, or its size is not valid.
     fn among(world: Arc<PlanarWorld>, body: &PlanarShape) -> Result<Self, Error>;
-    /// The space between two corners, metres.
+    /// The space within the box between two corners, metres.
     ///
     /// # Errors
-    /// When there is nothing between them.
+    /// When the box is empty.
     fn space(bounds: [[f64; 2]; 2]) -> Result<Self::Space, Error>;
     /// A verifier.
     fn verifier<'c>(&self, space: &'c Self::Space) -> Self::Verifier<'c>;
-    /// The world around it.
+    /// The world in which it moves.
     fn world(&self) -> &Arc<PlanarWorld>;
-    /// The clearance that certified checks resolve, metres.
+    /// The clearance (m) that certified checks resolve.
     fn tolerance(&self) -> f64;
     /// The largest distance of a point of the robot from its origin, metres.
     fn radius(&self) -> f64;
@@ -66,23 +69,21 @@ pub trait PlanarBody:
     fn row(q: &Self::State) -> Vec<f64>;
     /// The rings around it, in its own frame, metres.
     fn rings(&self) -> Vec<Vec<Point2<f64>>>;
-    /// Where it is.
+    /// The pose of a configuration.
     fn pose(q: &Self::State) -> Isometry2<f64>;
-    /// The same turn elsewhere.
+    /// `q` moved by the vector `by`, with the same rotation.
     fn moved(q: &Self::State, by: Vector2<f64>) -> Self::State;
 }
 
 impl Queries for DiscRobot {
     fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
+        self.counters().queries()
     }
 }
 
 impl Queries for PolygonRobot {
     fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
+        self.counters().queries()
     }
 }
 
@@ -180,7 +181,7 @@ impl PlanarBody for PolygonRobot {
     }
 }
 
-/// A robot of the plane among polygons, with a start and goals.
+/// A robot in the plane among polygons, with a start and goals.
 #[derive(Clone, Debug)]
 pub struct PlanarScene<B: PlanarBody> {
     problem: PlanarProblem,
@@ -191,10 +192,10 @@ pub struct PlanarScene<B: PlanarBody> {
 }
 
 impl<B: PlanarBody> PlanarScene<B> {
-    /// Makes `problem` ready.
+    /// The scene of `problem`.
     ///
     /// # Errors
-    /// When the robot is of the other kind, or world, robot or bounds make no sense.
+    /// When the robot is of the other kind, or world, robot or bounds are not valid.
     pub fn new(problem: PlanarProblem) -> Result<Self, Error> {
         let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
         let world = PlanarWorld::new(polygons, problem.file.walls).map_err(|e| Error::new(e.to_string()))?;
@@ -205,7 +206,7 @@ impl<B: PlanarBody> PlanarScene<B> {
         Ok(Self { problem, robot, space, start, goals })
     }
 
-    /// What it was made of.
+    /// The problem that it was made from.
     #[must_use]
     pub fn problem(&self) -> &PlanarProblem {
         &self.problem
@@ -259,18 +260,10 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         self.tolerance().max(1e-4 * self.robot.radius())
     }
     fn shortcut_clearance(&self) -> f64 {
-        (ROOM * self.robot.radius()).max(self.tolerance())
+        (SHORTCUT_CLEARANCE * self.robot.radius()).max(self.tolerance())
     }
     fn obstacles<'c>(&'c self, counted: &dyn Fn() -> Counted<'c, B>) -> ObstacleKnowledge<'c, B::State> {
-        let mut field = counted();
-        let gradient = move |q: &B::State, reach: f64, gradient: &mut [f64]| {
-            field.clearance_gradient(q, reach, gradient)
-        };
-        ObstacleKnowledge {
-            hints: Some(Box::new(counted())),
-            gradient: Some(Box::new(gradient)),
-            ..ObstacleKnowledge::default()
-        }
+        hints_and_gradient(counted)
     }
     fn measured(&self, metric: Metric) -> Result<Measured<'_, B::State>, Error> {
         match metric {
@@ -307,7 +300,7 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         }
         touches
     }
-    /// A free place with the same turn: the nearest on circles about it.
+    /// A free configuration with the same rotation, on the smallest of growing circles around `q` that has one.
     fn nearest_free(&self, q: &B::State) -> Option<B::State> {
         let mut robot = self.robot.clone();
         let mut reach = 0.01 * self.robot.radius().max(1e-3 * self.space.extent());

@@ -1,7 +1,8 @@
 //! Rigid bodies among meshes, in space or in the plane.
 
 use super::{
-    Body, BodyShape, Column, Counted, End, Measured, Mismatch, PathFormat, Queries, RobotKind, Touch, tuples,
+    Body, BodyShape, Column, Counted, End, Measured, Mismatch, PathFormat, Queries, RobotKind, Touch,
+    hints_and_gradient, tuples,
 };
 use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
@@ -11,7 +12,7 @@ use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, Coordina
 use mp_cspace::{
     DefaultNn, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric as SpaceMetric,
     ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric,
-    WithMetric, obstacles::ClearanceGradient,
+    WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{RigidProblem, SpaceKind};
@@ -20,11 +21,10 @@ use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use std::fmt::Debug;
 
-/// A path begins at the start and ends at the goal if no point of the robot is farther off than this, in radii of the
-/// robot.
-const MATCH: f64 = 1e-3;
-/// A number of a planar path that must be zero may be this far from it.
-const PLANAR: f64 = 1e-9;
+/// The ends of a path match start and goal if no point of the robot is farther off than this, in radii of the robot.
+const END_TOLERANCE: f64 = 1e-3;
+/// How far from zero a number of a planar path may be that must be zero.
+const PLANE_TOLERANCE: f64 = 1e-9;
 /// Between two copies of the robot in a picture its points move about this many radii.
 const PICTURE_SPACING: f64 = 0.55;
 
@@ -32,7 +32,7 @@ const PICTURE_SPACING: f64 = 0.55;
 pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateState + StateVector> {
     /// The space of its configurations.
     type Space: Factored + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
-    /// The metric of the farthest moving point.
+    /// The metric of the point that moves farthest.
     type Displacement: SpaceMetric<Self::Space, Nn: 'static>
         + TrueMetric<Self::Space>
         + Clone
@@ -46,7 +46,7 @@ pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateStat
     /// # Errors
     /// When the bounds are empty.
     fn space(bounds: &Aabb) -> Result<Self::Space, Error>;
-    /// The Euclidean metric with radians times `radius`.
+    /// The Euclidean metric in which radians count times `radius`.
     ///
     /// # Errors
     /// When the radius is zero.
@@ -56,7 +56,7 @@ pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateStat
     /// # Errors
     /// When the robot has no points.
     fn displacement(robot: &TriMesh) -> Result<Self::Displacement, Error>;
-    /// About how much volume the robot sweeps.
+    /// The approximate volume that the robot sweeps.
     ///
     /// # Errors
     /// When the robot has no triangles.
@@ -118,10 +118,10 @@ pub struct RigidScene<M: RigidSpace> {
 }
 
 impl<M: RigidSpace> RigidScene<M> {
-    /// Makes `problem` ready.
+    /// The scene of `problem`.
     ///
     /// # Errors
-    /// When the bounds of the position are empty, or a mesh or pose makes no sense.
+    /// When the bounds of the position are empty, or a mesh or pose is not valid.
     pub fn new(problem: RigidProblem) -> Result<Self, Error> {
         let space = M::space(&problem.position_bounds())?;
         let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
@@ -131,7 +131,7 @@ impl<M: RigidSpace> RigidScene<M> {
         Ok(Self { problem, space, robot, start, goals: [goal], radius })
     }
 
-    /// What it was made of.
+    /// The problem that it was made from.
     #[must_use]
     pub fn problem(&self) -> &RigidProblem {
         &self.problem
@@ -143,7 +143,7 @@ impl<M: RigidSpace> RigidScene<M> {
         &self.robot
     }
 
-    /// Distance of the robot's farthest point from its origin, metres; above zero.
+    /// The distance (m) of the robot's farthest point from its origin; for a point robot, 1e-3 of the extent of the space.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
@@ -152,8 +152,7 @@ impl<M: RigidSpace> RigidScene<M> {
 
 impl<P: Placement> Queries for RigidBody<P> {
     fn queries(&self) -> u64 {
-        let counters = self.counters();
-        counters.collision_checks + counters.clearance_checks
+        self.counters().queries()
     }
 }
 
@@ -192,15 +191,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         &'c self,
         counted: &dyn Fn() -> Counted<'c, RigidBody<M>>,
     ) -> ObstacleKnowledge<'c, M::State> {
-        let mut field = counted();
-        let gradient = move |q: &M::State, reach: f64, gradient: &mut [f64]| {
-            field.clearance_gradient(q, reach, gradient)
-        };
-        ObstacleKnowledge {
-            hints: Some(Box::new(counted())),
-            gradient: Some(Box::new(gradient)),
-            geometry: Some(AnyGeometry::new(counted())),
-        }
+        ObstacleKnowledge { geometry: Some(AnyGeometry::new(counted())), ..hints_and_gradient(counted) }
     }
     fn measured(&self, metric: Metric) -> Result<Measured<'_, M::State>, Error> {
         let space = self.space.clone();
@@ -217,7 +208,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
                 let space = WithMetric::new(space, M::displacement(robot)?);
                 Measured { index: AnyIndex::by_metric(&space), space: AnySpace::new(&space) }
             }
-            // No true metric: every state is looked at.
+            // Not a true metric: the index compares every state.
             Metric::SweptVolume => {
                 let space = WithMetric::new(space, M::swept(robot)?);
                 Measured { index: AnyIndex::new(&space, Linear::default()), space: AnySpace::new(&space) }
@@ -306,7 +297,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
             Some(next) => M::pose(&self.space.interpolate(&states[i], next, t)),
             None => M::pose(&states[i]),
         };
-        tuples::along(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
+        tuples::six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
     }
     fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {
         Ok(mp_io::export_ompl(&self.problem, folder, &self.problem.name, &mp_io::OmplExport::default())?)
@@ -315,13 +306,13 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         if self.problem.space != SpaceKind::Se2 {
             return None;
         }
-        let off = |row: &Vec<f64>| [row[2], row[4], row[5]].iter().any(|v| v.abs() > PLANAR);
+        let off = |row: &Vec<f64>| [row[2], row[4], row[5]].iter().any(|v| v.abs() > PLANE_TOLERANCE);
         let i = rows.iter().position(off)?;
         Some(format!("configuration {} leaves the plane: z, β and γ must be 0", i + 1))
     }
     fn mismatch(&self, q: &M::State, wanted: &M::State) -> Mismatch {
         let off = tuples::travel(&M::pose(q), &M::pose(wanted), self.radius);
-        Mismatch { off, allowed: MATCH * self.radius, unit: " m" }
+        Mismatch { off, allowed: END_TOLERANCE * self.radius, unit: " m" }
     }
     fn written(&self, q: &M::State) -> String {
         self.row(q).into_iter().map(plain).collect::<Vec<_>>().join(" ")
@@ -329,14 +320,9 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
 
     fn bodies(&self) -> Vec<Body> {
         let robot = &self.problem.robot;
-        let shape = |mesh: &TriMesh| BodyShape::Mesh(mesh.clone());
-        let moving = Body { name: robot.name.clone(), shape: shape(&robot.mesh), pose: None };
-        let still = self.problem.obstacles.iter().map(|o| Body {
-            name: o.name.clone(),
-            shape: shape(&o.mesh),
-            pose: Some(o.pose),
-        });
-        std::iter::once(moving).chain(still).collect()
+        let shape = BodyShape::Mesh(robot.mesh.clone());
+        let moving = Body { name: robot.name.clone(), shape, pose: None };
+        std::iter::once(moving).chain(self.problem.obstacles.iter().map(Body::obstacle)).collect()
     }
     fn poses(&self, q: &M::State) -> Vec<Isometry3<f64>> {
         vec![M::pose(q)]

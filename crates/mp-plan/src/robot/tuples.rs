@@ -1,4 +1,4 @@
-//! A path as six-tuples, close enough together for players that know nothing of rotations.
+//! Paths as six-tuples, close enough together for players that interpolate the six numbers.
 
 use mp_geom::{pose_from_six, six_from_pose};
 use nalgebra::Isometry3;
@@ -8,18 +8,18 @@ use std::f64::consts::{PI, TAU};
 const SPACING: f64 = 0.25;
 /// A player that interpolates the six numbers puts no point of the robot farther off than this many radii.
 const DEVIATION: f64 = 0.01;
-/// A segment is split in no more than 2 to this many parts, whatever its angles do.
+/// A segment is split into at most 2 to the power of this many parts.
 const DEPTH: u32 = 10;
 
 /// Six-tuples (x, y, z, α, β, γ) along the motion through `segments + 1` poses, where `at(i, t)` is the pose
-/// at fraction `t` of segment `i`. Angles run on continuously, so they may leave (-π, π]. `radius` is the
+/// at fraction `t` of segment `i`. Angles are continuous along the path, so they may leave (-π, π]. `radius` is the
 /// distance of the robot's farthest point from its origin.
-pub(crate) fn along(
+pub(crate) fn six_tuples(
     segments: usize,
     radius: f64,
     at: impl Fn(usize, f64) -> Isometry3<f64>,
 ) -> Vec<[f64; 6]> {
-    // Adding zero takes the sign off zeros.
+    // Adding zero removes the sign of negative zeros.
     let six = |pose: &Isometry3<f64>| six_from_pose(pose).map(|v| v + 0.0);
     let mut out = vec![six(&at(0, 0.0))];
     for i in 0..segments {
@@ -48,7 +48,7 @@ pub(crate) fn travel(a: &Isometry3<f64>, b: &Isometry3<f64>, radius: f64) -> f64
     (a.translation.vector - b.translation.vector).norm() + radius * a.rotation.angle_to(&b.rotation)
 }
 
-/// The angles of `six` written so that they differ least from those of `last`.
+/// `six` with its angles written so that they differ least from those of `last`.
 fn continued(last: &[f64; 6], six: &[f64; 6]) -> [f64; 6] {
     let [x, y, z, a, b, g] = *six;
     // The same rotation has two triples of angles, each up to whole turns.
@@ -80,7 +80,7 @@ mod tests {
             let (from, to) = (pose(0.0, a), pose(x, b));
             let Some(_) = from.try_lerp_slerp(&to, 0.5, 1e-9) else { return Ok(()) };
             let at = |_: usize, t: f64| from.try_lerp_slerp(&to, t, 1e-9).unwrap_or(from);
-            let tuples = along(1, 1.0, at);
+            let tuples = six_tuples(1, 1.0, at);
             prop_assert!(travel(&pose_from_six(tuples[0]), &from, 1.0) < 1e-7);
             prop_assert!(travel(&pose_from_six(tuples[tuples.len() - 1]), &to, 1.0) < 1e-7);
             let mut far = 0;
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn turning_round_and_round_keeps_counting() {
         let at = |i: usize, t: f64| pose_from_six([0.0, 0.0, 0.0, 2.0 * (i as f64 + t), 0.0, 0.0]);
-        let tuples = along(6, 1.0, at);
+        let tuples = six_tuples(6, 1.0, at);
         assert!((tuples[tuples.len() - 1][3] - 12.0).abs() < 1e-9);
         assert!(tuples.windows(2).all(|w| w[1][3] > w[0][3]));
     }

@@ -1,4 +1,4 @@
-//! The questions of planners about an arm.
+//! The checks of an arm that planners use: validity, clearance and motions.
 
 use super::Arm;
 use super::travel::axes_into;
@@ -11,16 +11,16 @@ impl Arm {
     /// Whether `q`, a configuration, is in collision.
     fn collides(&mut self, q: &[f64]) -> bool {
         self.counters.collision_checks += 1;
-        let Self { robot, world, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, .. } = self;
         if !robot.kinematics.is_configuration(q) {
             return true;
         }
         let frames = &mut scratch.frames;
         robot.kinematics.frames_into(q, frames);
-        // What is farthest from the base moves most.
+        // The last links move most and are most likely to collide.
         let moving = robot.bodies.iter().rev().filter(|body| body.frame > 0);
         for body in moving {
-            if world.scene.collides(query, &body.tree, &frames[body.frame]) {
+            if obstacles.scene.collides(query, &body.tree, &frames[body.frame]) {
                 return true;
             }
         }
@@ -44,10 +44,10 @@ impl<Q: Coordinates> Validity<Q> for Arm {
 }
 
 impl<Q: Coordinates> Clearance<Q> for Arm {
-    /// The least of the distances of links to obstacles and to each other.
+    /// The least distance of links from obstacles and from each other.
     fn clearance(&mut self, q: &Q, enough: f64) -> f64 {
         self.counters.clearance_checks += 1;
-        let Self { robot, world, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, .. } = self;
         if !robot.kinematics.is_configuration(q.as_slice()) {
             return 0.0;
         }
@@ -57,7 +57,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         let mut least = f64::INFINITY;
         for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
             let limit = enough.min(least);
-            least = least.min(world.scene.clearance(query, &body.tree, &frames[body.frame], limit).0);
+            least = least.min(obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0);
             if least <= 0.0 {
                 return 0.0;
             }
@@ -79,18 +79,18 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
     }
 }
 
-/// How much of a motion is shown to be clear.
-struct Cover {
+/// The part of a motion interval that is shown free so far.
+struct ProvenPart {
     margin: f64,
     half: f64,
-    /// To either side of the middle, as a fraction of the motion.
+    /// How far the proven part reaches to either side of the middle, as a fraction of the motion.
     part: f64,
 }
 
-impl Cover {
-    /// Takes into account a distance that changes by at most `near` over half the interval and at most `far`
-    /// over the whole motion; over a smaller part of the interval by a smaller part of `near`. It is at least
-    /// `known`, and otherwise to be asked for. An answer when the rest need not be looked at.
+impl ProvenPart {
+    /// Adds the distance of one link or pair. It changes by at most `near` over half the interval, proportionally less
+    /// over a smaller part of the interval, and by at most `far` over the whole motion. It is at least `known`; if that is
+    /// not enough, `clearance` computes it. Returns an answer if the remaining links and pairs need no test.
     fn add(
         &mut self,
         near: f64,
@@ -99,7 +99,7 @@ impl Cover {
         clearance: impl FnOnce(f64) -> f64,
     ) -> Option<IntervalClearance> {
         let margin = self.margin;
-        // Others may have shown already that less will do.
+        // No more than what earlier links and pairs allow.
         let wanted = self.half.min(self.part);
         let near = near * (wanted / self.half);
         let enough = near.max(margin) + margin;
@@ -113,40 +113,41 @@ impl Cover {
         } else {
             return Some(IntervalClearance::TooClose { at: 0.0 });
         };
-        // 0/0 where nothing moves: clear all along.
+        // 0/0 where nothing moves: free all along.
         self.part = self.part.min(if far > 0.0 { part } else { f64::INFINITY });
         None
     }
 }
 
 impl<Q: Coordinates> MotionClearance<Q> for Arm {
-    /// The most that any link moves, or two links relative to each other, along the interpolation of the
-    /// [space](Arm::space) of the arm: the sum over the joints above it of how far the joint goes times the
-    /// largest distance of a point of the link from the joint's axis. Of configurations within the limits.
+    /// The largest travel of any link, or of two links relative to each other, along the interpolation of the
+    /// [space](Arm::space) of the arm. For a link this is a sum over the joints above it: how far the joint goes, times the
+    /// largest distance of a point of the link from the joint's axis. For configurations within the limits.
     fn motion_bound(&self, from: &Q, to: &Q) -> f64 {
         let (robot, from, to) = (&*self.robot, from.as_slice(), to.as_slice());
         let kinematics = &robot.kinematics;
         if from.len() != kinematics.dof() || to.len() != kinematics.dof() {
             return f64::INFINITY;
         }
-        let ways = |i: usize| kinematics.way(i, from, to);
-        // `max` would lose NaN.
-        if !(0..kinematics.dof()).all(|i| ways(i).is_finite()) {
+        let travels = |i: usize| kinematics.travel(i, from, to);
+        // `max` would drop NaN.
+        if !(0..kinematics.dof()).all(|i| travels(i).is_finite()) {
             return f64::INFINITY;
         }
-        let links = robot.bodies.iter().map(|body| body.chain.whole(ways)).fold(0.0, f64::max);
+        let links = robot.bodies.iter().map(|body| body.chain.whole(travels)).fold(0.0, f64::max);
         let pairs = robot.pairs.iter().filter(|pair| pair.steps.iter().all(|steps| *steps > 0)).map(|pair| {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i].chain);
-            a.part(pair.steps[0], ways) + b.part(pair.steps[1], ways)
+            a.part(pair.steps[0], travels) + b.part(pair.steps[1], travels)
         });
         pairs.fold(links, f64::max)
     }
-    /// Link by link and pair by pair, each by how far it moves itself: a link near the base may be near an
-    /// obstacle without holding up the rest. Pairs move relative to each other by the joints between them only.
+    /// Link by link and pair by pair, each with its own travel, so that a link near the base may be near an obstacle without
+    /// shortening the interval for the others. The two links of a pair move relative to each other only by the joints
+    /// between them.
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Q>) -> IntervalClearance {
         self.counters.clearance_checks += 1;
         let [from, to, middle] = [interval.from, interval.to, interval.middle].map(Q::as_slice);
-        let Self { robot, world, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, .. } = self;
         let kinematics = &robot.kinematics;
         if ![from, to, middle].into_iter().all(|q| kinematics.is_configuration(q)) {
             return IntervalClearance::Collision { at: 0.0 };
@@ -156,21 +157,22 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         scratch.balls.clear();
         scratch.far.clear();
         scratch.near.clear();
-        let ways = |i: usize| kinematics.way(i, from, to);
+        let travels = |i: usize| kinematics.travel(i, from, to);
         for body in &robot.bodies {
             let ball = body.ball_at(&scratch.frames);
-            body.chain.far(ways, &mut scratch.far);
-            body.chain.near(|i| ways(i) * interval.half, &ball, &scratch.axes, &mut scratch.near);
+            body.chain.far(travels, &mut scratch.far);
+            body.chain.near(|i| travels(i) * interval.half, &ball, &scratch.axes, &mut scratch.near);
             scratch.balls.push(ball);
         }
         let frames = &scratch.frames;
-        let mut cover = Cover { margin: interval.margin, half: interval.half, part: f64::INFINITY };
+        let mut proven = ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
         for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
             let last = body.first + body.chain.steps.len();
             let (near, far) = (scratch.near[last], scratch.far[last]);
-            let clearance = |limit| world.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
-            if let Some(room) = cover.add(near, far, f64::NEG_INFINITY, clearance) {
-                return room;
+            let clearance =
+                |limit| obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
+            if let Some(answer) = proven.add(near, far, f64::NEG_INFINITY, clearance) {
+                return answer;
             }
         }
         for pair in &robot.pairs {
@@ -180,29 +182,29 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
             let apart = (ball_a.center - ball_b.center).norm() - ball_a.radius - ball_b.radius;
             let clearance =
                 |limit| query.clearance(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame], limit);
-            if let Some(room) = cover.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
-                return room;
+            if let Some(answer) = proven.add(sum(&scratch.near), sum(&scratch.far), apart, clearance) {
+                return answer;
             }
         }
-        IntervalClearance::FreeOver { part: cover.part }
+        IntervalClearance::FreeOver { part: proven.part }
     }
 }
 
-/// An arm has no position that stays while it turns, so it follows no obstacle; its hints carry configurations
-/// only, along what is hit in the space of joints.
+/// An arm has no position apart from its rotation, so it cannot follow an obstacle. Its hints only carry configurations
+/// along, in the space of joints.
 impl<Q: Coordinates> ObstacleHints<Q> for Arm {
     fn touches(&mut self, q: &Q) -> bool {
         self.collides(q.as_slice())
     }
 
-    /// None.
+    /// Always `None`.
     fn along(&mut self, _: &Q, _: &Q, _: Option<&Q>, _: &mut Rng) -> Option<Q> {
         None
     }
 
-    /// Each joint moved by as much as from `from` to `to`, the shorter way where it turns without end.
+    /// `q` with each joint moved by as much as from `from` to `to`; by the shorter way where the joint is continuous.
     fn carried(&self, q: &Q, from: &Q, to: &Q) -> Q {
         let (q, from, to) = (q.as_slice(), from.as_slice(), to.as_slice());
-        Q::from_fn(q.len(), |i| q[i] + self.robot.kinematics.step(i, from, to))
+        Q::from_fn(q.len(), |i| q[i] + self.robot.kinematics.displacement(i, from, to))
     }
 }

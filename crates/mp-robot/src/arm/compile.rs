@@ -1,25 +1,26 @@
-//! From the names of a model to a checked tree.
+//! Compiles a model, whose links and joints refer to each other by name, to a checked kinematic tree.
 
-use super::kinematics::{Coordinate, Frame, Kinematics, Place, is_pose, range};
+use super::kinematics::{AttachedLink, Coordinate, Frame, Kinematics, is_pose, range};
 use super::{ArmError, ArmModel, Joint, JointKind};
 use mp_cspace::JointRange;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
 use std::collections::HashMap;
 
-/// Largest coordinate of an origin and largest limit.
+/// The largest coordinate of an origin, and the largest limit.
 pub(crate) const MAX_LENGTH: f64 = 1e70;
 
 /// What gives a joint its value.
 #[derive(Clone, Copy)]
 enum Value {
-    /// It has none.
+    /// A fixed joint has no value.
     Fixed,
-    /// Its limits are equal, or those of what it follows.
+    /// The limits of the joint are equal, or those of the joint that it mimics.
     Held(f64),
+    /// A coordinate gives the value.
     Follows(Source),
 }
 
-/// Which coordinate a joint follows and how.
+/// The coordinate that gives a joint its value: coordinate times `scale` plus `offset`.
 #[derive(Clone, Copy)]
 struct Source {
     coordinate: usize,
@@ -41,19 +42,19 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
         base: model.base,
         frames: Vec::new(),
         coordinates,
-        places: Vec::new(),
+        attached: Vec::new(),
         joined: tree.ends.clone(),
     };
-    let mut places: Vec<Option<Place>> = vec![None; model.links.len()];
+    let mut attached: Vec<Option<AttachedLink>> = vec![None; model.links.len()];
     let name = |link: usize| model.links[link].name.clone();
-    places[tree.root] = Some(Place { name: name(tree.root), frame: 0, pose: Isometry3::identity() });
-    // A queue: every joint comes after the one its parent hangs on.
+    attached[tree.root] = Some(AttachedLink { name: name(tree.root), frame: 0, pose: Isometry3::identity() });
+    // Breadth first: every joint comes after the joint above its parent link.
     let mut next = vec![tree.root];
     let mut at = 0;
     while at < next.len() {
         let link = next[at];
         at += 1;
-        let Some(Place { frame, pose, .. }) = places[link].clone() else { continue };
+        let Some(AttachedLink { frame, pose, .. }) = attached[link].clone() else { continue };
         for &j in &tree.below[link] {
             let (joint, child) = (&model.joints[j], tree.ends[j][1]);
             let origin = pose * joint.origin;
@@ -61,19 +62,19 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
                 Value::Fixed => (frame, origin),
                 Value::Held(value) => (frame, origin * motion(joint, value)),
                 Value::Follows(source) => {
-                    out.frames.push(moving(joint, frame, origin, source, &out.coordinates));
+                    out.frames.push(frame_of(joint, frame, origin, source, &out.coordinates));
                     (out.frames.len(), Isometry3::identity())
                 }
             };
-            places[child] = Some(Place { name: name(child), frame, pose });
+            attached[child] = Some(AttachedLink { name: name(child), frame, pose });
             next.push(child);
         }
     }
-    out.places = places.into_iter().flatten().collect();
+    out.attached = attached.into_iter().flatten().collect();
     Ok(out)
 }
 
-/// Names to indices.
+/// The index of each name.
 fn numbered<'a>(
     what: &'static str,
     names: impl Iterator<Item = &'a str>,
@@ -87,7 +88,7 @@ fn numbered<'a>(
     Ok(numbers)
 }
 
-/// The joint by itself.
+/// Checks a joint without regard to the others.
 fn check(joint: &Joint) -> Result<(), ArmError> {
     let name = || joint.name.clone();
     if !is_pose(&joint.origin, MAX_LENGTH) {
@@ -109,7 +110,7 @@ fn check(joint: &Joint) -> Result<(), ArmError> {
     }
 }
 
-/// Which link hangs on which.
+/// The tree of links.
 struct Tree {
     root: usize,
     /// The joints below each link, in the order of the model.
@@ -155,7 +156,7 @@ impl Tree {
             }
             (None, _) => return Err(if model.links.is_empty() { ArmError::NoLinks } else { looped(0) }),
         };
-        // What the root does not reach goes round in a circle.
+        // Links that cannot be reached from the root are in a loop.
         let mut reached = vec![false; model.links.len()];
         let mut stack = vec![root];
         while let Some(link) = stack.pop() {
@@ -210,7 +211,7 @@ fn coordinates(
     }
 }
 
-/// From joint to joint until one follows no other.
+/// The value of the joint `start`: follows mimics from joint to joint until one mimics no other.
 fn follow(
     model: &ArmModel,
     joints: &HashMap<&str, usize>,
@@ -248,7 +249,7 @@ fn follow(
     Err(ArmError::Mimic { joint: joint.name.clone(), of, why: "that leads back to itself" })
 }
 
-/// Lets a coordinate go no farther than a joint that follows it can.
+/// Narrows the range of a coordinate to the limits of a joint that follows it.
 fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<(), ArmError> {
     let Some(mimic) = &joint.mimic else { return Ok(()) };
     let wrong = |why| ArmError::Mimic { joint: joint.name.clone(), of: mimic.joint.clone(), why };
@@ -271,13 +272,12 @@ fn narrow(joint: &Joint, source: Source, coordinate: &mut Coordinate) -> Result<
             let ends = [(low - offset) / scale, (high - offset) / scale];
             *own_low = own_low.max(ends[0].min(ends[1]));
             *own_high = own_high.min(ends[0].max(ends[1]));
-            let room = *own_low < *own_high;
-            if room { Ok(()) } else { Err(wrong("the limits of both leave no room to move")) }
+            if *own_low < *own_high { Ok(()) } else { Err(wrong("the limits of both leave no room to move")) }
         }
     }
 }
 
-/// How far a joint of that value is from its origin.
+/// The motion of a joint from its origin at the value `value`.
 fn motion(joint: &Joint, value: f64) -> Isometry3<f64> {
     let axis = Unit::new_normalize(joint.axis);
     match joint.kind {
@@ -286,7 +286,7 @@ fn motion(joint: &Joint, value: f64) -> Isometry3<f64> {
     }
 }
 
-fn moving(
+fn frame_of(
     joint: &Joint,
     parent: usize,
     origin: Isometry3<f64>,

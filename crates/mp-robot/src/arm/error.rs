@@ -1,4 +1,4 @@
-//! What can be wrong with an arm, and with the text it is read from.
+//! Errors of arms, and of the texts that they are read from.
 
 use mp_collide::SceneError;
 use mp_cspace::SpaceError;
@@ -9,7 +9,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ArmError {
-    /// Two links or two joints of one name.
+    /// Two links or two joints have the same name.
     #[error("there are two {what}s named \"{name}\": give each a name of its own")]
     Duplicate {
         /// "link" or "joint".
@@ -17,7 +17,7 @@ pub enum ArmError {
         /// The name.
         name: String,
     },
-    /// A joint names a link that is not there.
+    /// A joint names a link that does not exist.
     #[error("joint \"{joint}\" has the {role} link \"{link}\", but there is no link of that name")]
     UnknownLink {
         /// The joint.
@@ -27,7 +27,7 @@ pub enum ArmError {
         /// The link it names.
         link: String,
     },
-    /// A pair that may touch names a link that is not there.
+    /// A pair that may touch names a link that does not exist.
     #[error(
         "the links \"{first}\" and \"{second}\" shall be allowed to touch, but there is no link \"{missing}\""
     )]
@@ -39,15 +39,15 @@ pub enum ArmError {
         /// The one that is missing.
         missing: String,
     },
-    /// No links at all.
+    /// There are no links.
     #[error("an arm needs at least one link and one joint that moves; this one has no links")]
     NoLinks,
-    /// Nothing moves.
+    /// No joint moves.
     #[error(
         "no joint of this arm moves by itself: at least one revolute, continuous or prismatic joint is needed"
     )]
     NothingMoves,
-    /// Nothing moves, for the limits of all that could are equal.
+    /// No joint moves, because the limits of all joints that could move are equal.
     #[error(
         "no joint of this arm moves by itself: give one of {joints}, whose limits are equal, room to move"
     )]
@@ -55,7 +55,7 @@ pub enum ArmError {
         /// The joints.
         joints: String,
     },
-    /// A link hangs on two joints.
+    /// A link is the child of two joints.
     #[error(
         "link \"{link}\" is the child of joint \"{first}\" and of joint \"{second}\": chains must be trees, so \
          a closed chain has to be cut at one of them"
@@ -68,7 +68,7 @@ pub enum ArmError {
         /// The second joint.
         second: String,
     },
-    /// Every link is some joint's child.
+    /// Links form a loop.
     #[error(
         "the joints form a loop through link \"{link}\" (by joint \"{joint}\"): chains must be trees that begin \
          at one link with no parent"
@@ -79,7 +79,7 @@ pub enum ArmError {
         /// The joint that closes it.
         joint: String,
     },
-    /// Two links with no parent.
+    /// Two links have no parent.
     #[error(
         "the links \"{first}\" and \"{second}\" both have no parent: join them by a joint, if only a fixed one"
     )]
@@ -101,7 +101,7 @@ pub enum ArmError {
         /// Its axis.
         z: f64,
     },
-    /// A pose that is none.
+    /// A pose is not valid.
     #[error("the origin of {what} \"{name}\" is no pose: its numbers must be finite and below {max:e} m")]
     Origin {
         /// "joint" or "link" or "base".
@@ -111,7 +111,7 @@ pub enum ArmError {
         /// The largest possible.
         max: f64,
     },
-    /// Limits that are none.
+    /// The limits of a joint are not valid.
     #[error(
         "joint \"{joint}\" may move from {low} to {high}: the lower limit must not be above the upper and \
          both finite; make the joint continuous if it turns without end"
@@ -124,15 +124,15 @@ pub enum ArmError {
         /// Its upper limit.
         high: f64,
     },
-    /// Limits given for a joint that has none to give.
+    /// Limits were given for a joint that takes none.
     #[error("there is no joint \"{joint}\" with limits of its own: {why}")]
     NoSuchCoordinate {
         /// The name asked for.
         joint: String,
-        /// What is there instead.
+        /// Why the joint takes no limits, or which joints there are.
         why: String,
     },
-    /// A joint that cannot follow another.
+    /// A joint cannot mimic another.
     #[error("joint \"{joint}\" mimics \"{of}\": {why}")]
     Mimic {
         /// The joint.
@@ -152,7 +152,7 @@ pub enum ArmError {
         /// The largest possible.
         max: f64,
     },
-    /// More triangles than can be handled.
+    /// There are more triangles than can be handled.
     #[error("arm and obstacles have {count} triangles; at most {max} can be handled")]
     TooManyTriangles {
         /// How many there are.
@@ -160,22 +160,22 @@ pub enum ArmError {
         /// How many there may be.
         max: usize,
     },
-    /// An obstacle's pose is no pose, or its mesh is too large.
+    /// The pose of an obstacle is not valid, or its mesh is too large.
     #[error("cannot place an obstacle: {0}")]
     Obstacle(#[from] SceneError),
-    /// A mesh that is none.
+    /// A mesh is not valid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// Joint ranges that make no space.
+    /// The ranges of the joints do not form a space.
     #[error(transparent)]
     Space(#[from] SpaceError),
 }
 
-/// Why no arm could be made of a URDF or SRDF.
+/// Why a URDF or SRDF could not be read as an arm.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum UrdfError {
-    /// Not XML, or not a URDF or SRDF.
+    /// The text is not XML, or not a URDF or SRDF.
     #[error("this is not {what}: {message}")]
     Syntax {
         /// "a URDF" or "an SRDF".
@@ -183,7 +183,7 @@ pub enum UrdfError {
         /// What is wrong, and in which line.
         message: String,
     },
-    /// A joint of a kind that is not handled.
+    /// A joint has a kind that is not handled.
     #[error(
         "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; a floating \
          base can be placed by the base pose and a fixed joint"
@@ -196,19 +196,19 @@ pub enum UrdfError {
         /// Its kind.
         kind: &'static str,
     },
-    /// A shape that is none.
+    /// A collision shape is not valid.
     #[error("line {line}: collision shape {number} of link \"{link}\": {message}")]
     Shape {
         /// Where it is in the text.
         line: u32,
         /// The link.
         link: String,
-        /// Which of its shapes, counted from 1.
+        /// The number of the shape in the link, counted from 1.
         number: usize,
         /// What is wrong.
         message: String,
     },
-    /// What was read makes no arm.
+    /// The text was read, but does not describe a valid arm.
     #[error(transparent)]
     Arm(#[from] ArmError),
 }

@@ -1,6 +1,7 @@
-//! Answers for people: which link hits what, and where the arm would be free.
+//! Answers for people: what each link touches, and where the arm would be free.
 
 use super::Arm;
+use crate::shells::{Shells, search_shells};
 use mp_cspace::{Clearance, Coordinates, Rng, Space};
 use rand::RngExt;
 
@@ -11,26 +12,25 @@ pub struct ArmContact {
     pub link: String,
     /// What it touches: an obstacle or another link.
     pub other: String,
-    /// Whether that is a link of the arm.
+    /// Whether `other` is a link of the arm.
     pub with_itself: bool,
-    /// An estimate of how deep (m).
+    /// An estimate of the depth (m).
     pub depth: f64,
 }
 
-/// The first shell of the search, relative to the extent of the space; each is larger than the last by [`GROWTH`].
+/// The radius of the first shell of a search, as a part of the extent of the space.
 const FIRST_SHELL: f64 = 1e-4;
+/// How many times as large each shell is as the last.
 const GROWTH: f64 = 1.3;
 const MAX_SHELLS: usize = 60;
 /// Directions tried in each shell besides those along one coordinate.
 const DIRECTIONS: usize = 60;
-/// How often the way back to the start of the search is halved.
-const HALVINGS: usize = 24;
 
 impl Arm {
-    /// What the arm touches at `q`: links and obstacles in the order of the links, then pairs of links. Empty when
-    /// it is free, and when `q` is no configuration. Slow: for messages.
+    /// The contacts at `q`: of links with obstacles in the order of the links, then of links with links. Empty when `q` is
+    /// free, or not a configuration. Slow: meant for messages.
     pub fn explain(&mut self, q: &[f64]) -> Vec<ArmContact> {
-        let Self { robot, world, query, scratch, .. } = self;
+        let Self { robot, obstacles, query, scratch, .. } = self;
         let mut contacts = Vec::new();
         if !robot.kinematics.is_configuration(q) {
             return contacts;
@@ -38,7 +38,7 @@ impl Arm {
         robot.kinematics.frames_into(q, &mut scratch.frames);
         let frames = &scratch.frames;
         for (i, body) in robot.bodies.iter().enumerate().filter(|(_, body)| body.frame > 0) {
-            for found in world.scene.contacts(query, &body.tree, &frames[body.frame]) {
+            for found in obstacles.scene.contacts(query, &body.tree, &frames[body.frame]) {
                 contacts.push(ArmContact {
                     link: robot.name(i).to_owned(),
                     other: found.name,
@@ -60,10 +60,10 @@ impl Arm {
     }
 
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the
-    /// [tolerance](Arm::tolerance) is a good one): `q` itself when it has that, else the nearest found, or `None`.
+    /// [tolerance](Arm::tolerance) is a good value): `q` itself if it has that clearance, else the nearest found, or `None`.
     ///
-    /// Searches outward in shells, along each coordinate and in many other directions, then back toward `q`. The
-    /// same input finds the same. Some thousands of clearance queries: for messages.
+    /// The search moves along each coordinate and in many other directions by growing amounts, then goes back toward `q`.
+    /// The same input gives the same result. Some thousands of clearance queries: meant for messages.
     pub fn nearest_free<C>(&mut self, q: &C::State, space: &C, margin: f64) -> Option<C::State>
     where
         C: Space,
@@ -74,14 +74,9 @@ impl Arm {
             return None;
         }
         let margin = margin.max(f64::MIN_POSITIVE);
-        let mut suits = |p: &C::State| space.contains(p) && self.clearance(p, margin) >= margin;
-        if suits(q) {
-            return Some(q.clone());
-        }
+        let shells = Shells { first: FIRST_SHELL * space.extent(), growth: GROWTH, most: MAX_SHELLS };
         let mut rng = Rng::seed(0);
-        let mut reach = FIRST_SHELL * space.extent();
-        for _ in 0..MAX_SHELLS {
-            let mut best: Option<(f64, C::State)> = None;
+        let candidates = |_, radius: f64| {
             let along = (0..2 * start.len()).map(|k| {
                 let mut direction = vec![0.0; start.len()];
                 direction[k / 2] = if k % 2 == 0 { 1.0 } else { -1.0 };
@@ -92,32 +87,11 @@ impl Arm {
                 let norm = direction.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-9);
                 direction.into_iter().map(|x| x / norm).collect()
             });
-            for direction in along.chain(others) {
-                let p = C::State::from_fn(start.len(), |i| start[i] + reach * direction[i]);
-                let distance = space.distance(q, &p);
-                if best.as_ref().is_none_or(|(d, _)| distance < *d) && suits(&p) {
-                    best = Some((distance, p));
-                }
-            }
-            if let Some((_, found)) = best {
-                // Back toward q, as far as it stays free.
-                let (mut free, mut hit, mut best) = (1.0, 0.0, found.clone());
-                for _ in 0..HALVINGS {
-                    let middle = 0.5 * (free + hit);
-                    let p = space.interpolate(q, &found, middle);
-                    if suits(&p) {
-                        (free, best) = (middle, p);
-                    } else {
-                        hit = middle;
-                    }
-                }
-                return Some(best);
-            }
-            if reach > space.extent() {
-                return None;
-            }
-            reach *= GROWTH;
-        }
-        None
+            let moved =
+                |direction: Vec<f64>| C::State::from_fn(start.len(), |i| start[i] + radius * direction[i]);
+            along.chain(others).map(moved).collect()
+        };
+        let suits = |p: &C::State| space.contains(p) && self.clearance(p, margin) >= margin;
+        search_shells(space, q, &shells, candidates, suits)
     }
 }

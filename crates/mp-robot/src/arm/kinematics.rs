@@ -1,4 +1,4 @@
-//! Where a configuration puts the links.
+//! Forward kinematics: where a configuration places the links.
 
 use super::{ArmError, ArmModel, JointKind};
 use crate::arm::compile;
@@ -8,17 +8,17 @@ use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 /// A joint that moves, and the frame behind it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Frame {
-    /// The frame it hangs on.
+    /// The frame above it.
     pub(crate) parent: usize,
-    /// Where it is there at value zero.
+    /// Its pose in that frame at value zero.
     pub(crate) origin: Isometry3<f64>,
     pub(crate) axis: Unit<Vector3<f64>>,
     pub(crate) slides: bool,
-    /// Its value is this coordinate times `scale` plus `offset`.
+    /// The value of the joint is this coordinate times `scale` plus `offset`.
     pub(crate) coordinate: usize,
     pub(crate) scale: f64,
     pub(crate) offset: f64,
-    /// The largest absolute value it can have (m); zero where it turns.
+    /// The largest absolute value (m) of a prismatic joint; zero for others.
     pub(crate) slide: f64,
 }
 
@@ -27,20 +27,20 @@ pub(crate) struct Frame {
 pub struct Coordinate {
     /// The name of the joint.
     pub name: String,
-    /// What it can do: its own limits, narrowed by those of the joints that mimic it.
+    /// Its range: its own limits, narrowed by those of the joints that mimic it.
     pub range: JointRange,
 }
 
-/// Where a link is.
+/// A link, and where it is fixed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct AttachedLink {
     pub(crate) name: String,
     /// The frame it is fixed to: 0 is the base, `i + 1` the frame of the joint `i`.
     pub(crate) frame: usize,
     pub(crate) pose: Isometry3<f64>,
 }
 
-/// The kinematic tree of an arm, checked: links hang on joints, parents before children.
+/// The checked kinematic tree of an arm. Parents come before children.
 ///
 /// Configurations are lists of joint values, one for each [`Coordinate`], in radians and metres.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,8 +49,8 @@ pub struct Kinematics {
     pub(crate) frames: Vec<Frame>,
     pub(crate) coordinates: Vec<Coordinate>,
     /// In the order of the model.
-    pub(crate) places: Vec<Place>,
-    /// Pairs of links that a joint joins.
+    pub(crate) attached: Vec<AttachedLink>,
+    /// The two links of each joint.
     pub(crate) joined: Vec<[usize; 2]>,
 }
 
@@ -58,7 +58,7 @@ impl Kinematics {
     /// The tree of `model`. O(links + joints), up to a logarithm.
     ///
     /// # Errors
-    /// When it is no tree, or a joint makes no sense: see [`ArmError`].
+    /// When the model is not a tree, or a joint is not valid: see [`ArmError`].
     pub fn new(model: &ArmModel) -> Result<Self, ArmError> {
         compile::kinematics(model)
     }
@@ -77,10 +77,10 @@ impl Kinematics {
 
     /// The names of the links, in the order of the model.
     pub fn links(&self) -> impl ExactSizeIterator<Item = &str> {
-        self.places.iter().map(|place| place.name.as_str())
+        self.attached.iter().map(|link| link.name.as_str())
     }
 
-    /// The space of configurations: an interval for each joint with limits, a circle for each without.
+    /// The space of configurations: an interval for each coordinate with limits, a circle for each without.
     ///
     /// # Errors
     /// When `Q` has another number of coordinates.
@@ -88,7 +88,7 @@ impl Kinematics {
         Ok(Joints::new(self.coordinates.iter().map(|c| c.range).collect::<Vec<_>>())?)
     }
 
-    /// Whether `q` is a configuration at all: as many numbers as coordinates, all finite.
+    /// Whether `q` is a configuration: as many numbers as there are coordinates, all finite.
     #[must_use]
     pub fn is_configuration(&self, q: &[f64]) -> bool {
         q.len() == self.dof() && q.iter().all(|x| x.is_finite())
@@ -106,13 +106,13 @@ impl Kinematics {
 
     /// The pose of each link in the world, in the order of the model.
     ///
-    /// `None` when `q` is no configuration.
+    /// `None` when `q` is not a configuration.
     #[must_use]
     pub fn link_poses(&self, q: &[f64]) -> Option<Vec<Isometry3<f64>>> {
         let mut frames = Vec::new();
         self.is_configuration(q).then(|| {
             self.frames_into(q, &mut frames);
-            self.places.iter().map(|place| frames[place.frame] * place.pose).collect()
+            self.attached.iter().map(|link| frames[link.frame] * link.pose).collect()
         })
     }
 
@@ -134,13 +134,13 @@ impl Kinematics {
 
     /// How far the coordinate `i` goes from `from` to `to` in the [space](Self::space) of the arm.
     #[inline]
-    pub(crate) fn way(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
-        self.step(i, from, to).abs()
+    pub(crate) fn travel(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
+        self.displacement(i, from, to).abs()
     }
 
-    /// The same with its sign.
+    /// How far the coordinate `i` goes, with its sign.
     #[inline]
-    pub(crate) fn step(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
+    pub(crate) fn displacement(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
         let d = to[i] - from[i];
         match self.coordinates[i].range {
             JointRange::Circle if !(-std::f64::consts::PI..=std::f64::consts::PI).contains(&d) => {
@@ -151,7 +151,7 @@ impl Kinematics {
     }
 }
 
-/// The value range of a joint kind; `None` for fixed ones.
+/// The range of the values of a kind of joint; `None` for fixed joints.
 pub(crate) fn range(kind: JointKind) -> Option<JointRange> {
     match kind {
         JointKind::Fixed => None,
@@ -162,7 +162,7 @@ pub(crate) fn range(kind: JointKind) -> Option<JointRange> {
     }
 }
 
-/// Whether a pose is finite and not absurdly far.
+/// Whether a pose is finite, with no coordinate above `max` and a rotation of unit length.
 pub(crate) fn is_pose(pose: &Isometry3<f64>, max: f64) -> bool {
     let Translation3 { vector } = pose.translation;
     vector.iter().all(|x| x.abs() <= max) && (pose.rotation.quaternion().norm() - 1.0).abs() < 1e-6

@@ -1,4 +1,4 @@
-//! What an arm is made of: plain data, by names.
+//! The description of an arm: plain data, in which links and joints refer to each other by name.
 
 use super::ArmError;
 use mp_geom::TriMesh;
@@ -9,7 +9,7 @@ use nalgebra::{Isometry3, Vector3};
 pub struct Link {
     /// Its name.
     pub name: String,
-    /// What can collide, in the frame of the link; nothing for links that only carry joints.
+    /// The meshes that can collide, in the frame of the link. Empty for links that only carry joints.
     pub shapes: Vec<TriMesh>,
 }
 
@@ -20,7 +20,7 @@ impl Link {
         Self { name: name.into(), shapes: Vec::new() }
     }
 
-    /// The same with one more shape, at `pose` in the frame of the link.
+    /// Adds a shape, at `pose` in the frame of the link.
     #[must_use]
     pub fn with(mut self, shape: &TriMesh, pose: &Isometry3<f64>) -> Self {
         self.shapes.push(shape.transformed(pose));
@@ -33,7 +33,7 @@ impl Link {
 pub enum JointKind {
     /// Not at all.
     Fixed,
-    /// Turns about its axis between two angles (rad); held there where they are equal.
+    /// Turns about its axis between two angles (rad). Does not move if they are equal.
     Revolute {
         /// The lower limit.
         low: f64,
@@ -42,7 +42,7 @@ pub enum JointKind {
     },
     /// Turns about its axis without end.
     Continuous,
-    /// Slides along its axis between two places (m); held there where they are equal.
+    /// Slides along its axis between two positions (m). Does not move if they are equal.
     Prismatic {
         /// The lower limit.
         low: f64,
@@ -52,7 +52,7 @@ pub enum JointKind {
 }
 
 impl JointKind {
-    /// The limits, lower and upper, of a kind that has some.
+    /// The lower and the upper limit, if the kind has limits.
     pub(super) fn limits(self) -> Option<[f64; 2]> {
         match self {
             Self::Revolute { low, high } | Self::Prismatic { low, high } => Some([low, high]),
@@ -66,14 +66,14 @@ impl JointKind {
     }
 }
 
-/// A joint that follows another: its value is `multiplier` times the other's, plus `offset`.
+/// How a joint follows another: its value is `multiplier` times the other's, plus `offset`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mimic {
     /// The joint it follows.
     pub joint: String,
-    /// Factor; negative for the other way.
+    /// The factor; negative for the opposite direction.
     pub multiplier: f64,
-    /// Radians or metres.
+    /// The offset (rad or m).
     pub offset: f64,
 }
 
@@ -82,22 +82,22 @@ pub struct Mimic {
 pub struct Joint {
     /// Its name.
     pub name: String,
-    /// The link it hangs on.
+    /// The parent link.
     pub parent: String,
-    /// The link it moves.
+    /// The child link, which it moves.
     pub child: String,
-    /// Where the frame of the child is in the frame of the parent, at value zero.
+    /// The pose of the child's frame in the parent's frame at value zero.
     pub origin: Isometry3<f64>,
-    /// The axis, in the frame of the child: any length but zero.
+    /// The axis, in the frame of the child. Its length does not matter, but must not be zero.
     pub axis: Vector3<f64>,
     /// How the child moves.
     pub kind: JointKind,
-    /// The joint it follows, if it does; it is then no coordinate of its own.
+    /// The joint that it follows, if any. A joint that follows another is not a coordinate.
     pub mimic: Option<Mimic>,
 }
 
 impl Joint {
-    /// A joint about or along X, the frames of both links in one place.
+    /// A joint about or along X. The frames of both links coincide.
     #[must_use]
     pub fn new(
         name: impl Into<String>,
@@ -116,21 +116,21 @@ impl Joint {
         }
     }
 
-    /// The same with the frame of the child at `origin` in that of the parent.
+    /// Sets the pose of the child's frame in the parent's frame.
     #[must_use]
     pub fn at(mut self, origin: Isometry3<f64>) -> Self {
         self.origin = origin;
         self
     }
 
-    /// The same about or along `axis`.
+    /// Sets the axis.
     #[must_use]
     pub fn axis(mut self, axis: Vector3<f64>) -> Self {
         self.axis = axis;
         self
     }
 
-    /// The same following `joint`.
+    /// Makes it follow `joint`.
     #[must_use]
     pub fn mimic(mut self, joint: impl Into<String>, multiplier: f64, offset: f64) -> Self {
         self.mimic = Some(Mimic { joint: joint.into(), multiplier, offset });
@@ -138,7 +138,7 @@ impl Joint {
     }
 }
 
-/// An arm, or any tree of links: plain data, checked by [`Arm::new`](crate::Arm::new).
+/// The description of an arm, or of any tree of links: plain data, checked by [`Arm::new`](crate::Arm::new).
 ///
 /// ```
 /// use mp_geom::primitives::cuboid;
@@ -165,17 +165,17 @@ impl Joint {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmModel {
-    /// The links. One has no parent: the root, which stands still.
+    /// The links. Exactly one has no parent: the root, which stands still.
     pub links: Vec<Link>,
     /// The joints. Those that move and mimic no other are the coordinates, in this order. Joints whose limits are
     /// equal do not move.
     pub joints: Vec<Joint>,
-    /// Where the root is in the world.
+    /// The pose of the root in the world.
     pub base: Isometry3<f64>,
-    /// Pairs of links that may touch and overlap, besides those a joint joins; `None` to find by sampling
-    /// which pairs always do.
+    /// Pairs of links that may touch and overlap, besides those joined by a joint. With `None`, the pairs that always
+    /// touch are found by sampling.
     pub may_touch: Option<Vec<(String, String)>>,
-    /// What was set aside as the model was read, sentences for people. Nothing for models made by hand.
+    /// What was ignored when the model was read from a file, in sentences for people. Empty for models made in code.
     pub notes: Vec<String>,
 }
 
@@ -192,8 +192,7 @@ impl Default for ArmModel {
 }
 
 impl ArmModel {
-    /// The same with other limits (rad or m) for a joint that moves and has some, or that turns without end and
-    /// becomes revolute.
+    /// Sets the limits (rad or m) of a joint that has limits, or of a continuous joint, which becomes revolute.
     ///
     /// # Errors
     /// [`ArmError::NoSuchCoordinate`] when there is no such joint, or it is fixed or mimics another.

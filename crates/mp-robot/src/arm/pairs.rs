@@ -1,29 +1,29 @@
-//! Which links are compared with each other.
+//! The pairs of links that are tested against each other.
 
 use super::kinematics::Kinematics;
-use super::robot::Body;
+use super::robot::LinkBody;
 use super::{ArmError, ArmModel};
 use mp_collide::Query;
 use mp_cspace::{Halton, Joints, Rng, Sampler};
 use nalgebra::DVector;
 use std::collections::BTreeSet;
 
-/// Two bodies that must not touch, and how many joints of their chains are between them.
+/// Two bodies that must not touch. `steps` is how many joints of each chain are between them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
+pub(super) struct LinkPair {
     pub(super) bodies: [usize; 2],
     pub(super) steps: [usize; 2],
 }
 
-/// In how many configurations a pair must touch to be taken for one that always does.
+/// A pair that touches in this many configurations is taken for one that always touches.
 const SAMPLES: usize = 100;
 
-/// All pairs but those that never move relative to each other, those a joint joins, and those that may touch.
+/// All pairs, except those that never move relative to each other, those joined by a joint, and those that may touch.
 pub(super) fn pairs(
     kinematics: &Kinematics,
-    bodies: &[Body],
+    bodies: &[LinkBody],
     model: &ArmModel,
-) -> Result<Vec<Pair>, ArmError> {
+) -> Result<Vec<LinkPair>, ArmError> {
     let key = |a: usize, b: usize| (a.min(b), a.max(b));
     let mut allowed: BTreeSet<_> = kinematics.joined.iter().map(|[a, b]| key(*a, *b)).collect();
     for (first, second) in model.may_touch.iter().flatten() {
@@ -40,7 +40,7 @@ pub(super) fn pairs(
     for (j, b) in bodies.iter().enumerate() {
         for (i, a) in bodies.iter().enumerate().take(j) {
             if a.frame != b.frame && !allowed.contains(&key(a.link, b.link)) {
-                out.push(Pair { bodies: [i, j], steps: between(a, b) });
+                out.push(LinkPair { bodies: [i, j], steps: between(a, b) });
             }
         }
     }
@@ -50,19 +50,20 @@ pub(super) fn pairs(
     Ok(out)
 }
 
-/// How many joints of each chain are below the frame where both chains meet.
-fn between(a: &Body, b: &Body) -> [usize; 2] {
-    let on = |body: &Body| body.chain.steps.iter().map(|step| step.frame).collect::<Vec<_>>();
+/// For each chain, the number of joints below the frame where both chains meet.
+fn between(a: &LinkBody, b: &LinkBody) -> [usize; 2] {
+    let on = |body: &LinkBody| body.chain.steps.iter().map(|step| step.frame).collect::<Vec<_>>();
     let (on_a, on_b) = (on(a), on(b));
     let common = on_a.iter().rev().zip(on_b.iter().rev()).take_while(|(x, y)| x == y).count();
     [on_a.len() - common, on_b.len() - common]
 }
 
-/// The neutral configuration and points of the Halton sequence: the same for the same arm.
+/// Removes the pairs that touch at the neutral configuration and at points of the Halton sequence. The same arm always
+/// gives the same pairs.
 fn leave_out_what_always_touches(
     kinematics: &Kinematics,
-    bodies: &[Body],
-    pairs: &mut Vec<Pair>,
+    bodies: &[LinkBody],
+    pairs: &mut Vec<LinkPair>,
 ) -> Result<(), ArmError> {
     let space: Joints<DVector<f64>> = kinematics.space()?;
     let (mut halton, mut rng) = (Halton::new(&space), Rng::seed(0));

@@ -1,72 +1,69 @@
 //! An arm among obstacles that stand still.
 
 use super::kinematics::{Coordinate, Kinematics};
-use super::pairs::{Pair, pairs};
+use super::pairs::{LinkPair, pairs};
 use super::travel::Chain;
-use super::verify::Tree;
+use super::verify::ReferenceArm;
 use super::{ArmError, ArmModel};
 use crate::CheckCounters;
-use mp_collide::reference::RefMesh;
-use mp_collide::{BodyId, CollisionMesh, Counters, Query, Scene};
+use crate::obstacles::{MAX_TRIANGLES, Obstacles, resolved_tolerance};
+use mp_collide::{BodyId, CollisionMesh, Query, Scene};
 use mp_cspace::{Coordinates, Joints};
 use mp_geom::{Aabb, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::sync::{Arc, OnceLock};
-
-/// Most triangles: what a reference mesh can hold.
-const MAX_TRIANGLES: usize = 1 << 30;
 
 /// Largest link, metres.
 const MAX_RADIUS: f64 = 1e70;
 
 /// A link that can collide.
 #[derive(Debug)]
-pub(super) struct Body {
-    /// Which link of the model.
+pub(super) struct LinkBody {
+    /// The index of the link in the model.
     pub(super) link: usize,
-    /// What moves it: 0 for the base.
+    /// The index of the frame to which it is fixed; 0 is the base.
     pub(super) frame: usize,
-    /// In that frame.
+    /// Its mesh, in that frame.
     pub(super) mesh: TriMesh,
     pub(super) tree: CollisionMesh,
     pub(super) ball: Sphere,
     pub(super) chain: Chain,
-    /// Where its entries begin in [`Scratch::far`] and [`Scratch::near`].
+    /// The index of its first entry in [`Scratch::far`] and [`Scratch::near`].
     pub(super) first: usize,
 }
 
-impl Body {
-    /// The ball around it in the world.
+impl LinkBody {
+    /// The ball around it, in the world.
     #[inline]
     pub(super) fn ball_at(&self, frames: &[Isometry3<f64>]) -> Sphere {
         Sphere { center: frames[self.frame] * self.ball.center, radius: self.ball.radius }
     }
 }
 
-/// The arm itself: shared by all clones, whatever the obstacles.
+/// The arm without its obstacles: shared by all clones, also among other obstacles.
 #[derive(Debug)]
-pub(super) struct Robot {
+pub(super) struct SharedArm {
     pub(super) kinematics: Kinematics,
     /// In the order of the links.
-    pub(super) bodies: Vec<Body>,
-    pub(super) pairs: Vec<Pair>,
-    /// The largest distance of any of its points from the base in any configuration.
+    pub(super) bodies: Vec<LinkBody>,
+    pub(super) pairs: Vec<LinkPair>,
+    /// An upper bound (m) on the distance of any of its points from the base in any configuration.
     pub(super) reach: f64,
     pub(super) model: ArmModel,
-    /// For verifiers, made when the first one is.
-    pub(super) reference: OnceLock<Arc<Tree>>,
+    /// The arm as verifiers see it, made for the first one.
+    pub(super) reference: OnceLock<Arc<ReferenceArm>>,
 }
 
-impl Robot {
+impl SharedArm {
     fn new(model: &ArmModel) -> Result<Self, ArmError> {
         let kinematics = Kinematics::new(model)?;
         let mut bodies = Vec::new();
         let (mut first, mut count, mut reach) = (0, 0_usize, 0.0_f64);
-        for (i, (link, place)) in model.links.iter().zip(&kinematics.places).enumerate() {
+        for (i, (link, place)) in model.links.iter().zip(&kinematics.attached).enumerate() {
             if link.shapes.is_empty() {
                 continue;
             }
-            // No mesh of finite shapes means a shape moved by a pose that is none, or too many triangles.
+            // Shapes are finite, so merging fails only for a shape moved by an invalid pose, or for too many triangles.
             let too_large = |radius| ArmError::TooLarge { link: link.name.clone(), radius, max: MAX_RADIUS };
             let merged = TriMesh::merged(&link.shapes).ok_or_else(|| too_large(f64::NAN))?;
             count = count.saturating_add(merged.triangles().len());
@@ -85,22 +82,31 @@ impl Robot {
             let entries = chain.steps.len() + 1;
             let (ball, tree) = (mesh.bounding_sphere(), CollisionMesh::new(&mesh));
             let ball = Sphere { radius: ball.radius * (1.0 + 1e-9), ..ball };
-            bodies.push(Body { link: i, frame: place.frame, mesh, tree, ball, chain, first });
+            bodies.push(LinkBody { link: i, frame: place.frame, mesh, tree, ball, chain, first });
             first += entries;
         }
         let pairs = pairs(&kinematics, &bodies, model)?;
         Ok(Self { kinematics, bodies, pairs, reach, model: model.clone(), reference: OnceLock::new() })
     }
 
+    /// The obstacles around this arm.
+    fn obstacles(
+        &self,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+    ) -> Result<Obstacles, ArmError> {
+        let triangles = self.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
+        Obstacles::new(obstacles, triangles, |count| ArmError::TooManyTriangles { count, max: MAX_TRIANGLES })
+    }
+
     pub(super) fn name(&self, body: usize) -> &str {
-        &self.kinematics.places[self.bodies[body].link].name
+        &self.kinematics.attached[self.bodies[body].link].name
     }
 }
 
-/// The largest distance of a point of `mesh`, in the frame `frame`, from the base in any configuration.
+/// An upper bound on the distance of a point of `mesh`, given in the frame `frame`, from the base in any configuration.
 fn reach_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> f64 {
     let mut reach = mesh.vertices().iter().map(|p| p.coords.norm()).fold(0.0, |a: f64, b| {
-        // `max` would lose NaN.
+        // `max` would drop NaN.
         if b > a || b.is_nan() { b } else { a }
     });
     let mut at = frame;
@@ -112,38 +118,7 @@ fn reach_of(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> f64 {
     reach
 }
 
-/// Obstacles: shared by all clones.
-#[derive(Debug)]
-pub(super) struct World {
-    pub(super) scene: Scene,
-    /// Every obstacle in the world.
-    pub(super) placed: Vec<(BodyId, Arc<TriMesh>)>,
-    pub(super) bounds: Aabb,
-    /// For verifiers, made when the first one is; nothing when there are no obstacles.
-    pub(super) reference: OnceLock<Option<Arc<RefMesh>>>,
-}
-
-impl World {
-    fn new(
-        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
-        triangles: usize,
-    ) -> Result<Self, ArmError> {
-        let (mut scene, mut placed, mut count) = (Scene::new(), Vec::new(), triangles);
-        for (name, mesh, pose) in obstacles {
-            count = count.saturating_add(mesh.triangles().len());
-            if count > MAX_TRIANGLES {
-                return Err(ArmError::TooManyTriangles { count, max: MAX_TRIANGLES });
-            }
-            let in_world = Arc::new(mesh.transformed(&pose));
-            placed.push((scene.insert(name, CollisionMesh::new(&mesh), pose)?, in_world));
-        }
-        scene.merge_static();
-        let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
-        Ok(Self { scene, placed, bounds, reference: OnceLock::new() })
-    }
-}
-
-/// Memory of one clone.
+/// Scratch memory of one clone.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     pub(super) frames: Vec<Isometry3<f64>>,
@@ -158,44 +133,43 @@ pub(super) struct Scratch {
 /// A configuration is a list of joint values (`SVector<f64, N>` or `DVector<f64>`), one for each
 /// [coordinate](Arm::coordinates); its space is [`space`](Arm::space). It is free when
 ///
-/// - no link that can move has a point in common with an obstacle. Links that stand still are not compared with
-///   obstacles, which stand still too: a table may touch the base it carries;
-/// - no two links have a point in common, but for pairs that never move relative to each other, pairs that a
-///   joint joins (at a joint links touch), and pairs that may touch: those of
+/// - no link that can move has a point in common with an obstacle. Links that stand still are not tested against
+///   obstacles, which stand still too: a table may touch the base that it carries;
+/// - no two links have a point in common, except pairs that never move relative to each other, pairs joined by a
+///   joint (links touch at a joint), and pairs that may touch: those of
 ///   [`ArmModel::may_touch`] if given, else those that touch at each of 100 configurations, the neutral one and
 ///   99 of the Halton sequence.
 ///
-/// Surfaces count, as for [`RigidBody`](crate::RigidBody): touching is collision, and what is wholly inside of
-/// something closed is free. Limits are the business of the space.
+/// Only surfaces count, as for [`RigidBody`](crate::RigidBody): touching is collision, and a link wholly inside a
+/// closed obstacle is free. The space checks the limits.
 ///
-/// Distances between links count as clearance like those to obstacles.
+/// Distances between links count as clearance, like those to obstacles.
 ///
-/// Meshes and trees are shared between clones; counters and scratch memory are each clone's own, so clone it
-/// per thread. Nothing is allocated by checks once the scratch has grown.
+/// Clones share meshes and trees. Each clone has its own counters and scratch memory, so clone it for each thread.
+/// Checks allocate nothing once the scratch memory has grown.
 #[derive(Clone, Debug)]
 pub struct Arm {
-    pub(super) robot: Arc<Robot>,
-    pub(super) world: Arc<World>,
+    pub(super) robot: Arc<SharedArm>,
+    pub(super) obstacles: Arc<Obstacles>,
     pub(super) query: Query,
     pub(super) counters: CheckCounters,
     pub(super) scratch: Scratch,
 }
 
 impl Arm {
-    /// The arm of `model` among obstacles: name, mesh and pose in the world each.
+    /// The arm of `model` among obstacles: each a name, a mesh and its pose in the world.
     ///
     /// # Errors
-    /// When the model makes no sense (see [`ArmError`]), or an obstacle has no pose or is too large.
+    /// When the model is not valid (see [`ArmError`]), or an obstacle has an invalid pose or is too large.
     pub fn new(
         model: &ArmModel,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, ArmError> {
-        let robot = Robot::new(model)?;
-        let triangles = robot.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
-        let world = World::new(obstacles, triangles)?;
+        let robot = SharedArm::new(model)?;
+        let obstacles = robot.obstacles(obstacles)?;
         Ok(Self {
             robot: Arc::new(robot),
-            world: Arc::new(world),
+            obstacles: Arc::new(obstacles),
             query: Query::default(),
             counters: CheckCounters::default(),
             scratch: Scratch::default(),
@@ -205,19 +179,18 @@ impl Arm {
     /// The same arm among other obstacles. Counters start at zero.
     ///
     /// # Errors
-    /// When an obstacle has no pose or is too large.
+    /// When an obstacle has an invalid pose or is too large.
     pub fn among(
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, ArmError> {
-        let triangles = self.robot.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
-        let world = Arc::new(World::new(obstacles, triangles)?);
-        let mut other = Self { world, ..self.clone() };
+        let obstacles = Arc::new(self.robot.obstacles(obstacles)?);
+        let mut other = Self { obstacles, ..self.clone() };
         other.take_counters();
         Ok(other)
     }
 
-    /// What it was made of.
+    /// The model that it was made from.
     #[must_use]
     pub fn model(&self) -> &ArmModel {
         &self.robot.model
@@ -249,8 +222,8 @@ impl Arm {
         self.kinematics().space()
     }
 
-    /// The links that can collide: name, mesh in the world at `q`. Nothing when `q` is no configuration. Slow:
-    /// for pictures.
+    /// The name of each link that can collide, and its mesh in the world at `q`. Empty when `q` is not a configuration.
+    /// Slow: meant for pictures.
     #[must_use]
     pub fn meshes_at(&self, q: &[f64]) -> Vec<(&str, TriMesh)> {
         let mut frames = Vec::new();
@@ -268,8 +241,8 @@ impl Arm {
         self.robot.pairs.iter().map(|pair| pair.bodies.map(|body| self.robot.name(body))).collect()
     }
 
-    /// The largest distance (m) of any of its points from the base, in any configuration: a bound by the
-    /// lengths of its links.
+    /// An upper bound (m) on the distance of any of its points from the base in any configuration, from the lengths of
+    /// its links.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.robot.reach
@@ -278,44 +251,37 @@ impl Arm {
     /// The obstacles, by name.
     #[must_use]
     pub fn scene(&self) -> &Scene {
-        &self.world.scene
+        &self.obstacles.scene
     }
 
     /// The obstacles in the world, with their names.
     pub fn obstacles(&self) -> impl Iterator<Item = (&str, &TriMesh)> {
-        let name = |id: &BodyId| self.world.scene.body(*id).map_or("", |body| body.name());
-        self.world.placed.iter().map(move |(id, mesh)| (name(id), &**mesh))
+        let name = |id: &BodyId| self.obstacles.scene.body(*id).map_or("", |body| body.name());
+        self.obstacles.placed.iter().map(move |(id, mesh)| (name(id), &**mesh))
     }
 
     /// The box around all obstacles; empty when there are none.
     #[must_use]
     pub fn obstacle_bounds(&self) -> Aabb {
-        self.world.bounds
+        self.obstacles.bounds
     }
 
-    /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and never so small
-    /// that coordinates could not resolve it. An [`ArmVerifier`](crate::ArmVerifier) works to a tenth of it.
+    /// The default tolerance (m) of certified motion checks: 1e-4 of its [reach](Self::reach), and at least what
+    /// coordinates can resolve. An [`ArmVerifier`](crate::ArmVerifier) uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         let base = self.kinematics().base.translation.vector.amax();
-        let bounds = &self.world.bounds;
-        let world =
-            if bounds.is_empty() { 0.0 } else { bounds.min.coords.amax().max(bounds.max.coords.amax()) };
-        let tolerance = (1e-4 * self.reach()).max(1e-9 * (base + world + self.reach()));
-        if tolerance > 0.0 { tolerance } else { 1e-6 }
+        resolved_tolerance(1e-4 * self.reach(), base + self.obstacles.farthest() + self.reach())
     }
 
-    /// What was done so far by this clone.
+    /// The checks made by this clone so far.
     #[must_use]
     pub fn counters(&self) -> CheckCounters {
-        CheckCounters { work: self.query.counters, ..self.counters }
+        self.counters.with(&self.query)
     }
 
-    /// Starts counting anew, returning the counts so far.
+    /// Sets the counters of this clone to zero. Returns the counts before.
     pub fn take_counters(&mut self) -> CheckCounters {
-        let counters = self.counters();
-        self.counters = CheckCounters::default();
-        self.query.counters = Counters::default();
-        counters
+        self.counters.take(&mut self.query)
     }
 }

@@ -1,14 +1,13 @@
-//! Which links may touch, from SRDF text.
+//! Pairs of links that may touch, from SRDF text.
 
 use super::xml::Text;
 use super::{ArmModel, UrdfError};
 
 impl ArmModel {
-    /// Takes the pairs of links that may touch from an SRDF: its `disable_collisions`. All else in it is left
-    /// aside.
+    /// Takes the pairs of links that may touch from the `disable_collisions` of an SRDF. The rest of the SRDF is ignored.
     ///
     /// # Errors
-    /// [`UrdfError::Syntax`] when it is no SRDF; links that are missing are found by [`Arm::new`](crate::Arm::new).
+    /// [`UrdfError::Syntax`] when the text is not an SRDF. Missing links are reported by [`Arm::new`](crate::Arm::new).
     pub fn with_srdf(mut self, text: &str) -> Result<Self, UrdfError> {
         let text = Text::new("an SRDF", text)?;
         let document = text.parse()?;

@@ -1,13 +1,13 @@
 //! How far a motion of the joints moves a link.
 //!
-//! A point of a link has the speed of each joint above it times its distance from that joint's axis, added up.
-//! The distance is bounded twice:
+//! The speed of a point of a link is at most the sum, over the joints above it, of the joint's speed times the distance
+//! of the point from the joint's axis. This distance is bounded in two ways:
 //!
-//! - once and for all, by the lengths of the chain between: [`Chain::new`];
-//! - about a configuration, by the distance there and how far the joints between have moved the point since:
+//! - for all configurations, by the lengths of the chain between: [`Chain::new`];
+//! - near one configuration, by the distance there plus how far the joints between have moved the point since:
 //!   [`Chain::near`].
 //!
-//! The second is the smaller where the arm is folded, and both are taken.
+//! The second is smaller where the arm is folded. The smaller of the two is used.
 
 use super::kinematics::Kinematics;
 use mp_geom::{Sphere, TriMesh};
@@ -16,21 +16,21 @@ use nalgebra::{Isometry3, Point3, Vector3};
 /// Bounds are enlarged by this factor against rounding.
 const ROUND_UP: f64 = 1.0 + 1e-12;
 
-/// The joints above a link, the nearest first.
+/// The joints above a link, nearest to the link first.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
     pub(super) steps: Vec<Step>,
 }
 
-/// One of them.
+/// A joint of a chain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     /// The frame behind the joint.
     pub(super) frame: usize,
     coordinate: usize,
-    /// Radians or metres of the joint for one of the coordinate.
+    /// How far (rad or m) the joint moves for each unit of the coordinate.
     rate: f64,
-    /// The largest distance of a point of the link from the axis in any configuration; 1 where the joint slides.
+    /// An upper bound on the distance of a point of the link from the axis in any configuration; 1 for a prismatic joint.
     reach: f64,
     slides: bool,
 }
@@ -38,12 +38,12 @@ pub(super) struct Step {
 impl Chain {
     /// The joints above `mesh`, which is given in the frame `frame`.
     ///
-    /// The largest distance of its points from the axis of a joint is at most that of the next joint's origin
-    /// plus that of the points from there, and so on along the chain; at the last joint it is taken from the
-    /// vertices themselves.
+    /// The distance of its points from the axis of a joint is at most the distance of the next joint's origin from that
+    /// axis plus the distance of the points from that origin, and so on along the chain. At the last joint it is computed
+    /// from the vertices.
     pub(super) fn new(kinematics: &Kinematics, mesh: &TriMesh, frame: usize) -> Self {
         let vertices = || mesh.vertices().iter().map(|p| p.coords);
-        // Of the points from the origin of the frame, and from the axis of the joint.
+        // The largest distances of the points from the origin of the frame and from the axis of the joint.
         let mut from_origin = vertices().map(|v| v.norm()).fold(0.0, f64::max);
         let mut steps = Vec::new();
         let mut at = frame;
@@ -62,7 +62,7 @@ impl Chain {
                 reach: if joint.slides { 1.0 } else { reach * ROUND_UP },
                 slides: joint.slides,
             });
-            // Now in the frame above.
+            // Continue in the frame above.
             let beyond = from_origin + joint.slide;
             lower = Some((joint.origin.translation.vector, beyond));
             from_origin = joint.origin.translation.vector.norm() + beyond;
@@ -71,22 +71,22 @@ impl Chain {
         Self { steps }
     }
 
-    /// Bounds (m) on how far the joints up to each step move a point of the link, over a whole motion; the
-    /// last is that of the whole chain. The first is zero: by no joint at all.
-    pub(super) fn far(&self, ways: impl Fn(usize) -> f64, out: &mut Vec<f64>) {
+    /// Appends bounds (m) on how far the first k joints of the chain move a point of the link over a whole motion, for
+    /// k from 0 (a bound of zero) to the length of the chain. `travels` gives how far each coordinate goes.
+    pub(super) fn far(&self, travels: impl Fn(usize) -> f64, out: &mut Vec<f64>) {
         let mut sum = 0.0;
         out.push(sum);
         for step in &self.steps {
-            sum += ways(step.coordinate) * step.rate * step.reach * ROUND_UP;
+            sum += travels(step.coordinate) * step.rate * step.reach * ROUND_UP;
             out.push(sum);
         }
     }
 
-    /// The same over an interval of the motion that turns the joints by `ways` to either side of a configuration,
-    /// in which the link is within `ball` and the joints have these axes, all in the world.
+    /// As [`far`](Self::far) over an interval of the motion that moves the coordinates by `travels` to either side of a
+    /// configuration at which the link is within `ball` and the joints have these axes, all in the world.
     pub(super) fn near(
         &self,
-        ways: impl Fn(usize) -> f64,
+        travels: impl Fn(usize) -> f64,
         ball: &Sphere,
         axes: &[(Point3<f64>, Vector3<f64>)],
         out: &mut Vec<f64>,
@@ -94,8 +94,8 @@ impl Chain {
         let mut sum = 0.0;
         out.push(sum);
         for step in &self.steps {
-            let way = ways(step.coordinate) * step.rate;
-            if way > 0.0 {
+            let travel = travels(step.coordinate) * step.rate;
+            if travel > 0.0 {
                 let reach = if step.slides {
                     1.0
                 } else {
@@ -103,21 +103,21 @@ impl Chain {
                     let from_axis = (ball.center - origin).cross(axis).norm() + ball.radius;
                     step.reach.min(from_axis + sum)
                 };
-                sum += way * reach * ROUND_UP;
+                sum += travel * reach * ROUND_UP;
             }
             out.push(sum);
         }
     }
 
-    /// Only the last of [`far`](Self::far).
-    pub(super) fn whole(&self, ways: impl Fn(usize) -> f64) -> f64 {
-        self.steps.iter().map(|step| ways(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
+    /// The last bound of [`far`](Self::far): of the whole chain.
+    pub(super) fn whole(&self, travels: impl Fn(usize) -> f64) -> f64 {
+        self.steps.iter().map(|step| travels(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
     }
 
-    /// As [`whole`](Self::whole) by the first `count` joints only.
-    pub(super) fn part(&self, count: usize, ways: impl Fn(usize) -> f64) -> f64 {
+    /// As [`whole`](Self::whole), for the first `count` joints only.
+    pub(super) fn part(&self, count: usize, travels: impl Fn(usize) -> f64) -> f64 {
         let steps = &self.steps[..count];
-        steps.iter().map(|step| ways(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
+        steps.iter().map(|step| travels(step.coordinate) * step.rate * step.reach * ROUND_UP).sum()
     }
 }
 
@@ -141,7 +141,7 @@ mod tests {
     use nalgebra::{DVector, UnitQuaternion};
     use rand::RngExt;
 
-    /// A chain of joints of all kinds with boxes off their axes.
+    /// A chain of joints of all kinds, with boxes away from their axes.
     fn chain(rng: &mut Rng) -> ArmModel {
         let mut next = move || rng.random_range(-1.0..1.0);
         let mut model = ArmModel { links: vec![Link::new("0")], ..ArmModel::default() };
@@ -164,8 +164,8 @@ mod tests {
         model
     }
 
-    /// Every vertex of every link, on its way through small steps: never longer than either bound, and the
-    /// bounds are not far off.
+    /// No vertex of any link travels farther than the bounds, measured in small steps, and the bounds are close to what is
+    /// measured.
     #[test]
     fn no_vertex_moves_farther_than_the_bounds() {
         let mut rng = Rng::seed(1);
@@ -183,44 +183,45 @@ mod tests {
                     kinematics.frames_into(space.interpolate(&a, &b, t).as_slice(), &mut frames);
                     frames
                 };
-                let ways = |i: usize| kinematics.way(i, a.as_slice(), b.as_slice());
+                let travels = |i: usize| kinematics.travel(i, a.as_slice(), b.as_slice());
                 let middle = at(0.5);
                 let mut axes = Vec::new();
                 axes_into(&kinematics, &middle, &mut axes);
-                for (link, place) in model.links.iter().zip(&kinematics.places).skip(1) {
+                for (link, place) in model.links.iter().zip(&kinematics.attached).skip(1) {
                     let mesh = link.shapes[0].transformed(&place.pose);
                     let chain = Chain::new(&kinematics, &mesh, place.frame);
                     let ball = mesh.bounding_sphere();
                     let ball = Sphere { center: middle[place.frame] * ball.center, ..ball };
                     let (mut far, mut near) = (Vec::new(), Vec::new());
-                    chain.far(ways, &mut far);
-                    chain.near(|i| ways(i) * half, &ball, &axes, &mut near);
-                    assert_eq!(*far.last().unwrap(), chain.whole(ways));
+                    chain.far(travels, &mut far);
+                    chain.near(|i| travels(i) * half, &ball, &axes, &mut near);
+                    assert_eq!(*far.last().unwrap(), chain.whole(travels));
                     assert!(near.iter().zip(&far).all(|(near, far)| *near <= far * half * (1.0 + 1e-9)));
                     // Relative to each frame of the chain.
                     for (count, (near, far)) in near.iter().zip(&far).enumerate() {
                         let base = chain.steps.get(count).map_or(0, |step| step.frame);
-                        let way = |from: f64, to: f64| {
+                        let longest = |from: f64, to: f64| {
                             let steps = 200;
                             let place = |k: i32| {
                                 let frames = at(from + (to - from) * f64::from(k) / f64::from(steps));
                                 let pose = frames[base].inverse() * frames[place.frame];
                                 mesh.vertices().iter().map(|v| pose * v).collect::<Vec<_>>()
                             };
-                            let mut ways = vec![0.0; mesh.vertices().len()];
+                            let mut travels = vec![0.0; mesh.vertices().len()];
                             let mut last = place(0);
                             for k in 1..=steps {
                                 let next = place(k);
-                                ways.iter_mut()
+                                travels
+                                    .iter_mut()
                                     .zip(last.iter().zip(&next))
                                     .for_each(|(w, (p, q))| *w += (q - p).norm());
                                 last = next;
                             }
-                            ways.into_iter().fold(0.0, f64::max)
+                            travels.into_iter().fold(0.0, f64::max)
                         };
-                        let whole = way(0.0, 1.0);
+                        let whole = longest(0.0, 1.0);
                         assert!(whole <= far + 1e-12, "{whole} {far}");
-                        let sides = way(0.5, 0.5 + half).max(way(0.5, 0.5 - half));
+                        let sides = longest(0.5, 0.5 + half).max(longest(0.5, 0.5 - half));
                         assert!(sides <= near + 1e-12, "{sides} {near}");
                         if count > 0 {
                             best_far = best_far.max(whole / far);

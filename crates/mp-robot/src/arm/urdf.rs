@@ -9,29 +9,29 @@ use mp_geom::{TriMesh, primitives};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use urdf_rs::{Geometry, JointType};
 
-/// Segments of a cylinder or capsule, subdivisions of a ball: they contain the shape they stand for.
+/// Segments around a cylinder or a capsule. The mesh contains the shape.
 const SEGMENTS: u32 = 32;
 
 impl ArmModel {
-    /// Reads a URDF through the crate `urdf-rs`. Of it count links, their collision shapes (box, cylinder, capsule,
+    /// Reads a URDF, with the crate `urdf-rs`. It takes links, their collision shapes (box, cylinder, capsule,
     /// sphere, mesh; each with its origin) and joints (revolute, continuous, prismatic, fixed; limits and mimics).
-    /// Links without collision shapes have none, whatever they look like. All else is left out before the text is
-    /// parsed: nothing in it can be wrong.
+    /// A link without collision shapes cannot collide, whatever its visual shapes are. Everything else is left out before the
+    /// text is parsed, so that errors in it do not matter.
     ///
-    /// [`ArmModel::notes`] has what was left out though it is incomplete or foreign, and these:
+    /// [`ArmModel::notes`] says what was left out although it is incomplete or of another name space, and also:
     ///
-    /// - Joints whose limits are equal do not move, and are no coordinates, until
-    ///   [`with_limits`](Self::with_limits) gives them others.
-    /// - The limits of a joint that mimics another are set aside where they leave both no room to move.
+    /// - which joints do not move because their limits are equal. They are not coordinates until
+    ///   [`with_limits`](Self::with_limits) gives them other limits;
+    /// - which joints that mimic others had their limits ignored, because neither joint could move within both limits.
     ///
-    /// Round shapes become meshes of flat faces that contain them: larger by less than 1% of the radius (2% for
+    /// Round shapes become meshes of flat faces that contain them. They are larger by less than 1% of the radius (2% for
     /// spheres).
     ///
-    /// `mesh` is given each mesh file name as written, often `package://robot/part.stl`, and returns the mesh, or a
+    /// `mesh` is called with each mesh file name as written, often `package://robot/part.stl`. It returns the mesh, or a
     /// message for people.
     ///
     /// # Errors
-    /// [`UrdfError`], naming the line, and the joint or link.
+    /// [`UrdfError`], which names the line and the joint or link.
     pub fn from_urdf(
         text: &str,
         mut mesh: impl FnMut(&str) -> Result<TriMesh, String>,
@@ -79,7 +79,7 @@ impl ArmModel {
             }
             model.joints.push(made);
         }
-        model.make_room();
+        model.drop_conflicting_limits();
         let held = model.joints.iter().filter(|j| j.kind.held().is_some() && j.mimic.is_none());
         let held: Vec<_> = held.map(|j| j.name.clone()).collect();
         if !held.is_empty() {
@@ -89,8 +89,9 @@ impl ArmModel {
         Ok(model)
     }
 
-    /// Sets the limits of followers aside where they leave no room to move: what they follow has limits of its own.
-    fn make_room(&mut self) {
+    /// Drops the limits of joints that mimic others where they leave no range to move in. The joint that is followed keeps
+    /// its own limits.
+    fn drop_conflicting_limits(&mut self) {
         let mut aside = Vec::new();
         for i in 0..self.joints.len() {
             let Some(mimic) = &self.joints[i].mimic else { continue };
@@ -104,12 +105,12 @@ impl ArmModel {
             };
             let ends = [low, high].map(|x| x * mimic.multiplier + mimic.offset);
             let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-            let room = match low == high {
+            let can_move = match low == high {
                 true => (own_low..=own_high).contains(&low),
                 false => own_low.max(low) < own_high.min(high),
             };
-            // Whoever releases what is held shall find followers that can follow.
-            if own_low > own_high || (room && own_low < own_high) {
+            // Also for a leader that is held: its followers must be able to move once it gets other limits.
+            if own_low > own_high || (can_move && own_low < own_high) {
                 continue;
             }
             self.joints[i].kind = match self.joints[i].kind {
@@ -142,7 +143,7 @@ fn shape(
         Geometry::Cylinder { radius, length } => primitives::cylinder(radius * grown, *length, SEGMENTS),
         Geometry::Sphere { radius } => return ball(*radius),
         Geometry::Capsule { radius, length } => {
-            // Flat both ways round.
+            // Flat faces in both directions.
             primitives::capsule(radius * grown * grown, *length, SEGMENTS, SEGMENTS / 4)
         }
         Geometry::Mesh { filename, scale } => {
@@ -164,7 +165,7 @@ fn shape(
     made.map_err(|error| error.to_string())
 }
 
-/// A mesh around a ball: grown until no face cuts it.
+/// A mesh that contains a ball: a sphere mesh enlarged until no face cuts the ball.
 fn ball(radius: f64) -> Result<TriMesh, String> {
     let unit = primitives::sphere(1.0, 3).map_err(|error| error.to_string())?;
     let inner = (0..unit.triangles().len())

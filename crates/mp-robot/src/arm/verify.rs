@@ -9,24 +9,24 @@ use std::collections::VecDeque;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// The arm as verifiers see it: made of the model anew, by names.
+/// The arm as verifiers see it: built from the model a second time, by the names of links and joints.
 #[derive(Debug)]
-pub(super) struct Tree {
+pub(super) struct ReferenceArm {
     /// Parents before children.
-    links: Vec<Part>,
+    links: Vec<ReferenceLink>,
     coordinates: Vec<bool>,
     base: Matrix4<f64>,
 }
 
-/// A link and the joint it hangs on.
+/// A link and the joint above it.
 #[derive(Debug)]
-struct Part {
+struct ReferenceLink {
     name: String,
     parent: Option<usize>,
     origin: Matrix4<f64>,
     axis: Vector3<f64>,
-    moves: Moves,
-    /// Its value: coordinate, factor, offset.
+    motion: JointMotion,
+    /// The value of the joint: coordinate, factor, offset.
     value: (usize, f64, f64),
     mesh: Option<RefMesh>,
     /// The largest distance of a point of its mesh from its origin.
@@ -34,13 +34,13 @@ struct Part {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Moves {
-    No,
+enum JointMotion {
+    Fixed,
     Turns,
     Slides,
 }
 
-impl Tree {
+impl ReferenceArm {
     pub(super) fn new(model: &ArmModel) -> Self {
         let own = model.joints.iter().filter(|j| j.kind != JointKind::Fixed && j.mimic.is_none());
         let own: Vec<_> = own.filter(|j| j.kind.held().is_none()).collect();
@@ -50,7 +50,7 @@ impl Tree {
             base: model.base.to_homogeneous(),
         };
         let coordinate = |name: &str| own.iter().position(|j| j.name == name);
-        // What a joint follows, however long that takes: the model is known to have no loops.
+        // Follows mimics to the end. The model has been checked: there are no loops.
         let value = |name: &str| {
             let (mut at, mut factor, mut offset) = (name.to_owned(), 1.0, 0.0);
             loop {
@@ -59,7 +59,7 @@ impl Tree {
                 }
                 let joint = model.joints.iter().find(|j| j.name == at);
                 let Some(mimic) = joint.and_then(|j| j.mimic.as_ref()) else {
-                    // It has one value only, if it has one.
+                    // A fixed or held joint has at most one value.
                     let held = joint.and_then(|j| j.kind.held()).unwrap_or(0.0);
                     return (0, 0.0, offset + factor * held);
                 };
@@ -79,17 +79,17 @@ impl Tree {
                     return true;
                 }
                 let mesh = TriMesh::merged(&link.shapes);
-                let moves = match joint.map(|j| j.kind) {
-                    None | Some(JointKind::Fixed) => Moves::No,
-                    Some(JointKind::Prismatic { .. }) => Moves::Slides,
-                    Some(_) => Moves::Turns,
+                let motion = match joint.map(|j| j.kind) {
+                    None | Some(JointKind::Fixed) => JointMotion::Fixed,
+                    Some(JointKind::Prismatic { .. }) => JointMotion::Slides,
+                    Some(_) => JointMotion::Turns,
                 };
-                tree.links.push(Part {
+                tree.links.push(ReferenceLink {
                     name: link.name.clone(),
                     parent,
                     origin: joint.map_or_else(Matrix4::identity, |j| j.origin.to_homogeneous()),
                     axis: joint.map_or_else(Vector3::x, |j| j.axis.normalize()),
-                    moves,
+                    motion,
                     value: joint.map_or((0, 0.0, 0.0), |j| value(&j.name)),
                     radius: mesh
                         .iter()
@@ -107,17 +107,17 @@ impl Tree {
         tree
     }
 
-    /// Where the links are, by homogeneous matrices.
-    fn place(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
+    /// The poses of the links in the world, as homogeneous matrices.
+    fn poses_into(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
         out.clear();
         for link in &self.links {
             let above = link.parent.map_or(self.base, |p| out[p]);
             let value = q[link.value.0] * link.value.1 + link.value.2;
             let mut motion = Matrix4::identity();
-            match link.moves {
-                Moves::No => {}
-                Moves::Slides => motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value)),
-                Moves::Turns => {
+            match link.motion {
+                JointMotion::Fixed => {}
+                JointMotion::Slides => motion.fixed_view_mut::<3, 1>(0, 3).copy_from(&(link.axis * value)),
+                JointMotion::Turns => {
                     let across = link.axis.cross_matrix();
                     let turn =
                         Matrix3::identity() + across * value.sin() + across * across * (1.0 - value.cos());
@@ -128,35 +128,35 @@ impl Tree {
         }
     }
 
-    /// How far the joints below `stop` (not included; all when `None`) move a point of a link, relative to it,
-    /// while every coordinate goes `ways` from where the links are at `places`.
+    /// An upper bound (m) on how far the joints below the link `stop` move a point of `link` relative to `stop` (all joints
+    /// when it is `None`), while every coordinate goes as far as `travels` says and the links start at `poses`.
     ///
     /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
-    /// That distance is at most the one at `places` plus what the joints nearer to the link have moved it.
-    fn travel(&self, link: usize, stop: Option<usize>, ways: &[f64], places: &[Matrix4<f64>]) -> f64 {
-        let origin = |i: usize| Vector3::from(places[i].fixed_view::<3, 1>(0, 3));
+    /// That distance is at most the one at `poses` plus how far the joints nearer to the link have moved the point.
+    fn travel(&self, link: usize, stop: Option<usize>, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
+        let origin = |i: usize| Vector3::from(poses[i].fixed_view::<3, 1>(0, 3));
         let tip = origin(link);
         let mut moved = 0.0;
         let mut at = Some(link);
         while at != stop {
             let Some(i) = at else { break };
             let part = &self.links[i];
-            let way = ways[part.value.0] * part.value.1.abs();
-            match part.moves {
-                Moves::No => {}
-                Moves::Slides => moved += way,
-                Moves::Turns => {
+            let travel = travels[part.value.0] * part.value.1.abs();
+            match part.motion {
+                JointMotion::Fixed => {}
+                JointMotion::Slides => moved += travel,
+                JointMotion::Turns => {
                     let now = (tip - origin(i)).norm() + self.links[link].radius;
-                    moved += way * (now + moved);
+                    moved += travel * (now + moved);
                 }
             }
             at = part.parent;
         }
-        // Rounding.
+        // Enlarged against rounding.
         moved * (1.0 + 1e-9)
     }
 
-    /// The links above `link`, itself first.
+    /// The links from `link` up to the root, `link` first.
     fn above(&self, link: usize) -> Vec<usize> {
         std::iter::successors(Some(link), |&i| self.links[i].parent).collect()
     }
@@ -165,43 +165,44 @@ impl Tree {
         self.links.iter().position(|link| link.name == name)
     }
 
-    /// Whether any joint above moves it.
+    /// Whether any joint above the link moves it.
     fn is_moved(&self, link: usize) -> bool {
-        self.above(link).into_iter().any(|i| self.links[i].moves != Moves::No)
+        self.above(link).into_iter().any(|i| self.links[i].motion != JointMotion::Fixed)
     }
 }
 
-/// What must be kept apart: a link, and another or the obstacles.
+/// A link and another link, or a link and the obstacles: they must not touch.
 #[derive(Clone, Copy, Debug)]
-struct Pair {
+struct CheckedPair {
     link: usize,
     other: Option<usize>,
-    /// The nearest link that both hang on.
+    /// The nearest link above both.
     meet: Option<usize>,
 }
 
-/// Proves motions of an [`Arm`] free of collision, by other code than planners use: its own kinematic tree, made
-/// anew of the names of the model and multiplied out as homogeneous matrices; its own bounds on how far links
-/// move; its own subdivision; and the sphere trees of `mp_collide::reference`. Shared are only the space, whose
-/// interpolation is what a motion *is*, and the list of [pairs of links](Arm::checked_pairs) that must not touch.
+/// Proves motions of an [`Arm`] free of collision, with other code than planners use: its own kinematic tree, built from
+/// the names in the model and multiplied out as homogeneous matrices; its own bounds on how far links
+/// move; its own subdivision; and the sphere trees of `mp_collide::reference`. It shares with the checker only the space,
+/// whose interpolation defines what a motion is, and the list of [pairs of links](Arm::checked_pairs) that must not
+/// touch.
 ///
-/// - free means: links keep at least the tolerance from obstacles and from each other all along;
-/// - a motion with a tested state of less than twice the tolerance is [`Undecided`](MotionCheck::Unproven), as
-///   are motions that take more than a million parts, or of a million radians.
+/// - free means that links keep at least the tolerance from obstacles and from each other all along;
+/// - a motion with a tested state of less than twice the tolerance is [`Unproven`](MotionCheck::Unproven), as
+///   are motions that take more than a million parts, and motions of a million radians or metres.
 ///
 /// Coordinates must go at constant speed, and by no more than a turn, as in [`Arm::space`].
 #[derive(Clone, Debug)]
 pub struct ArmVerifier<'c, C> {
     space: &'c C,
-    tree: Arc<Tree>,
+    tree: Arc<ReferenceArm>,
     world: Option<Arc<RefMesh>>,
-    pairs: Vec<Pair>,
+    pairs: Vec<CheckedPair>,
     tolerance: f64,
     parts: u64,
 }
 
 /// Motions of a coordinate longer than this (rad or m) are refused.
-const MAX_WAY: f64 = 1e6;
+const MAX_TRAVEL: f64 = 1e6;
 
 /// Motions are not cut into more parts than this.
 const MAX_PARTS: u64 = 1_000_000;
@@ -211,92 +212,90 @@ where
     C: Space,
     C::State: Coordinates,
 {
-    /// A verifier for `arm` in `space`, to a tenth of the arm's [tolerance](Arm::tolerance).
+    /// A verifier for `arm` in `space` with a tenth of the arm's [tolerance](Arm::tolerance).
     ///
     /// # Errors
-    /// When the tolerance is not positive and finite, which that of an arm always is.
+    /// When the tolerance is not positive and finite. The tolerance of an arm always is.
     pub fn new(space: &'c C, arm: &Arm) -> Result<Self, ParameterError> {
         Self::with_tolerance(space, arm, arm.tolerance() * 0.1)
     }
 
-    /// A verifier to a tolerance of your own (m).
+    /// A verifier with the tolerance `tolerance` (m).
     ///
     /// # Errors
-    /// When it is not positive and finite.
+    /// When the tolerance is not positive and finite.
     pub fn with_tolerance(space: &'c C, arm: &Arm, tolerance: f64) -> Result<Self, ParameterError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             let (name, expected) = ("the tolerance", "positive and finite");
             return Err(ParameterError { name, expected, value: tolerance });
         }
-        let tree = Arc::clone(arm.robot.reference.get_or_init(|| Arc::new(Tree::new(&arm.robot.model))));
-        let world = arm.world.reference.get_or_init(|| {
-            let merged = TriMesh::merged(arm.world.placed.iter().map(|(_, mesh)| &**mesh));
-            merged.map(|mesh| Arc::new(RefMesh::new(&mesh)))
-        });
+        let tree =
+            Arc::clone(arm.robot.reference.get_or_init(|| Arc::new(ReferenceArm::new(&arm.robot.model))));
+        let world = arm.obstacles.reference();
         let mut pairs = Vec::new();
         for link in (0..tree.links.len()).filter(|&i| tree.links[i].mesh.is_some() && tree.is_moved(i)) {
             if world.is_some() {
-                pairs.push(Pair { link, other: None, meet: None });
+                pairs.push(CheckedPair { link, other: None, meet: None });
             }
         }
         for [a, b] in arm.checked_pairs() {
             if let (Some(link), Some(other)) = (tree.find(a), tree.find(b)) {
                 let on_b = tree.above(other);
                 let meet = tree.above(link).into_iter().find(|i| on_b.contains(i));
-                pairs.push(Pair { link, other: Some(other), meet });
+                pairs.push(CheckedPair { link, other: Some(other), meet });
             }
         }
-        Ok(Self { space, tree, world: world.clone(), pairs, tolerance, parts: 0 })
+        Ok(Self { space, tree, world, pairs, tolerance, parts: 0 })
     }
 
-    /// Motions found free keep links this far from everything (m).
+    /// The clearance (m) that motions found free keep between links and everything else.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// Parts of motions looked at so far.
+    /// How many parts of motions have been tested so far.
     #[must_use]
     pub fn parts(&self) -> u64 {
         self.parts
     }
 
-    /// The way of each coordinate between two configurations: what is less than half a turn apart goes there
-    /// directly.
-    fn ways(&self, a: &C::State, b: &C::State) -> Vec<f64> {
+    /// How far each coordinate goes between two configurations. Continuous joints turn by the shorter way.
+    fn travels(&self, a: &C::State, b: &C::State) -> Vec<f64> {
         let (a, b) = (a.as_slice(), b.as_slice());
-        let way = |(i, endless): (usize, &bool)| {
+        let travel = |(i, endless): (usize, &bool)| {
             let d = (b[i] - a[i]).abs();
             if *endless && d > PI { (d % TAU).min(TAU - d % TAU) } else { d }
         };
-        self.tree.coordinates.iter().enumerate().map(way).collect()
+        self.tree.coordinates.iter().enumerate().map(travel).collect()
     }
 
-    /// A bound on the distance of a pair, at least `enough`, or that of some of their triangles that is less.
-    fn distance(&self, pair: &Pair, places: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
+    /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
+    /// triangles that is less.
+    fn distance(&self, pair: &CheckedPair, poses: &[Matrix4<f64>], enough: f64) -> Result<f64, f64> {
         let part = &self.tree.links[pair.link];
         let Some(mesh) = &part.mesh else { return Ok(f64::INFINITY) };
-        let pose = isometry(&places[pair.link]);
+        let pose = isometry(&poses[pair.link]);
         match pair.other {
             None => self.world.as_ref().map_or(Ok(f64::INFINITY), |world| {
                 mesh.at_least(&pose, world, &Isometry3::identity(), enough)
             }),
             Some(other) => self.tree.links[other].mesh.as_ref().map_or(Ok(f64::INFINITY), |mesh_b| {
-                mesh.at_least(&pose, mesh_b, &isometry(&places[other]), enough)
+                mesh.at_least(&pose, mesh_b, &isometry(&poses[other]), enough)
             }),
         }
     }
 
-    /// How much nearer the two of a pair can come.
-    fn approach(&self, pair: &Pair, ways: &[f64], places: &[Matrix4<f64>]) -> f64 {
-        let moved = |link| self.tree.travel(link, pair.meet, ways, places);
+    /// How much nearer to each other the two of a pair can come.
+    fn approach(&self, pair: &CheckedPair, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
+        let moved = |link| self.tree.travel(link, pair.meet, travels, poses);
         moved(pair.link) + pair.other.map_or(0.0, moved)
     }
 
-    /// Proves the motion, in longer and then in shorter parts.
+    /// Proves the motion in parts, longer parts first.
     fn prove(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
         let mut least = f64::INFINITY;
-        let mut places = Vec::new();
+        let mut poses = Vec::new();
         let all: Vec<usize> = (0..self.pairs.len()).collect();
         let mut open = VecDeque::from([(0.0, 1.0, all)]);
         let limit = self.parts + MAX_PARTS;
@@ -307,17 +306,17 @@ where
                 return MotionCheck::Unproven { at };
             }
             let [qa, qm, qb] = [a, at, b].map(|t| self.space.interpolate(from, to, t));
-            let (before, after) = (self.ways(&qa, &qm), self.ways(&qm, &qb));
-            let ways: Vec<f64> = before.iter().zip(&after).map(|(x, y)| x.max(*y)).collect();
-            self.tree.place(qm.as_slice(), &mut places);
+            let (before, after) = (self.travels(&qa, &qm), self.travels(&qm, &qb));
+            let travels: Vec<f64> = before.iter().zip(&after).map(|(x, y)| x.max(*y)).collect();
+            self.tree.poses_into(qm.as_slice(), &mut poses);
             let mut near = Vec::new();
             for i in pairs {
                 let pair = &self.pairs[i];
-                let approach = self.approach(pair, &ways, &places);
-                match self.distance(pair, &places, approach + self.tolerance) {
+                let approach = self.approach(pair, &travels, &poses);
+                match self.distance(pair, &poses, approach + self.tolerance) {
                     Ok(distance) => least = least.min(distance - approach),
-                    // What was found first need not be the nearest.
-                    Err(_) if self.distance(pair, &places, 0.0).is_err() => {
+                    // The first distance found need not be the least.
+                    Err(_) if self.distance(pair, &poses, 0.0).is_err() => {
                         return MotionCheck::Collision { at };
                     }
                     Err(distance) if distance < 2.0 * self.tolerance => {
@@ -334,11 +333,11 @@ where
         MotionCheck::Free { clearance: least }
     }
 
-    /// Whether anything touches at `q`.
+    /// Whether any pair touches at `q`.
     fn touches(&self, q: &C::State) -> bool {
-        let mut places = Vec::new();
-        self.tree.place(q.as_slice(), &mut places);
-        let touching = |pair| self.distance(pair, &places, self.tolerance).is_err_and(|d| d <= 0.0);
+        let mut poses = Vec::new();
+        self.tree.poses_into(q.as_slice(), &mut poses);
+        let touching = |pair| self.distance(pair, &poses, self.tolerance).is_err_and(|d| d <= 0.0);
         self.pairs.iter().any(touching)
     }
 }
@@ -360,8 +359,8 @@ where
         if !(is_sound(from.as_slice()) && is_sound(to.as_slice())) {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        let mut ways = from.as_slice().iter().zip(to.as_slice()).map(|(a, b)| (b - a).abs());
-        let provable = ways.all(|way| way < MAX_WAY);
+        let mut travels = from.as_slice().iter().zip(to.as_slice()).map(|(a, b)| (b - a).abs());
+        let provable = travels.all(|travel| travel < MAX_TRAVEL);
         if !provable {
             return MotionCheck::Unproven { at: 0.0 };
         }

@@ -1,4 +1,4 @@
-//! XML text: parsed with care, and errors that say the line.
+//! XML text: safe parsing, with errors that name the line.
 
 use super::UrdfError;
 use roxmltree::{Document, Node};
@@ -6,19 +6,19 @@ use std::borrow::Cow;
 
 /// Elements may be nested no deeper than this.
 const MAX_DEPTH: usize = 64;
-/// The most prefixes that are declared for a document that does not.
+/// How many missing declarations of name space prefixes are added at most.
 const MAX_PREFIXES: usize = 16;
 
 /// The text of a document whose root is `<robot>`.
 pub(super) struct Text<'a> {
-    /// What it is: "a URDF".
+    /// What the text should be: "a URDF".
     what: &'static str,
-    /// With a declaration, in the line of the root, of each prefix that has none.
+    /// The text, with a declaration added in the line of the root for each prefix that has none.
     text: Cow<'a, str>,
 }
 
 impl<'a> Text<'a> {
-    /// The text, all its prefixes declared.
+    /// The text with all its prefixes declared.
     pub(super) fn new(what: &'static str, text: &'a str) -> Result<Self, UrdfError> {
         let mut text = Self { what, text: Cow::Borrowed(text) };
         for _ in 0..=MAX_PREFIXES {
@@ -32,11 +32,11 @@ impl<'a> Text<'a> {
         Err(text.wrong(format!("more than {MAX_PREFIXES} prefixes of names are not declared")))
     }
 
-    /// The document, if it is XML with that root and not too deep for parsers that recurse.
+    /// The document, if it is XML with the root `<robot>` and not nested too deep for recursive parsers.
     pub(super) fn parse(&self) -> Result<Document<'_>, UrdfError> {
         let document = Document::parse(&self.text).map_err(|error| {
             let shown = error.to_string();
-            // The reader gives row and column at the end of its sentence.
+            // The parser puts row and column at the end of its message.
             let message = shown.rsplit_once(" at ").map_or(shown.as_str(), |(message, _)| message);
             self.wrong(format!("line {}: {message}", error.pos().row))
         })?;

@@ -1,4 +1,4 @@
-//! A rigid body among obstacles some of which move on known trajectories.
+//! A rigid body among obstacles, some of which move on known trajectories.
 
 mod trajectory;
 mod verify;
@@ -14,28 +14,28 @@ use mp_geom::TriMesh;
 use nalgebra::{Isometry3, Point3};
 use std::sync::Arc;
 
-/// A moving obstacle. The scene holds it alone, at its own origin: the robot is asked about where it is
-/// as seen from there.
+/// A moving obstacle. Its scene holds it alone, with its frame at the origin; queries give the pose of the robot in that
+/// frame.
 #[derive(Clone, Debug)]
-pub(crate) struct Mover {
+pub(crate) struct MovingObstacle {
     scene: Arc<Scene>,
     pub(crate) trajectory: Trajectory,
-    /// The largest distance of a point from the origin of its frame.
+    /// The largest distance (m) of one of its points from the origin of its frame.
     pub(crate) radius: f64,
     pub(crate) reference: Arc<RefMesh>,
 }
 
 /// A [`RigidBody`] and the bodies that move around it, each on its [`Trajectory`] whatever the robot does.
 ///
-/// States are pairs, a configuration and a time (s), as in [`SpaceTime`](mp_cspace::space_time::SpaceTime). One is free
-/// where the robot touches neither what stands still nor the surface of what moves; a robot that is inside a
-/// moving body to begin with, even a point, is not in contact with it. Motion bounds hold for the robot and
-/// the fastest of the obstacles together, so [`Certified`](mp_cspace::Certified) misses neither, however
-/// thin; [`Forward`](mp_cspace::space_time::Forward) around it keeps time running forward.
+/// A state is a pair of a configuration and a time (s), as in [`SpaceTime`](mp_cspace::space_time::SpaceTime). It is free
+/// if the robot touches neither the obstacles that stand still nor the surface of a moving one. A robot that is inside a
+/// moving body from the beginning, even a point, is not in contact with it. Motion bounds are for the robot and the
+/// fastest obstacle together, so [`Certified`](mp_cspace::Certified) misses no obstacle, however thin.
+/// [`Forward`](mp_cspace::space_time::Forward) around it keeps time running forward.
 #[derive(Clone, Debug)]
 pub struct AmongMoving<P: Placement> {
     body: RigidBody<P>,
-    movers: Arc<[Mover]>,
+    moving: Arc<[MovingObstacle]>,
     query: Query,
     counters: CheckCounters,
 }
@@ -44,46 +44,52 @@ pub struct AmongMoving<P: Placement> {
 const ROUND_UP: f64 = 1.0 + 1e-9;
 
 impl<P: Placement> AmongMoving<P> {
-    /// `body` among its obstacles that stand still, and `movers`: name, mesh in its own frame, and
-    /// trajectory of that frame in the world each.
+    /// `body` among its obstacles that stand still, and the obstacles `moving`: each a name, a mesh in its own frame, and
+    /// the trajectory of that frame in the world.
     ///
     /// # Errors
     /// When a mesh is too large to compute with.
     pub fn new(
         body: RigidBody<P>,
-        movers: impl IntoIterator<Item = (String, TriMesh, Trajectory)>,
+        moving: impl IntoIterator<Item = (String, TriMesh, Trajectory)>,
     ) -> Result<Self, RobotError> {
         let make = |(name, mesh, trajectory): (String, TriMesh, Trajectory)| {
             let mut scene = Scene::new();
             scene.insert(name, CollisionMesh::new(&mesh), Isometry3::identity())?;
             let radius = mesh.radius_about(&Point3::origin());
-            Ok(Mover { scene: Arc::new(scene), trajectory, radius, reference: Arc::new(RefMesh::new(&mesh)) })
+            Ok(MovingObstacle {
+                scene: Arc::new(scene),
+                trajectory,
+                radius,
+                reference: Arc::new(RefMesh::new(&mesh)),
+            })
         };
-        let movers: Vec<Mover> = movers.into_iter().map(make).collect::<Result<_, RobotError>>()?;
-        Ok(Self { body, movers: movers.into(), query: Query::default(), counters: CheckCounters::default() })
+        let moving: Vec<MovingObstacle> = moving.into_iter().map(make).collect::<Result<_, RobotError>>()?;
+        Ok(Self { body, moving: moving.into(), query: Query::default(), counters: CheckCounters::default() })
     }
 
-    /// The robot among what stands still.
+    /// The robot among the obstacles that stand still.
     #[must_use]
     pub fn body(&self) -> &RigidBody<P> {
         &self.body
     }
 
-    /// What was done so far by this clone: against what stands still and what moves, each counted.
+    /// The checks made by this clone so far. Those against obstacles that stand still and against each that moves count
+    /// separately.
     #[must_use]
     pub fn counters(&self) -> CheckCounters {
         let mut counters = self.body.counters();
-        counters += CheckCounters { work: self.query.counters, ..self.counters };
+        counters += self.counters.with(&self.query);
         counters
     }
 
     /// The poses of the moving obstacles at a time, in the order in which they were given.
     pub fn poses(&self, time: f64) -> impl Iterator<Item = Isometry3<f64>> + '_ {
-        self.movers.iter().map(move |mover| mover.trajectory.pose(time))
+        self.moving.iter().map(move |obstacle| obstacle.trajectory.pose(time))
     }
 
-    pub(crate) fn movers(&self) -> &Arc<[Mover]> {
-        &self.movers
+    pub(crate) fn moving(&self) -> &Arc<[MovingObstacle]> {
+        &self.moving
     }
 }
 
@@ -97,12 +103,12 @@ impl<P: Placement> Clearance<(P::State, f64)> for AmongMoving<P> {
     fn clearance(&mut self, (q, time): &(P::State, f64), enough: f64) -> f64 {
         let mut least = self.body.clearance(q, enough);
         let pose = P::pose(q);
-        for mover in self.movers.iter() {
+        for obstacle in self.moving.iter() {
             self.counters.clearance_checks += 1;
-            let seen = mover.trajectory.pose(*time).inv_mul(&pose);
+            let seen = obstacle.trajectory.pose(*time).inv_mul(&pose);
             let enough = enough.min(least);
             let robot = &self.body.shared.robot;
-            least = least.min(mover.scene.clearance(&mut self.query, robot, &seen, enough).0);
+            least = least.min(obstacle.scene.clearance(&mut self.query, robot, &seen, enough).0);
         }
         least
     }
@@ -112,19 +118,19 @@ impl<P: Placement> Clearance<(P::State, f64)> for AmongMoving<P> {
             return true;
         }
         let pose = P::pose(q);
-        self.movers.iter().any(|mover| {
+        self.moving.iter().any(|obstacle| {
             self.counters.collision_checks += 1;
-            let seen = mover.trajectory.pose(*time).inv_mul(&pose);
-            mover.scene.collides(&mut self.query, &self.body.shared.robot, &seen)
+            let seen = obstacle.trajectory.pose(*time).inv_mul(&pose);
+            obstacle.scene.collides(&mut self.query, &self.body.shared.robot, &seen)
         })
     }
 }
 
 impl<P: Placement> MotionClearance<(P::State, f64)> for AmongMoving<P> {
-    /// How far the robot and the fastest of the moving obstacles travel together.
+    /// How far the robot and the fastest moving obstacle travel, added.
     fn motion_bound(&self, from: &(P::State, f64), to: &(P::State, f64)) -> f64 {
-        let speed = |mover: &Mover| mover.trajectory.speed(mover.radius, from.1, to.1);
-        let fastest = self.movers.iter().map(speed).fold(0.0, f64::max);
+        let speed = |obstacle: &MovingObstacle| obstacle.trajectory.speed(obstacle.radius, from.1, to.1);
+        let fastest = self.moving.iter().map(speed).fold(0.0, f64::max);
         (self.body.motion_bound(&from.0, &to.0) + fastest * (to.1 - from.1).abs()) * ROUND_UP
     }
 }

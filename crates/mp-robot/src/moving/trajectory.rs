@@ -1,35 +1,35 @@
-//! Where a body is when.
+//! Trajectories: the pose of a body at each time.
 
 use mp_cspace::angle::{rotation_angle, slerp};
 use nalgebra::Isometry3;
 use thiserror::Error;
 
-/// Why a trajectory could not be made.
+/// Why a list of timed poses is not a trajectory.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TrajectoryError {
-    /// It has no pose.
+    /// There is no pose.
     #[error("a trajectory needs at least one timed pose")]
     Empty,
-    /// A time or pose is not finite, or a rotation not of unit length.
-    #[error("timed pose {index} must be finite, its rotation of unit length")]
+    /// A time or a pose is not finite, or a rotation is not of unit length.
+    #[error("timed pose {index} must be finite, and its rotation of unit length")]
     NotAPose {
-        /// Which.
+        /// The index of the timed pose.
         index: usize,
     },
-    /// A time is not after the one before.
+    /// A time is not later than the one before.
     #[error("timed pose {index} is at {time} s, which must be after the one before")]
     NotAfter {
-        /// Which.
+        /// The index of the timed pose.
         index: usize,
-        /// Its time.
+        /// Its time (s).
         time: f64,
     },
 }
 
-/// Timed poses of a body in the world, and straight motions between: the origin of its frame on a line,
-/// turning about a fixed axis by the shorter way, both at constant speed. Before the first and after the
-/// last it stands still.
+/// Timed poses of a body in the world, with straight motions between them: the origin of its frame moves on a line,
+/// and the body turns about a fixed axis by the shorter way, both at constant speed. The body stands still before the
+/// first pose and after the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     times: Vec<f64>,
@@ -40,7 +40,7 @@ impl Trajectory {
     /// The trajectory through `poses` at their times (s).
     ///
     /// # Errors
-    /// When there is none, one is no pose, or their times do not increase.
+    /// When there is no pose, one is not valid, or the times do not increase.
     pub fn new(poses: impl IntoIterator<Item = (f64, Isometry3<f64>)>) -> Result<Self, TrajectoryError> {
         let (times, poses): (Vec<f64>, Vec<Isometry3<f64>>) = poses.into_iter().unzip();
         if times.is_empty() {
@@ -59,7 +59,7 @@ impl Trajectory {
         Ok(Self { times, poses })
     }
 
-    /// The pose in the world at a time.
+    /// The pose in the world at `time` (s).
     #[must_use]
     pub fn pose(&self, time: f64) -> Isometry3<f64> {
         let next = self.times.partition_point(|t| *t <= time);

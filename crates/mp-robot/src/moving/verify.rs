@@ -1,37 +1,38 @@
 //! The independent check of motions among moving obstacles.
 
-use super::{AmongMoving, Mover};
+use super::{AmongMoving, MovingObstacle};
 use crate::{Placement, Verifier};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{MotionCheck, MotionValidity, ParameterError, Space, space_time::SpaceTime};
 use nalgebra::Isometry3;
 use std::sync::Arc;
 
-/// Proves motions in space and time free of collision, by other code than planners use: a [`Verifier`]
-/// for what stands still, and for each moving obstacle distances by sphere trees against how far robot and
-/// obstacle can come nearer, halving the motion until all of it is shown free. Only the space and the
-/// trajectories are shared: they are what the motions *are*.
+/// Proves motions in space and time free of collision, with other code than planners use.
 ///
-/// It answers [`Undecided`](MotionCheck::Unproven) to motions back in time and beyond the speed limit, and
-/// to those with a tested moment of less clearance than its tolerance.
+/// A [`Verifier`] checks against the obstacles that stand still. For each moving obstacle, distances from sphere trees are
+/// compared with how much nearer robot and obstacle can come, and the motion is halved until all of it is shown free.
+/// Only the space and the trajectories are shared with the checker: they define what the motions are.
+///
+/// The answer is [`Unproven`](MotionCheck::Unproven) for motions back in time or beyond the speed limit, and for
+/// motions with a tested moment of less clearance than the tolerance.
 #[derive(Clone, Debug)]
 pub struct MovingVerifier<'c, C, P> {
     space: &'c SpaceTime<C>,
     standing: Verifier<'c, C, P>,
     robot: Arc<RefMesh>,
     radius: f64,
-    movers: Arc<[Mover]>,
+    moving: Arc<[MovingObstacle]>,
     tolerance: f64,
 }
 
-/// Parts of a motion shorter than this are not looked at: what is not shown free by then is not free.
+/// Parts of a motion shorter than this are not tested. What is not shown free by then is not free.
 const SHORTEST: f64 = 1e-12;
 
 impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
-    /// A verifier for `robot` in `space`, to a tenth of its [tolerance](crate::RigidBody::tolerance).
+    /// A verifier for `robot` in `space` with a tenth of its [tolerance](crate::RigidBody::tolerance).
     ///
     /// # Errors
-    /// When the tolerance is not positive and finite, which that of a robot always is.
+    /// When the tolerance is not positive and finite. The tolerance of a robot always is.
     pub fn new(space: &'c SpaceTime<C>, robot: &AmongMoving<P>) -> Result<Self, ParameterError> {
         let standing = Verifier::new(space.positions(), robot.body())?;
         let mesh = robot.body().mesh();
@@ -42,20 +43,21 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             standing,
             robot: Arc::new(RefMesh::new(mesh)),
             radius,
-            movers: Arc::clone(robot.movers()),
+            moving: Arc::clone(robot.moving()),
         })
     }
 
-    /// Motions found free keep this far from every obstacle (m).
+    /// The clearance (m) that motions found free keep from every obstacle.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// The clearance kept from one mover over the motion, or where it is not shown.
+    /// The clearance kept from one moving obstacle over the motion, or the check that failed. `rate` is how far a point of
+    /// the robot moves over the motion.
     fn against(
         &self,
-        mover: &Mover,
+        obstacle: &MovingObstacle,
         from: &(P::State, f64),
         to: &(P::State, f64),
         rate: f64,
@@ -66,11 +68,11 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
             let (at, half) = (0.5 * (a + b), 0.5 * (b - a));
             let (q, time) = self.space.interpolate(from, to, at);
             let when = |t: f64| from.1 + (to.1 - from.1) * t;
-            let approach =
-                half * (rate + mover.trajectory.speed(mover.radius, when(a), when(b)) * (to.1 - from.1));
+            let approach = half
+                * (rate + obstacle.trajectory.speed(obstacle.radius, when(a), when(b)) * (to.1 - from.1));
             let needed = (approach + self.tolerance) * (1.0 + 1e-9);
             let pose: Isometry3<f64> = P::pose(&q);
-            match self.robot.at_least(&pose, &mover.reference, &mover.trajectory.pose(time), needed) {
+            match self.robot.at_least(&pose, &obstacle.reference, &obstacle.trajectory.pose(time), needed) {
                 Ok(distance) => least = least.min(distance - approach),
                 Err(distance) if distance <= 0.0 => return Err(MotionCheck::Collision { at }),
                 Err(distance) if distance < self.tolerance || half < SHORTEST => {
@@ -90,12 +92,12 @@ impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> f
         }
         let standing = self.standing.check_motion(&from.0, &to.0);
         let MotionCheck::Free { clearance: mut least } = standing else { return standing };
-        // The origin on a line and turning about it, both at constant speed.
+        // The origin moves on a line and the body turns about it, both at constant speed.
         let [a, b] = [&from.0, &to.0].map(P::pose);
         let shift = (b.translation.vector - a.translation.vector).norm();
         let rate = shift + self.radius * a.rotation.angle_to(&b.rotation);
-        for mover in self.movers.iter() {
-            match self.against(mover, from, to, rate) {
+        for obstacle in self.moving.iter() {
+            match self.against(obstacle, from, to, rate) {
                 Ok(clearance) => least = least.min(clearance),
                 Err(check) => return check,
             }

@@ -9,12 +9,12 @@ use mp_geom::planar::PlanarWorld;
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
-/// A disc that moves in the plane. A configuration is its centre, in `Rn<2>`; a radius of zero makes it a point.
+/// A disc that moves in the plane. A configuration is its centre, in `Rn<2>`. A disc of radius zero is a point.
 ///
-/// Touching is collision, and so is a disc within an obstacle. It is its own motion check, exact and fast: a straight
-/// motion is free when the segment of the centre keeps the radius and the [tolerance](DiscRobot::tolerance) away
-/// from every boundary, which one query of the world tells. The world is shared between clones; counters
-/// are each clone's own.
+/// Touching is collision, and so is a disc within an obstacle. The disc is its own motion check, exact and fast: a
+/// straight motion is free when the segment of the centre is farther from every boundary than the radius plus the
+/// [tolerance](DiscRobot::tolerance). One query of the world answers this. Clones share the world; each has its own
+/// counters.
 ///
 /// ```
 /// use mp_cspace::{MotionValidity, Validity};
@@ -57,7 +57,7 @@ impl DiscRobot {
         Ok(Self { world, radius, tolerance, counters: CheckCounters::default() })
     }
 
-    /// What it moves in.
+    /// The world in which it moves.
     #[must_use]
     pub fn world(&self) -> &Arc<PlanarWorld> {
         &self.world
@@ -69,27 +69,27 @@ impl DiscRobot {
         self.radius
     }
 
-    /// Motions found free keep this far from every obstacle (m). The verifier asks for a tenth of it.
+    /// The clearance (m) that motions found free keep from every obstacle. The verifier uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
-    /// What was done so far by this clone.
+    /// The checks made by this clone so far.
     #[must_use]
     pub fn counters(&self) -> CheckCounters {
         self.counters
     }
 
-    /// The distance (m) between the disc and the nearest obstacle; when its centre is in one, minus the radius
-    /// and what the centre is from the boundary; infinite where there is nothing.
+    /// The distance (m) between the disc and the nearest obstacle. If its centre is in an obstacle: minus the sum of the
+    /// radius and the distance of the centre from the boundary. Infinite if there are no obstacles.
     #[must_use]
     pub fn signed_clearance(&self, q: &Vector2<f64>) -> f64 {
         self.world.signed_distance(&Point2::from(*q)) - self.radius
     }
 
-    /// As [`signed_clearance`](DiscRobot::signed_clearance), and the direction in which it grows fastest: a unit
-    /// vector, or zero on a boundary and where there is nothing.
+    /// The [`signed_clearance`](DiscRobot::signed_clearance), and the direction in which it grows fastest: a unit
+    /// vector, or zero on a boundary and if there are no obstacles.
     #[must_use]
     pub fn clearance_and_gradient(&self, q: &Vector2<f64>) -> (f64, Vector2<f64>) {
         let p = Point2::from(*q);
@@ -101,7 +101,7 @@ impl DiscRobot {
         }
     }
 
-    /// The obstacle that the disc at `q` touches: its index, or `None` within for the walls.
+    /// The obstacle that the disc at `q` touches: its index, or `Some(None)` for the walls. `None` if it touches nothing.
     #[must_use]
     pub fn touching(&self, q: &Vector2<f64>) -> Option<Option<usize>> {
         let p = Point2::from(*q);
@@ -145,7 +145,7 @@ impl MotionClearance<Vector2<f64>> for DiscRobot {
     fn motion_bound(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> f64 {
         (to - from).norm()
     }
-    /// By the whole interval at once.
+    /// By one query for the whole interval.
     fn interval_clearance(&mut self, interval: &MotionInterval<'_, Vector2<f64>>) -> IntervalClearance {
         let half = (interval.to - interval.from) * interval.half;
         let [a, b] = [interval.middle - half, interval.middle + half].map(Point2::from);
@@ -178,7 +178,7 @@ impl MotionValidity<Vector2<f64>> for DiscRobot {
                 false => MotionCheck::Collision { at: 0.0 },
             };
         }
-        // A segment that crosses no boundary is where one of its ends is.
+        // A segment that crosses no boundary is inside an obstacle if one of its ends is.
         if known == KnownFree::Neither && self.world.contains(&a) {
             return MotionCheck::Collision { at: 0.0 };
         }

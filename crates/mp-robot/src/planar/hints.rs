@@ -1,4 +1,4 @@
-//! Along which way an obstacle runs, by its boundary.
+//! Directions along obstacles in the plane, from their boundaries.
 
 use super::{DiscRobot, PolygonRobot};
 use mp_cspace::{Rng, Se2State, Validity, obstacles::ObstacleHints};
@@ -6,7 +6,8 @@ use mp_geom::planar::PlanarWorld;
 use nalgebra::{Point2, Vector2};
 use rand::RngExt;
 
-/// A unit vector along a boundary, either way: that nearest to `hit`, or an edge of any obstacle, each as likely.
+/// A random unit vector along a boundary, either way: along the boundary nearest to `hit`, or without `hit` along a random
+/// edge of a random obstacle.
 fn along(world: &PlanarWorld, hit: Option<Vector2<f64>>, rng: &mut Rng) -> Option<Vector2<f64>> {
     let along = match hit {
         Some(q) => {
@@ -25,7 +26,7 @@ fn along(world: &PlanarWorld, hit: Option<Vector2<f64>>, rng: &mut Rng) -> Optio
     along.try_normalize(0.0).map(|v| v * sign)
 }
 
-/// By the boundary nearest to the centre.
+/// From the boundary nearest to the centre.
 impl ObstacleHints<Vector2<f64>> for DiscRobot {
     fn touches(&mut self, q: &Vector2<f64>) -> bool {
         !self.is_valid(q)
@@ -44,7 +45,7 @@ impl ObstacleHints<Vector2<f64>> for DiscRobot {
     }
 }
 
-/// By the boundary nearest to the origin of the body.
+/// From the boundary nearest to the origin of the body.
 impl ObstacleHints<Se2State> for PolygonRobot {
     fn touches(&mut self, q: &Se2State) -> bool {
         !self.is_valid(q)

@@ -1,8 +1,8 @@
 //! Robots in the plane: discs and polygons in a [`PlanarWorld`](mp_geom::planar::PlanarWorld).
 
 mod disc;
+mod edge_list;
 mod hints;
-mod plain;
 mod polygon;
 mod verify;
 
@@ -12,8 +12,8 @@ pub use verify::{DiscVerifier, PolygonVerifier};
 
 use mp_geom::planar::PlanarWorld;
 
-/// The tolerance (m) of checks for a robot of this radius: a millionth of it, and never so small that coordinates
-/// could not resolve it.
+/// The tolerance (m) of checks for a robot of this radius: a millionth of the radius, and at least what coordinates can
+/// resolve.
 fn tolerance(world: &PlanarWorld, radius: f64) -> f64 {
     let far = world.bounds().map_or(0.0, |[low, high]| low.coords.amax().max(high.coords.amax()));
     (1e-6 * radius).max(1e-9 * (far + radius)).max(1e-12)

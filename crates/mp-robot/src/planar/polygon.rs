@@ -12,8 +12,8 @@ use std::sync::Arc;
 /// [`Se2`](mp_cspace::Se2).
 ///
 /// Touching is collision, and so is a robot in an obstacle, or around one. Motions are certified by conservative
-/// advancement: [`Certified`](mp_cspace::Certified) at its [tolerance](PolygonRobot::tolerance). The world is shared
-/// between clones; counters are each clone's own.
+/// advancement: [`Certified`](mp_cspace::Certified) at its [tolerance](PolygonRobot::tolerance). Clones share the world;
+/// each has its own counters.
 ///
 /// ```
 /// use mp_cspace::{Certified, MotionValidity, Se2, Se2State};
@@ -42,24 +42,24 @@ pub struct PolygonRobot {
     counters: CheckCounters,
 }
 
-/// Where the body is placed.
+/// The pose of the body, with the sine and cosine of its angle.
 #[derive(Clone, Copy)]
-struct Place {
+struct BodyPose {
     sin: f64,
     cos: f64,
     at: Vector2<f64>,
 }
 
-impl Place {
+impl BodyPose {
     fn of(q: &Se2State) -> Self {
         let (sin, cos) = q.angle.sin_cos();
         Self { sin, cos, at: q.translation }
     }
     #[inline]
-    fn put(&self, p: &Point2<f64>) -> Point2<f64> {
+    fn in_world(&self, p: &Point2<f64>) -> Point2<f64> {
         Point2::new(self.cos * p.x - self.sin * p.y + self.at.x, self.sin * p.x + self.cos * p.y + self.at.y)
     }
-    fn back(&self, p: &Point2<f64>) -> Point2<f64> {
+    fn in_body(&self, p: &Point2<f64>) -> Point2<f64> {
         let v = p.coords - self.at;
         Point2::new(self.cos * v.x + self.sin * v.y, self.cos * v.y - self.sin * v.x)
     }
@@ -73,7 +73,7 @@ impl PolygonRobot {
         Self { world: world.into(), body: body.into(), radius, counters: CheckCounters::default() }
     }
 
-    /// What it moves in.
+    /// The world in which it moves.
     #[must_use]
     pub fn world(&self) -> &Arc<PlanarWorld> {
         &self.world
@@ -91,26 +91,26 @@ impl PolygonRobot {
         self.radius
     }
 
-    /// The default tolerance (m) of certified motion checks: 1e-4 of the radius, and never so small that coordinates
-    /// could not resolve it. The verifier asks for a tenth of it.
+    /// The default tolerance (m) of certified motion checks: 1e-4 of the radius, and at least what coordinates can
+    /// resolve. The verifier uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         (1e-4 * self.radius).max(super::tolerance(&self.world, self.radius))
     }
 
-    /// What was done so far by this clone.
+    /// The checks made by this clone so far.
     #[must_use]
     pub fn counters(&self) -> CheckCounters {
         self.counters
     }
 
-    /// The points of body and obstacles that are nearest to each other, and their distance, if that is below
-    /// `enough`; nothing about which is inside of which.
-    fn nearest(&self, place: &Place, enough: f64) -> Option<(Point2<f64>, Point2<f64>, f64)> {
+    /// The nearest points on the boundaries of body and obstacles, and their distance, if it is below `enough`. Does not
+    /// test whether one is inside the other.
+    fn nearest(&self, pose: &BodyPose, enough: f64) -> Option<(Point2<f64>, Point2<f64>, f64)> {
         let mut best = None;
         let mut below = enough;
         for [a, b] in self.body.edges() {
-            if let Some(near) = self.world.nearest_to_segment(&place.put(&a), &place.put(&b), below) {
+            if let Some(near) = self.world.nearest_to_segment(&pose.in_world(&a), &pose.in_world(&b), below) {
                 below = near.distance;
                 best = Some((near.on_segment, near.point, near.distance));
                 if below <= 0.0 {
@@ -121,15 +121,15 @@ impl PolygonRobot {
         best
     }
 
-    /// Whether robot or obstacle is within the other, where their boundaries do not meet.
-    fn nested(&self, place: &Place) -> bool {
+    /// Whether the robot is inside an obstacle or around one. For boundaries that do not meet.
+    fn nested(&self, pose: &BodyPose) -> bool {
         let reach = Vector2::repeat(self.radius);
-        let around = [place.at - reach, place.at + reach].map(Point2::from);
-        self.body.rings().iter().any(|ring| self.world.contains(&place.put(&ring[0])))
-            || self.world.ring_in(around, |p| self.body.contains(&place.back(p))).is_some()
+        let around = [pose.at - reach, pose.at + reach].map(Point2::from);
+        self.body.rings().iter().any(|ring| self.world.contains(&pose.in_world(&ring[0])))
+            || self.world.ring_in(around, |p| self.body.contains(&pose.in_body(p))).is_some()
     }
 
-    /// Whether the robot at `q` is at least `reach` from everything, as far as the circle around it tells.
+    /// The distance of the circle around the robot from the nearest obstacle, if it is at least `reach`.
     fn far(&self, q: &Se2State, reach: f64) -> Option<f64> {
         let around = self.world.signed_distance(&Point2::from(q.translation)) - self.radius;
         (around >= reach).then_some(around)
@@ -142,9 +142,9 @@ impl PolygonRobot {
         if let Some(around) = self.far(q, enough) {
             return around;
         }
-        let place = Place::of(q);
-        let near = self.nearest(&place, enough);
-        if near.is_some_and(|n| n.2 <= 0.0) || self.nested(&place) {
+        let pose = BodyPose::of(q);
+        let near = self.nearest(&pose, enough);
+        if near.is_some_and(|n| n.2 <= 0.0) || self.nested(&pose) {
             return 0.0;
         }
         near.map_or(enough, |n| n.2)
@@ -152,24 +152,24 @@ impl PolygonRobot {
 
     /// The distance (m) between robot and obstacles, and how it changes with x, y and angle (m/m, m/m, m/rad).
     ///
-    /// In collision minus the depth of the deepest corner of one in the other, where there is such a corner, and
-    /// the way out of it; else zeros. Infinite and zeros where there is nothing.
+    /// In collision: minus the depth of the robot corner that is deepest in an obstacle, and the gradient that leads it out;
+    /// zeros if no corner is in an obstacle. Infinite and zeros if there are no obstacles.
     #[must_use]
     pub fn clearance_and_gradient(&self, q: &Se2State) -> (f64, [f64; 3]) {
-        let place = Place::of(q);
+        let pose = BodyPose::of(q);
         let toward = |on_body: Point2<f64>, away: Vector2<f64>| {
             let arm = on_body.coords - q.translation;
             [away.x, away.y, arm.x * away.y - arm.y * away.x]
         };
-        let Some((on_body, on_obstacle, distance)) = self.nearest(&place, f64::INFINITY) else {
+        let Some((on_body, on_obstacle, distance)) = self.nearest(&pose, f64::INFINITY) else {
             return (f64::INFINITY, [0.0; 3]);
         };
-        if distance > 0.0 && !self.nested(&place) {
+        if distance > 0.0 && !self.nested(&pose) {
             return (distance, toward(on_body, (on_body - on_obstacle) / distance));
         }
         let mut deepest = (0.0, [0.0; 3]);
         for corner in self.body.rings().iter().flatten() {
-            let p = place.put(corner);
+            let p = pose.in_world(corner);
             if let Some(near) = self.world.nearest(&p).filter(|_| self.world.contains(&p))
                 && -near.distance < deepest.0
             {

@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 use rand::RngExt;
 use std::sync::Arc;
 
-/// Triangles and rectangles in a room of 4 × 3 m, some overlapping.
+/// Triangles and rectangles within walls of 4 × 3 m, some overlapping.
 fn world(rng: &mut Rng, obstacles: usize) -> Arc<PlanarWorld> {
     let mut polygons = Vec::new();
     for _ in 0..obstacles {
@@ -25,10 +25,10 @@ fn world(rng: &mut Rng, obstacles: usize) -> Arc<PlanarWorld> {
     PlanarWorld::new(polygons, Some([[0.0, 0.0], [4.0, 3.0]])).unwrap().into()
 }
 
-/// What the two checks of a disc say agrees with places along the way, and with each other but for what is within
-/// the tolerance.
+/// The two checks of a disc agree with sampled configurations along the motion, and with each other except within the
+/// tolerance.
 #[test]
-fn discs_pass_where_there_is_room_and_nowhere_else() {
+fn discs_pass_exactly_where_they_keep_clear() {
     let mut rng = Rng::seed(3);
     let space = Rn::<2>::new([0.0, 0.0], [4.0, 3.0]).unwrap();
     let (mut passed, mut failed) = (0, 0);
@@ -43,12 +43,12 @@ fn discs_pass_where_there_is_room_and_nowhere_else() {
             let b = a + (b - a) * rng.random_range(0.0..1.0);
             let (ours, theirs) = (robot.check_motion(&a, &b), verifier.check_motion(&a, &b));
             assert_eq!(certified.check_motion(&a, &b).is_free(), ours.is_free());
-            // To stay where it is.
-            let room = robot.signed_clearance(&a);
+            // The motion that stays in place.
+            let clearance = robot.signed_clearance(&a);
             match robot.check_motion(&a, &a) {
-                MotionCheck::Free { .. } => assert!(room > robot.tolerance()),
-                MotionCheck::Collision { .. } => assert!(room <= 0.0),
-                MotionCheck::Unproven { .. } => assert!(room > 0.0 && room <= robot.tolerance()),
+                MotionCheck::Free { .. } => assert!(clearance > robot.tolerance()),
+                MotionCheck::Collision { .. } => assert!(clearance <= 0.0),
+                MotionCheck::Unproven { .. } => assert!(clearance > 0.0 && clearance <= robot.tolerance()),
             }
             if robot.is_valid(&a) {
                 let known = robot.check_extension(&a, &b, KnownFree::From);
@@ -59,7 +59,7 @@ fn discs_pass_where_there_is_room_and_nowhere_else() {
             match theirs {
                 MotionCheck::Free { clearance } => {
                     passed += 1;
-                    // Between places a distance is less by at most half a step.
+                    // Between two samples the distance is less by at most half a step.
                     assert!(
                         clearance <= sampled + 1e-12 && clearance >= sampled - (b - a).norm() / 400.0 - 1e-12
                     );
@@ -76,7 +76,7 @@ fn discs_pass_where_there_is_room_and_nowhere_else() {
 }
 
 #[test]
-fn polygons_pass_where_there_is_room_and_nowhere_else() {
+fn polygons_pass_exactly_where_they_keep_clear() {
     let mut rng = Rng::seed(4);
     let space = Se2::new([0.0, 0.0], [4.0, 3.0]).unwrap();
     let bodies = [
@@ -163,10 +163,10 @@ fn gradients_are_those_of_the_clearance() {
 
 #[test]
 fn one_within_the_other_is_collision() {
-    let room = PlanarWorld::new(vec![Polygon::rectangle([1.0, 1.0], [2.0, 2.0]).unwrap()], None).unwrap();
-    let room = Arc::new(room);
+    let world = PlanarWorld::new(vec![Polygon::rectangle([1.0, 1.0], [2.0, 2.0]).unwrap()], None).unwrap();
+    let world = Arc::new(world);
     let inside = Vector2::new(1.5, 1.5);
-    let mut disc = DiscRobot::new(Arc::clone(&room), 0.1).unwrap();
+    let mut disc = DiscRobot::new(Arc::clone(&world), 0.1).unwrap();
     assert!(!disc.is_valid(&inside) && disc.touching(&inside) == Some(Some(0)));
     assert_eq!(disc.check_motion(&inside, &Vector2::new(1.6, 1.5)), MotionCheck::Collision { at: 0.0 });
     assert!(!DiscVerifier::new(&disc).check_motion(&inside, &inside).is_free());
@@ -174,7 +174,7 @@ fn one_within_the_other_is_collision() {
     let space = Se2::new([-5.0, -5.0], [5.0, 5.0]).unwrap();
     for side in [0.1, 3.0] {
         let mut robot =
-            PolygonRobot::new(Arc::clone(&room), Polygon::rectangle([-side, -side], [side, side]).unwrap());
+            PolygonRobot::new(Arc::clone(&world), Polygon::rectangle([-side, -side], [side, side]).unwrap());
         let q = Se2State::new(1.5, 1.5, 0.3);
         assert!(!robot.is_valid(&q) && !PolygonVerifier::new(&space, &robot).check_motion(&q, &q).is_free());
         let far = Se2State::new(-4.0, -4.0, 0.3);
@@ -207,7 +207,7 @@ fn what_is_no_number_is_not_free() {
     }
 }
 
-/// Hints run along what is hit.
+/// Hints lead along the boundary that is hit.
 #[test]
 fn hints_lead_along_boundaries() {
     let mut rng = Rng::seed(7);

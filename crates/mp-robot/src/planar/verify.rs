@@ -1,18 +1,19 @@
 //! The independent checks of motions in the plane.
 
-use super::plain::{Plain, apart, boxes_apart, rings, sides, within};
+use super::edge_list::{EdgeList, box_distance, inside_rings, rings, segment_distance, sides};
 use crate::{DiscRobot, PolygonRobot};
 use mp_cspace::{MotionCheck, MotionValidity, Se2State, Space};
 use nalgebra::{Point2, Vector2};
 use std::sync::Arc;
 
-/// Proves straight motions of a disc, by looking at every edge: no grid, other formulas than the robot's.
+/// Proves straight motions of a disc free of collision, by a test of every edge: no grid, and other formulas than the
+/// robot's.
 ///
-/// Free means: clearance of at least the tolerance all along, a tenth of the robot's, so that it proves whatever
-/// [`DiscRobot`] accepts. O(edges) for each motion.
+/// Free means a clearance of at least the tolerance all along. The tolerance is a tenth of the robot's, so that the verifier
+/// proves whatever [`DiscRobot`] accepts. O(edges) for each motion.
 #[derive(Clone, Debug)]
 pub struct DiscVerifier {
-    plain: Arc<Plain>,
+    obstacles: Arc<EdgeList>,
     radius: f64,
     tolerance: f64,
 }
@@ -21,11 +22,11 @@ impl DiscVerifier {
     /// A verifier for `robot`.
     #[must_use]
     pub fn new(robot: &DiscRobot) -> Self {
-        let plain = Arc::new(Plain::new(robot.world()));
-        Self { plain, radius: robot.radius(), tolerance: 0.1 * robot.tolerance() }
+        let obstacles = Arc::new(EdgeList::new(robot.world()));
+        Self { obstacles, radius: robot.radius(), tolerance: 0.1 * robot.tolerance() }
     }
 
-    /// Motions found free keep this far from every obstacle (m).
+    /// The clearance (m) that motions found free keep from every obstacle.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -34,48 +35,49 @@ impl DiscVerifier {
 
 impl MotionValidity<Vector2<f64>> for DiscVerifier {
     fn check_motion(&mut self, from: &Vector2<f64>, to: &Vector2<f64>) -> MotionCheck {
-        let way = [from, to].map(|q| Point2::from(*q));
+        let segment = [from, to].map(|q| Point2::from(*q));
         // Written so that NaN is refused.
-        let finite = way.iter().all(|p| p.x.abs() + p.y.abs() < 1e60);
+        let finite = segment.iter().all(|p| p.x.abs() + p.y.abs() < 1e60);
         if !finite {
             return MotionCheck::Unproven { at: 0.0 };
         }
-        if self.plain.inside(&way[0]) {
+        if self.obstacles.inside(&segment[0]) {
             return MotionCheck::Collision { at: 0.0 };
         }
-        let clearance = self.plain.nearest(&way) - self.radius;
+        let clearance = self.obstacles.nearest(&segment) - self.radius;
         if clearance >= self.tolerance {
             return MotionCheck::Free { clearance };
         }
-        let at = self.nearest_fraction(&way);
+        let at = self.nearest_fraction(&segment);
         if clearance <= 0.0 { MotionCheck::Collision { at } } else { MotionCheck::Unproven { at } }
     }
 }
 
 impl DiscVerifier {
-    /// About where on its way the disc is nearest to an obstacle: by trying places.
-    fn nearest_fraction(&self, way: &[Point2<f64>; 2]) -> f64 {
+    /// About the fraction of the motion at which the disc is nearest to an obstacle, from 65 samples.
+    fn nearest_fraction(&self, segment: &[Point2<f64>; 2]) -> f64 {
         let clearance = |t: f64| {
-            let p = way[0] + (way[1] - way[0]) * t;
-            self.plain.edges.iter().map(|e| apart(e, &[p, p])).fold(f64::INFINITY, f64::min)
+            let p = segment[0] + (segment[1] - segment[0]) * t;
+            self.obstacles.edges.iter().map(|e| segment_distance(e, &[p, p])).fold(f64::INFINITY, f64::min)
         };
         let tried = (0..=64).map(|i| f64::from(i) / 64.0).map(|t| (t, clearance(t)));
         tried.fold((0.0, f64::INFINITY), |best, now| if now.1 < best.1 { now } else { best }).0
     }
 }
 
-/// How deep a motion is halved.
+/// How often a motion is halved at most.
 const MAX_DEPTH: u32 = 40;
 
-/// Proves motions of a polygon, by looking at every edge near the way: no grid, other formulas and another bound
-/// on motion than planners use. Only the space is shared: its interpolation is what a motion *is*.
+/// Proves motions of a polygon free of collision, by a test of every edge near the motion: no grid, and other formulas and
+/// another motion bound than planners use. Only the space is shared with the checker: its interpolation defines what a
+/// motion is.
 ///
-/// Free means: clearance of at least the tolerance all along, a tenth of the robot's. The space must move the
+/// Free means a clearance of at least the tolerance all along, a tenth of the robot's. The space must move the
 /// origin on a straight line and turn by at most half a turn, both at constant speed, as [`Se2`](mp_cspace::Se2) does.
 #[derive(Clone, Debug)]
 pub struct PolygonVerifier<'c, C> {
     space: &'c C,
-    plain: Arc<Plain>,
+    obstacles: Arc<EdgeList>,
     body: Arc<Vec<Vec<Point2<f64>>>>,
     radius: f64,
     tolerance: f64,
@@ -85,13 +87,13 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
     /// A verifier for `robot` in `space`.
     #[must_use]
     pub fn new(space: &'c C, robot: &PolygonRobot) -> Self {
-        let plain = Arc::new(Plain::new(robot.world()));
+        let obstacles = Arc::new(EdgeList::new(robot.world()));
         let body = rings(robot.body());
         let radius = body.iter().flatten().map(|p| p.coords.norm()).fold(0.0, f64::max);
-        Self { space, plain, body: Arc::new(body), radius, tolerance: 0.1 * robot.tolerance() }
+        Self { space, obstacles, body: Arc::new(body), radius, tolerance: 0.1 * robot.tolerance() }
     }
 
-    /// Motions found free keep this far from every obstacle (m).
+    /// The clearance (m) that motions found free keep from every obstacle.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
@@ -106,41 +108,42 @@ impl<'c, C: Space<State = Se2State>> PolygonVerifier<'c, C> {
         let mut least = f64::INFINITY;
         for side in self.placed(q).iter().flat_map(|ring| sides(ring)) {
             for edge in edges {
-                if boxes_apart(&side, edge) < least {
-                    least = least.min(apart(&side, edge));
+                if box_distance(&side, edge) < least {
+                    least = least.min(segment_distance(&side, edge));
                 }
             }
         }
         least
     }
 
-    /// Whether one is in the other, their boundaries being apart.
+    /// Whether the robot is inside an obstacle or around one. For boundaries that do not meet.
     fn nested(&self, q: &Se2State) -> bool {
         let placed = self.placed(q);
-        placed.iter().any(|ring| self.plain.inside(&ring[0]))
-            || self.plain.firsts().any(|p| within(&placed, p))
+        placed.iter().any(|ring| self.obstacles.inside(&ring[0]))
+            || self.obstacles.first_points().any(|p| inside_rings(&placed, p))
     }
 }
 
 impl<C: Space<State = Se2State>> MotionValidity<Se2State> for PolygonVerifier<'_, C> {
     fn check_motion(&mut self, from: &Se2State, to: &Se2State) -> MotionCheck {
-        let way = [from, to].map(|q| Point2::from(q.translation));
-        let length = (way[1] - way[0]).norm();
-        let finite = way.iter().all(|p| p.x.abs() + p.y.abs() < 1e60) && (from.angle + to.angle).is_finite();
+        let segment = [from, to].map(|q| Point2::from(q.translation));
+        let length = (segment[1] - segment[0]).norm();
+        let finite =
+            segment.iter().all(|p| p.x.abs() + p.y.abs() < 1e60) && (from.angle + to.angle).is_finite();
         if !finite {
             return MotionCheck::Unproven { at: 0.0 };
         }
         if self.nested(from) {
             return MotionCheck::Collision { at: 0.0 };
         }
-        // Edges that the robot can come near to.
+        // The edges to which the robot can come near.
         let reach = self.radius + self.tolerance;
-        let edges = self.plain.edges.iter().filter(|e| boxes_apart(e, &way) <= 2.0 * reach);
+        let edges = self.obstacles.edges.iter().filter(|e| box_distance(e, &segment) <= 2.0 * reach);
         let near: Vec<[Point2<f64>; 2]> = edges.copied().collect();
         let turn = (to.angle - from.angle).rem_euclid(std::f64::consts::TAU);
         let turn = turn.min(std::f64::consts::TAU - turn);
         let mut open = vec![(0.0, 1.0, 0)];
-        // All edges left out are at least this far.
+        // All other edges are at least this far away.
         let mut least = reach;
         while let Some((a, b, depth)) = open.pop() {
             let at = 0.5 * (a + b);

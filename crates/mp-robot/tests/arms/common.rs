@@ -1,9 +1,9 @@
 //! Arms the tests share.
 
-use mp_cspace::Rng;
+use mp_cspace::{Joints, Rng, Space, Validity};
 use mp_geom::{TriMesh, pose_from_six, primitives::cuboid};
-use mp_robot::{ArmModel, Joint, JointKind, Link};
-use nalgebra::{Isometry3, Matrix4, Vector3};
+use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
+use nalgebra::{Isometry3, Matrix4, Point3, SVector, Vector3};
 use rand::RngExt;
 
 pub(crate) type Obstacle = (String, TriMesh, Isometry3<f64>);
@@ -56,6 +56,32 @@ pub(crate) fn clutter() -> Vec<Obstacle> {
         obstacle("post", block(0.05, 0.05, 1.2), [-0.4, 0.3, 0.6, 0.3, 0.0, 0.0]),
         obstacle("beam", block(0.05, 1.5, 0.05), [-0.3, 0.0, 0.9, 0.2, 0.1, 0.0]),
     ]
+}
+
+/// A configuration of [`six`].
+pub(crate) type Six = SVector<f64, 6>;
+
+/// Pairs of random free configurations of [`six`] with the tool on different sides of the plane x = 0 of the frame `sheet`.
+pub(crate) fn across(
+    arm: &mut Arm,
+    space: &Joints<Six>,
+    sheet: &Isometry3<f64>,
+    count: usize,
+    rng: &mut Rng,
+) -> Vec<[Six; 2]> {
+    let to_sheet = sheet.inverse();
+    let mut found = Vec::new();
+    while found.len() < count {
+        let [a, b] = [0, 1].map(|_| space.sample_uniform(rng));
+        let side = |q: &Six| {
+            let pose = arm.kinematics().link_poses(q.as_slice()).unwrap()[6];
+            (to_sheet * Point3::from(pose.translation.vector)).x > 0.0
+        };
+        if side(&a) != side(&b) && arm.is_valid(&a) && arm.is_valid(&b) {
+            found.push([a, b]);
+        }
+    }
+    found
 }
 
 /// A random tree of links with joints of all kinds; some mimic.

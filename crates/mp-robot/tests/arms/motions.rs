@@ -1,6 +1,6 @@
 //! Validity, clearance and certified motions, against plain triangle distances and against sampling.
 
-use crate::common::{clutter, obstacle, random_tree, six};
+use crate::common::{Six, across, clutter, obstacle, random_tree, six};
 use mp_collide::reference::RefMesh;
 use mp_cspace::{
     Certified, Clearance, Joints, MotionCheck, MotionClearance, MotionValidity, Rng, Space, Validity,
@@ -8,8 +8,6 @@ use mp_cspace::{
 use mp_geom::{TriMesh, primitives::cuboid};
 use mp_robot::{Arm, ArmModel, Joint, JointKind, Link};
 use nalgebra::{DVector, Isometry3, SVector, Vector3};
-
-type Six = SVector<f64, 6>;
 
 fn arm() -> (Arm, Joints<Six>) {
     let arm = Arm::new(&six(), clutter()).unwrap();
@@ -155,21 +153,12 @@ fn a_thin_wall_is_never_crossed() {
     let mut rng = Rng::seed(3);
     for thickness in [1e-4, 1e-7, 1e-12] {
         let sheet = obstacle("wall", cuboid(thickness, 4.0, 4.0).unwrap(), [0.35, 0.0, 0.0, 0.2, 0.1, 0.0]);
-        let plane = sheet.2.inverse();
+        let plane = sheet.2;
         let mut arm = Arm::new(&six(), [sheet]).unwrap();
         let space: Joints<Six> = arm.space().unwrap();
         let mut certified = Certified::new(&space, arm.clone(), arm.tolerance()).unwrap();
-        let mut crossings = 0;
-        while crossings < 150 {
-            let [a, b] = [0, 1].map(|_| space.sample_uniform(&mut rng));
-            let side = |q: &Six| {
-                let pose = arm.kinematics().link_poses(q.as_slice()).unwrap()[6];
-                (plane * nalgebra::Point3::from(pose.translation.vector)).x > 0.0
-            };
-            if side(&a) != side(&b) && arm.is_valid(&a) && arm.is_valid(&b) {
-                crossings += 1;
-                assert!(!certified.check_motion(&a, &b).is_free());
-            }
+        for [a, b] in across(&mut arm, &space, &plane, 150, &mut rng) {
+            assert!(!certified.check_motion(&a, &b).is_free());
         }
     }
 }
@@ -239,14 +228,14 @@ fn no_vertex_moves_farther_than_the_bound() {
             };
             let bound = arm.motion_bound(&a, &b);
             let mut last = vertices(0.0);
-            let mut ways = vec![0.0; last.len()];
+            let mut travels = vec![0.0; last.len()];
             for k in 1..=100 {
                 let next = vertices(f64::from(k) / 100.0);
                 let steps = last.iter().zip(&next).map(|(p, q)| (q - p).norm());
-                ways.iter_mut().zip(steps).for_each(|(way, step)| *way += step);
+                travels.iter_mut().zip(steps).for_each(|(travel, step)| *travel += step);
                 last = next;
             }
-            let most = ways.into_iter().fold(0.0, f64::max);
+            let most = travels.into_iter().fold(0.0, f64::max);
             assert!(most <= bound + 1e-12, "{most} {bound}");
             best = best.max(most / bound.max(1e-9));
         }

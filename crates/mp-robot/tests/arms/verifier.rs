@@ -1,14 +1,12 @@
 //! The independent check, and answers for people.
 
-use crate::common::{clutter, obstacle, random_tree, six};
+use crate::common::{Six, across, clutter, obstacle, random_tree, six};
 use mp_cspace::{
     Certified, Clearance, Joints, MotionCheck, MotionValidity, Rng, Space, TrueMetric, Validity,
 };
 use mp_geom::primitives::cuboid;
 use mp_robot::{Arm, ArmVerifier};
-use nalgebra::{DVector, SVector};
-
-type Six = SVector<f64, 6>;
+use nalgebra::DVector;
 
 /// The verifier proves what is certified, finds what sampling finds, and claims no more clearance than there is.
 fn agree<C: Space<State = DVector<f64>> + TrueMetric>(arm: &Arm, space: &C, motions: usize) -> [usize; 2] {
@@ -70,22 +68,13 @@ fn it_agrees_with_certified_motions_and_samples() {
 #[test]
 fn it_sees_thin_walls_and_edges_whose_ends_are_free() {
     let sheet = obstacle("wall", cuboid(1e-7, 4.0, 4.0).unwrap(), [0.35, 0.0, 0.0, 0.2, 0.1, 0.0]);
-    let plane = sheet.2.inverse();
+    let plane = sheet.2;
     let mut arm = Arm::new(&six(), [sheet]).unwrap();
     let space: Joints<Six> = arm.space().unwrap();
     let mut verifier = ArmVerifier::new(&space, &arm).unwrap();
     let mut rng = Rng::seed(3);
-    let mut crossings = 0;
-    while crossings < 100 {
-        let [a, b] = [0, 1].map(|_| space.sample_uniform(&mut rng));
-        let side = |q: &Six| {
-            let pose = arm.kinematics().link_poses(q.as_slice()).unwrap()[6];
-            (plane * nalgebra::Point3::from(pose.translation.vector)).x > 0.0
-        };
-        if side(&a) != side(&b) && arm.is_valid(&a) && arm.is_valid(&b) {
-            crossings += 1;
-            assert!(!verifier.check_motion(&a, &b).is_free());
-        }
+    for [a, b] in across(&mut arm, &space, &plane, 100, &mut rng) {
+        assert!(!verifier.check_motion(&a, &b).is_free());
     }
     // A pole between two free ends.
     let pole = obstacle("pole", cuboid(0.05, 0.05, 2.0).unwrap(), [0.5, 0.0, 0.5, 0.0, 0.0, 0.0]);

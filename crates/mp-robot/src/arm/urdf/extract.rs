@@ -1,5 +1,5 @@
-//! What a planner reads of a URDF: links with collision shapes, joints. All else is left out before the document
-//! is parsed, so that nothing in it can be wrong.
+//! The parts of a URDF that planning needs: links with collision shapes, and joints. Everything else is left out before the
+//! document is parsed, so that errors in it do not matter.
 
 use super::super::UrdfError;
 use super::super::xml::{Text, line};
@@ -7,19 +7,19 @@ use roxmltree::{Attribute, Node};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-/// A URDF of nothing but what counts.
+/// A URDF reduced to the parts that planning needs.
 pub(super) struct Extract {
-    /// The document.
+    /// The reduced document.
     pub(super) urdf: String,
-    /// Where the links are in the text it was made of, and where their collision shapes.
+    /// For each link, the lines of its collision shapes in the original text.
     pub(super) links: Vec<Vec<u32>>,
-    /// Where the joints are.
+    /// The lines of the joints.
     pub(super) joints: Vec<u32>,
-    /// What was left out though it was meant to say something.
+    /// Messages about parts that were left out although they are incomplete or of another name space.
     pub(super) notes: Vec<String>,
 }
 
-/// The shapes and what each must have: how many numbers, or nothing for words.
+/// The shapes, and the attributes that each must have with their count of numbers (0 for text).
 const SHAPES: [(&str, &[(&str, usize)]); 5] = [
     ("box", &[("size", 3)]),
     ("cylinder", &[("radius", 1), ("length", 1)]),
@@ -29,7 +29,7 @@ const SHAPES: [(&str, &[(&str, usize)]); 5] = [
 ];
 const JOINTS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
-/// What counts of `text`.
+/// Extracts from `text` the parts that planning needs.
 pub(super) fn extract(text: &str) -> Result<Extract, UrdfError> {
     let text = Text::new("a URDF", text)?;
     let document = text.parse()?;
@@ -62,7 +62,7 @@ pub(super) fn extract(text: &str) -> Result<Extract, UrdfError> {
     Ok(Extract { urdf, links, joints, notes: left_out.notes() })
 }
 
-/// Whether the element is in the name space of the document, where those of URDF are.
+/// Whether the element is in the name space of the document, as elements of URDF are.
 fn is_own(node: &Node<'_, '_>) -> bool {
     node.tag_name().namespace() == node.document().root_element().tag_name().namespace()
 }
@@ -71,12 +71,12 @@ fn space(node: &Node<'_, '_>) -> String {
     node.tag_name().namespace().unwrap_or_default().to_owned()
 }
 
-/// The first child element of that name. Further ones do not count.
+/// The first child element of that name. Others are ignored.
 fn child<'a, 'i>(node: &Node<'a, 'i>, name: &str) -> Option<Node<'a, 'i>> {
     node.children().find(|c| c.is_element() && is_own(c) && c.tag_name().name() == name)
 }
 
-/// An attribute that is in no name space.
+/// The value of an attribute without a name space.
 fn attribute<'a>(node: &Node<'a, '_>, name: &str) -> Option<&'a str> {
     let own = |a: &Attribute<'_, '_>| a.namespace().is_none() && a.name() == name;
     node.attributes().find(own).map(|a| a.value())
@@ -180,7 +180,7 @@ impl Writer<'_, '_> {
         Ok(())
     }
 
-    /// A child that a joint must have.
+    /// A child element that a joint must have.
     fn needed<'n, 'i>(&self, joint: &Node<'n, 'i>, name: &str) -> Result<Node<'n, 'i>, UrdfError> {
         child(joint, name).ok_or_else(|| {
             let (joint_name, kind) = (attribute(joint, "name"), attribute(joint, "type"));
@@ -189,7 +189,7 @@ impl Writer<'_, '_> {
         })
     }
 
-    /// Macros that were not expanded would be missing from the robot.
+    /// An error for a xacro macro that is not expanded: what it stands for would be missing from the robot.
     fn refuse_macro(&self, node: &Node<'_, '_>) -> Result<(), UrdfError> {
         if !space(node).contains("xacro") {
             return Ok(());
@@ -198,7 +198,7 @@ impl Writer<'_, '_> {
         Err(self.text.error(node, format!("<xacro:{name}> is not expanded: run xacro on the file first")))
     }
 
-    /// Attributes that must be there and not empty.
+    /// Checks attributes that must exist and not be empty.
     fn words(&self, node: &Node<'_, '_>, keys: &[&str]) -> Result<(), UrdfError> {
         for key in keys {
             if attribute(node, key).is_none_or(|value| value.trim().is_empty()) {
@@ -208,7 +208,7 @@ impl Writer<'_, '_> {
         Ok(())
     }
 
-    /// An attribute of `count` numbers.
+    /// Checks an attribute of `count` numbers.
     fn numbers(&self, node: &Node<'_, '_>, key: &str, count: usize, needed: bool) -> Result<(), UrdfError> {
         let Some(value) = attribute(node, key) else {
             return if needed { self.words(node, &[key]) } else { Ok(()) };
@@ -230,7 +230,7 @@ impl Writer<'_, '_> {
         self.out.push('>');
     }
 
-    /// An element without children.
+    /// Writes an element without children.
     fn whole(&mut self, node: &Node<'_, '_>, name: &str, keys: &[&str]) {
         self.open(node, name, keys);
         self.out.push_str("</");
@@ -238,7 +238,7 @@ impl Writer<'_, '_> {
         self.out.push('>');
     }
 
-    /// Those attributes of `node` that are among `keys`.
+    /// Writes the attributes of `node` that are among `keys`.
     fn attributes(&mut self, node: &Node<'_, '_>, keys: &[&str]) {
         for key in keys {
             if let Some(value) = attribute(node, key) {
@@ -249,19 +249,19 @@ impl Writer<'_, '_> {
     }
 }
 
-/// What was meant to say something and does not count.
+/// Parts that were left out although they are incomplete or of another name space.
 #[derive(Default)]
 struct LeftOut {
     /// Name spaces of elements.
     elements: BTreeSet<String>,
     /// Name spaces of attributes.
     attributes: BTreeSet<String>,
-    /// What is wrong, and with which links.
+    /// What is wrong, with the names of the links.
     links: BTreeMap<&'static str, Vec<String>>,
 }
 
 impl LeftOut {
-    /// Notes what is incomplete in `link` though a planner has no use for it.
+    /// Notes incomplete parts of `link` that planning does not use.
     fn unread(&mut self, link: &Node<'_, '_>) {
         let mut note = |what| {
             let names = self.links.entry(what).or_default();
@@ -298,7 +298,7 @@ impl LeftOut {
     }
 }
 
-/// The first names of a list, and how many there are more.
+/// The first names of a list, and how many more there are.
 pub(super) fn some(names: &[String]) -> String {
     const SHOWN: usize = 4;
     let shown: Vec<_> = names.iter().take(SHOWN).map(|name| format!("\"{name}\"")).collect();

@@ -1,4 +1,4 @@
-//! Geometry for verifiers: plain loops over all edges, sharing no code with the world's queries.
+//! Geometry for verifiers: plain loops over all edges. It shares no code with the queries of the world.
 
 use mp_geom::planar::{PlanarWorld, Polygon};
 use nalgebra::{Point2, Vector2};
@@ -6,58 +6,58 @@ use std::ops::Range;
 
 type Segment = [Point2<f64>; 2];
 
-/// Lower and upper corner of a box.
-type Around = [Point2<f64>; 2];
+/// The lower and the upper corner of a box.
+type Box2 = [Point2<f64>; 2];
 
-/// Obstacles as lists of points.
+/// Obstacles as lists of points and of edges.
 #[derive(Clone, Debug)]
-pub(super) struct Plain {
+pub(super) struct EdgeList {
     /// The rings of each polygon.
     polygons: Vec<Vec<Vec<Point2<f64>>>>,
     /// The box around each polygon.
-    boxes: Vec<Around>,
+    polygon_boxes: Vec<Box2>,
     walls: Option<[Point2<f64>; 2]>,
     pub(super) edges: Vec<Segment>,
     /// The box around each edge.
-    around: Vec<Around>,
-    /// Where the edges of each polygon end; behind them those of the walls.
+    edge_boxes: Vec<Box2>,
+    /// The end of the edges of each polygon in `edges`. The edges of the walls come after those of the last polygon.
     ends: Vec<usize>,
 }
 
-impl Plain {
+impl EdgeList {
     pub(super) fn new(world: &PlanarWorld) -> Self {
         let polygons: Vec<Vec<Vec<Point2<f64>>>> =
             world.polygons().iter().map(|p| p.rings().to_vec()).collect();
-        let (mut edges, mut ends, mut boxes) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut edges, mut ends, mut polygon_boxes) = (Vec::new(), Vec::new(), Vec::new());
         for rings in &polygons {
             edges.extend(rings.iter().flat_map(|ring| sides(ring)));
             ends.push(edges.len());
-            boxes.push(around(rings.iter().flatten()));
+            polygon_boxes.push(box_around(rings.iter().flatten()));
         }
         let walls = world.walls();
         if let Some([low, high]) = walls {
             let ring = [low, Point2::new(low.x, high.y), high, Point2::new(high.x, low.y)];
             edges.extend(sides(&ring));
         }
-        let around = edges.iter().map(around).collect();
-        Self { polygons, boxes, walls, edges, around, ends }
+        let edge_boxes = edges.iter().map(box_around).collect();
+        Self { polygons, polygon_boxes, walls, edges, edge_boxes, ends }
     }
 
-    /// Whether a point is in an obstacle; right for points not within rounding of a boundary.
+    /// Whether a point is in an obstacle. Exact for points that are not within rounding of a boundary.
     pub(super) fn inside(&self, p: &Point2<f64>) -> bool {
-        let beyond =
+        let outside =
             |[low, high]: [Point2<f64>; 2]| !(low.x < p.x && p.x < high.x && low.y < p.y && p.y < high.y);
-        let mut near = self.boxes.iter().zip(&self.polygons).filter(|(around, _)| !beyond(**around));
-        self.walls.is_some_and(beyond) || near.any(|(_, rings)| within(rings, p))
+        let mut near = self.polygon_boxes.iter().zip(&self.polygons).filter(|(bounds, _)| !outside(**bounds));
+        self.walls.is_some_and(outside) || near.any(|(_, rings)| inside_rings(rings, p))
     }
 
-    /// The distance of the nearest edge from a segment; infinite where there is none.
-    pub(super) fn nearest(&self, way: &Segment) -> f64 {
-        let here = around(way);
+    /// The distance of a segment from the nearest edge; infinite if there are no edges.
+    pub(super) fn nearest(&self, segment: &Segment) -> f64 {
+        let here = box_around(segment);
         let look = |edges: Range<usize>, least: f64| {
             let near = |least: f64, i: usize| {
-                if gap(&self.around[i], &here) < least {
-                    least.min(apart(&self.edges[i], way))
+                if gap(&self.edge_boxes[i], &here) < least {
+                    least.min(segment_distance(&self.edges[i], segment))
                 } else {
                     least
                 }
@@ -65,16 +65,16 @@ impl Plain {
             edges.fold(least, near)
         };
         let of = |i: usize| i.checked_sub(1).map_or(0, |before| self.ends[before])..self.ends[i];
-        // The polygon whose box is nearest first: then few others are near enough to be looked at.
+        // The polygon with the nearest box comes first, so that few others are near enough to be tested.
         let mut nearest = (f64::INFINITY, None);
-        for (i, other) in self.boxes.iter().enumerate() {
+        for (i, other) in self.polygon_boxes.iter().enumerate() {
             let gap = gap(other, &here);
             if gap < nearest.0 {
                 nearest = (gap, Some(i));
             }
         }
         let mut least = nearest.1.map_or(f64::INFINITY, |i| look(of(i), f64::INFINITY));
-        for (i, other) in self.boxes.iter().enumerate() {
+        for (i, other) in self.polygon_boxes.iter().enumerate() {
             if gap(other, &here) < least && Some(i) != nearest.1 {
                 least = look(of(i), least);
             }
@@ -83,7 +83,7 @@ impl Plain {
     }
 
     /// The first points of all rings.
-    pub(super) fn firsts(&self) -> impl Iterator<Item = &Point2<f64>> {
+    pub(super) fn first_points(&self) -> impl Iterator<Item = &Point2<f64>> {
         self.polygons.iter().flatten().filter_map(|ring| ring.first())
     }
 }
@@ -94,19 +94,19 @@ pub(super) fn sides(ring: &[Point2<f64>]) -> impl Iterator<Item = Segment> {
 }
 
 /// The box around points.
-fn around<'a>(points: impl IntoIterator<Item = &'a Point2<f64>>) -> Around {
+fn box_around<'a>(points: impl IntoIterator<Item = &'a Point2<f64>>) -> Box2 {
     let none = [Point2::from([f64::INFINITY; 2]), Point2::from([f64::NEG_INFINITY; 2])];
     points.into_iter().fold(none, |[low, high], p| [low.inf(p), high.sup(p)])
 }
 
-/// How far boxes are apart in the greater axis; below zero where they overlap.
-fn gap([a, b]: &Around, [c, d]: &Around) -> f64 {
+/// The gap between two boxes along the axis where it is greater; below zero where they overlap.
+fn gap([a, b]: &Box2, [c, d]: &Box2) -> f64 {
     let greater = |x: f64, y: f64| if x > y { x } else { y };
     greater(greater(c.x - b.x, a.x - d.x), greater(c.y - b.y, a.y - d.y))
 }
 
-/// Whether `p` is within `rings`, by upward rays.
-pub(super) fn within(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool {
+/// Whether `p` is within `rings`, by an upward ray.
+pub(super) fn inside_rings(rings: &[Vec<Point2<f64>>], p: &Point2<f64>) -> bool {
     let mut crossings = 0_usize;
     for ring in rings {
         for [a, b] in sides(ring) {
@@ -124,8 +124,8 @@ pub(super) fn rings(polygon: &Polygon) -> Vec<Vec<Point2<f64>>> {
     polygon.rings().to_vec()
 }
 
-/// The distance between two segments: that of the origin from the parallelogram of their differences.
-pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
+/// The distance between two segments: that of the origin from the parallelogram of the differences of their points.
+pub(super) fn segment_distance(s: &Segment, t: &Segment) -> f64 {
     let corners: [Vector2<f64>; 4] = [t[0] - s[0], t[1] - s[0], t[1] - s[1], t[0] - s[1]];
     let (mut left, mut right, mut least) = (0, 0, f64::INFINITY);
     for i in 0..4 {
@@ -142,7 +142,8 @@ pub(super) fn apart(s: &Segment, t: &Segment) -> f64 {
     if left == 4 || right == 4 { 0.0 } else { least.sqrt() }
 }
 
-/// A lower bound on the distance of two segments: that of the boxes around them, in the greater axis.
-pub(super) fn boxes_apart(s: &Segment, t: &Segment) -> f64 {
-    gap(&around(s), &around(t))
+/// A lower bound on the distance between two segments: the gap between the boxes around them along the axis where it is
+/// greater.
+pub(super) fn box_distance(s: &Segment, t: &Segment) -> f64 {
+    gap(&box_around(s), &box_around(t))
 }

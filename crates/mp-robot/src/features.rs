@@ -1,4 +1,4 @@
-//! What robot and obstacles look like from afar, and how to place the one about the other.
+//! Geometric features of robot and obstacles, and how to place the robot relative to an obstacle.
 
 use crate::rigid::Shared;
 use crate::{Placement, RigidBody};
@@ -10,25 +10,25 @@ use mp_geom::{Features, NO_COMPONENT, TriMesh};
 use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
 use rand::RngExt;
 
-/// The outlines of a robot and of the parts of its obstacles.
+/// The features and surfaces of a robot and of the connected parts of its obstacles.
 #[derive(Debug)]
-pub(crate) struct Outlines {
-    robot: (BodyFeatures, Surface),
+pub(crate) struct SceneFeatures {
+    robot: (BodyFeatures, SurfaceSampler),
     parts: Vec<BodyFeatures>,
-    /// Of each part, in the world.
-    surfaces: Vec<Surface>,
-    /// Of each obstacle: its first part, and the part of each triangle, counted from there.
+    /// The surface of each part, in the world.
+    surfaces: Vec<SurfaceSampler>,
+    /// For each obstacle: the index of its first part, and the part of each of its triangles, counted from that index.
     of_triangle: Vec<(usize, Vec<u32>)>,
 }
 
-/// A mesh and the areas of its triangles, summed up.
+/// A mesh with the running sums of its triangle areas, to draw points from.
 #[derive(Debug)]
-struct Surface {
+struct SurfaceSampler {
     mesh: TriMesh,
     areas: Vec<f64>,
 }
 
-fn outline(features: &Features) -> BodyFeatures {
+fn body_features(features: &Features) -> BodyFeatures {
     BodyFeatures {
         center: features.center.coords,
         radius: features.radius,
@@ -37,7 +37,7 @@ fn outline(features: &Features) -> BodyFeatures {
     }
 }
 
-impl Surface {
+impl SurfaceSampler {
     fn new(mesh: TriMesh) -> Self {
         let areas = (0..mesh.triangles().len()).scan(0.0, |sum, i| {
             *sum += mesh.triangle_area(i);
@@ -68,74 +68,74 @@ impl Surface {
     }
 }
 
-impl Outlines {
+impl SceneFeatures {
     fn new(shared: &Shared) -> Self {
         let robot = &shared.robot_mesh;
-        let mut outlines = Self {
-            robot: (outline(&robot.features()), Surface::new(robot.clone())),
+        let mut features = Self {
+            robot: (body_features(&robot.features()), SurfaceSampler::new(robot.clone())),
             parts: Vec::new(),
             surfaces: Vec::new(),
             of_triangle: Vec::new(),
         };
-        for (_, mesh) in &shared.placed {
+        for (_, mesh) in &shared.obstacles.placed {
             let topology = mesh.topology();
-            let first = outlines.parts.len();
-            outlines.of_triangle.push((first, topology.component));
+            let first = features.parts.len();
+            features.of_triangle.push((first, topology.component));
             for part in mesh.parts() {
-                outlines.parts.push(outline(&part.features()));
-                outlines.surfaces.push(Surface::new(part));
+                features.parts.push(body_features(&part.features()));
+                features.surfaces.push(SurfaceSampler::new(part));
             }
         }
-        outlines
+        features
     }
 }
 
 impl<P: Placement> RigidBody<P> {
-    fn outlines(&self) -> &Outlines {
-        self.shared.outlines.get_or_init(|| Outlines::new(&self.shared))
+    fn features(&self) -> &SceneFeatures {
+        self.shared.features.get_or_init(|| SceneFeatures::new(&self.shared))
     }
 }
 
 /// The rotation that takes the unit vector `from` to the unit vector `to`, by the shorter way.
 fn turn_to(from: &Vector3<f64>, to: &Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(from, to).unwrap_or_else(|| {
-        // Opposite: about anything across.
+        // Opposite vectors: any axis perpendicular to them.
         let across = from.cross(&Vector3::ith(from.iamin(), 1.0));
         UnitQuaternion::from_axis_angle(&Unit::new_normalize(across), std::f64::consts::PI)
     })
 }
 
-/// By the meshes: obstacles are what hangs together in them, and points are theirs. The outlines are made when first asked
-/// for, O(n log n) in the triangles, and shared by clones.
+/// From the meshes: each connected part of an obstacle's mesh is an obstacle here, and points are drawn from these parts.
+/// The features are computed at the first call, in O(n log n) of the triangles, and shared by clones.
 impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     fn obstacles(&self) -> &[BodyFeatures] {
-        &self.outlines().parts
+        &self.features().parts
     }
 
     fn robot(&self) -> BodyFeatures {
-        self.outlines().robot.0
+        self.features().robot.0
     }
 
     fn touched(&mut self, q: &P::State) -> Option<usize> {
         if let Some((obstacle, triangle)) = self.hit(q) {
-            let (first, parts) = &self.outlines().of_triangle[obstacle];
+            let (first, parts) = &self.features().of_triangle[obstacle];
             let part = parts.get(triangle).filter(|part| **part != NO_COMPONENT).copied().unwrap_or(0);
             return Some(first + part as usize);
         }
         let around = self.solid_around(&P::pose(q))?;
-        let obstacle = self.shared.placed.iter().position(|(id, _)| *id == around)?;
-        Some(self.outlines().of_triangle[obstacle].0)
+        let obstacle = self.shared.obstacles.placed.iter().position(|(id, _)| *id == around)?;
+        Some(self.features().of_triangle[obstacle].0)
     }
 
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
-        let outlines = self.outlines();
-        let center = outlines.parts.get(obstacle)?.center;
-        Some(outlines.surfaces[obstacle].point(center, of, rng))
+        let features = self.features();
+        let center = features.parts.get(obstacle)?.center;
+        Some(features.surfaces[obstacle].point(center, of, rng))
     }
 
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
-        let (outline, surface) = &self.outlines().robot;
-        surface.point(outline.center, of, rng)
+        let (features, surface) = &self.features().robot;
+        surface.point(features.center, of, rng)
     }
 
     fn place_of(&self, q: &P::State, point: &Vector3<f64>) -> Vector3<f64> {
@@ -149,7 +149,7 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
     }
 
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> P::State {
-        let robot = self.outlines().robot.0;
+        let robot = self.features().robot.0;
         let unit = |v: Vector3<f64>| Unit::try_new(v, 1e-12);
         let rotation = match P::TURNS {
             [_, _, _] => match unit(*direction) {

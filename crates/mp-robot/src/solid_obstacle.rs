@@ -1,35 +1,35 @@
-//! Whether a point is inside a closed mesh.
+//! Obstacles with an inside: tests whether a point is in one.
 
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::Point3;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A closed, consistently oriented obstacle in the world.
+/// A closed, consistently oriented obstacle in the world, with triangles facing outward.
 #[derive(Clone, Debug)]
-pub(crate) struct Solid {
+pub(crate) struct SolidObstacle {
     pub(crate) name: String,
     mesh: Arc<TriMesh>,
     bounds: Aabb,
 }
 
-impl Solid {
-    /// `mesh`, in the world, if it is a solid: closed and oriented, outside out.
+impl SolidObstacle {
+    /// `mesh`, in the world, if it is a solid: closed, consistently oriented, triangles facing outward.
     pub(crate) fn new(name: &str, mesh: &Arc<TriMesh>) -> Option<Self> {
         let topology = mesh.topology();
         let solid = topology.closed && topology.oriented && mesh.signed_volume() > 0.0;
         solid.then(|| Self { name: name.to_owned(), mesh: Arc::clone(mesh), bounds: mesh.aabb() })
     }
 
-    /// Whether `p` is inside: its winding number is that of the inside. Points within rounding of the
-    /// surface may go either way.
+    /// Whether `p` is inside, by its winding number. For points within rounding of the surface either answer is
+    /// possible.
     pub(crate) fn contains(&self, p: &Point3<f64>) -> bool {
         self.bounds.contains(p) && winding_number(&self.mesh, p) > 0.5
     }
 }
 
-/// How often the surface winds around `p`: the solid angle it takes up, over 4π, summed by triangles as in
-/// A. van Oosterom and J. Strackee, "The solid angle of a plane triangle", 1983.
+/// How often the surface winds around `p`: the solid angle of the surface seen from `p`, over 4π, summed over triangles as
+/// in A. van Oosterom and J. Strackee, "The solid angle of a plane triangle", 1983.
 fn winding_number(mesh: &TriMesh, p: &Point3<f64>) -> f64 {
     let angle: f64 = (0..mesh.triangles().len())
         .map(|i| {
@@ -48,8 +48,8 @@ mod tests {
     use mp_geom::primitives::{cuboid, torus};
     use proptest::prelude::*;
 
-    fn solid(mesh: TriMesh) -> Option<Solid> {
-        Solid::new("it", &Arc::new(mesh))
+    fn solid(mesh: TriMesh) -> Option<SolidObstacle> {
+        SolidObstacle::new("it", &Arc::new(mesh))
     }
 
     proptest! {
@@ -70,7 +70,7 @@ mod tests {
         assert!(solid(cube.reversed()).is_none());
         let sheet = TriMesh::new(cube.vertices().to_vec(), cube.triangles()[..4].to_vec()).unwrap();
         assert!(solid(sheet).is_none());
-        // A hollow one has its cavity.
+        // The cavity of a hollow solid is outside.
         let hollow = TriMesh::merged([&cube, &cuboid(0.5, 0.5, 0.5).unwrap().reversed()]).unwrap();
         let hollow = solid(hollow).unwrap();
         assert!(!hollow.contains(&Point3::origin()) && hollow.contains(&Point3::new(0.3, 0.3, 0.3)));

@@ -1,0 +1,122 @@
+//! Robots of all kinds behind one pointer.
+
+use crate::check::check;
+use crate::explain::{check_ends, explain, lint};
+use crate::path::state;
+use crate::plan::plan;
+#[cfg(feature = "roadmaps")]
+use crate::scene_roadmap::AnySceneRoadmap;
+use crate::sweep::sweep;
+use crate::{
+    Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Sweep,
+    Verdict,
+};
+use mp_cspace::{Rng, Space, Validity};
+use mp_geom::Aabb;
+use nalgebra::Isometry3;
+use std::path::{Path, PathBuf};
+#[cfg(feature = "roadmaps")]
+use std::sync::Arc;
+
+/// A [`RobotKind`] behind a pointer.
+pub(crate) trait AnyRobot: Send + Sync {
+    fn name(&self) -> &str;
+    fn space_name(&self) -> String;
+    fn columns(&self) -> Vec<Column>;
+    fn limits(&self) -> Vec<Option<[f64; 2]>>;
+    fn details(&self) -> Vec<(String, String)>;
+    fn free_share(&self, samples: u32) -> f64;
+    fn path_format(&self) -> PathFormat;
+    fn start(&self) -> Vec<f64>;
+    fn goals(&self) -> Vec<Vec<f64>>;
+    fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error>;
+    #[cfg(feature = "roadmaps")]
+    fn roadmap(
+        self: Arc<Self>,
+        request: &Request,
+        control: &mut Control<'_>,
+    ) -> Result<Box<dyn AnySceneRoadmap>, Error>;
+    fn check(&self, path: &PathRows) -> Result<Verdict, Error>;
+    fn explain(&self, row: &[f64]) -> Result<Explanation, Error>;
+    fn check_ends(&self) -> Result<Vec<String>, Error>;
+    fn lint(&self) -> Vec<String>;
+    fn bodies(&self) -> Vec<Body>;
+    fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error>;
+    fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
+    fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
+    fn is_planar(&self) -> bool;
+    fn picture_bounds(&self) -> Option<Aabb>;
+}
+
+impl<K: RobotKind + 'static> AnyRobot for K {
+    fn name(&self) -> &str {
+        RobotKind::name(self)
+    }
+    fn space_name(&self) -> String {
+        RobotKind::space_name(self)
+    }
+    fn columns(&self) -> Vec<Column> {
+        RobotKind::columns(self)
+    }
+    fn limits(&self) -> Vec<Option<[f64; 2]>> {
+        RobotKind::limits(self)
+    }
+    fn details(&self) -> Vec<(String, String)> {
+        RobotKind::details(self)
+    }
+    fn free_share(&self, samples: u32) -> f64 {
+        let (mut rng, mut checker) = (Rng::seed(1), self.checker().clone());
+        let free = (0..samples).filter(|_| checker.is_valid(&self.space().sample_uniform(&mut rng))).count();
+        free as f64 / f64::from(samples.max(1))
+    }
+    fn path_format(&self) -> PathFormat {
+        RobotKind::path_format(self)
+    }
+    fn start(&self) -> Vec<f64> {
+        self.row(RobotKind::start(self))
+    }
+    fn goals(&self) -> Vec<Vec<f64>> {
+        RobotKind::goals(self).iter().map(|goal| self.row(goal)).collect()
+    }
+    fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
+        plan(self, request, control)
+    }
+    #[cfg(feature = "roadmaps")]
+    fn roadmap(
+        self: Arc<Self>,
+        request: &Request,
+        control: &mut Control<'_>,
+    ) -> Result<Box<dyn AnySceneRoadmap>, Error> {
+        crate::scene_roadmap::build(self, request, control)
+    }
+    fn check(&self, path: &PathRows) -> Result<Verdict, Error> {
+        check(self, path)
+    }
+    fn explain(&self, row: &[f64]) -> Result<Explanation, Error> {
+        Ok(explain(self, &state(self, row)?))
+    }
+    fn check_ends(&self) -> Result<Vec<String>, Error> {
+        check_ends(self)
+    }
+    fn lint(&self) -> Vec<String> {
+        lint(self)
+    }
+    fn bodies(&self) -> Vec<Body> {
+        RobotKind::bodies(self)
+    }
+    fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
+        Ok(RobotKind::poses(self, &state(self, row)?))
+    }
+    fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
+        sweep(self, path)
+    }
+    fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
+        RobotKind::export(self, folder)
+    }
+    fn is_planar(&self) -> bool {
+        RobotKind::is_planar(self)
+    }
+    fn picture_bounds(&self) -> Option<Aabb> {
+        RobotKind::picture_bounds(self)
+    }
+}

@@ -1,0 +1,113 @@
+//! What is wrong with a configuration, or with the ends of a scene.
+
+use crate::numbers::brief;
+use crate::{End, Error, RobotKind, Touch};
+use mp_cspace::{Clearance, Space};
+use serde::{Deserialize, Serialize};
+
+/// Why a configuration is free or not.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Explanation {
+    /// Whether the configuration is in bounds and at least the tolerance away from contact.
+    pub free: bool,
+    /// Whether it is within the bounds of the space.
+    pub in_bounds: bool,
+    /// A lower bound (m) on the distance to contact; zero in collision.
+    pub clearance: f64,
+    /// What touches what.
+    pub touching: Vec<Touch>,
+    /// What is wrong, to follow the words "the configuration is"; none when it is free.
+    pub fault: Option<String>,
+    /// A free configuration nearby, for one that is not free.
+    pub nearest_free: Option<Vec<f64>>,
+}
+
+/// Explains a configuration.
+pub(crate) fn explain<K: RobotKind>(kind: &K, q: &K::State) -> Explanation {
+    let (in_bounds, fault) = (kind.space().contains(q), fault(kind, q));
+    let clearance = match in_bounds {
+        true => kind.checker().clone().clearance(q, f64::INFINITY).max(0.0),
+        false => 0.0,
+    };
+    let nearest = fault.is_some().then(|| kind.nearest_free(q)).flatten();
+    Explanation {
+        free: fault.is_none(),
+        in_bounds,
+        clearance,
+        touching: if in_bounds { kind.touching(q) } else { Vec::new() },
+        fault,
+        nearest_free: nearest.map(|q| kind.row(&q)),
+    }
+}
+
+/// What is wrong with a configuration, to follow the words "the start is".
+fn fault<K: RobotKind>(kind: &K, q: &K::State) -> Option<String> {
+    if !kind.space().contains(q) {
+        return Some(kind.out_of_bounds(q));
+    }
+    let tolerance = kind.tolerance();
+    let clearance = kind.checker().clone().clearance(q, tolerance);
+    if clearance >= tolerance {
+        return None;
+    }
+    let touching = kind.touching(q);
+    Some(match touching.is_empty() {
+        true => format!("{} m from contact: at least {} m is needed", brief(clearance), brief(tolerance)),
+        false if touching.iter().any(|touch| touch.part.is_some()) => {
+            format!("in collision: {}", list(&touching))
+        }
+        false => format!("in collision with {}", list(&touching)),
+    })
+}
+
+/// Start and goals, with the names that messages give them.
+fn ends<K: RobotKind>(kind: &K) -> impl Iterator<Item = (End, String, &K::State)> {
+    let many = kind.goals().len() > 1;
+    let goals = kind.goals().iter().enumerate().map(move |(i, q)| {
+        let name = if many { format!("goal {}", i + 1) } else { "the goal".to_owned() };
+        (End::Goal(i), name, q)
+    });
+    std::iter::once((End::Start, "the start".to_owned(), kind.start())).chain(goals)
+}
+
+/// An error message and a remedy for the configuration that messages call `name`; `None` when it is free.
+pub(crate) fn refused<K: RobotKind>(kind: &K, name: &str, q: &K::State) -> Option<(String, String)> {
+    let fault = fault(kind, q)?;
+    let help = match kind.nearest_free(q) {
+        _ if !kind.space().contains(q) => "move it, or widen the bounds".to_owned(),
+        Some(free) => format!("the nearest free configuration found is {}", kind.written(&free)),
+        None => "no free configuration was found nearby: is the scene in metres, the robot in its frame?"
+            .to_owned(),
+    };
+    Some((format!("{name} is {fault}"), help))
+}
+
+/// An error if the start or a goal is not free: it says what touches, how deep, and the nearest free configuration.
+/// Otherwise returns what is odd about them.
+pub(crate) fn check_ends<K: RobotKind>(kind: &K) -> Result<Vec<String>, Error> {
+    for (end, name, q) in ends(kind) {
+        if let Some((message, help)) = refused(kind, &name, q) {
+            return Err(kind.fault(end, message, help));
+        }
+    }
+    Ok(kind.odd_ends().into_iter().collect())
+}
+
+/// What is wrong or odd about a scene.
+pub(crate) fn lint<K: RobotKind>(kind: &K) -> Vec<String> {
+    let mut found: Vec<String> =
+        ends(kind).filter_map(|(_, name, q)| Some(format!("{name} is {}", fault(kind, q)?))).collect();
+    found.extend(kind.lint());
+    if kind.bodies().iter().all(|body| body.pose.is_none()) {
+        found.push("there are no obstacles".to_owned());
+    }
+    if kind.goals().contains(kind.start()) {
+        found.push("start and goal are the same".to_owned());
+    }
+    found
+}
+
+/// The names of what touches, as messages list them.
+pub(crate) fn list(touching: &[Touch]) -> String {
+    touching.iter().map(Touch::to_string).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,114 @@
+//! Reading scenes from files of any kind.
+
+use crate::inputs::Recording;
+use crate::{ArmScene, Error, Scene};
+use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RobotProblem};
+use std::path::Path;
+use std::sync::Mutex;
+
+impl Scene {
+    /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem or a world
+    /// in the plane (`.toml`).
+    ///
+    /// # Errors
+    /// When a file cannot be read or is not valid: with file, line, column and remedy.
+    pub fn load(file: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::load_from(&Disk, file.as_ref())
+    }
+
+    /// As [`load`](Self::load), from other files than those on the disk, such as files in memory.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_from(files: &dyn Files, file: &Path) -> Result<Self, Error> {
+        let _span = tracing::info_span!("load", file = %file.display()).entered();
+        let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        if ["urdf", "xacro", "srdf", "yaml", "yml"].contains(&ending.as_str()) {
+            return Err(foreign(file));
+        }
+        let of = |e: Error| match e.file() {
+            Some(_) => e,
+            None => e.context(format!("cannot plan in {}", file.display())),
+        };
+        let recording = Recording { files, read: Mutex::default() };
+        let files: &dyn Files = &recording;
+        let mut named = Vec::new();
+        let scene = match RobotProblem::is_named(file) {
+            true if PlanarProblem::is_planar_world_in(files, file) => {
+                Self::from_world(PlanarProblem::load_from(files, file)?).map_err(of)?
+            }
+            true => {
+                let arm = ArmScene::from_problem(RobotProblem::load_from(files, file)?)?;
+                named.extend(arm.mesh_files().iter().cloned());
+                Self::new(arm)
+            }
+            false => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
+        };
+        tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
+        let mut inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        inputs.extend(named);
+        let mut scene = scene.with_file(file);
+        scene.inputs = inputs.into();
+        Ok(scene)
+    }
+
+    /// Reads a scene from the text of a file. Its kind is recognized from its first lines. Other files that it names are
+    /// looked for in `folder`. Reports call the scene `name`.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn parse(name: &str, text: &str, folder: &Path) -> Result<Self, Error> {
+        let begins = |what: &str| text.lines().any(|line| line.trim_start().starts_with(what));
+        let first = text.lines().map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
+        let ending = match first {
+            _ if begins("[problem]") => "cfg",
+            _ if first.eq_ignore_ascii_case("robot") => "env",
+            _ if first.starts_with(['[', '#']) || first.contains('=') => "toml",
+            _ => "env",
+        };
+        let file = folder.join(format!("{name}.{ending}"));
+        Self::load_from(&OneText { file: &file, text }, &file)
+    }
+}
+
+/// A text in place of one file, among the files of the disk.
+#[derive(Debug)]
+struct OneText<'a> {
+    file: &'a Path,
+    text: &'a str,
+}
+
+impl Files for OneText<'_> {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
+        if path == self.file { Ok(self.text.as_bytes().to_vec()) } else { Disk.read(path, limit) }
+    }
+}
+
+/// An error for a file that describes a robot or a map but is not a scene. It says which file to write around it.
+pub(crate) fn foreign(file: &Path) -> Error {
+    let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let error = |what: &str, help: String| {
+        Error::new(format!("{} is {what}, not a scene", file.display())).help(help)
+    };
+    match ending.as_str() {
+        "urdf" | "xacro" => error(
+            "a robot description",
+            format!(
+                "write a robot problem around it, a file `problem.toml` beside it:\n    [robot]\n    urdf = \"{name}\"\n    \
+                 [motion]\n    start = [0, 0, …]   # one number for each joint that moves\n    goal = [1, 0, …]\n  \
+                 docs/formats/robot-problem.md has all of it"
+            ),
+        ),
+        "srdf" => error("an SRDF", "name it in a robot problem: docs/formats/robot-problem.md".to_owned()),
+        "yaml" | "yml" => error(
+            "a map of ROS",
+            format!(
+                "write a world around it, a file `world.toml` beside it:\n    [world]\n    map = \"{name}\"\n    \
+                 [robot]\n    disc = 0.2          # radius, metres\n    [motion]\n    start = [0, 0]\n    \
+                 goal = [1, 0]\n  docs/formats/planar-world.md has all of it"
+            ),
+        ),
+        _ => error("an XML file", "name a scene: .env, .cfg or .toml".to_owned()),
+    }
+}

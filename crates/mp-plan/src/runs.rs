@@ -1,0 +1,90 @@
+//! Several runs and their medians.
+
+use crate::{REPORT_VERSION, Report};
+use serde::{Deserialize, Serialize};
+
+/// A summary of the runs on one scene. Medians are over the solved runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Medians {
+    /// The name of the scene.
+    pub scene: String,
+    /// The number of runs.
+    pub runs: usize,
+    /// How many found a path.
+    pub solved: usize,
+    /// The time of planning alone, seconds.
+    pub time_s: Option<f64>,
+    /// Iterations.
+    pub iterations: Option<f64>,
+    /// Nodes.
+    pub nodes: Option<f64>,
+    /// The number of collision and clearance queries.
+    pub collision_checks: Option<f64>,
+    /// The length of the path, in the metric of the space.
+    pub path_length: Option<f64>,
+    /// A lower bound on the clearance, metres.
+    pub clearance: Option<f64>,
+}
+
+/// Several runs, as `mp plan --json` prints them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Runs {
+    /// [`REPORT_VERSION`].
+    pub version: u32,
+    /// How many found a path.
+    pub solved: usize,
+    /// One for each scene, in order of appearance.
+    pub medians: Vec<Medians>,
+    /// The reports.
+    pub runs: Vec<Report>,
+}
+
+impl Runs {
+    /// Computes the medians of the runs.
+    #[must_use]
+    pub fn new(runs: Vec<Report>) -> Self {
+        let solved = runs.iter().filter(|r| r.solved).count();
+        Self { version: REPORT_VERSION, solved, medians: medians(&runs), runs }
+    }
+}
+
+/// The middle value, or the mean of the two middle values of an even number of values. `None` if there are no values.
+#[must_use]
+pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    let n = values.len();
+    match (n, n % 2) {
+        (0, _) => None,
+        (_, 1) => Some(values[n / 2]),
+        _ => Some(0.5 * (values[n / 2 - 1] + values[n / 2])),
+    }
+}
+
+/// The medians of each scene, in order of appearance.
+#[must_use]
+pub fn medians(reports: &[Report]) -> Vec<Medians> {
+    let mut scenes: Vec<&str> = Vec::new();
+    for r in reports {
+        if !scenes.contains(&r.scene.as_str()) {
+            scenes.push(&r.scene);
+        }
+    }
+    let of = |scene: &str| {
+        let runs = reports.iter().filter(|r| r.scene == scene).count();
+        let solved: Vec<&Report> = reports.iter().filter(|r| r.scene == scene && r.solved).collect();
+        let over = |f: fn(&Report) -> Option<f64>| median(solved.iter().filter_map(|r| f(r)));
+        Medians {
+            scene: scene.to_owned(),
+            runs,
+            solved: solved.len(),
+            time_s: over(|r| Some(r.time_s)),
+            iterations: over(|r| Some(r.iterations as f64)),
+            nodes: over(|r| Some(r.nodes as f64)),
+            collision_checks: over(|r| Some(r.collision_checks as f64)),
+            path_length: over(|r| r.path_length),
+            clearance: over(|r| r.clearance),
+        }
+    };
+    scenes.into_iter().map(of).collect()
+}
