@@ -18,7 +18,7 @@ pub struct ControlSegment<U> {
 
 /// A motion from a node to a successor of it. In a backward tree the successor comes first in time.
 #[derive(Debug)]
-pub struct Drive<'a, S, U> {
+pub struct SuccessorMotion<'a, S, U> {
     /// The node, which is free.
     pub node: &'a S,
     /// The state the motion leads to, in a backward tree the state it comes from. Within the space.
@@ -31,7 +31,7 @@ pub struct Drive<'a, S, U> {
     pub direction: Direction,
 }
 
-impl<'a, S, U> Drive<'a, S, U> {
+impl<'a, S, U> SuccessorMotion<'a, S, U> {
     /// The states before and after the motion, in forward time.
     #[must_use]
     pub fn ends(&self) -> (&'a S, &'a S) {
@@ -51,7 +51,7 @@ pub trait FlowCheck<S, U, F> {
     const REPLAYED: bool;
 
     /// The edge and its cost where the motion is free.
-    fn test(&mut self, flow: &F, drive: &Drive<'_, S, U>) -> Option<(Self::Edge, f64)>;
+    fn test(&mut self, flow: &F, motion: &SuccessorMotion<'_, S, U>) -> Option<(Self::Edge, f64)>;
 
     /// Whether any motion may begin or end at `q`.
     fn admits(&mut self, q: &S) -> bool;
@@ -67,15 +67,15 @@ pub trait FlowCheck<S, U, F> {
 /// [`Kinematic`](crate::Kinematic) motions with [`Straight`](mp_cspace::Straight), whose edges are the
 /// space's interpolation.
 #[derive(Clone, Debug)]
-pub struct Between<L>(pub L);
+pub struct LocalFlowCheck<L>(pub L);
 
-impl<S, U, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Between<L> {
+impl<S, U, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for LocalFlowCheck<L> {
     type Edge = L::Edge;
     const REPLAYED: bool = false;
 
     #[inline]
-    fn test(&mut self, _: &F, drive: &Drive<'_, S, U>) -> Option<(L::Edge, f64)> {
-        match self.0.extend(drive.node, drive.successor, drive.direction, Reach::Full) {
+    fn test(&mut self, _: &F, motion: &SuccessorMotion<'_, S, U>) -> Option<(L::Edge, f64)> {
+        match self.0.extend(motion.node, motion.successor, motion.direction, Reach::Full) {
             Extension::Reached(Motion { edge, cost, .. }) => Some((edge, cost)),
             Extension::Advanced(_) | Extension::Trapped => None,
         }
@@ -88,26 +88,26 @@ impl<S, U, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Between<L> {
     }
 }
 
-/// As [`Between`], with edges that store the input. Their cost is time.
+/// As [`LocalFlowCheck`], with edges that store the input. Their cost is time.
 #[derive(Clone, Debug)]
-pub struct Recorded<L>(pub L);
+pub struct RecordedFlowCheck<L>(pub L);
 
-impl<S, U: Input, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for Recorded<L> {
+impl<S, U: Input, F, L: LocalPlanner<S>> FlowCheck<S, U, F> for RecordedFlowCheck<L> {
     type Edge = ControlSegment<U>;
     const REPLAYED: bool = true;
 
     #[inline]
-    fn test(&mut self, _: &F, drive: &Drive<'_, S, U>) -> Option<(ControlSegment<U>, f64)> {
-        let free = self.0.extend(drive.node, drive.successor, drive.direction, Reach::Full);
-        matches!(free, Extension::Reached(_)).then(|| segment(drive))
+    fn test(&mut self, _: &F, motion: &SuccessorMotion<'_, S, U>) -> Option<(ControlSegment<U>, f64)> {
+        let free = self.0.extend(motion.node, motion.successor, motion.direction, Reach::Full);
+        matches!(free, Extension::Reached(_)).then(|| segment(motion))
     }
     fn admits(&mut self, q: &S) -> bool {
         self.0.admits(q)
     }
 }
 
-fn segment<S, U: Input>(drive: &Drive<'_, S, U>) -> (ControlSegment<U>, f64) {
-    (ControlSegment { input: drive.input.clone(), duration: drive.duration }, drive.duration)
+fn segment<S, U: Input>(motion: &SuccessorMotion<'_, S, U>) -> (ControlSegment<U>, f64) {
+    (ControlSegment { input: motion.input.clone(), duration: motion.duration }, motion.duration)
 }
 
 /// Samples motions along any flow: the successor first, then states between, no farther apart than a
@@ -142,12 +142,12 @@ impl<'c, C: Space, V: Validity<C::State>> DiscreteFlowCheck<'c, C, V> {
     }
 
     /// The length of the motion as a polyline: the distance of its ends alone may be too short.
-    fn length<U, F: Flow<C::State, U>>(&self, flow: &F, drive: &Drive<'_, C::State, U>) -> f64 {
-        let (from, to) = drive.ends();
+    fn length<U, F: Flow<C::State, U>>(&self, flow: &F, motion: &SuccessorMotion<'_, C::State, U>) -> f64 {
+        let (from, to) = motion.ends();
         let (mut length, mut last) = (0.0, from.clone());
         for i in 1..LENGTH_PARTS {
-            let time = drive.duration * (f64::from(i) / f64::from(LENGTH_PARTS));
-            let next = flow.integrate(from, drive.input, time);
+            let time = motion.duration * (f64::from(i) / f64::from(LENGTH_PARTS));
+            let next = flow.integrate(from, motion.input, time);
             length += self.space.distance(&last, &next);
             last = next;
         }
@@ -156,15 +156,19 @@ impl<'c, C: Space, V: Validity<C::State>> DiscreteFlowCheck<'c, C, V> {
 
     /// Writes states of the motion into `samples`, both ends included, no neighbours farther apart than the
     /// step: at as many equal parts of the duration as this needs. `false` where it needs too many.
-    fn sample<U, F: Flow<C::State, U>>(&mut self, flow: &F, drive: &Drive<'_, C::State, U>) -> bool {
-        let (from, to) = drive.ends();
-        let mut parts = (self.length(flow, drive) / self.step).ceil().clamp(1.0, MAX_STATES as f64) as usize;
+    fn sample<U, F: Flow<C::State, U>>(
+        &mut self,
+        flow: &F,
+        motion: &SuccessorMotion<'_, C::State, U>,
+    ) -> bool {
+        let (from, to) = motion.ends();
+        let mut parts = (self.length(flow, motion) / self.step).ceil().clamp(1.0, MAX_STATES as f64) as usize;
         while parts < MAX_STATES {
             self.samples.clear();
             self.samples.push(from.clone());
             for i in 1..parts {
-                let time = drive.duration * (i as f64 / parts as f64);
-                self.samples.push(flow.integrate(from, drive.input, time));
+                let time = motion.duration * (i as f64 / parts as f64);
+                self.samples.push(flow.integrate(from, motion.input, time));
             }
             self.samples.push(to.clone());
             let mut widest = 0.0_f64;
@@ -194,13 +198,17 @@ where
     type Edge = ControlSegment<U>;
     const REPLAYED: bool = true;
 
-    fn test(&mut self, flow: &F, drive: &Drive<'_, C::State, U>) -> Option<(ControlSegment<U>, f64)> {
-        if !self.valid.is_valid(drive.successor) || !self.sample(flow, drive) {
+    fn test(
+        &mut self,
+        flow: &F,
+        motion: &SuccessorMotion<'_, C::State, U>,
+    ) -> Option<(ControlSegment<U>, f64)> {
+        if !self.valid.is_valid(motion.successor) || !self.sample(flow, motion) {
             return None;
         }
         let inner = 1..self.samples.len() - 1;
         let inside = self.samples[inner.clone()].iter().all(|q| self.space.contains(q));
-        (inside && self.valid.first_invalid(&self.samples[inner]).is_none()).then(|| segment(drive))
+        (inside && self.valid.first_invalid(&self.samples[inner]).is_none()).then(|| segment(motion))
     }
     fn admits(&mut self, q: &C::State) -> bool {
         self.valid.is_valid(q)

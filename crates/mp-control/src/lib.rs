@@ -24,7 +24,10 @@ mod rk4;
 mod set;
 mod wheels;
 
-pub use check::{Between, ControlSegment, DiscreteFlowCheck, Drive, FlowCheck, OnPosition, Recorded};
+pub use check::{
+    ControlSegment, DiscreteFlowCheck, FlowCheck, LocalFlowCheck, OnPosition, RecordedFlowCheck,
+    SuccessorMotion,
+};
 pub use double_integrator::DoubleIntegrator;
 pub use error::InputError;
 pub use flow::{Flow, Input};

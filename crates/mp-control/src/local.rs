@@ -1,6 +1,6 @@
 //! The local planner that chooses among inputs.
 
-use crate::{Drive, Flow, FlowCheck, Input, InputError, InputSet};
+use crate::{Flow, FlowCheck, Input, InputError, InputSet, SuccessorMotion};
 use mp_cspace::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Rng, Space};
 
 /// In which order successors are tested for collision.
@@ -86,7 +86,7 @@ impl<L: InputChoice + ?Sized> InputChoice for &mut L {
 /// In backward trees successors are states that lead to the node: the flow is [reversed](Flow::reversed).
 /// Where edges are replayed, only successors from which the flow runs forward to the same node, bit for
 /// bit, are used. Rounding makes these rare, so backward trees are useful with
-/// [`Between`](crate::Between) only.
+/// [`LocalFlowCheck`](crate::LocalFlowCheck) only.
 ///
 /// Time per extension: one integration and distance per input, a sort in
 /// [`SortFirst`](Order::SortFirst), and the tests.
@@ -262,8 +262,8 @@ where
             tried[index] = true;
         }
         let (successor, input) = (&self.successors[index], &self.inputs.inputs()[index]);
-        let drive = Drive { node, successor, input, duration: self.duration, direction };
-        self.check.test(&self.flow, &drive)
+        let motion = SuccessorMotion { node, successor, input, duration: self.duration, direction };
+        self.check.test(&self.flow, &motion)
     }
 
     /// The input of the successor taken, with its edge and cost.

@@ -12,7 +12,7 @@ fn replays<S: PartialEq, U, F: Flow<S, U>>(flow: &F, from: &S, segment: &Control
     runs && flow.integrate(from, &segment.input, segment.duration) == *to
 }
 
-/// Verifies the edges of [`Recorded`](crate::Recorded): replays each, which must end in the state after it,
+/// Verifies the edges of [`RecordedFlowCheck`](crate::RecordedFlowCheck): replays each, which must end in the state after it,
 /// bit for bit, and verifies the straight motion between.
 #[derive(Clone, Debug)]
 pub struct ReplayMotions<F, V> {

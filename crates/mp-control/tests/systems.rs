@@ -212,7 +212,7 @@ fn backward_edges_run_forward_to_the_bit_or_are_refused() {
     // Rounding spoils most of these...
     let inputs = InputSet::spread([0.2, 0.2], 24).unwrap();
     let mut planner =
-        InputPlanner::new(&space, flow, inputs.clone(), 0.7, Recorded(straight(&space))).unwrap();
+        InputPlanner::new(&space, flow, inputs.clone(), 0.7, RecordedFlowCheck(straight(&space))).unwrap();
     let mut verifier =
         ReplayMotions::new(flow, FineDiscrete::new(&space, free, Resolution::Fraction(1e-3)).unwrap());
     let mut rng = Rng::seed(1);
@@ -229,7 +229,7 @@ fn backward_edges_run_forward_to_the_bit_or_are_refused() {
     assert!(counters.irreversible > 0 && counters.irreversible < counters.successors);
     // ... and none of those whose edges are the straight motion between.
     let mut planner =
-        InputPlanner::new(&space, flow, inputs.clone(), 0.7, Between(straight(&space))).unwrap();
+        InputPlanner::new(&space, flow, inputs.clone(), 0.7, LocalFlowCheck(straight(&space))).unwrap();
     let node = Vector2::new(0.4, 0.4);
     let extension = planner.extend(&node, &Vector2::new(0.9, 0.9), Direction::Backward, Reach::Step(1.0));
     assert!(matches!(extension, Extension::Advanced(_)));
@@ -249,7 +249,13 @@ fn goals_are_connected_to_from_within_a_step() {
     let flow = Kinematic::new(&space).unwrap();
     let goal = Vector2::new(0.31, 0.1);
     let local = || {
-        InputPlanner::new(&space, flow, InputSet::axes([0.1, 0.1]).unwrap(), 1.0, Between(straight(&space)))
+        InputPlanner::new(
+            &space,
+            flow,
+            InputSet::axes([0.1, 0.1]).unwrap(),
+            1.0,
+            LocalFlowCheck(straight(&space)),
+        )
     };
     for order in [Order::TestAll, Order::SortFirst] {
         let mut planner = local().unwrap().ordered(order).reaching([goal]);
@@ -270,7 +276,7 @@ fn goals_are_connected_to_from_within_a_step() {
         flow,
         InputSet::axes([0.25, 0.25]).unwrap(),
         1.0,
-        Recorded(straight(&space)),
+        RecordedFlowCheck(straight(&space)),
     )
     .unwrap();
     check_local_planner(&space, &mut recorded, f64::INFINITY, 6);

@@ -16,7 +16,7 @@ use rand::RngExt;
 /// can be reached is then always nearer than one from which it cannot. So the extent is **twice** the
 /// diagonal of space and time. Not symmetric, hence not a true metric.
 ///
-/// Interpolation is straight: a motion at constant speed. [`Forward`] makes motion checks and verifiers
+/// Interpolation is straight: a motion at constant speed. [`ForwardInTime`] makes motion checks and verifiers
 /// refuse impossible motions.
 ///
 /// ```
@@ -24,7 +24,7 @@ use rand::RngExt;
 /// let space = SpaceTime::new(Rn::<1>::new([0.0], [3.0])?, 4.0, 1.0)?;
 /// let (a, b) = (([0.0].into(), 0.0), ([3.0].into(), 4.0));
 /// assert_eq!(space.distance(&a, &b), 5.0);
-/// assert!(space.leads(&a, &b) && !space.leads(&b, &a));
+/// assert!(space.can_move(&a, &b) && !space.can_move(&b, &a));
 /// assert!(space.distance(&b, &a) > 5.0);
 /// # Ok::<(), mp_cspace::SpaceError>(())
 /// ```
@@ -71,7 +71,7 @@ impl<C: Space> SpaceTime<C> {
 
     /// Whether the motion from `from` to `to` is possible: forward in time and within the speed limit, or
     /// from a state to itself.
-    pub fn leads(&self, from: &(C::State, f64), to: &(C::State, f64)) -> bool {
+    pub fn can_move(&self, from: &(C::State, f64), to: &(C::State, f64)) -> bool {
         let (distance, time) = (self.positions.distance(&from.0, &to.0), to.1 - from.1);
         from == to || (time > 0.0 && distance <= self.speed * time * (1.0 + ROUNDING))
     }
@@ -153,14 +153,16 @@ impl<S: Clone> Sampler<(S, f64)> for AtAnyTime<S> {
 /// A motion check or verifier that refuses motions back in time or beyond the speed limit, and leaves all
 /// others to the one inside.
 #[derive(Clone, Debug)]
-pub struct Forward<'c, C, M> {
+pub struct ForwardInTime<'c, C, M> {
     /// The space.
     pub space: &'c SpaceTime<C>,
     /// The check of possible motions.
     pub check: M,
 }
 
-impl<C: Space, M: MotionValidity<(C::State, f64)>> MotionValidity<(C::State, f64)> for Forward<'_, C, M> {
+impl<C: Space, M: MotionValidity<(C::State, f64)>> MotionValidity<(C::State, f64)>
+    for ForwardInTime<'_, C, M>
+{
     fn check_motion(&mut self, from: &(C::State, f64), to: &(C::State, f64)) -> MotionCheck {
         self.check_extension(from, to, KnownFree::Neither)
     }
@@ -170,7 +172,7 @@ impl<C: Space, M: MotionValidity<(C::State, f64)>> MotionValidity<(C::State, f64
         to: &(C::State, f64),
         known: KnownFree,
     ) -> MotionCheck {
-        if self.space.leads(from, to) {
+        if self.space.can_move(from, to) {
             self.check.check_extension(from, to, known)
         } else {
             MotionCheck::Unproven { at: 0.0 }

@@ -2,7 +2,7 @@
 
 use mp_cspace::angle::{angle_difference, wrap_angle};
 use mp_cspace::nn::Embed;
-use mp_cspace::space_time::{Forward, SpaceTime};
+use mp_cspace::space_time::{ForwardInTime, SpaceTime};
 use mp_cspace::testkit::{SpaceKit, check_local_planner, check_true_metric};
 use mp_cspace::*;
 use nalgebra::{DVector, Isometry3, Point2, Point3, SVector, UnitQuaternion, Vector3, Vector4};
@@ -254,21 +254,21 @@ fn space_time_conforms() {
         for _ in 0..2000 {
             let [a, b, c] = [0; 3].map(|_| space.sample_uniform(&mut rng));
             let slower = space.positions().distance(&a.0, &b.0) <= 0.6 * (b.1 - a.1);
-            assert_eq!(space.leads(&a, &b), slower);
+            assert_eq!(space.can_move(&a, &b), slower);
             // A possible motion is shorter than every impossible one, and straight at constant speed.
-            if space.leads(&a, &b) {
+            if space.can_move(&a, &b) {
                 possible += 1;
                 let t = 0.37;
                 let middle = space.interpolate(&a, &b, t);
-                assert!(space.leads(&a, &middle) && space.leads(&middle, &b));
+                assert!(space.can_move(&a, &middle) && space.can_move(&middle, &b));
                 let d = space.distance(&a, &b);
                 assert!((space.distance(&a, &middle) - t * d).abs() < 1e-9 * space.extent());
-                if !space.leads(&a, &c) {
+                if !space.can_move(&a, &c) {
                     assert!(d <= space.distance(&a, &c));
                     not += 1;
                 }
-                if space.leads(&b, &c) {
-                    assert!(space.leads(&a, &c), "possible motions one after the other are possible");
+                if space.can_move(&b, &c) {
+                    assert!(space.can_move(&a, &c), "possible motions one after the other are possible");
                     assert!(space.distance(&a, &c) <= d + space.distance(&b, &c) + 1e-12);
                 }
             }
@@ -289,7 +289,7 @@ fn nothing_moves_back_in_time_or_too_fast() {
     let space = SpaceTime::new(Rn::<1>::new([0.0], [1.0]).unwrap(), 10.0, 0.5).unwrap();
     let at = |x: f64, t: f64| ([x].into(), t);
     let check = Discrete::new(&space, |_: &(nalgebra::Vector1<f64>, f64)| true, Resolution::Fraction(0.01));
-    let mut check = Forward { space: &space, check: check.unwrap() };
+    let mut check = ForwardInTime { space: &space, check: check.unwrap() };
     assert!(check.check_motion(&at(0.0, 0.0), &at(1.0, 2.0)).is_free());
     assert!(check.check_motion(&at(0.3, 1.0), &at(0.3, 1.0)).is_free());
     for (from, to) in [

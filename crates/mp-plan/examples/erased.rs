@@ -98,7 +98,7 @@ fn solve(scene: &RigidScene<Spatial>, seed: u64, by_name: bool) -> Result<(), Bo
             };
             let (index, settings) = (AnyIndex::of(space), Settings::default());
             let mut planner: AnyPlanner<'_, Isometry3<f64>, ()> =
-                TreeState::tree_planner("rrt-connect", Arc::new(make), index, &settings, &Workers::alone())?;
+                TreeState::tree_planner("rrt-connect", Arc::new(make), index, &settings, &Workers::single())?;
             planner.solve(&mut rng, &mut stop, &mut ())
         }
     };
@@ -149,7 +149,7 @@ where
             let index = AnyIndex::of(space);
             let settings = Settings::default();
             let mut planner =
-                TreeState::tree_planner("rrt", Arc::new(make), index, &settings, &Workers::alone())?;
+                TreeState::tree_planner("rrt", Arc::new(make), index, &settings, &Workers::single())?;
             planner.solve(&mut rng, &mut stop, &mut ());
         }
     }

@@ -110,11 +110,11 @@ impl<S, R: ObstacleHints<S> + Queries> ObstacleHints<S> for Counted<'_, R> {
     fn touches(&mut self, q: &S) -> bool {
         self.query(|checker| checker.touches(q))
     }
-    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        self.query(|checker| checker.along(from, toward, hit, rng))
+    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        self.query(|checker| checker.slide_along(from, toward, hit, rng))
     }
-    fn carried(&self, q: &S, from: &S, to: &S) -> S {
-        self.checker.carried(q, from, to)
+    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
+        self.checker.moved_by(q, from, to)
     }
 }
 
@@ -131,8 +131,8 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
     fn robot(&self) -> BodyFeatures {
         self.checker.robot()
     }
-    fn touched(&mut self, q: &S) -> Option<usize> {
-        self.query(|checker| checker.touched(q))
+    fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
+        self.query(|checker| checker.touched_obstacle(q))
     }
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
         self.checker.obstacle_point(obstacle, of, rng)
@@ -140,11 +140,11 @@ impl<S, R: ObstacleGeometry<S> + Queries> ObstacleGeometry<S> for Counted<'_, R>
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
         self.checker.robot_point(of, rng)
     }
-    fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
-        self.checker.place_of(q, point)
+    fn world_point(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
+        self.checker.world_point(q, point)
     }
-    fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
-        self.checker.brought(q, point, place)
+    fn moved_to(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
+        self.checker.moved_to(q, point, place)
     }
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
         self.checker.aligned(place, direction, angle)

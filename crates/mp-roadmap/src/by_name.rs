@@ -73,7 +73,7 @@ where
 /// The problem for the thread of the caller alone.
 impl<'c, C: Space, L: LocalPlanner<C::State>> From<Problem<'c, C, L>> for ParallelProblem<'c, C, L> {
     fn from(problem: Problem<'c, C, L>) -> Self {
-        Self { problem, workers: Workers::alone(), checkers: Vec::new() }
+        Self { problem, workers: Workers::single(), checkers: Vec::new() }
     }
 }
 

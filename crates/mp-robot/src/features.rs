@@ -116,7 +116,7 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
         self.features().robot.0
     }
 
-    fn touched(&mut self, q: &P::State) -> Option<usize> {
+    fn touched_obstacle(&mut self, q: &P::State) -> Option<usize> {
         if let Some((obstacle, triangle)) = self.hit(q) {
             let (first, parts) = &self.features().of_triangle[obstacle];
             let part = parts.get(triangle).filter(|part| **part != NO_COMPONENT).copied().unwrap_or(0);
@@ -138,11 +138,11 @@ impl<P: Placement> ObstacleGeometry<P::State> for RigidBody<P> {
         surface.point(features.center, of, rng)
     }
 
-    fn place_of(&self, q: &P::State, point: &Vector3<f64>) -> Vector3<f64> {
+    fn world_point(&self, q: &P::State, point: &Vector3<f64>) -> Vector3<f64> {
         (P::pose(q) * Point3::from(*point)).coords
     }
 
-    fn brought(&self, q: &P::State, point: &Vector3<f64>, place: &Vector3<f64>) -> P::State {
+    fn moved_to(&self, q: &P::State, point: &Vector3<f64>, place: &Vector3<f64>) -> P::State {
         let pose = P::pose(q);
         let translation = Translation3::from(place - pose.rotation * point);
         P::configuration(&Isometry3::from_parts(translation, pose.rotation))

@@ -61,7 +61,7 @@ impl<P: Placement> ObstacleHints<P::State> for RigidBody<P> {
 
     /// Moves in the direction of an edge of the triangle hit, or of any triangle, either way; in the plane, of the line
     /// in which the triangle cuts the plane. `None` for a point inside a solid: it touches no triangle.
-    fn along(
+    fn slide_along(
         &mut self,
         from: &P::State,
         toward: &P::State,
@@ -79,7 +79,7 @@ impl<P: Placement> ObstacleHints<P::State> for RigidBody<P> {
     }
 
     /// Rotates in the world frame, by the rotation that leads from `from` to `to`.
-    fn carried(&self, q: &P::State, from: &P::State, to: &P::State) -> P::State {
+    fn moved_by(&self, q: &P::State, from: &P::State, to: &P::State) -> P::State {
         let [q, from, to] = [q, from, to].map(P::pose);
         let shift = to.translation.vector - from.translation.vector;
         let turned = to.rotation * from.rotation.inverse() * q.rotation;

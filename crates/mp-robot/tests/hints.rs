@@ -38,10 +38,10 @@ fn hints<P: Placement, C: Space<State = P::State>>(space: &C, mut body: RigidBod
             assert!(rotation_angle(&P::pose(to).rotation, &P::pose(&from).rotation) < 1e-7);
             offset(to).normalize()
         };
-        let any = body.along(&from, &toward, None, &mut rng).unwrap();
+        let any = body.slide_along(&from, &toward, None, &mut rng).unwrap();
         let direction = checked(&any);
         assert!(triangles.iter().any(|t| parallel(&direction, t)));
-        let along = body.along(&from, &toward, Some(&q), &mut rng);
+        let along = body.slide_along(&from, &toward, Some(&q), &mut rng);
         assert_eq!(along.is_some(), touching);
         let Some(along) = along else { continue };
         let direction = checked(&along);
@@ -68,18 +68,18 @@ fn what_leads_from_one_to_the_other_is_carried_over() {
     let mut rng = Rng::seed(8);
     for _ in 0..100 {
         let [p, q, r] = [(); 3].map(|()| space.sample_uniform(&mut rng));
-        assert!(space.distance(&body.carried(&p, &p, &q), &q) < 1e-7);
-        assert!(space.distance(&body.carried(&r, &q, &q), &r) < 1e-7);
+        assert!(space.distance(&body.moved_by(&p, &p, &q), &q) < 1e-7);
+        assert!(space.distance(&body.moved_by(&r, &q, &q), &r) < 1e-7);
         // There and back.
-        let there = body.carried(&r, &p, &q);
-        assert!(space.distance(&body.carried(&there, &q, &p), &r) < 1e-6);
-        assert!(body.clone().along(&p, &q, None, &mut rng).is_none(), "there is no obstacle");
+        let there = body.moved_by(&r, &p, &q);
+        assert!(space.distance(&body.moved_by(&there, &q, &p), &r) < 1e-6);
+        assert!(body.clone().slide_along(&p, &q, None, &mut rng).is_none(), "there is no obstacle");
     }
     let mut point = PointRobot::new(clutter()).unwrap();
     let space = Rn::<3>::new([-2.0; 3], [2.0; 3]).unwrap();
     let [p, q] = [(); 2].map(|()| space.sample_uniform(&mut rng));
-    assert_eq!(point.carried(&p, &p, &q), p + (q - p));
-    assert!(point.along(&p, &q, None, &mut rng).is_some());
+    assert_eq!(point.moved_by(&p, &p, &q), p + (q - p));
+    assert!(point.slide_along(&p, &q, None, &mut rng).is_some());
 }
 
 /// By central differences, where free; in collision what is told is rough, yet mostly leads out.
@@ -146,7 +146,7 @@ fn obstacle_geometry<P: Placement, C: Space<State = P::State>>(space: &C, mut bo
     let (mut rng, mut hits, mut far) = (Rng::seed(11), vec![0; parts.len()], 0);
     for _ in 0..4000 {
         let (q, other) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
-        let touched = body.touched(&q);
+        let touched = body.touched_obstacle(&q);
         assert_eq!(touched.is_some(), !body.is_valid(&q));
         if let Some(part) = touched {
             assert!(!alone[part].is_valid(&q));
@@ -155,7 +155,7 @@ fn obstacle_geometry<P: Placement, C: Space<State = P::State>>(space: &C, mut bo
         if body.is_far(&q) {
             far += 1;
             let center = body.robot().center;
-            let turned = body.brought(&other, &center, &body.place_of(&q, &center));
+            let turned = body.moved_to(&other, &center, &body.world_point(&q, &center));
             assert!(body.is_valid(&q) && body.is_valid(&turned));
         }
     }
@@ -181,19 +181,19 @@ fn the_robot_is_put_where_it_is_asked() {
         let (q, place) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng).translation.vector);
         let of = [PointOf::Center, PointOf::Vertex, PointOf::Surface][i % 3];
         let point = body.robot_point(of, &mut rng);
-        let there = body.brought(&q, &point, &place);
-        assert!((body.place_of(&there, &point) - place).norm() < 1e-12 && there.rotation == q.rotation);
+        let there = body.moved_to(&q, &point, &place);
+        assert!((body.world_point(&there, &point) - place).norm() < 1e-12 && there.rotation == q.rotation);
 
         let (robot, direction) = (body.robot(), (q.rotation * Vector3::x()));
         let [a, b] = [0.0, 0.7].map(|angle| body.aligned(&place, &(direction * 3.0), angle));
         for q in [&a, &b] {
-            assert!((body.place_of(q, &robot.center) - place).norm() < 1e-12);
+            assert!((body.world_point(q, &robot.center) - place).norm() < 1e-12);
             assert!((q.rotation * robot.axis - direction).norm() < 1e-9);
         }
         assert!((rotation_angle(&a.rotation, &b.rotation) - 0.7).abs() < 1e-7);
 
         let turned = planar.aligned(&place, &direction, 0.0);
-        assert!((planar.place_of(&turned, &robot.center) - place).xy().norm() < 1e-12);
+        assert!((planar.world_point(&turned, &robot.center) - place).xy().norm() < 1e-12);
         let along = (turned.to_isometry3(0.0).rotation * robot.axis).xy().normalize();
         assert!((along - direction.xy().normalize()).norm() < 1e-6);
 

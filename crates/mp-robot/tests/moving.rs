@@ -6,7 +6,7 @@ use common::{clutter, robot};
 use mp_cspace::{
     Certified, Clearance, MotionCheck, MotionClearance, MotionValidity, Rng, Se2, Se2State, Se3, Space,
     Validity,
-    space_time::{Forward, SpaceTime},
+    space_time::{ForwardInTime, SpaceTime},
 };
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use mp_robot::{AmongMoving, FreeFlyer, MovingVerifier, PlanarFlyer, Trajectory, TrajectoryError};
@@ -75,13 +75,13 @@ fn checks_and_verifier_agree_with_dense_sampling() {
     let mut among = AmongMoving::new(body, moving_bodies()).unwrap();
     let mut verifier = MovingVerifier::new(&space, &among).unwrap();
     let certified = Certified::new(&space, among.clone(), tolerance).unwrap();
-    let mut check = Forward { space: &space, check: certified };
+    let mut check = ForwardInTime { space: &space, check: certified };
     let mut rng = Rng::seed(11);
     let (mut free, mut hit, mut by_moving) = (0, 0, 0);
     while free < 60 || hit < 60 {
         let from = space.sample_uniform(&mut rng);
         let to = space.interpolate(&from, &space.sample_uniform(&mut rng), 0.4);
-        if !space.leads(&from, &to) {
+        if !space.can_move(&from, &to) {
             assert!(
                 !check.check_motion(&from, &to).is_free() && !verifier.check_motion(&from, &to).is_free()
             );

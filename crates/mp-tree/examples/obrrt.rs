@@ -16,12 +16,18 @@ impl ObstacleHints<Point> for Around {
     fn touches(&mut self, q: &Point) -> bool {
         !shared::free(q)
     }
-    fn along(&mut self, from: &Point, toward: &Point, _: Option<&Point>, rng: &mut Rng) -> Option<Point> {
+    fn slide_along(
+        &mut self,
+        from: &Point,
+        toward: &Point,
+        _: Option<&Point>,
+        rng: &mut Rng,
+    ) -> Option<Point> {
         let out = (from - Point::new(0.5, 0.5)).try_normalize(0.0)? * (toward - from).norm();
         let tangent = Point::new(-out.y, out.x);
         Some(if rng.random_bool(0.5) { from + tangent } else { from - tangent })
     }
-    fn carried(&self, q: &Point, from: &Point, to: &Point) -> Point {
+    fn moved_by(&self, q: &Point, from: &Point, to: &Point) -> Point {
         q + (to - from)
     }
 }

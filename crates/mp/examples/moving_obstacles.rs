@@ -5,7 +5,7 @@
 
 use mp::cspace::{
     Certified, Iterations, Outcome, Planner, Rng, Se2, Se2State, Straight,
-    space_time::{Forward, SpaceTime},
+    space_time::{ForwardInTime, SpaceTime},
 };
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let positions = Se2::new([-5.0, -4.0], [5.0, 4.0])?;
     let space = SpaceTime::new(positions, 10.0, 2.0)?;
     let verifier = MovingVerifier::new(&space, &robot)?;
-    let check = Forward { space: &space, check: Certified::new(&space, robot, 1e-3)? };
+    let check = ForwardInTime { space: &space, check: Certified::new(&space, robot, 1e-3)? };
     let (here, there) = (Se2State::new(0.0, -3.5, 0.0), Se2State::new(0.0, 3.5, 0.0));
     let arrival = space.at_any_time(there);
     let goal = Goals::region(arrival.clone()).with_sampler(arrival);

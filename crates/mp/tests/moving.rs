@@ -2,7 +2,7 @@
 
 use mp::cspace::{
     Certified, Iterations, KdTree, Outcome, Path, Planner, Rng, Se2, Se2State, Straight, Uniform,
-    space_time::{Forward, SpaceTime},
+    space_time::{ForwardInTime, SpaceTime},
 };
 use mp::geom::primitives::cuboid;
 use mp::robot::{AmongMoving, MovingVerifier, PlanarFlyer, Trajectory};
@@ -27,7 +27,7 @@ fn through(gate: &[(f64, f64)], connect: bool, iterations: u64) -> Option<Path<S
     let positions = Se2::new([-2.0, -2.0], [2.0, 2.0]).unwrap().with_rotation_weight(0.2).unwrap();
     let space = SpaceTime::new(positions, 14.0, 1.0).unwrap();
     let verifier = MovingVerifier::new(&space, &robot).unwrap();
-    let check = Forward { space: &space, check: Certified::new(&space, robot, 1e-3).unwrap() };
+    let check = ForwardInTime { space: &space, check: Certified::new(&space, robot, 1e-3).unwrap() };
     let local = Straight::new(&space, check);
     let goal = Se2State::new(1.5, 0.0, 0.0);
     let arrival = space.at_any_time(goal);

@@ -8,7 +8,7 @@
 use crate::error::{IntoError, Result};
 use crate::experiment::{Lab, Table, mean};
 use crate::plot::{Axis, ChartCurve, Labels, chart};
-use mp_control::{Between, InputPlanner, InputSet, Kinematic};
+use mp_control::{InputPlanner, InputSet, Kinematic, LocalFlowCheck};
 use mp_cspace::{KnownFree, MotionCheck, MotionValidity, Planner, Rn, Rng, Straight};
 use mp_tree::{Goals, Problem, Rrt, RrtInputs, Step, Tuning};
 use nalgebra::Vector2;
@@ -87,7 +87,8 @@ fn grow(moves: Moves, nodes: usize, seed: u64) -> Result<Vec<Areas>> {
         Moves::Axes(step) => {
             let flow = Kinematic::new(&space).into_error()?;
             let inputs = InputSet::axes([step; 2]).into_error()?;
-            let local = InputPlanner::new(&space, flow, inputs, 1.0, Between(straight)).into_error()?;
+            let local =
+                InputPlanner::new(&space, flow, inputs, 1.0, LocalFlowCheck(straight)).into_error()?;
             let problem = Problem::new(&space, local, Free, start, nowhere).into_error()?;
             let mut planner = RrtInputs::new(problem, Tuning::default()).into_error()?;
             follow(nodes, seed, |rng, known| {

@@ -4,7 +4,8 @@ use super::robots::{Six, TestRobot};
 use crate::clock::{ProcessorTime, nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use mp_control::{
-    Between, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, OnPosition, ReplayFinely,
+    DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, LocalFlowCheck, OnPosition,
+    ReplayFinely,
 };
 use mp_cspace::{
     Cancel, Discrete, Exactly, Metric, MotionValidity, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
@@ -125,7 +126,7 @@ where
     } else {
         let flow = Kinematic::new(&space).into_error()?;
         let inputs = InputSet::axes(test_robot.speeds()).into_error()?;
-        let local = InputPlanner::new(&space, flow, inputs, 1.0, Between(straight)).into_error()?;
+        let local = InputPlanner::new(&space, flow, inputs, 1.0, LocalFlowCheck(straight)).into_error()?;
         let near = |q: &State<M>| test_robot.arrived(q);
         let goals = Goals::region(near).with_sampler(Exactly(goal));
         let problem = Problem::new(&space, local, verifier, start, goals).into_error()?;

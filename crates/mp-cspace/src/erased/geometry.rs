@@ -44,11 +44,11 @@ impl<S> ObstacleHints<S> for AnyGeometry<'_, S> {
     fn touches(&mut self, q: &S) -> bool {
         self.0.touches(q)
     }
-    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        self.0.along(from, toward, hit, rng)
+    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        self.0.slide_along(from, toward, hit, rng)
     }
-    fn carried(&self, q: &S, from: &S, to: &S) -> S {
-        self.0.carried(q, from, to)
+    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
+        self.0.moved_by(q, from, to)
     }
 }
 
@@ -59,8 +59,8 @@ impl<S> ObstacleGeometry<S> for AnyGeometry<'_, S> {
     fn robot(&self) -> BodyFeatures {
         self.0.robot()
     }
-    fn touched(&mut self, q: &S) -> Option<usize> {
-        self.0.touched(q)
+    fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
+        self.0.touched_obstacle(q)
     }
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
         self.0.obstacle_point(obstacle, of, rng)
@@ -68,11 +68,11 @@ impl<S> ObstacleGeometry<S> for AnyGeometry<'_, S> {
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
         self.0.robot_point(of, rng)
     }
-    fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
-        self.0.place_of(q, point)
+    fn world_point(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
+        self.0.world_point(q, point)
     }
-    fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
-        self.0.brought(q, point, place)
+    fn moved_to(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
+        self.0.moved_to(q, point, place)
     }
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
         self.0.aligned(place, direction, angle)

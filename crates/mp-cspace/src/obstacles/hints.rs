@@ -14,21 +14,21 @@ pub trait ObstacleHints<S> {
     /// `from` moved along an obstacle, without turning, by the distance in position between `from` and
     /// `toward`: along the obstacle touched at `hit`, or along any when `hit` is `None`. `None` where no
     /// obstacle is touched, or there is none to move along.
-    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S>;
+    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S>;
 
     /// `q` moved and turned by the motion that leads from `from` to `to`.
-    fn carried(&self, q: &S, from: &S, to: &S) -> S;
+    fn moved_by(&self, q: &S, from: &S, to: &S) -> S;
 }
 
 impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for &mut H {
     fn touches(&mut self, q: &S) -> bool {
         (**self).touches(q)
     }
-    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        (**self).along(from, toward, hit, rng)
+    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        (**self).slide_along(from, toward, hit, rng)
     }
-    fn carried(&self, q: &S, from: &S, to: &S) -> S {
-        (**self).carried(q, from, to)
+    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
+        (**self).moved_by(q, from, to)
     }
 }
 
@@ -70,7 +70,7 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     fn robot(&self) -> BodyFeatures;
 
     /// The index of an obstacle that the robot at `q` touches.
-    fn touched(&mut self, q: &S) -> Option<usize>;
+    fn touched_obstacle(&mut self, q: &S) -> Option<usize>;
 
     /// A point (m) of an obstacle, in the world. `None` when there is no such obstacle.
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>>;
@@ -79,11 +79,11 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64>;
 
     /// The place in the world (m) of a `point` of the robot's own frame, the robot at `q`.
-    fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64>;
+    fn world_point(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64>;
 
     /// `q` moved, without turning, so that a `point` of the robot's frame comes to `place` in the world, as near
     /// as the robot's degrees of freedom allow.
-    fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S;
+    fn moved_to(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S;
 
     /// The state with the robot's centre at `place` and its [axis](BodyFeatures::axis) along `direction`, turned about
     /// that by `angle` (rad). In the plane it is turned about Z, the only axis there. A robot that cannot turn is
@@ -94,7 +94,7 @@ pub trait ObstacleGeometry<S>: ObstacleHints<S> {
     /// free in any rotation about its centre. O(obstacles), without a collision test.
     fn is_far(&self, q: &S) -> bool {
         let robot = self.robot();
-        let place = self.place_of(q, &robot.center);
+        let place = self.world_point(q, &robot.center);
         self.obstacles().iter().all(|o| (o.center - place).norm() > o.radius + robot.radius)
     }
 }
@@ -106,8 +106,8 @@ impl<S, H: ObstacleGeometry<S> + ?Sized> ObstacleGeometry<S> for &mut H {
     fn robot(&self) -> BodyFeatures {
         (**self).robot()
     }
-    fn touched(&mut self, q: &S) -> Option<usize> {
-        (**self).touched(q)
+    fn touched_obstacle(&mut self, q: &S) -> Option<usize> {
+        (**self).touched_obstacle(q)
     }
     fn obstacle_point(&self, obstacle: usize, of: PointOf, rng: &mut Rng) -> Option<Vector3<f64>> {
         (**self).obstacle_point(obstacle, of, rng)
@@ -115,11 +115,11 @@ impl<S, H: ObstacleGeometry<S> + ?Sized> ObstacleGeometry<S> for &mut H {
     fn robot_point(&self, of: PointOf, rng: &mut Rng) -> Vector3<f64> {
         (**self).robot_point(of, rng)
     }
-    fn place_of(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
-        (**self).place_of(q, point)
+    fn world_point(&self, q: &S, point: &Vector3<f64>) -> Vector3<f64> {
+        (**self).world_point(q, point)
     }
-    fn brought(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
-        (**self).brought(q, point, place)
+    fn moved_to(&self, q: &S, point: &Vector3<f64>, place: &Vector3<f64>) -> S {
+        (**self).moved_to(q, point, place)
     }
     fn aligned(&self, place: &Vector3<f64>, direction: &Vector3<f64>, angle: f64) -> S {
         (**self).aligned(place, direction, angle)
@@ -133,10 +133,10 @@ impl<S, H: ObstacleHints<S> + ?Sized> ObstacleHints<S> for Box<H> {
     fn touches(&mut self, q: &S) -> bool {
         (**self).touches(q)
     }
-    fn along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
-        (**self).along(from, toward, hit, rng)
+    fn slide_along(&mut self, from: &S, toward: &S, hit: Option<&S>, rng: &mut Rng) -> Option<S> {
+        (**self).slide_along(from, toward, hit, rng)
     }
-    fn carried(&self, q: &S, from: &S, to: &S) -> S {
-        (**self).carried(q, from, to)
+    fn moved_by(&self, q: &S, from: &S, to: &S) -> S {
+        (**self).moved_by(q, from, to)
     }
 }

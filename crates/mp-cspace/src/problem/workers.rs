@@ -22,7 +22,7 @@ impl Workers {
 
     /// Only the caller's own thread.
     #[must_use]
-    pub fn alone() -> Self {
+    pub fn single() -> Self {
         Self(None)
     }
 
@@ -37,7 +37,7 @@ impl Workers {
                 Ok(pool) => Ok(Self(Some(Arc::new(pool)))),
                 Err(error) => Err(Self::refused(threads, format!("fewer: {error}"))),
             },
-            _ => Ok(Self::alone()),
+            _ => Ok(Self::single()),
         }
     }
 

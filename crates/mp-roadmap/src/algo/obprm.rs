@@ -291,7 +291,7 @@ impl<H> OnObstacles<H> {
             let turned = space.sample_uniform(rng);
             let point = self.hints.robot_point(of, rng);
             let place = self.hints.obstacle_point(obstacle, of, rng)?;
-            let q = self.hints.brought(&turned, &point, &place);
+            let q = self.hints.moved_to(&turned, &point, &place);
             (space.contains(&q) && !checker.admits(&q)).then_some(q)
         })
     }
@@ -310,7 +310,7 @@ impl<H> OnObstacles<H> {
         H: ObstacleGeometry<C::State>,
     {
         let (space, robot) = (checker.space(), self.hints.robot());
-        let places = [inside, toward].map(|q| self.hints.place_of(q, &robot.center));
+        let places = [inside, toward].map(|q| self.hints.world_point(q, &robot.center));
         let reach = 2.0 * (self.hints.obstacles().get(obstacle)?.radius + robot.radius);
         let most = (reach / (places[1] - places[0]).norm()).min(1.0);
         let mut admits = |at: f64| checker.admits(&space.interpolate(inside, toward, at));

@@ -182,7 +182,7 @@ impl<H> AroundObstacles<H> {
     {
         let robot = self.hints.robot();
         let Some(body) = self.hints.obstacles().get(obstacle).copied() else { return };
-        let away = (self.hints.place_of(q, &robot.center) - body.center).try_normalize(0.0);
+        let away = (self.hints.world_point(q, &robot.center) - body.center).try_normalize(0.0);
         let away = away.unwrap_or_else(|| random_unit(None, rng));
         let [min, max] = limits(&robot, &body);
         let along = [body.axis, random_unit(Some(&body.axis), rng)];
@@ -225,7 +225,7 @@ where
         } else if checker.admits(&q) {
             let kind = if self.hints.is_far(&q) { MilestoneKind::Far } else { MilestoneKind::Plain };
             out.push(Candidate::new(q, kind));
-        } else if let Some(obstacle) = self.hints.touched(&q) {
+        } else if let Some(obstacle) = self.hints.touched_obstacle(&q) {
             self.band(obstacle, (&q, MilestoneKind::Salvaged), checker, rng, out);
         }
     }

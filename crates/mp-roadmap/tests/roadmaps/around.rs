@@ -273,7 +273,7 @@ fn what_cannot_be_made_says_why() {
     for name in ["obprm", "geometry-prm"] {
         let blind = problem(&space, &robot).with_obstacles(ObstacleKnowledge::default());
         let error = build(name, blind, &Settings::default()).err().unwrap();
-        assert!(error.to_string().contains("what obstacles look like"), "{error}");
+        assert!(error.to_string().contains("geometry of obstacles"), "{error}");
     }
     let refused = |name: &str, setting: &str| {
         let settings = Settings::parse([setting]).unwrap();

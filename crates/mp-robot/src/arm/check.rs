@@ -198,12 +198,12 @@ impl<Q: Coordinates> ObstacleHints<Q> for Arm {
     }
 
     /// Always `None`.
-    fn along(&mut self, _: &Q, _: &Q, _: Option<&Q>, _: &mut Rng) -> Option<Q> {
+    fn slide_along(&mut self, _: &Q, _: &Q, _: Option<&Q>, _: &mut Rng) -> Option<Q> {
         None
     }
 
     /// `q` with each joint moved by as much as from `from` to `to`; by the shorter way where the joint is continuous.
-    fn carried(&self, q: &Q, from: &Q, to: &Q) -> Q {
+    fn moved_by(&self, q: &Q, from: &Q, to: &Q) -> Q {
         let (q, from, to) = (q.as_slice(), from.as_slice(), to.as_slice());
         Q::from_fn(q.len(), |i| q[i] + self.robot.kinematics.displacement(i, from, to))
     }

@@ -87,7 +87,7 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
 
 impl<C: Space<State = P::State>, P: Placement> MotionValidity<(P::State, f64)> for MovingVerifier<'_, C, P> {
     fn check_motion(&mut self, from: &(P::State, f64), to: &(P::State, f64)) -> MotionCheck {
-        if !(self.space.contains(from) && self.space.contains(to) && self.space.leads(from, to)) {
+        if !(self.space.contains(from) && self.space.contains(to) && self.space.can_move(from, to)) {
             return MotionCheck::Unproven { at: 0.0 };
         }
         let standing = self.standing.check_motion(&from.0, &to.0);

@@ -31,7 +31,7 @@ impl ObstacleHints<Vector2<f64>> for DiscRobot {
     fn touches(&mut self, q: &Vector2<f64>) -> bool {
         !self.is_valid(q)
     }
-    fn along(
+    fn slide_along(
         &mut self,
         from: &Vector2<f64>,
         toward: &Vector2<f64>,
@@ -40,7 +40,7 @@ impl ObstacleHints<Vector2<f64>> for DiscRobot {
     ) -> Option<Vector2<f64>> {
         Some(from + along(self.world(), hit.copied(), rng)? * (toward - from).norm())
     }
-    fn carried(&self, q: &Vector2<f64>, from: &Vector2<f64>, to: &Vector2<f64>) -> Vector2<f64> {
+    fn moved_by(&self, q: &Vector2<f64>, from: &Vector2<f64>, to: &Vector2<f64>) -> Vector2<f64> {
         q + (to - from)
     }
 }
@@ -50,7 +50,7 @@ impl ObstacleHints<Se2State> for PolygonRobot {
     fn touches(&mut self, q: &Se2State) -> bool {
         !self.is_valid(q)
     }
-    fn along(
+    fn slide_along(
         &mut self,
         from: &Se2State,
         toward: &Se2State,
@@ -61,7 +61,7 @@ impl ObstacleHints<Se2State> for PolygonRobot {
         let step = along(self.world(), hit.map(|q| q.translation), rng)? * far;
         Some(Se2State { translation: from.translation + step, ..*from })
     }
-    fn carried(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
+    fn moved_by(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
         let at = q.translation + (to.translation - from.translation);
         Se2State::new(at.x, at.y, q.angle + (to.angle - from.angle))
     }

@@ -216,15 +216,17 @@ fn hints_lead_along_boundaries() {
     let mut disc = DiscRobot::new(Arc::clone(&world), 0.1).unwrap();
     let (from, toward, hit) = (Vector2::new(0.5, 1.0), Vector2::new(1.5, 1.0), Vector2::new(0.95, 1.0));
     assert!(disc.touches(&hit) && !disc.touches(&from));
-    let ends: Vec<_> = (0..20).map(|_| disc.along(&from, &toward, Some(&hit), &mut rng).unwrap()).collect();
+    let ends: Vec<_> =
+        (0..20).map(|_| disc.slide_along(&from, &toward, Some(&hit), &mut rng).unwrap()).collect();
     assert!(ends.iter().all(|q| (q.x - 0.5).abs() < 1e-12 && ((q.y - 1.0).abs() - 1.0).abs() < 1e-12));
     assert!(ends.iter().any(|q| q.y > 1.0) && ends.iter().any(|q| q.y < 1.0));
     assert!(
-        disc.along(&from, &toward, None, &mut rng).is_some_and(|q| ((q - from).norm() - 1.0).abs() < 1e-12)
+        disc.slide_along(&from, &toward, None, &mut rng)
+            .is_some_and(|q| ((q - from).norm() - 1.0).abs() < 1e-12)
     );
     let mut rod = PolygonRobot::new(world, Polygon::rectangle([-0.2, -0.05], [0.2, 0.05]).unwrap());
     let [a, b, c] = [0.5, 1.5, 0.85].map(|x| Se2State::new(x, 1.0, 0.3));
-    let moved = rod.along(&a, &b, Some(&c), &mut rng).unwrap();
+    let moved = rod.slide_along(&a, &b, Some(&c), &mut rng).unwrap();
     assert!(rod.touches(&c) && (moved.translation.x - 0.5).abs() < 1e-12 && moved.angle == 0.3);
-    assert_eq!(rod.carried(&a, &b, &c).angle, 0.3);
+    assert_eq!(rod.moved_by(&a, &b, &c).angle, 0.3);
 }

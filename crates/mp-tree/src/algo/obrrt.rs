@@ -61,7 +61,7 @@
 //!     fn touches(&mut self, q: &Point) -> bool {
 //!         DISCS.iter().any(|(center, radius)| (q - center).norm() <= *radius)
 //!     }
-//!     fn along(&mut self, from: &Point, toward: &Point, hit: Option<&Point>, rng: &mut Rng) -> Option<Point> {
+//!     fn slide_along(&mut self, from: &Point, toward: &Point, hit: Option<&Point>, rng: &mut Rng) -> Option<Point> {
 //!         let (center, _) = match hit {
 //!             Some(q) => DISCS.into_iter().find(|(center, radius)| (q - center).norm() <= *radius)?,
 //!             None => DISCS[rng.random_range(0..DISCS.len())],
@@ -71,7 +71,7 @@
 //!         Some(if rng.random_bool(0.5) { from + tangent } else { from - tangent })
 //!     }
 //!     // A point has no rotation.
-//!     fn carried(&self, q: &Point, from: &Point, to: &Point) -> Point {
+//!     fn moved_by(&self, q: &Point, from: &Point, to: &Point) -> Point {
 //!         q + (to - from)
 //!     }
 //! }
@@ -210,12 +210,12 @@ impl<H> ObstacleGuided<H> {
         if rng.random_bool(0.5) {
             ends.reverse();
         }
-        let mut along = self.hints.carried(from, &ends[0], &ends[1]);
+        let mut along = self.hints.moved_by(from, &ends[0], &ends[1]);
         for _ in 0..DOUBLINGS {
             if space.distance(from, &along) >= step {
                 break;
             }
-            along = self.hints.carried(&along, from, &along);
+            along = self.hints.moved_by(&along, from, &along);
         }
         Some(along)
     }
@@ -254,7 +254,7 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C
         let method = self.weights.draw(growing.rng());
         let grown = match method {
             1 => follow(from, &space.with_rotation_of(&sample, &state), growing),
-            2 | 3 => match self.hints.along(&state, &sample, None, growing.rng()) {
+            2 | 3 => match self.hints.slide_along(&state, &sample, None, growing.rng()) {
                 Some(along) if method == 2 => follow(from, &space.with_rotation_of(&along, &sample), growing),
                 Some(along) => follow(from, &along, growing),
                 None => growing.step(from),
@@ -271,7 +271,7 @@ impl<C: Space, L: LocalPlanner<C::State>, H: ObstacleHints<C::State>> Extender<C
                 Grown::Trapped => {
                     let hit = self.hit(space, step, &state, &sample);
                     let rng = growing.rng();
-                    match hit.and_then(|hit| self.hints.along(&state, &sample, Some(&hit), rng)) {
+                    match hit.and_then(|hit| self.hints.slide_along(&state, &sample, Some(&hit), rng)) {
                         Some(along) if method == 5 => {
                             follow(from, &space.with_rotation_of(&along, &sample), growing)
                         }

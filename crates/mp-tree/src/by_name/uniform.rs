@@ -1,7 +1,7 @@
 //! Problems whose local planner moves by a uniform set of inputs, for planners made by name.
 
 use crate::{BuildError, Parameter, Problem, Settings, Tuning};
-use mp_control::{Between, InputPlanner, InputSet, Kinematic};
+use mp_control::{InputPlanner, InputSet, Kinematic, LocalFlowCheck};
 use mp_cspace::{LocalPlanner, Space};
 
 /// The number of directions of a set of inputs.
@@ -21,7 +21,7 @@ pub const LEVELS: Parameter = Parameter {
 };
 
 /// A local planner that moves by velocities, one second each; its motions and edges are those of `L`.
-pub(crate) type ByVelocities<'c, C, L> = InputPlanner<'c, C, Kinematic<'c, C>, Vec<f64>, Between<L>>;
+pub(crate) type ByVelocities<'c, C, L> = InputPlanner<'c, C, Kinematic<'c, C>, Vec<f64>, LocalFlowCheck<L>>;
 
 /// The problem with a local planner that moves by [`InputSet::uniform`], one step long. From within a step, listed goals
 /// are connected to exactly; where goals are sampled, and so not known beforehand, every target is.
@@ -39,7 +39,7 @@ pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     let flow = Kinematic::new(space)?;
     let (goals, sampled) = (problem.goals().listed().to_vec(), problem.goals().has_sampler());
     problem.try_map_local(|local| {
-        let planner = InputPlanner::new(space, flow, inputs, 1.0, Between(local))?;
+        let planner = InputPlanner::new(space, flow, inputs, 1.0, LocalFlowCheck(local))?;
         Ok(if sampled { planner.reaching_all() } else { planner.reaching(goals) })
     })
 }

@@ -26,7 +26,7 @@ pub type ProblemFactory<'c, S> = Arc<dyn Fn() -> Result<AnyProblem<'c, S>, Build
 ///     let verifier = FineDiscrete::new(&space, free, Resolution::Fraction(0.0005))?;
 ///     Problem::new(&any, Straight::new(&any, Box::new(check)), verifier, start, goal)
 /// });
-/// let (index, workers) = (AnyIndex::of(&space), Workers::alone());
+/// let (index, workers) = (AnyIndex::of(&space), Workers::single());
 /// let mut planner = Vector2::tree_planner("rrt-connect", make, index, &Settings::default(), &workers)?;
 /// let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(10_000), &mut ());
 /// assert!(matches!(outcome, Outcome::Solved(_)));

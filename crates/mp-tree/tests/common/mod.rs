@@ -220,7 +220,7 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Boxes<N> {
     fn touches(&mut self, q: &SVector<f64, N>) -> bool {
         !self.is_valid(q)
     }
-    fn along(
+    fn slide_along(
         &mut self,
         from: &SVector<f64, N>,
         toward: &SVector<f64, N>,
@@ -235,7 +235,7 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Boxes<N> {
         to[rng.random_range(0..N)] += far;
         Some(to)
     }
-    fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
+    fn moved_by(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
         q + (to - from)
     }
 }
@@ -245,7 +245,7 @@ impl ObstacleHints<Se2State> for Rod {
     fn touches(&mut self, q: &Se2State) -> bool {
         !self.is_valid(q)
     }
-    fn along(
+    fn slide_along(
         &mut self,
         from: &Se2State,
         toward: &Se2State,
@@ -255,10 +255,10 @@ impl ObstacleHints<Se2State> for Rod {
         if hit.is_some_and(|q| self.is_valid(q)) {
             return None;
         }
-        let to = self.boxes.along(&from.translation, &toward.translation, None, rng)?;
+        let to = self.boxes.slide_along(&from.translation, &toward.translation, None, rng)?;
         Some(Se2State::new(to.x, to.y, from.angle))
     }
-    fn carried(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
+    fn moved_by(&self, q: &Se2State, from: &Se2State, to: &Se2State) -> Se2State {
         let at = q.translation + (to.translation - from.translation);
         Se2State::new(at.x, at.y, q.angle + wrap_angle(to.angle - from.angle))
     }
@@ -269,7 +269,7 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Arm<N> {
     fn touches(&mut self, q: &SVector<f64, N>) -> bool {
         !self.is_valid(q)
     }
-    fn along(
+    fn slide_along(
         &mut self,
         _: &SVector<f64, N>,
         _: &SVector<f64, N>,
@@ -278,7 +278,7 @@ impl<const N: usize> ObstacleHints<SVector<f64, N>> for Arm<N> {
     ) -> Option<SVector<f64, N>> {
         None
     }
-    fn carried(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
+    fn moved_by(&self, q: &SVector<f64, N>, from: &SVector<f64, N>, to: &SVector<f64, N>) -> SVector<f64, N> {
         q + (to - from)
     }
 }
@@ -314,17 +314,17 @@ impl<V: ObstacleHints<SVector<f64, N>>, const N: usize> ObstacleHints<DVector<f6
     fn touches(&mut self, q: &DVector<f64>) -> bool {
         self.0.touches(&fixed(q))
     }
-    fn along(
+    fn slide_along(
         &mut self,
         from: &DVector<f64>,
         toward: &DVector<f64>,
         hit: Option<&DVector<f64>>,
         rng: &mut Rng,
     ) -> Option<DVector<f64>> {
-        self.0.along(&fixed(from), &fixed(toward), hit.map(fixed).as_ref(), rng).map(sizeless)
+        self.0.slide_along(&fixed(from), &fixed(toward), hit.map(fixed).as_ref(), rng).map(sizeless)
     }
-    fn carried(&self, q: &DVector<f64>, from: &DVector<f64>, to: &DVector<f64>) -> DVector<f64> {
-        sizeless(self.0.carried(&fixed(q), &fixed(from), &fixed(to)))
+    fn moved_by(&self, q: &DVector<f64>, from: &DVector<f64>, to: &DVector<f64>) -> DVector<f64> {
+        sizeless(self.0.moved_by(&fixed(q), &fixed(from), &fixed(to)))
     }
 }
 

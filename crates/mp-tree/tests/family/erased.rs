@@ -36,7 +36,7 @@ where
     V: Robot<C::State>,
 {
     let erased = AnySpace::new(space);
-    let (settings, workers) = (Settings::parse(["step=10%"]).unwrap(), Workers::alone());
+    let (settings, workers) = (Settings::parse(["step=10%"]).unwrap(), Workers::single());
     for name in names {
         let make = || problem(space, space, &robot, &ends);
         let generic = build_from(name, make, C::Nn::default(), &settings, &workers).unwrap();
@@ -100,7 +100,7 @@ fn joints_are_planned_the_same() {
     };
     for name in ["rrt", "rrt-connect", "rrt-star"] {
         let make: ProblemFactory<'_, _> = Arc::new(|| problem(&space, &erased, &robot, &ends));
-        let workers = Workers::alone();
+        let workers = Workers::single();
         let any = TreeState::tree_planner(name, make, AnyIndex::of(&space), &settings, &workers).unwrap();
         assert_same(name, generic(name), any);
     }

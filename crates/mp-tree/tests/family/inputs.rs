@@ -31,7 +31,7 @@ where
     let check = Certified::new(space, boxes.clone(), 1e-3).unwrap();
     let inputs = InputSet::grid([0.1, 0.1], 5).unwrap();
     let mut local =
-        InputPlanner::new(space, flow, inputs, 0.7, Recorded(Straight::new(space, check))).unwrap();
+        InputPlanner::new(space, flow, inputs, 0.7, RecordedFlowCheck(Straight::new(space, check))).unwrap();
     let verifier = ReplayMotions::new(flow, Exact(boxes.clone()));
     let goal = Goals::region(Ball::new(space, Point::new(0.9, 0.2), 0.05).unwrap())
         .with_sampler(Exactly(Point::new(0.9, 0.2)));
@@ -115,7 +115,8 @@ fn nodes_are_not_stacked() {
     let flow = Kinematic::new(&space).unwrap();
     let check = Certified::new(&space, Boxes::default(), 1e-3).unwrap();
     let inputs = InputSet::axes([0.1, 0.1]).unwrap();
-    let local = InputPlanner::new(&space, flow, inputs, 1.0, Between(Straight::new(&space, check))).unwrap();
+    let local =
+        InputPlanner::new(&space, flow, inputs, 1.0, LocalFlowCheck(Straight::new(&space, check))).unwrap();
     let nowhere = Goals::region(|_: &Point| false);
     let problem =
         Problem::new(&space, local, Exact(Boxes::default()), Point::new(0.51, 0.52), nowhere).unwrap();
@@ -165,7 +166,7 @@ type Drawn<'c> = InputPlanner<
     Rn<2>,
     Kinematic<'c, Rn<2>>,
     Point,
-    Recorded<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>,
+    RecordedFlowCheck<Straight<'c, Rn<2>, Certified<'c, Rn<2>, Boxes<2>>>>,
 >;
 
 /// A point that moves by eight inputs, to the right of the square.
@@ -173,7 +174,7 @@ fn drawn<'c>(space: &'c Rn<2>, boxes: &Boxes<2>) -> Problem<'c, Rn<2>, Drawn<'c>
     let flow = Kinematic::new(space).unwrap();
     let check = Straight::new(space, Certified::new(space, boxes.clone(), 1e-3).unwrap());
     let inputs = InputSet::spread([0.06, 0.06], 8).unwrap();
-    let local = InputPlanner::new(space, flow, inputs, 1.0, Recorded(check)).unwrap();
+    let local = InputPlanner::new(space, flow, inputs, 1.0, RecordedFlowCheck(check)).unwrap();
     let verifier = ReplayMotions::new(flow, Exact(boxes.clone()));
     Problem::new(space, local, verifier, Point::new(0.2, 0.3), Goals::region(|q: &Point| q.x > 0.9)).unwrap()
 }

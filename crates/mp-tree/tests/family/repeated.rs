@@ -240,7 +240,7 @@ fn every_planner_can_be_wrapped_by_name() {
         let settings = Settings::parse(["step=0.1"]).unwrap();
         let make = || problem(&space, &boxes);
         let mut plain =
-            build_from(info.name, make, KdTree::<2>::new(), &settings, &Workers::alone()).unwrap();
+            build_from(info.name, make, KdTree::<2>::new(), &settings, &Workers::single()).unwrap();
         let mut same = build_with(info.name, make().unwrap(), KdTree::<2>::new(), &settings).unwrap();
         assert_eq!(solve(&mut plain, 2, 50_000), solve(&mut same, 2, 50_000));
     }
@@ -252,7 +252,7 @@ fn bad_numbers_and_names_are_refused() {
     let build = |name: &str, setting: &str| {
         let settings = Settings::parse([setting]).unwrap();
         let make = || problem(&space, &boxes);
-        build_from(name, make, Linear::new(), &settings, &Workers::alone()).map(|_| ())
+        build_from(name, make, Linear::new(), &settings, &Workers::single()).map(|_| ())
     };
     for meta in meta_planners() {
         let inner = meta.around.map_or("rrt-connect", |names| names[0]);
@@ -278,6 +278,6 @@ fn bad_numbers_and_names_are_refused() {
         assert!(matches!(Workers::new(threads), Err(BuildError::OutOfRange { name: "threads", .. })));
     }
     let fails = || Made::Err(BuildError::Unmade { reason: "no robot".into() });
-    let made = build_from("or-rrt", fails, Linear::new(), &Settings::default(), &Workers::alone());
+    let made = build_from("or-rrt", fails, Linear::new(), &Settings::default(), &Workers::single());
     assert_eq!(made.map(|_| ()), Err(BuildError::Unmade { reason: "no robot".into() }));
 }

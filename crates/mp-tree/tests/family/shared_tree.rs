@@ -143,7 +143,7 @@ fn several_goals_may_be_reached_in_one_batch() {
         let goals = Goals::region(|q: &Point| q.x > 0.15);
         Problem::new(&space, local(&space, &boxes, 1e-3), Exact(boxes.clone()), START, goals)
     };
-    let mut planner = Shared::new(32, Workers::alone(), tuning(0.0), problem).unwrap();
+    let mut planner = Shared::new(32, Workers::single(), tuning(0.0), problem).unwrap();
     let mut rng = Rng::seed(1);
     let mut ends = Vec::new();
     while let Some(path) = planner.step(&mut rng, &mut ()) {
@@ -206,16 +206,16 @@ fn bad_input_is_refused() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.04));
     let problem = |_| Problem::new(&space, local(&space, &boxes, 1e-3), Exact(boxes.clone()), START, GOAL);
     for batch in [0, 1025, u64::MAX] {
-        let made = Shared::new(batch, Workers::alone(), tuning(0.05), problem);
+        let made = Shared::new(batch, Workers::single(), tuning(0.05), problem);
         assert!(matches!(made, Err(BuildError::OutOfRange { name: "batch", .. })));
     }
-    let made = Shared::new(2, Workers::alone(), tuning(f64::NAN), problem);
+    let made = Shared::new(2, Workers::single(), tuning(f64::NAN), problem);
     assert!(matches!(made, Err(BuildError::OutOfRange { name: "goal-bias", .. })));
     let fails = |i| match i {
         2 => Err(BuildError::Unmade { reason: "out of robots".into() }),
         _ => problem(i),
     };
-    let made = Shared::new(2, Workers::alone(), tuning(0.05), fails);
+    let made = Shared::new(2, Workers::single(), tuning(0.05), fails);
     assert!(matches!(made, Err(BuildError::Unmade { .. })));
 }
 
