@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, Metric, MotionValidator, PlannerInfo, Request, positive_number};
+use mp_plan::{Length, MetricName, MotionValidator, PlannerInfo, Request, positive_number};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -53,7 +53,7 @@ pub(crate) struct Plan {
     /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
     #[arg(long, value_name = "NAME", default_value = "default",
           value_parser = PossibleValuesParser::new(metrics()).map(|name| metric(&name)))]
-    pub(crate) metric: Metric,
+    pub(crate) metric: MetricName,
     /// The seed of all random numbers.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -189,11 +189,11 @@ fn planners() -> impl Iterator<Item = PossibleValue> {
 }
 
 fn metrics() -> Vec<PossibleValue> {
-    Metric::ALL.iter().map(|(_, name, help)| PossibleValue::new(*name).help(*help)).collect()
+    MetricName::ALL.iter().map(|(_, name, help)| PossibleValue::new(*name).help(*help)).collect()
 }
 
 /// The metric of a name that was checked before.
-fn metric(name: &str) -> Metric {
+fn metric(name: &str) -> MetricName {
     name.parse().unwrap_or_default()
 }
 

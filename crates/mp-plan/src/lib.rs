@@ -95,7 +95,7 @@ pub use path::{PathFileKind, PathRows};
 pub use picture::{PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners};
 pub use report::{REPORT_VERSION, Report, StoppedBy};
-pub use request::{Budget, Finish, Length, Metric, MotionValidator, Request};
+pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,

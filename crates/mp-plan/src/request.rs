@@ -30,7 +30,7 @@ pub struct Request {
     /// Parameters of the planner, by name.
     pub settings: BTreeMap<String, String>,
     /// How far apart two configurations are.
-    pub metric: Metric,
+    pub metric: MetricName,
     /// How motions are checked while planning. The path returned is always verified with other code.
     pub motion: MotionValidator,
     /// When to give up.
@@ -78,7 +78,7 @@ pub enum Finish {
 /// How the distance between two configurations is measured. For arms, `θ` and `Δp` are the changes of the joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Metric {
+pub enum MetricName {
     /// ‖Δp‖ + 0.5·θ: the metric of the space itself.
     #[default]
     Default,
@@ -94,20 +94,20 @@ pub enum Metric {
     SweptVolume,
 }
 
-impl Metric {
+impl MetricName {
     /// All metrics, each with its name and its formula (metres; θ in radians).
-    pub const ALL: [(Metric, &'static str, &'static str); 6] = [
-        (Metric::Default, "default", "‖Δp‖ + 0.5·θ"),
-        (Metric::Euclidean, "euclidean", "√(‖Δp‖² + θ²)"),
-        (Metric::Scaled, "scaled", "√(‖Δp‖² + (r·θ)²), r the radius of the robot about its origin"),
-        (Metric::Manhattan, "manhattan", "|Δx| + |Δy| + |Δz| + θ"),
+    pub const ALL: [(MetricName, &'static str, &'static str); 6] = [
+        (MetricName::Default, "default", "‖Δp‖ + 0.5·θ"),
+        (MetricName::Euclidean, "euclidean", "√(‖Δp‖² + θ²)"),
+        (MetricName::Scaled, "scaled", "√(‖Δp‖² + (r·θ)²), r the radius of the robot about its origin"),
+        (MetricName::Manhattan, "manhattan", "|Δx| + |Δy| + |Δz| + θ"),
         (
-            Metric::MaxDisplacement,
+            MetricName::MaxDisplacement,
             "max-displacement",
             "how far the point of the robot moves that moves farthest",
         ),
         (
-            Metric::SweptVolume,
+            MetricName::SweptVolume,
             "swept-volume",
             "about how much volume the robot sweeps, m³; slow for robots of many triangles",
         ),
@@ -120,13 +120,13 @@ impl Metric {
     }
 }
 
-impl fmt::Display for Metric {
+impl fmt::Display for MetricName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
     }
 }
 
-impl FromStr for Metric {
+impl FromStr for MetricName {
     type Err = Error;
     fn from_str(name: &str) -> Result<Self, Error> {
         let found = Self::ALL.iter().find(|(_, n, _)| *n == name).map(|(metric, ..)| *metric);
@@ -241,7 +241,7 @@ impl Default for Request {
         Self {
             planner: "rrt-connect".to_owned(),
             settings: BTreeMap::new(),
-            metric: Metric::Default,
+            metric: MetricName::Default,
             motion: MotionValidator::Certified,
             budget: Budget::default(),
             seed: 1,
@@ -275,7 +275,7 @@ impl Request {
 
     /// Sets the metric.
     #[must_use]
-    pub fn metric(self, metric: Metric) -> Self {
+    pub fn metric(self, metric: MetricName) -> Self {
         Self { metric, ..self }
     }
 
@@ -368,7 +368,7 @@ mod tests {
     #[test]
     fn requests_are_read_back_and_checked() {
         let request =
-            Request::new("prm").metric(Metric::MaxDisplacement).motion("discrete:2%".parse().unwrap());
+            Request::new("prm").metric(MetricName::MaxDisplacement).motion("discrete:2%".parse().unwrap());
         let text = serde_json::to_string(&request).unwrap();
         assert_eq!(serde_json::from_str::<Request>(&text).unwrap(), request);
         assert_eq!(serde_json::from_str::<Request>("{}").unwrap(), Request::default());

@@ -1,6 +1,6 @@
 //! Planners that build roadmaps, with the feature `roadmaps`. Without it there are none.
 
-use crate::{Error, Metric, Request, RobotKind};
+use crate::{Error, MetricName, Request, RobotKind};
 use mp_cspace::erased::AnyIndex;
 use mp_cspace::{
     AnyProblem, BuildError, Planner, Workers,
@@ -39,7 +39,7 @@ impl<'r> RoadmapFile<'r> {
     ///
     /// # Errors
     /// When roadmaps of such robots cannot be kept.
-    pub(crate) fn new<K: RobotKind>(kind: &K, path: &'r Path, metric: Metric) -> Result<Self, Error> {
+    pub(crate) fn new<K: RobotKind>(kind: &K, path: &'r Path, metric: MetricName) -> Result<Self, Error> {
         let Some(fingerprint) = kind.fingerprint(metric) else {
             let help = "leave the file of the roadmap out";
             return Err(Error::new("roadmaps are kept of rigid bodies only").help(help));

@@ -11,7 +11,7 @@ pub use rigid::{RigidScene, RigidSpace};
 
 use crate::numbers::plain;
 use crate::roadmaps::RoadmapState;
-use crate::{Error, Metric};
+use crate::{Error, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
     DefaultNn, Factored, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _, StateVector,
@@ -225,7 +225,7 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// When the robot does not support the metric.
-    fn measured(&self, metric: Metric) -> Result<Measured<'_, Self::State>, Error>;
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_, Self::State>, Error>;
 
     /// What touches what at a configuration.
     fn touching(&self, q: &Self::State) -> Vec<Touch>;
@@ -309,7 +309,7 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     }
     /// A hash of everything that a roadmap depends on: scene, robot and metric. `None` if roadmaps of such robots cannot
     /// be saved.
-    fn fingerprint(&self, _metric: Metric) -> Option<u64> {
+    fn fingerprint(&self, _metric: MetricName) -> Option<u64> {
         None
     }
 }
@@ -352,7 +352,7 @@ where
 }
 
 /// An error for a metric that a robot does not support.
-pub(crate) fn no_metric(metric: Metric, robot: &str, has: &[Metric]) -> Error {
+pub(crate) fn no_metric(metric: MetricName, robot: &str, has: &[MetricName]) -> Error {
     let names: Vec<_> = has.iter().map(|m| m.name()).collect();
     Error::new(format!("{robot} cannot be measured by the metric `{metric}`"))
         .help(format!("take one of: {}", names.join(", ")))

@@ -4,7 +4,7 @@ use mp_cspace::{
     Clearance, JointRange, Joints, KnownFree, MotionCheck, MotionClearance, MotionValidity, Validity,
 };
 use mp_plan::{
-    Body, BodyShape, Column, Error, Measured, Metric, PathRows, Queries, Request, RobotKind, Scene, Touch,
+    Body, BodyShape, Column, Error, Measured, MetricName, PathRows, Queries, Request, RobotKind, Scene, Touch,
 };
 use nalgebra::{DVector, Isometry3, Point2, Translation3, UnitQuaternion, Vector2, Vector3};
 
@@ -113,7 +113,7 @@ impl RobotKind for Crane {
     fn tolerance(&self) -> f64 {
         TOLERANCE
     }
-    fn measured(&self, _: Metric) -> Result<Measured<'_, Configuration>, Error> {
+    fn measured(&self, _: MetricName) -> Result<Measured<'_, Configuration>, Error> {
         Ok(Measured::new(&self.space))
     }
     fn touching(&self, q: &Configuration) -> Vec<Touch> {

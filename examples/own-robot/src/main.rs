@@ -1,6 +1,6 @@
 //! A drawbridge of two leaves, a space and a check of its own: both must open for a mast, and neither may hit the other.
 
-use mp_cspace::{Discrete, FineDiscrete, Iterations, Metric, Outcome, Planner, Resolution, Rng, Space, Straight};
+use mp_cspace::{Discrete, FineDiscrete, Iterations, Outcome, Planner, Resolution, Rng, Space, Straight};
 use mp_tree::{Problem, Rrt, Tuning};
 
 /// The angles of the leaves, radians from lying flat.
@@ -16,14 +16,11 @@ struct Bridge;
 /// Upright, radians.
 const UP: f64 = 1.5;
 
-impl Metric<Leaves> for Bridge {
+impl Space for Bridge {
+    type State = Leaves;
     fn distance(&self, a: &Leaves, b: &Leaves) -> f64 {
         (a.left - b.left).abs().max((a.right - b.right).abs())
     }
-}
-
-impl Space for Bridge {
-    type State = Leaves;
     fn dim(&self) -> usize {
         2
     }

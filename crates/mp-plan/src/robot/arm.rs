@@ -3,7 +3,7 @@
 use super::{
     Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, hints_and_gradient, no_metric,
 };
-use crate::{Error, Metric, brief};
+use crate::{Error, MetricName, brief};
 use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
 use mp_geom::TriMesh;
 use mp_io::{PlacedBody, RobotPart, RobotProblem};
@@ -215,14 +215,18 @@ impl RobotKind for ArmScene {
     ) -> ObstacleKnowledge<'c, Configuration> {
         hints_and_gradient(counted)
     }
-    fn measured(&self, metric: Metric) -> Result<Measured<'_, Configuration>, Error> {
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_, Configuration>, Error> {
         match metric {
             // The default metric of the space is the Euclidean metric.
-            Metric::Default | Metric::Euclidean => Ok(Measured::compiled(&self.space)),
-            Metric::Manhattan => {
+            MetricName::Default | MetricName::Euclidean => Ok(Measured::compiled(&self.space)),
+            MetricName::Manhattan => {
                 Ok(Measured::by_coordinates(&WithMetric::new(self.space.clone(), Manhattan)))
             }
-            _ => Err(no_metric(metric, "an arm", &[Metric::Default, Metric::Euclidean, Metric::Manhattan])),
+            _ => Err(no_metric(
+                metric,
+                "an arm",
+                &[MetricName::Default, MetricName::Euclidean, MetricName::Manhattan],
+            )),
         }
     }
 

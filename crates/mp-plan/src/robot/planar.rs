@@ -5,7 +5,7 @@ use super::{
     no_metric,
 };
 use crate::roadmaps::RoadmapState;
-use crate::{Error, Metric};
+use crate::{Error, MetricName};
 use mp_cspace::erased::CompiledIndex;
 use mp_cspace::{
     Factored, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
@@ -265,10 +265,10 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     fn obstacles<'c>(&'c self, counted: &dyn Fn() -> Counted<'c, B>) -> ObstacleKnowledge<'c, B::State> {
         hints_and_gradient(counted)
     }
-    fn measured(&self, metric: Metric) -> Result<Measured<'_, B::State>, Error> {
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_, B::State>, Error> {
         match metric {
-            Metric::Default => Ok(Measured::compiled(&self.space)),
-            _ => Err(no_metric(metric, "a robot of the plane", &[Metric::Default])),
+            MetricName::Default => Ok(Measured::compiled(&self.space)),
+            _ => Err(no_metric(metric, "a robot of the plane", &[MetricName::Default])),
         }
     }
 

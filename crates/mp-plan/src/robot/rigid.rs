@@ -6,13 +6,12 @@ use super::{
 };
 use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
-use crate::{Error, Metric};
+use crate::{Error, MetricName};
 use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    DefaultNn, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric as SpaceMetric,
-    ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric,
-    WithMetric,
+    DefaultNn, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, ObstacleKnowledge, Path,
+    ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{RigidProblem, SpaceKind};
@@ -33,13 +32,9 @@ pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateStat
     /// The space of its configurations.
     type Space: Factored + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
     /// The metric of the point that moves farthest.
-    type Displacement: SpaceMetric<Self::Space, Nn: 'static>
-        + TrueMetric<Self::Space>
-        + Clone
-        + Send
-        + 'static;
+    type Displacement: Metric<Self::Space, Nn: 'static> + TrueMetric<Self::Space> + Clone + Send + 'static;
     /// The metric of the swept volume.
-    type Swept: SpaceMetric<Self::Space> + Clone + Send + 'static;
+    type Swept: Metric<Self::Space> + Clone + Send + 'static;
 
     /// The space of configurations with the origin within `bounds`.
     ///
@@ -193,23 +188,23 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
     ) -> ObstacleKnowledge<'c, M::State> {
         ObstacleKnowledge { geometry: Some(AnyGeometry::new(counted())), ..hints_and_gradient(counted) }
     }
-    fn measured(&self, metric: Metric) -> Result<Measured<'_, M::State>, Error> {
+    fn measured(&self, metric: MetricName) -> Result<Measured<'_, M::State>, Error> {
         let space = self.space.clone();
         let robot = &self.problem.robot.mesh;
         Ok(match metric {
-            Metric::Default => Measured::compiled(&space),
-            Metric::Euclidean => Measured::by_coordinates(&WithMetric::new(space, Euclidean)),
-            Metric::Manhattan => Measured::by_coordinates(&WithMetric::new(space, Manhattan)),
-            Metric::Scaled => {
+            MetricName::Default => Measured::compiled(&space),
+            MetricName::Euclidean => Measured::by_coordinates(&WithMetric::new(space, Euclidean)),
+            MetricName::Manhattan => Measured::by_coordinates(&WithMetric::new(space, Manhattan)),
+            MetricName::Scaled => {
                 let metric = M::scaled(&space, self.radius)?;
                 Measured::by_coordinates(&WithMetric::new(space, metric))
             }
-            Metric::MaxDisplacement => {
+            MetricName::MaxDisplacement => {
                 let space = WithMetric::new(space, M::displacement(robot)?);
                 Measured { index: AnyIndex::by_metric(&space), space: AnySpace::new(&space) }
             }
             // Not a true metric: the index compares every state.
-            Metric::SweptVolume => {
+            MetricName::SweptVolume => {
                 let space = WithMetric::new(space, M::swept(robot)?);
                 Measured { index: AnyIndex::new(&space, Linear::default()), space: AnySpace::new(&space) }
             }
@@ -336,7 +331,7 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
     fn is_planar(&self) -> bool {
         self.problem.space == SpaceKind::Se2
     }
-    fn fingerprint(&self, metric: Metric) -> Option<u64> {
+    fn fingerprint(&self, metric: MetricName) -> Option<u64> {
         let problem = &self.problem;
         let bounds = problem.position_bounds();
         let mut numbers: Vec<f64> = [bounds.min, bounds.max].iter().flat_map(|p| [p.x, p.y, p.z]).collect();
