@@ -31,7 +31,7 @@ pub(crate) struct MovingObstacle {
 /// if the robot touches neither the obstacles that stand still nor the surface of a moving one. A robot that is inside a
 /// moving body from the beginning, even a point, is not in contact with it. Motion bounds are for the robot and the
 /// fastest obstacle together, so [`Certified`](mp_cspace::Certified) misses no obstacle, however thin.
-/// [`ForwardInTime`](mp_cspace::space_time::Forward) around it keeps time running forward.
+/// [`ForwardInTime`](mp_cspace::space_time::ForwardInTime) around it keeps time running forward.
 #[derive(Clone, Debug)]
 pub struct AmongMoving<P: Placement> {
     body: RigidBody<P>,
