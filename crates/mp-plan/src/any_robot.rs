@@ -6,10 +6,10 @@ use crate::path::state;
 use crate::plan::plan;
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::AnySceneRoadmap;
-use crate::sweep::sweep;
+use crate::sweep::{sweep, track};
 use crate::{
     Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Sweep,
-    Verdict,
+    Track, Verdict,
 };
 use mp_cspace::{Rng, Space, Validity};
 use mp_geom::Aabb;
@@ -43,6 +43,7 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn bodies(&self) -> Vec<Body>;
     fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error>;
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
+    fn track(&self, path: &PathRows) -> Result<Track, Error>;
     fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
     fn is_planar(&self) -> bool;
     fn picture_bounds(&self) -> Option<Aabb>;
@@ -109,6 +110,9 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
         sweep(self, path)
+    }
+    fn track(&self, path: &PathRows) -> Result<Track, Error> {
+        track(self, path)
     }
     fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
         RobotKind::export(self, folder)

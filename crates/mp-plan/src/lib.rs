@@ -106,7 +106,7 @@ pub use scene::Scene;
 #[cfg(feature = "roadmaps")]
 pub use scene_roadmap::SceneRoadmap;
 pub use search::{Search, search};
-pub use sweep::Sweep;
+pub use sweep::{Sweep, Track};
 pub use watch::{Control, SearchEvent, Stage, Watch};
 
 pub use mp_cspace::{

@@ -6,7 +6,7 @@ use crate::robot::{PlanarScene, RigidScene};
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
     Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Sweep,
-    Verdict,
+    Track, Verdict,
 };
 use mp_geom::Aabb;
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SpaceKind};
@@ -241,6 +241,14 @@ impl Scene {
     /// When the path is of another robot.
     pub fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error> {
         self.robot.sweep(path)
+    }
+
+    /// A path sampled for an animation, with the clearance along it.
+    ///
+    /// # Errors
+    /// When the path is of another robot, or has no configurations.
+    pub fn track(&self, path: &PathRows) -> Result<Track, Error> {
+        self.robot.track(path)
     }
 
     /// Writes the problem to `folder` as one JSON file and two OFF files for other planners. Returns the JSON file.

@@ -1,8 +1,8 @@
-//! Poses of a robot along a path, for pictures.
+//! Poses of a robot along a path, for pictures and animations.
 
 use crate::path::states;
 use crate::{Error, PathRows, RobotKind};
-use mp_cspace::{MotionClearance, Space};
+use mp_cspace::{Clearance, MotionClearance, Space};
 use mp_geom::evenly;
 use nalgebra::{Isometry3, Point3};
 
@@ -35,4 +35,47 @@ pub(crate) fn sweep<K: RobotKind>(kind: &K, path: Option<&PathRows>) -> Result<S
         between: places.into_iter().map(|(edge, t)| kind.poses(&at(edge, t))).collect(),
         trace: trace.map(|(edge, t)| kind.traced(&at(edge, t))).collect(),
     })
+}
+
+/// A path sampled for an animation: its own configurations, and as many between them as a smooth film needs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Track {
+    /// The configurations.
+    pub rows: Vec<Vec<f64>>,
+    /// The poses of the robot's bodies at each.
+    pub poses: Vec<Vec<Isometry3<f64>>>,
+    /// The drawn point of the robot at each.
+    pub trace: Vec<Point3<f64>>,
+    /// A lower bound (m) on the clearance at each; zero in collision.
+    pub clearance: Vec<f64>,
+}
+
+/// No more configurations than this are put between those of a path.
+const MAX_BETWEEN: f64 = 2000.0;
+
+/// Configurations along a path, neighbours so near that poses between them may be interpolated linearly.
+pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Error> {
+    let states = states(kind, path)?;
+    let mut checker = kind.checker().clone();
+    let lengths: Vec<f64> = states.windows(2).map(|w| checker.motion_bound(&w[0], &w[1])).collect();
+    let total: f64 = lengths.iter().sum();
+    let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
+    let mut track = Track::default();
+    let mut add = |q: &K::State| {
+        track.rows.push(kind.row(q));
+        track.poses.push(kind.poses(q));
+        track.trace.push(kind.traced(q));
+        track.clearance.push(checker.clearance(q, f64::INFINITY).max(0.0));
+    };
+    for (edge, length) in lengths.iter().enumerate() {
+        let parts = (length / spacing).ceil().clamp(1.0, MAX_BETWEEN) as u32;
+        for k in 0..parts {
+            let t = f64::from(k) / f64::from(parts);
+            add(&kind.space().interpolate(&states[edge], &states[edge + 1], t));
+        }
+    }
+    if let Some(last) = states.last() {
+        add(last);
+    }
+    Ok(track)
 }

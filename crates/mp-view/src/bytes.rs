@@ -1,0 +1,349 @@
+//! Scene files as bytes: docs/formats/viewer.md.
+
+use crate::arrays::{ArrayRef, Entry, append, extract};
+use crate::{
+    Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree, ViewError,
+};
+use mp_plan::Column;
+use serde::{Deserialize, Serialize};
+
+/// The version written and read.
+const VERSION: u32 = 1;
+
+/// The first four bytes.
+const MAGIC: &[u8; 4] = b"MPV1";
+
+#[derive(Serialize, Deserialize)]
+struct Head {
+    version: u32,
+    name: String,
+    space: String,
+    planar: bool,
+    columns: Vec<Column>,
+    limits: Vec<Option<[f64; 2]>>,
+    bounds: [[f64; 3]; 2],
+    meshes: Vec<MeshHead>,
+    areas: Vec<AreaHead>,
+    lines: Vec<LineHead>,
+    bodies: Vec<BodyHead>,
+    start: ConfigurationHead,
+    goals: Vec<ConfigurationHead>,
+    paths: Vec<PathHead>,
+    trees: Vec<TreeHead>,
+    roadmap: Option<RoadmapHead>,
+    report: Option<serde_json::Value>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct MeshHead {
+    positions: ArrayRef,
+    triangles: ArrayRef,
+}
+
+#[derive(Serialize, Deserialize)]
+struct AreaHead {
+    rings: Vec<ArrayRef>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct LineHead {
+    points: ArrayRef,
+}
+
+#[derive(Serialize, Deserialize)]
+struct BodyHead {
+    name: String,
+    role: RoleHead,
+    #[serde(flatten)]
+    shape: ShapeHead,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pose: Option<[f64; 7]>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum RoleHead {
+    Robot,
+    Obstacle,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum ShapeHead {
+    Mesh(usize),
+    Area(usize),
+    Lines(Vec<usize>),
+}
+
+#[derive(Serialize, Deserialize)]
+struct ConfigurationHead {
+    row: Vec<f64>,
+    poses: Vec<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct PathHead {
+    name: String,
+    verified: bool,
+    length: Option<f64>,
+    rows: ArrayRef,
+    poses: ArrayRef,
+    trace: ArrayRef,
+    clearance: Option<ArrayRef>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct TreeHead {
+    name: String,
+    nodes: ArrayRef,
+    parents: ArrayRef,
+}
+
+#[derive(Serialize, Deserialize)]
+struct RoadmapHead {
+    nodes: ArrayRef,
+    edges: ArrayRef,
+    component: ArrayRef,
+    kind: ArrayRef,
+}
+
+impl SceneFile {
+    /// The bytes of the file. The same scene gives the same bytes.
+    ///
+    /// # Panics
+    /// Never: numbers that JSON cannot hold are written as null.
+    #[must_use]
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut data = Vec::new();
+        let head = self.head(&mut data);
+        let mut json = serde_json::to_vec(&head).unwrap_or_default();
+        json.resize(json.len().next_multiple_of(8), b' ');
+        let mut bytes = Vec::with_capacity(8 + json.len() + data.len());
+        bytes.extend(MAGIC);
+        bytes.extend((json.len() as u32).to_le_bytes());
+        bytes.extend(json);
+        bytes.extend(data);
+        bytes
+    }
+
+    fn head(&self, data: &mut Vec<u8>) -> Head {
+        let configuration =
+            |q: &Configuration| ConfigurationHead { row: q.row.clone(), poses: q.poses.clone() };
+        let body = |body: &Body| BodyHead {
+            name: body.name.clone(),
+            role: match body.role {
+                Role::Robot => RoleHead::Robot,
+                Role::Obstacle => RoleHead::Obstacle,
+            },
+            shape: match &body.shape {
+                Shape::Mesh(mesh) => ShapeHead::Mesh(*mesh),
+                Shape::Area(area) => ShapeHead::Area(*area),
+                Shape::Lines(lines) => ShapeHead::Lines(lines.clone()),
+            },
+            pose: body.pose,
+        };
+        Head {
+            version: VERSION,
+            name: self.name.clone(),
+            space: self.space.clone(),
+            planar: self.planar,
+            columns: self.columns.clone(),
+            limits: self.limits.clone(),
+            bounds: self.bounds,
+            meshes: (self.meshes.iter())
+                .map(|mesh| MeshHead {
+                    positions: append(data, &mesh.positions),
+                    triangles: append(data, &mesh.triangles),
+                })
+                .collect(),
+            areas: (self.areas.iter())
+                .map(|area| AreaHead { rings: area.rings.iter().map(|ring| append(data, ring)).collect() })
+                .collect(),
+            lines: self.lines.iter().map(|line| LineHead { points: append(data, &line.points) }).collect(),
+            bodies: self.bodies.iter().map(body).collect(),
+            start: configuration(&self.start),
+            goals: self.goals.iter().map(configuration).collect(),
+            paths: (self.paths.iter())
+                .map(|path| PathHead {
+                    name: path.name.clone(),
+                    verified: path.verified,
+                    length: path.length,
+                    rows: append(data, &path.rows),
+                    poses: append(data, &path.poses),
+                    trace: append(data, &path.trace),
+                    clearance: path.clearance.as_ref().map(|clearance| append(data, clearance)),
+                })
+                .collect(),
+            trees: (self.trees.iter())
+                .map(|tree| TreeHead {
+                    name: tree.name.clone(),
+                    nodes: append(data, &tree.nodes),
+                    parents: append(data, &tree.parents),
+                })
+                .collect(),
+            roadmap: self.roadmap.as_ref().map(|map| RoadmapHead {
+                nodes: append(data, &map.nodes),
+                edges: append(data, &map.edges),
+                component: append(data, &map.component),
+                kind: append(data, &map.kind),
+            }),
+            report: self.report.clone(),
+        }
+    }
+
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// When the bytes are no scene file of this version, are cut off, or an array or index does not fit.
+    pub fn parse(bytes: &[u8]) -> Result<Self, ViewError> {
+        let rest = bytes.strip_prefix(MAGIC).ok_or(ViewError::NotAScene)?;
+        let cut_off = |expected| ViewError::CutOff { expected, found: bytes.len() };
+        let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(|| cut_off(8))?;
+        let length = u32::from_le_bytes(*length) as usize;
+        let (json, data) = rest.split_at_checked(length).ok_or_else(|| cut_off(length.saturating_add(8)))?;
+        let bad_head = |e: serde_json::Error| ViewError::Head { reason: e.to_string() };
+        #[derive(Deserialize)]
+        struct Versioned {
+            version: u32,
+        }
+        let Versioned { version } = serde_json::from_slice(json).map_err(bad_head)?;
+        if version != VERSION {
+            return Err(ViewError::Version { found: version, expected: VERSION });
+        }
+        let scene = read(serde_json::from_slice(json).map_err(bad_head)?, data)?;
+        scene.check()?;
+        Ok(scene)
+    }
+
+    /// Checks what the types do not say: numbers of entries, and indices.
+    fn check(&self) -> Result<(), ViewError> {
+        let fits = |holds: bool, what: &str, problem| match holds {
+            true => Ok(()),
+            false => Err(ViewError::Array { what: what.to_owned(), problem }),
+        };
+        const LENGTH: &str = "does not have the number of entries expected";
+        const INDEX: &str = "has an index out of range";
+        let robots = self.bodies.iter().filter(|body| body.role == Role::Robot).count();
+        for mesh in &self.meshes {
+            fits(mesh.positions.len().is_multiple_of(3), "positions", LENGTH)?;
+            fits(mesh.triangles.len().is_multiple_of(3), "triangles", LENGTH)?;
+            let vertices = mesh.positions.len() / 3;
+            fits(mesh.triangles.iter().all(|&v| (v as usize) < vertices), "triangles", INDEX)?;
+        }
+        fits(
+            self.areas.iter().flat_map(|area| &area.rings).all(|ring| ring.len().is_multiple_of(2)),
+            "rings",
+            LENGTH,
+        )?;
+        fits(self.lines.iter().all(|line| line.points.len().is_multiple_of(3)), "points", LENGTH)?;
+        fits(self.limits.len() == self.columns.len(), "limits", LENGTH)?;
+        for body in &self.bodies {
+            let known = match &body.shape {
+                Shape::Mesh(i) => *i < self.meshes.len(),
+                Shape::Area(i) => *i < self.areas.len(),
+                Shape::Lines(lines) => lines.iter().all(|&i| i < self.lines.len()),
+            };
+            fits(known, "bodies", INDEX)?;
+            fits(
+                body.pose.is_some() == (body.role == Role::Obstacle),
+                "bodies",
+                "has obstacles without a pose, or poses of the robot",
+            )?;
+        }
+        for q in self.goals.iter().chain([&self.start]) {
+            fits(q.row.len() == self.columns.len() && q.poses.len() == 7 * robots, "configurations", LENGTH)?;
+        }
+        for path in &self.paths {
+            let count = path.trace.len() / 3;
+            let clearance = path.clearance.as_ref().is_none_or(|clearance| clearance.len() == count);
+            let all = path.trace.len() == 3 * count && path.rows.len() == count * self.columns.len();
+            fits(all && path.poses.len() == 7 * robots * count && clearance, "paths", LENGTH)?;
+        }
+        for tree in &self.trees {
+            let count = tree.parents.len();
+            fits(tree.nodes.len() == 3 * count, "trees", LENGTH)?;
+            fits(tree.parents.iter().all(|&p| (-1..count as i64).contains(&i64::from(p))), "trees", INDEX)?;
+        }
+        if let Some(map) = &self.roadmap {
+            let count = map.nodes.len() / 3;
+            let all = map.nodes.len() == 3 * count && map.component.len() == count && map.kind.len() == count;
+            fits(all && map.edges.len().is_multiple_of(2), "roadmap", LENGTH)?;
+            fits(map.edges.iter().all(|&node| (node as usize) < count), "roadmap", INDEX)?;
+        }
+        Ok(())
+    }
+}
+
+fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
+    fn get<T: Entry>(data: &[u8], array: &ArrayRef, what: &str) -> Result<Vec<T>, ViewError> {
+        extract(data, array, what)
+    }
+    let configuration = |q: ConfigurationHead| Configuration { row: q.row, poses: q.poses };
+    let body = |body: BodyHead| Body {
+        name: body.name,
+        role: match body.role {
+            RoleHead::Robot => Role::Robot,
+            RoleHead::Obstacle => Role::Obstacle,
+        },
+        shape: match body.shape {
+            ShapeHead::Mesh(mesh) => Shape::Mesh(mesh),
+            ShapeHead::Area(area) => Shape::Area(area),
+            ShapeHead::Lines(lines) => Shape::Lines(lines),
+        },
+        pose: body.pose,
+    };
+    let mesh = |mesh: &MeshHead| {
+        Ok(Mesh {
+            positions: get(data, &mesh.positions, "positions")?,
+            triangles: get(data, &mesh.triangles, "triangles")?,
+        })
+    };
+    let area = |area: &AreaHead| {
+        Ok(Area { rings: area.rings.iter().map(|ring| get(data, ring, "rings")).collect::<Result<_, _>>()? })
+    };
+    let path = |path: PathHead| {
+        Ok(PathTrack {
+            name: path.name,
+            verified: path.verified,
+            length: path.length,
+            rows: get(data, &path.rows, "rows")?,
+            poses: get(data, &path.poses, "poses")?,
+            trace: get(data, &path.trace, "trace")?,
+            clearance: path.clearance.map(|clearance| get(data, &clearance, "clearance")).transpose()?,
+        })
+    };
+    let tree = |tree: TreeHead| {
+        Ok(Tree {
+            name: tree.name,
+            nodes: get(data, &tree.nodes, "nodes")?,
+            parents: get(data, &tree.parents, "parents")?,
+        })
+    };
+    let roadmap = |map: RoadmapHead| {
+        Ok(Roadmap {
+            nodes: get(data, &map.nodes, "nodes")?,
+            edges: get(data, &map.edges, "edges")?,
+            component: get(data, &map.component, "component")?,
+            kind: get(data, &map.kind, "kind")?,
+        })
+    };
+    let line = |line: &LineHead| Ok(Polyline { points: get(data, &line.points, "points")? });
+    Ok(SceneFile {
+        name: head.name,
+        space: head.space,
+        planar: head.planar,
+        columns: head.columns,
+        limits: head.limits,
+        bounds: head.bounds,
+        meshes: head.meshes.iter().map(mesh).collect::<Result<_, ViewError>>()?,
+        areas: head.areas.iter().map(area).collect::<Result<_, ViewError>>()?,
+        lines: head.lines.iter().map(line).collect::<Result<_, ViewError>>()?,
+        bodies: head.bodies.into_iter().map(body).collect(),
+        start: configuration(head.start),
+        goals: head.goals.into_iter().map(configuration).collect(),
+        paths: head.paths.into_iter().map(path).collect::<Result<_, ViewError>>()?,
+        trees: head.trees.into_iter().map(tree).collect::<Result<_, ViewError>>()?,
+        roadmap: head.roadmap.map(roadmap).transpose()?,
+        report: head.report,
+    })
+}

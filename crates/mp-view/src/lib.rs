@@ -1,0 +1,27 @@
+//! A scene, its paths, trees and roadmap as one binary file, and as a page for the browser.
+//!
+//! [`SceneFile`] is the model: bodies with their meshes, start and goals, paths sampled finely enough to be animated,
+//! trees, a roadmap, and the report of the run. It is written and read as bytes, in the format of docs/formats/viewer.md.
+//!
+//! ```
+//! use mp_plan::{Request, Scene};
+//! use mp_view::SceneFile;
+//! let scene = Scene::find("easy")?;
+//! let report = scene.plan(&Request::new("rrt-connect").seed(7))?;
+//! let mut file = SceneFile::of(&scene)?;
+//! file.add_report(&scene, &report)?;
+//! let bytes = file.to_bytes();
+//! assert_eq!(SceneFile::parse(&bytes)?, file);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod arrays;
+mod bytes;
+mod error;
+mod model;
+mod of_scene;
+
+pub use error::ViewError;
+pub use model::{
+    Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
+};

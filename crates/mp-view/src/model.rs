@@ -1,0 +1,149 @@
+//! The model of a scene file.
+
+use mp_plan::Column;
+
+/// A scene with what is to be shown of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneFile {
+    /// The name of the scene.
+    pub name: String,
+    /// The configuration space: `SE3`, `SE2`, `R2`, `6 joints`.
+    pub space: String,
+    /// Whether the scene is best seen from above.
+    pub planar: bool,
+    /// The meaning of each number of a configuration.
+    pub columns: Vec<Column>,
+    /// The least and the largest value of each number; `None` for an angle without limits.
+    pub limits: Vec<Option<[f64; 2]>>,
+    /// The least and the largest coordinates (m) of what is drawn without a path: obstacles, start and goals.
+    pub bounds: [[f64; 3]; 2],
+    /// Surfaces, each in the frame of its bodies.
+    pub meshes: Vec<Mesh>,
+    /// Areas of the plane.
+    pub areas: Vec<Area>,
+    /// Polylines, such as walls of the plane.
+    pub lines: Vec<Polyline>,
+    /// The bodies of the robot first, then the obstacles.
+    pub bodies: Vec<Body>,
+    /// The start.
+    pub start: Configuration,
+    /// The goals.
+    pub goals: Vec<Configuration>,
+    /// Paths, to be drawn and animated.
+    pub paths: Vec<PathTrack>,
+    /// Search trees.
+    pub trees: Vec<Tree>,
+    /// A roadmap.
+    pub roadmap: Option<Roadmap>,
+    /// The report of a run, as `mp plan --json` prints it.
+    pub report: Option<serde_json::Value>,
+}
+
+/// A triangle mesh in the frame of its bodies, metres.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// x y z of each vertex.
+    pub positions: Vec<f32>,
+    /// The three vertices of each triangle.
+    pub triangles: Vec<u32>,
+}
+
+/// An area of the plane z = 0.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Area {
+    /// x y (m) of each corner: the outer ring, then the holes. The last corner is joined to the first.
+    pub rings: Vec<Vec<f32>>,
+}
+
+/// A polyline.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Polyline {
+    /// x y z (m) of each point.
+    pub points: Vec<f32>,
+}
+
+/// Whether a body moves with the configuration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Role {
+    /// It is a part of the robot.
+    Robot,
+    /// It stands still.
+    Obstacle,
+}
+
+/// What a body looks like.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// One of the meshes.
+    Mesh(usize),
+    /// One of the areas.
+    Area(usize),
+    /// Some of the polylines.
+    Lines(Vec<usize>),
+}
+
+/// A body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its name in messages.
+    pub name: String,
+    /// Whether it is a part of the robot.
+    pub role: Role,
+    /// What it looks like, in its own frame.
+    pub shape: Shape,
+    /// Where an obstacle is: x y z (m), and the unit quaternion x y z w. `None` for the bodies of the robot, whose poses
+    /// come with each configuration.
+    pub pose: Option<[f64; 7]>,
+}
+
+/// A configuration, with the poses of the robot's bodies.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Configuration {
+    /// Its numbers, as the columns say.
+    pub row: Vec<f64>,
+    /// A pose for each body of the robot: x y z (m), and the unit quaternion x y z w.
+    pub poses: Vec<f64>,
+}
+
+/// A path, sampled finely enough that poses between neighbours may be interpolated linearly.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PathTrack {
+    /// Its name.
+    pub name: String,
+    /// Whether the path passed the verifier.
+    pub verified: bool,
+    /// Its length in the metric of the space, where it is known.
+    pub length: Option<f64>,
+    /// The numbers of each configuration, one after the other.
+    pub rows: Vec<f64>,
+    /// A pose for each body of the robot at each configuration, seven numbers each.
+    pub poses: Vec<f32>,
+    /// x y z (m) of the point whose curve is drawn, at each configuration.
+    pub trace: Vec<f32>,
+    /// A lower bound on the clearance (m) at each configuration, where it is known.
+    pub clearance: Option<Vec<f32>>,
+}
+
+/// A search tree, drawn by one point of the robot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tree {
+    /// Its name.
+    pub name: String,
+    /// x y z (m) of each node.
+    pub nodes: Vec<f32>,
+    /// The parent of each node; −1 for a root.
+    pub parents: Vec<i32>,
+}
+
+/// A roadmap, drawn by one point of the robot.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Roadmap {
+    /// x y z (m) of each milestone.
+    pub nodes: Vec<f32>,
+    /// The two milestones of each edge.
+    pub edges: Vec<u32>,
+    /// The connected component of each milestone.
+    pub component: Vec<u32>,
+    /// What each milestone is: 0 sampled, 1 guard, 2 connection, 3 other.
+    pub kind: Vec<u8>,
+}

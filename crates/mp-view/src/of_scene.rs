@@ -1,0 +1,162 @@
+//! Scene files made of scenes, paths and reports of `mp-plan`.
+
+use crate::{Area, Body, Configuration, Mesh, PathTrack, Polyline, Role, SceneFile, Shape};
+use mp_plan::{BodyShape, Error, PathRows, Report, Scene};
+use nalgebra::{Isometry3, Point3};
+
+impl SceneFile {
+    /// The bodies of `scene`, its start and its goals.
+    ///
+    /// # Errors
+    /// Never for the scenes of `mp-plan`; a kind of robot of your own may refuse its own start or goals.
+    pub fn of(scene: &Scene) -> Result<Self, Error> {
+        let mut file = Self {
+            name: scene.name().to_owned(),
+            space: scene.space(),
+            planar: scene.is_planar(),
+            columns: scene.columns(),
+            limits: scene.limits(),
+            bounds: [[0.0; 3]; 2],
+            meshes: Vec::new(),
+            areas: Vec::new(),
+            lines: Vec::new(),
+            bodies: Vec::new(),
+            start: configuration(scene, scene.start())?,
+            goals: scene
+                .goals()
+                .into_iter()
+                .map(|row| configuration(scene, row))
+                .collect::<Result<_, _>>()?,
+            paths: Vec::new(),
+            trees: Vec::new(),
+            roadmap: None,
+            report: None,
+        };
+        let mut bounds = Bounds::default();
+        let mut ends = Vec::new();
+        for row in scene.goals().into_iter().chain([scene.start()]) {
+            ends.push(scene.poses(&row)?);
+        }
+        let mut robots = 0;
+        for body in scene.bodies() {
+            let own = corners(&body.shape);
+            match &body.pose {
+                Some(pose) => bounds.add(own.iter().map(|p| pose * p)),
+                None => {
+                    let poses = ends.iter().filter_map(|poses| poses.get(robots));
+                    poses.for_each(|pose| bounds.add(own.iter().map(|p| pose * p)));
+                    robots += 1;
+                }
+            }
+            let (name, pose) = (body.name, body.pose.as_ref().map(seven));
+            let role = if pose.is_some() { Role::Obstacle } else { Role::Robot };
+            let shape = file.add_shape(&body.shape);
+            file.bodies.push(Body { name, role, shape, pose });
+        }
+        file.bounds = bounds.get();
+        Ok(file)
+    }
+
+    /// Adds a path of the scene, called `name`. The scene's verifier says whether it is verified.
+    ///
+    /// # Errors
+    /// When the path is of another robot.
+    pub fn add_path(&mut self, scene: &Scene, name: &str, path: &PathRows) -> Result<(), Error> {
+        let verdict = scene.check(path)?;
+        let track = scene.track(path)?;
+        self.paths.push(PathTrack {
+            name: name.to_owned(),
+            verified: verdict.free,
+            length: Some(verdict.path_length),
+            rows: track.rows.into_iter().flatten().collect(),
+            poses: track.poses.iter().flatten().flat_map(seven).map(|x| x as f32).collect(),
+            trace: track.trace.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect(),
+            clearance: Some(track.clearance.into_iter().map(|c| c as f32).collect()),
+        });
+        Ok(())
+    }
+
+    /// Adds the report of a run, and its path if it has one.
+    ///
+    /// # Errors
+    /// When the report is of another scene.
+    pub fn add_report(&mut self, scene: &Scene, report: &Report) -> Result<(), Error> {
+        if let Some(rows) = report.path.clone() {
+            let path = PathRows { format: scene.path_format(), columns: report.columns.clone(), rows };
+            self.add_path(scene, &report.planner, &path)?;
+        }
+        self.report = serde_json::to_value(report).ok();
+        Ok(())
+    }
+
+    fn add_shape(&mut self, shape: &BodyShape) -> Shape {
+        match shape {
+            BodyShape::Mesh(mesh) => {
+                self.meshes.push(Mesh {
+                    positions: mesh
+                        .vertices()
+                        .iter()
+                        .flat_map(|p| [p.x as f32, p.y as f32, p.z as f32])
+                        .collect(),
+                    triangles: mesh.triangles().iter().flatten().copied().collect(),
+                });
+                Shape::Mesh(self.meshes.len() - 1)
+            }
+            BodyShape::Area(rings) => {
+                let ring = |ring: &Vec<nalgebra::Point2<f64>>| {
+                    ring.iter().flat_map(|p| [p.x as f32, p.y as f32]).collect()
+                };
+                self.areas.push(Area { rings: rings.iter().map(ring).collect() });
+                Shape::Area(self.areas.len() - 1)
+            }
+            BodyShape::Lines(lines) => {
+                let first = self.lines.len();
+                let line = |line: &Vec<nalgebra::Point2<f64>>| Polyline {
+                    points: line.iter().flat_map(|p| [p.x as f32, p.y as f32, 0.0]).collect(),
+                };
+                self.lines.extend(lines.iter().map(line));
+                Shape::Lines((first..self.lines.len()).collect())
+            }
+        }
+    }
+}
+
+/// A configuration with the poses of the robot's bodies.
+fn configuration(scene: &Scene, row: Vec<f64>) -> Result<Configuration, Error> {
+    let poses = scene.poses(&row)?.iter().flat_map(seven).collect();
+    Ok(Configuration { row, poses })
+}
+
+/// x y z, and the unit quaternion x y z w.
+fn seven(pose: &Isometry3<f64>) -> [f64; 7] {
+    let (t, q) = (pose.translation.vector, pose.rotation.coords);
+    [t.x, t.y, t.z, q.x, q.y, q.z, q.w]
+}
+
+/// The points of a shape that bound it, in its own frame.
+fn corners(shape: &BodyShape) -> Vec<Point3<f64>> {
+    match shape {
+        BodyShape::Mesh(mesh) => mesh.vertices().to_vec(),
+        BodyShape::Area(lines) | BodyShape::Lines(lines) => {
+            lines.iter().flatten().map(|p| Point3::new(p.x, p.y, 0.0)).collect()
+        }
+    }
+}
+
+/// The box around points.
+#[derive(Default)]
+struct Bounds(Option<[Point3<f64>; 2]>);
+
+impl Bounds {
+    fn add(&mut self, points: impl Iterator<Item = Point3<f64>>) {
+        for p in points {
+            let [low, high] = self.0.unwrap_or([p, p]);
+            self.0 = Some([low.inf(&p), high.sup(&p)]);
+        }
+    }
+
+    /// Its least and greatest corner; a unit box where there is no point.
+    fn get(self) -> [[f64; 3]; 2] {
+        self.0.map_or([[-0.5; 3], [0.5; 3]], |[low, high]| [low.into(), high.into()])
+    }
+}
