@@ -15,6 +15,7 @@ import { segmentsOf } from "mp/shapes.js";
 /** @typedef {import("mp/renderer.js").Picture} Picture */
 /** @typedef {import("mp/renderer.js").Item} Item */
 /** @typedef {import("mp/renderer.js").Mode} Mode */
+/** @typedef {import("mp/renderer.js").Role} Role */
 /** @typedef {import("mp/buffers.js").LineSet} LineSet */
 /** @typedef {import("mp/buffers.js").PointSet} PointSet */
 /** @typedef {"all" | "step" | "auto"} Animation the three ways to show a path */
@@ -26,6 +27,9 @@ import { segmentsOf } from "mp/shapes.js";
 
 /** The share of light that transparent things keep. */
 const ALPHA = 0.3;
+
+/** What is seen where two things are at the same place. @type {Record<Role, number>} */
+const LAYERS = { obstacle: 0, goal: 1, start: 2, copy: 3, robot: 4 };
 
 /** The configurations of a path that are shown as copies: evenly spaced, first and last always.
  * @param {number} count @param {number} copies @returns {number[]} */
@@ -130,28 +134,29 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0 });
+      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
     }
     return items.sort((a, b) => a.shape - b.shape);
   }
 
   /** The robot in one configuration. @param {Settings} s @param {Numbers} poses @param {number} at @param {Color} color
-   * @param {number} layer @param {Mode} [given] @returns {Item[]} */
-  robot(s, poses, at, color, layer, given) {
+   * @param {Role} role @param {number} index @param {Mode} [given] @returns {Item[]} */
+  robot(s, poses, at, color, role, index, given) {
     /** @type {Item[]} */
     const items = [];
     for (let b = 0; b < this.scene.robot; b++) {
       if (!s.bodies[b].visible) continue;
       const mode = given ?? this.modeOf(s, b);
-      items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color, alpha: mode === "transparent" ? ALPHA : 1, mode, cut: false, layer });
+      const alpha = mode === "transparent" ? ALPHA : 1;
+      items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color, alpha, mode, cut: false, layer: LAYERS[role], body: b, role, index });
     }
     return items;
   }
 
   /** Start and goals. @param {Settings} s @param {Palette} colors @returns {Item[]} */
   ends(s, colors) {
-    const start = s.start ? this.robot(s, this.scene.start.poses, 0, colors.start, 2) : [];
-    const goals = s.goals ? this.scene.goals.flatMap((g) => this.robot(s, g.poses, 0, colors.goal, 1)) : [];
+    const start = s.start ? this.robot(s, this.scene.start.poses, 0, colors.start, "start", 0) : [];
+    const goals = s.goals ? this.scene.goals.flatMap((g, i) => this.robot(s, g.poses, 0, colors.goal, "goal", i)) : [];
     return [...goals, ...start];
   }
 
@@ -159,11 +164,11 @@ export class PictureMaker {
   moving(s, colors) {
     const path = this.scene.paths[s.path];
     if (!path?.count) return [];
-    const now = this.robot(s, posesAt(path, this.scene.robot, s.time, this.robotPoses), 0, colors.robot, 4);
+    const now = this.robot(s, posesAt(path, this.scene.robot, s.time, this.robotPoses), 0, colors.robot, "robot", Math.round(s.time));
     if (s.animation !== "all") return now;
     // Start and goal stand at the ends already.
     const copies = copyIndices(path.count, s.copies).filter((i) => !(i === 0 && s.start) && !(i === path.count - 1 && s.goals));
-    const poses = copies.flatMap((i) => this.robot(s, path.poses, 7 * this.scene.robot * i, colors.robot, 3, s.copyMode));
+    const poses = copies.flatMap((i) => this.robot(s, path.poses, 7 * this.scene.robot * i, colors.robot, "copy", i, s.copyMode));
     return [...poses.sort((a, b) => a.shape - b.shape), ...now];
   }
 

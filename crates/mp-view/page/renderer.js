@@ -12,8 +12,10 @@ import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGM
 /** @typedef {import("mp/math.js").Vec3} Vec3 */
 /** @typedef {import("mp/shapes.js").Shape} Shape */
 /** @typedef {"solid" | "transparent" | "wire"} Mode */
-/** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number}} Item
- *  A copy of a shape. Of surfaces at the same place, the one with the highest layer is seen. */
+/** @typedef {"obstacle" | "robot" | "copy" | "start" | "goal"} Role */
+/** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number,
+ *  body: number, role: Role, index: number}} Item
+ *  A copy of a shape; `index` is the number of the goal or of the configuration. Of surfaces at the same place, the one with the highest layer is seen. */
 /** @typedef {{set: LineSet, count: number, width: number, color: Color | null}} Lines */
 /** @typedef {{set: PointSet, count: number, color: Color | null}} Points */
 /** @typedef {{items: Item[], lines: Lines[], points: Points[], plane: [number, number, number, number] | null, edges: boolean,
@@ -152,7 +154,7 @@ export class Renderer {
     if (!count) return;
     gl.uniform1f(this.surfaceAt.shaded, 1);
     gl.enable(gl.POLYGON_OFFSET_FILL);
-    gl.polygonOffset(1, 8 - 2 * batch.item.layer);
+    gl.polygonOffset(1, 10 - 2 * batch.item.layer);
     // Of a transparent closed body only the outside is drawn, so that each of its faces counts once.
     if (batch.item.mode === "transparent" && buffers.shape.closed && !batch.item.cut) gl.enable(gl.CULL_FACE);
     gl.bindVertexArray(vao);
