@@ -1,0 +1,205 @@
+// Buffers on the graphics card: shapes, and lines and points that can grow.
+
+/** @typedef {import("mp/shapes.js").Shape} Shape */
+/** @typedef {[number, number, number, number]} Rgba between 0 and 1 */
+
+/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {WebGLProgram} */
+export function program(gl, vertex, fragment) {
+  const made = gl.createProgram();
+  for (const [kind, source] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
+    const shader = /** @type {WebGLShader} */ (gl.createShader(kind));
+    gl.shaderSource(shader, source);
+    gl.compileShader(shader);
+    gl.attachShader(/** @type {WebGLProgram} */ (made), shader);
+  }
+  const linked = /** @type {WebGLProgram} */ (made);
+  gl.linkProgram(linked);
+  if (!gl.getProgramParameter(linked, gl.LINK_STATUS) && !gl.isContextLost()) {
+    throw new Error(`The graphics card refused a program of this page: ${gl.getProgramInfoLog(linked)}`);
+  }
+  return linked;
+}
+
+/** The places of all uniforms of a program. @param {WebGL2RenderingContext} gl @param {WebGLProgram} of
+ * @returns {Record<string, WebGLUniformLocation | null>} */
+export function uniforms(gl, of) {
+  /** @type {Record<string, WebGLUniformLocation | null>} */
+  const out = {};
+  const count = gl.getProgramParameter(of, gl.ACTIVE_UNIFORMS) ?? 0;
+  for (let i = 0; i < count; i++) {
+    const name = gl.getActiveUniform(of, i)?.name ?? "";
+    out[name] = gl.getUniformLocation(of, name);
+  }
+  return out;
+}
+
+/** A buffer that keeps what it has when it grows. */
+class GrowingBuffer {
+  /** @param {WebGL2RenderingContext} gl */
+  constructor(gl) {
+    this.gl = gl;
+    this.buffer = gl.createBuffer();
+    this.size = 0;
+    this.room = 0;
+  }
+
+  /** @param {ArrayBufferView} bytes */
+  append(bytes) {
+    const gl = this.gl;
+    if (this.size + bytes.byteLength > this.room) this.grow(this.size + bytes.byteLength);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
+    gl.bufferSubData(gl.ARRAY_BUFFER, this.size, bytes);
+    this.size += bytes.byteLength;
+  }
+
+  /** @param {number} needed bytes */
+  grow(needed) {
+    const gl = this.gl;
+    const old = this.buffer;
+    this.room = this.size ? Math.max(needed, 2 * this.room) : needed;
+    this.buffer = gl.createBuffer();
+    gl.bindBuffer(gl.COPY_WRITE_BUFFER, this.buffer);
+    gl.bufferData(gl.COPY_WRITE_BUFFER, this.room, gl.DYNAMIC_DRAW);
+    gl.bindBuffer(gl.COPY_READ_BUFFER, old);
+    if (this.size) gl.copyBufferSubData(gl.COPY_READ_BUFFER, gl.COPY_WRITE_BUFFER, 0, 0, this.size);
+    gl.bindBuffer(gl.COPY_READ_BUFFER, null);
+    gl.deleteBuffer(old);
+  }
+}
+
+/** Rows of some coordinates and a colour of four bytes. */
+class ColoredRows {
+  /** @param {WebGL2RenderingContext} gl @param {number} floats coordinates of a row */
+  constructor(gl, floats) {
+    this.gl = gl;
+    this.floats = floats;
+    this.stride = 4 * floats + 4;
+    this.rows = new GrowingBuffer(gl);
+    this.vao = gl.createVertexArray();
+  }
+
+  get count() {
+    return this.rows.size / this.stride;
+  }
+
+  /** Adds rows at the end. @param {Float32Array} coordinates @param {(row: number) => Rgba} color */
+  append(coordinates, color) {
+    const count = coordinates.length / this.floats;
+    const bytes = new Uint8Array(count * this.stride);
+    const numbers = new Float32Array(bytes.buffer);
+    const width = this.floats + 1;
+    for (let i = 0; i < count; i++) {
+      for (let k = 0; k < this.floats; k++) numbers[i * width + k] = coordinates[i * this.floats + k];
+      const rgba = color(i);
+      for (let k = 0; k < 4; k++) bytes[i * this.stride + 4 * this.floats + k] = Math.round(255 * rgba[k]);
+    }
+    if (!count) return;
+    this.rows.append(bytes);
+    this.bind();
+  }
+
+  /** Tells the vertex array where the rows are, as the buffer may be a new one. */
+  bind() {}
+
+  /** Forgets all rows. */
+  clear() {
+    this.rows.size = 0;
+  }
+}
+
+/** Segments: two ends and a colour each. */
+export class LineSet extends ColoredRows {
+  /** @param {WebGL2RenderingContext} gl @param {WebGLBuffer | null} strip the corners of a strip */
+  constructor(gl, strip) {
+    super(gl, 6);
+    this.strip = strip;
+  }
+
+  bind() {
+    const gl = this.gl;
+    gl.bindVertexArray(this.vao);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.strip);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 2, gl.FLOAT, false, 8, 0);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.rows.buffer);
+    for (const [at, size, type, offset] of [[1, 3, gl.FLOAT, 0], [2, 3, gl.FLOAT, 12], [3, 4, gl.UNSIGNED_BYTE, 24]]) {
+      gl.enableVertexAttribArray(at);
+      gl.vertexAttribPointer(at, size, type, type !== gl.FLOAT, this.stride, offset);
+      gl.vertexAttribDivisor(at, 1);
+    }
+    gl.bindVertexArray(null);
+  }
+}
+
+/** Points: a place and a colour each; the fourth number of the colour is the size as a part of 16 pixels. */
+export class PointSet extends ColoredRows {
+  /** @param {WebGL2RenderingContext} gl */
+  constructor(gl) {
+    super(gl, 3);
+  }
+
+  bind() {
+    const gl = this.gl;
+    gl.bindVertexArray(this.vao);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.rows.buffer);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, this.stride, 0);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, this.stride, 12);
+    gl.bindVertexArray(null);
+  }
+}
+
+/** Numbers of a copy of a shape: pose (7), colour (4), how it is cut (1). */
+export const COPY = 12;
+
+/** A shape on the graphics card. The corners are there once; triangles and edges have a vertex array each. */
+export class ShapeBuffers {
+  /** @param {WebGL2RenderingContext} gl @param {Shape} shape @param {WebGLBuffer | null} copies @param {WebGLBuffer | null} strip */
+  constructor(gl, shape, copies, strip) {
+    this.gl = gl;
+    this.shape = shape;
+    this.copies = copies;
+    this.corners = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
+    gl.bufferData(gl.ARRAY_BUFFER, shape.positions, gl.STATIC_DRAW);
+    this.triangles = this.indexed(shape.triangles);
+    this.edges = this.indexed(shape.edges);
+    /** @type {{vao: WebGLVertexArrayObject | null, count: number} | null} */
+    this.allEdges = null;
+    this.lines = new LineSet(gl, strip);
+    this.lines.append(shape.segments, () => [1, 1, 1, 1]);
+  }
+
+  /** All edges; made when they are first drawn. */
+  get wire() {
+    return (this.allEdges ??= this.indexed(this.shape.wire));
+  }
+
+  /** @param {Uint32Array} indices */
+  indexed(indices) {
+    const gl = this.gl;
+    const vao = gl.createVertexArray();
+    gl.bindVertexArray(vao);
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 12, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+    for (let at = 1; at <= 4; at++) {
+      gl.enableVertexAttribArray(at);
+      gl.vertexAttribDivisor(at, 1);
+    }
+    gl.bindVertexArray(null);
+    return { vao, count: indices.length };
+  }
+
+  /** Takes the copies from the one with this index on. @param {number} first */
+  bindCopies(first) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.copies);
+    for (const [at, size, offset] of [[1, 3, 0], [2, 4, 3], [3, 4, 7], [4, 1, 11]]) {
+      gl.vertexAttribPointer(at, size, gl.FLOAT, false, 4 * COPY, 4 * (first * COPY + offset));
+    }
+  }
+}

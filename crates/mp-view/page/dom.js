@@ -1,0 +1,61 @@
+// Makes elements of the page. Text is set as text only: what a scene file says is never read as HTML.
+
+/** @typedef {Record<string, string | number | boolean | ((event: Event) => void)>} Properties */
+
+/** An element with attributes, listeners (`onclick: …`) and children.
+ * @template {keyof HTMLElementTagNameMap} K
+ * @param {K} tag @param {Properties} [properties] @param {(Node | string)[]} children @returns {HTMLElementTagNameMap[K]} */
+export function el(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (typeof value === "function") element.addEventListener(name.slice(2), value);
+    else if (value === true) element.setAttribute(name, "");
+    else if (value !== false) element.setAttribute(name, String(value));
+  }
+  element.append(...children);
+  return element;
+}
+
+/** The element of the page with this id. @param {string} id @returns {HTMLElement} */
+export function byId(id) {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`This page is incomplete: it has no element “${id}”.`);
+  return element;
+}
+
+/** @param {string} label @param {() => void} press @param {Properties} [properties] */
+export const button = (label, press, properties = {}) => el("button", { type: "button", ...properties, onclick: press }, label);
+
+/** @param {string} label @param {boolean} checked @param {(on: boolean) => void} change */
+export function checkbox(label, checked, change) {
+  const input = el("input", { type: "checkbox", checked, onchange: () => change(input.checked) });
+  return el("label", { class: "check" }, input, el("span", {}, label));
+}
+
+/** @param {[value: string, label: string][]} options @param {string} value @param {(value: string) => void} change @param {Properties} [properties] */
+export function select(options, value, change, properties = {}) {
+  const input = el("select", { ...properties, onchange: () => change(input.value) });
+  input.append(...options.map(([v, text]) => el("option", { value: v, selected: v === value }, text)));
+  return input;
+}
+
+/** A label before a control. @param {string} label @param {HTMLElement} control */
+export const labelled = (label, control) => el("label", { class: "row" }, el("span", {}, label), control);
+
+/** @param {{low: number, high: number, step: number | "any", value: number}} range @param {(value: number) => void} change @param {Properties} [properties] */
+export function slider({ low, high, step, value }, change, properties = {}) {
+  const input = el("input", { type: "range", min: low, max: high, step, ...properties, oninput: () => change(input.valueAsNumber) });
+  input.valueAsNumber = value;
+  return input;
+}
+
+/** A list of names and values. @param {[string, string][]} facts */
+export const factList = (facts) => el("dl", {}, ...facts.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
+
+/** A number as a person reads it. @param {number} x @returns {string} */
+export function brief(x) {
+  if (!Number.isFinite(x)) return x > 0 ? "∞" : "–";
+  if (Number.isInteger(x)) return x.toLocaleString("en").replaceAll(",", "\u202f");
+  const size = Math.abs(x);
+  return size >= 1e-4 && size < 1e6 ? String(Number(x.toPrecision(4))) : x.toExponential(2);
+}

@@ -1,0 +1,249 @@
+// The panel at the side: what the scene is, how it is drawn, its bodies, its paths, the report, and what was picked.
+
+import { brief, button, byId, checkbox, el, factList, labelled, select, slider } from "mp/dom.js";
+
+/** @typedef {import("mp/scene.js").Scene} Scene */
+/** @typedef {import("mp/scene.js").Path} Path */
+/** @typedef {import("mp/picture.js").Settings} Settings */
+/** @typedef {import("mp/picking.js").Picked} Picked */
+/** @typedef {import("mp/renderer.js").Mode} Mode */
+/** @typedef {import("mp/camera.js").ViewName} ViewName */
+/** @typedef {{changed: () => void, look: (view: ViewName) => void, fit: () => void, setPerspective: (on: boolean) => void,
+ *  choosePath: (path: number) => void, setTheme: (theme: string) => void, savePicture: () => void}} Actions */
+
+/** @type {[Mode, string][]} */
+const MODES = [["solid", "solid"], ["transparent", "transparent"], ["wire", "wire"]];
+
+/** @type {[ViewName, string][]} */
+export const VIEWS = [["front", "Front"], ["back", "Back"], ["left", "Left"], ["right", "Right"], ["top", "Top"], ["bottom", "Bottom"], ["iso", "Iso"]];
+
+/** @type {[string, string][]} */
+const HELP = [
+  ["Drag", "turn the view (in the plane: move it)"],
+  ["Shift + drag, right button", "move the view (in the plane: turn it)"],
+  ["Wheel, two fingers, + and −", "zoom"],
+  ["Click", "say what is there"],
+  ["Double click", "look at this place"],
+  ["W A S D, Q E", "fly: forwards, left, backwards, right; down, up"],
+  ["Shift + arrow keys", "turn the view"],
+  ["1 … 7", "front, back, left, right, top, bottom, iso"],
+  ["F", "fit everything"],
+  ["O", "perspective or parallel view"],
+  ["M", "solid, transparent or wire"],
+  ["X", "section: none, x, y, z"],
+  ["← →", "step by step along the path"],
+  ["Home, End", "first and last configuration"],
+  ["Space", "play and pause"],
+  ["C", "all configurations at once"],
+  ["P", "show or hide the panel"],
+  ["Esc", "forget what was picked"],
+  ["?", "this help"],
+];
+
+export class Panels {
+  /** @param {Scene} scene @param {Settings} settings @param {Actions} actions @param {number} triangles */
+  constructor(scene, settings, actions, triangles) {
+    this.scene = scene;
+    this.settings = settings;
+    this.actions = actions;
+    this.triangles = triangles;
+    this.build();
+  }
+
+  build() {
+    const { scene } = this;
+    document.title = scene.name || "Scene";
+    byId("title").textContent = scene.name || "Scene";
+    this.picked = el("div", { role: "status", class: "picked" });
+    this.row = el("dl", {});
+    const parts = [this.picked, section("Picture", true, this.pictureControls()), section("Shown", true, this.shownControls())];
+    if (scene.paths.length) parts.push(section("Paths", true, this.pathList()), section("Configuration", false, [this.row]));
+    parts.push(section(`Bodies (${scene.bodies.length})`, scene.bodies.length <= 12, this.bodyList()), section("Scene", true, [factList(this.sceneFacts())]));
+    if (scene.report) parts.push(section("Report", true, [factList(reportFacts(scene.report))]));
+    byId("panel").replaceChildren(...parts);
+    this.buildHelp();
+    this.buildPanelButton();
+  }
+
+  /** @param {() => void} change */
+  set(change) {
+    change();
+    this.actions.changed();
+  }
+
+  /** @returns {HTMLElement[]} */
+  pictureControls() {
+    const { settings: s, actions } = this;
+    const views = VIEWS.map(([view, label], i) => button(label, () => actions.look(view), { title: `${label} view (${i + 1})` }));
+    this.mode = select(MODES, s.mode, (v) => this.set(() => (s.mode = /** @type {Mode} */ (v))));
+    this.projection = select([["perspective", "perspective"], ["parallel", "parallel"]], "perspective", (v) => actions.setPerspective(v === "perspective"));
+    const theme = select([["auto", "as the system"], ["light", "light"], ["dark", "dark"]], "auto", actions.setTheme);
+    return [
+      el("div", { class: "buttons", role: "group", "aria-label": "Views" }, ...views, button("Fit", actions.fit, { title: "Fit everything (F)" })),
+      labelled("Surfaces", this.mode),
+      labelled("View", this.projection),
+      checkbox("Edges", s.edges, (on) => this.set(() => (s.edges = on))),
+      this.sectionControls(),
+      labelled("Colours", theme),
+      button("Save picture", actions.savePicture),
+    ];
+  }
+
+  sectionControls() {
+    const { settings: s } = this;
+    this.axis = select([["-1", "none"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "-1", (v) => this.setSection(Number(v)));
+    const at = slider({ low: 0, high: 1, step: 0.005, value: s.section.at }, (x) => this.set(() => (s.section.at = x)));
+    const flip = checkbox("other side", s.section.flipped, (on) => this.set(() => (s.section.flipped = on)));
+    this.sectionPlace = el("div", { hidden: true }, labelled("Place of the section", at), flip);
+    return el("div", {}, labelled("Section through obstacles", this.axis), this.sectionPlace);
+  }
+
+  /** @param {number} axis −1 for none */
+  setSection(axis) {
+    this.settings.section.axis = axis;
+    if (this.axis) this.axis.value = String(axis);
+    if (this.sectionPlace) this.sectionPlace.hidden = axis < 0;
+    this.actions.changed();
+  }
+
+  /** @param {Mode} mode */
+  setMode(mode) {
+    this.settings.mode = mode;
+    if (this.mode) this.mode.value = mode;
+    this.actions.changed();
+  }
+
+  /** @param {boolean} on */
+  showPerspective(on) {
+    if (this.projection) this.projection.value = on ? "perspective" : "parallel";
+  }
+
+  /** @returns {HTMLElement[]} */
+  shownControls() {
+    const { scene, settings: s } = this;
+    const boxes = [
+      checkbox("Start", s.start, (on) => this.set(() => (s.start = on))),
+      checkbox(scene.goals.length > 1 ? `Goals (${scene.goals.length})` : "Goal", s.goals, (on) => this.set(() => (s.goals = on))),
+    ];
+    if (scene.paths.length) boxes.push(checkbox("Trace of the path", s.trace, (on) => this.set(() => (s.trace = on))));
+    scene.trees.forEach((tree, i) => boxes.push(checkbox(`Tree “${tree.name}” (${brief(tree.parents.length)} nodes)`, s.trees[i], (on) => this.set(() => (s.trees[i] = on)))));
+    if (scene.roadmap) {
+      const label = `Roadmap (${brief(scene.roadmap.kind.length)} nodes, ${brief(scene.roadmap.edges.length / 2)} edges)`;
+      boxes.push(checkbox(label, s.roadmap, (on) => this.set(() => (s.roadmap = on))));
+    }
+    if (scene.trees.length) {
+      const growth = slider({ low: 0, high: 1, step: "any", value: 1 }, (g) => this.set(() => (s.growth = g)));
+      boxes.push(labelled("Growth of the trees", growth));
+    }
+    return boxes;
+  }
+
+  /** @returns {HTMLElement[]} */
+  bodyList() {
+    const { scene, settings: s } = this;
+    /** @type {[string, string][]} */
+    const modes = [["", "as all"], ...MODES];
+    const rows = scene.bodies.map((body, b) => {
+      const seen = checkbox(body.name, true, (on) => this.set(() => (s.bodies[b].visible = on)));
+      const mode = select(modes, "", (v) => this.set(() => (s.bodies[b].mode = /** @type {Mode | ""} */ (v))), { "aria-label": `How “${body.name}” is drawn` });
+      return el("li", { class: body.role }, seen, mode);
+    });
+    return [el("ul", { class: "bodies" }, ...rows)];
+  }
+
+  /** @returns {HTMLElement[]} */
+  pathList() {
+    const { scene, settings: s, actions } = this;
+    const rows = scene.paths.map((path, p) => {
+      const input = el("input", { type: "radio", name: "path", checked: p === s.path, onchange: () => actions.choosePath(p) });
+      return el("li", {}, el("label", { class: "check" }, input, el("span", {}, path.name, el("small", {}, pathWords(path)))));
+    });
+    return [el("ul", { class: "paths" }, ...rows)];
+  }
+
+  /** @returns {[string, string][]} */
+  sceneFacts() {
+    const { scene } = this;
+    const size = scene.bounds[0].map((low, k) => brief(scene.bounds[1][k] - low)).join(" × ");
+    /** @type {[string, string][]} */
+    const facts = [
+      ["space", scene.space],
+      ["robot", `${brief(scene.robot)} ${scene.robot === 1 ? "body" : "bodies"}`],
+      ["obstacles", brief(scene.bodies.length - scene.robot)],
+      ["triangles", brief(this.triangles)],
+      ["size", `${size} m`],
+    ];
+    scene.columns.forEach((column, i) => {
+      const limit = scene.limits[i];
+      facts.push([column.name, `${limit ? `${brief(limit[0])} to ${brief(limit[1])}` : "free"} ${column.unit}`]);
+    });
+    return facts;
+  }
+
+  /** The numbers of the present configuration. */
+  update() {
+    const { scene, settings: s } = this;
+    const path = scene.paths[s.path];
+    if (!path?.count || !(/** @type {HTMLDetailsElement | null} */ (this.row?.closest("details"))?.open)) return;
+    const i = Math.round(s.time) * scene.columns.length;
+    const facts = scene.columns.flatMap((c, k) => [el("dt", {}, c.name), el("dd", {}, `${brief(path.rows[i + k])} ${c.unit}`)]);
+    this.row?.replaceChildren(...facts);
+  }
+
+  /** @param {Picked | null} picked @param {() => void} close */
+  showPicked(picked, close) {
+    if (!picked) return this.picked?.replaceChildren();
+    const closer = button("×", close, { "aria-label": "Forget what was picked" });
+    this.picked?.replaceChildren(el("div", { class: "card" }, el("header", {}, el("strong", {}, picked.title), closer), factList(picked.facts)));
+    byId("hint").textContent = [picked.title, ...picked.facts.slice(0, 2).map(([name, value]) => `${name} ${value}`)].join(" · ");
+  }
+
+  buildHelp() {
+    const dialog = /** @type {HTMLDialogElement} */ (byId("help"));
+    const close = button("Close", () => dialog.close());
+    dialog.replaceChildren(el("h2", { id: "help-title" }, "Mouse, fingers and keys"), factList(HELP), close);
+    dialog.setAttribute("aria-labelledby", "help-title");
+    byId("help-button").onclick = () => dialog.showModal();
+  }
+
+  buildPanelButton() {
+    byId("panel-button").onclick = () => this.togglePanel();
+    if (matchMedia("(max-width: 700px)").matches) this.togglePanel();
+  }
+
+  togglePanel() {
+    const shown = document.body.classList.toggle("no-panel") === false;
+    byId("panel-button").setAttribute("aria-expanded", String(shown));
+  }
+}
+
+/** @param {string} title @param {boolean} open @param {HTMLElement[]} content */
+const section = (title, open, content) => el("details", { open }, el("summary", {}, title), el("div", { class: "content" }, ...content));
+
+/** @param {Path} path */
+function pathWords(path) {
+  const words = [`${brief(path.count)} configurations`];
+  if (Number.isFinite(path.length)) words.push(`length ${brief(path.length)}`);
+  if (path.clearance?.length) words.push(`clearance at least ${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m`);
+  words.push(path.verified ? "verified" : "not verified");
+  return words.join(", ");
+}
+
+/** The figures of a report that people ask for first. @param {Record<string, unknown>} report @returns {[string, string][]} */
+function reportFacts(report) {
+  /** @type {[name: string, member: string, unit: string][]} */
+  const wanted = [
+    ["planner", "planner", ""], ["metric", "metric", ""], ["motion check", "motion", ""], ["seed", "seed", ""], ["time", "time_s", "s"],
+    ["finishing", "finish_s", "s"], ["iterations", "iterations", ""], ["nodes", "nodes", ""], ["edges", "edges", ""],
+    ["motion checks", "motion_checks", ""], ["collision checks", "collision_checks", ""], ["length as found", "path_length_found", ""],
+    ["length", "path_length", ""], ["clearance", "clearance", "m, at least"], ["stopped", "why", ""], ["fingerprint", "fingerprint", ""],
+  ];
+  /** @type {[string, string][]} */
+  const facts = [["result", report.solved === true ? "a verified path" : "no path"]];
+  for (const [name, member, unit] of wanted) {
+    const value = report[member];
+    if (typeof value === "number") facts.push([name, `${brief(value)} ${unit}`.trim()]);
+    if (typeof value === "string") facts.push([name, value]);
+  }
+  return facts;
+}

@@ -1,0 +1,211 @@
+// Says what is drawn: the bodies, copies, trees and traces that the settings ask for.
+
+import { componentColor, palette } from "mp/colors.js";
+import { lerpPose } from "mp/math.js";
+import { segmentsOf } from "mp/shapes.js";
+
+/** @typedef {import("mp/scene.js").Scene} Scene */
+/** @typedef {import("mp/scene.js").Tree} Tree */
+/** @typedef {import("mp/scene.js").Path} Path */
+/** @typedef {import("mp/colors.js").Color} Color */
+/** @typedef {import("mp/colors.js").Palette} Palette */
+/** @typedef {import("mp/math.js").Numbers} Numbers */
+/** @typedef {import("mp/math.js").Vec3} Vec3 */
+/** @typedef {import("mp/renderer.js").Renderer} Renderer */
+/** @typedef {import("mp/renderer.js").Picture} Picture */
+/** @typedef {import("mp/renderer.js").Item} Item */
+/** @typedef {import("mp/renderer.js").Mode} Mode */
+/** @typedef {import("mp/renderer.js").Role} Role */
+/** @typedef {import("mp/buffers.js").LineSet} LineSet */
+/** @typedef {import("mp/buffers.js").PointSet} PointSet */
+/** @typedef {"all" | "step" | "auto"} Animation the three ways to show a path */
+/** @typedef {{mode: Mode, bodies: {visible: boolean, mode: Mode | ""}[], edges: boolean, path: number, animation: Animation,
+ *  time: number, copies: number, copyMode: Mode, start: boolean, goals: boolean, trace: boolean, trees: boolean[],
+ *  roadmap: boolean, growth: number, section: {axis: number, at: number, flipped: boolean}, dark: boolean,
+ *  marked: Vec3 | null}} Settings
+ *  `time` counts configurations of the path; `growth` and the section's `at` are between 0 and 1. */
+
+/** The share of light that transparent things keep. */
+const ALPHA = 0.3;
+
+/** What is seen where two things are at the same place. @type {Record<Role, number>} */
+const LAYERS = { obstacle: 0, goal: 1, start: 2, copy: 3, robot: 4 };
+
+/** The configurations of a path that are shown as copies: evenly spaced, first and last always.
+ * @param {number} count @param {number} copies @returns {number[]} */
+export function copyIndices(count, copies) {
+  const shown = Math.min(count, Math.max(2, copies));
+  if (count < 2) return count ? [0] : [];
+  return Array.from({ length: shown }, (_, i) => Math.round((i * (count - 1)) / (shown - 1)));
+}
+
+/** The poses of the robot's bodies at a time of a path. @param {Path} path @param {number} robot @param {number} time
+ * @param {Float32Array} out @returns {Float32Array} */
+export function posesAt(path, robot, time, out) {
+  const i = Math.min(Math.floor(time), path.count - 1);
+  const next = Math.min(i + 1, path.count - 1);
+  for (let b = 0; b < robot; b++) lerpPose(path.poses, 7 * (i * robot + b), path.poses, 7 * (next * robot + b), time - i, out, 7 * b);
+  return out;
+}
+
+/** The colour of a tree: blue when it grows from the start, red from a goal. @param {Tree} tree @param {number} i @param {Palette} p @returns {Color} */
+export function treeColor(tree, i, p) {
+  if (/goal/i.test(tree.name)) return p.fromGoal;
+  if (/start/i.test(tree.name) || i === 0) return p.fromStart;
+  return i === 1 ? p.fromGoal : p.other;
+}
+
+/** Segments from nodes to their parents, in the order of the nodes. `upTo[i]` is how many the first i nodes have.
+ * @param {Tree} tree */
+function treeSegments(tree) {
+  const out = new Float32Array(6 * tree.parents.filter((p) => p >= 0).length);
+  const upTo = new Uint32Array(tree.parents.length + 1);
+  let at = 0;
+  tree.parents.forEach((parent, i) => {
+    if (parent >= 0) {
+      out.set(tree.nodes.subarray(3 * parent, 3 * parent + 3), at);
+      out.set(tree.nodes.subarray(3 * i, 3 * i + 3), at + 3);
+      at += 6;
+    }
+    upTo[i + 1] = at / 6;
+  });
+  return { segments: out, upTo };
+}
+
+/** Makes pictures of a scene with a renderer, which holds its lines and points. */
+export class PictureMaker {
+  /** @param {Scene} scene @param {number[]} ofBody the shape of each body @param {Renderer} renderer */
+  constructor(scene, ofBody, renderer) {
+    this.scene = scene;
+    this.ofBody = ofBody;
+    this.renderer = renderer;
+    this.robotPoses = new Float32Array(7 * scene.robot);
+    this.trees = scene.trees.map((tree) => this.treeLines(tree));
+    this.traces = scene.paths.map((path) => this.traceLines(path));
+    this.roadmap = scene.roadmap ? this.roadmapLines() : null;
+    this.marker = renderer.pointSet();
+  }
+
+  /** @param {Tree} tree */
+  treeLines(tree) {
+    const { segments, upTo } = treeSegments(tree);
+    const lines = this.renderer.lineSet();
+    lines.append(segments, () => [1, 1, 1, 1]);
+    const roots = this.renderer.pointSet();
+    tree.parents.forEach((parent, i) => parent < 0 && roots.append(tree.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]));
+    return { lines, upTo, roots };
+  }
+
+  /** @param {Path} path */
+  traceLines(path) {
+    const lines = this.renderer.lineSet();
+    lines.append(segmentsOf([path.trace]), () => [1, 1, 1, 1]);
+    return lines;
+  }
+
+  roadmapLines() {
+    const { nodes, edges, component, kind } = /** @type {NonNullable<Scene["roadmap"]>} */ (this.scene.roadmap);
+    const segments = new Float32Array(3 * edges.length);
+    edges.forEach((node, i) => segments.set(nodes.subarray(3 * node, 3 * node + 3), 3 * i));
+    const lines = this.renderer.lineSet();
+    lines.append(segments, (i) => [...componentColor(component[edges[2 * i]]), 1]);
+    const points = this.renderer.pointSet();
+    points.append(nodes, (i) => [...componentColor(component[i]), [0.3, 0.65, 0.4, 0.3][Math.min(kind[i], 3)]]);
+    return { lines, points };
+  }
+
+  /** @param {Settings} s @returns {Picture} */
+  make(s) {
+    const colors = palette(s.dark);
+    const items = [...this.obstacles(s, colors), ...this.ends(s, colors), ...this.moving(s, colors)];
+    return { items, lines: this.lines(s, colors), points: this.points(s, colors), plane: this.plane(s), edges: s.edges, flat: this.scene.planar };
+  }
+
+  /** @param {Settings} s @param {number} body */
+  modeOf(s, body) {
+    return s.bodies[body].mode || s.mode;
+  }
+
+  /** @param {Settings} s @param {Palette} colors @returns {Item[]} */
+  obstacles(s, colors) {
+    /** @type {Item[]} */
+    const items = [];
+    for (let b = this.scene.robot; b < this.scene.bodies.length; b++) {
+      if (!s.bodies[b].visible) continue;
+      const mode = this.modeOf(s, b);
+      const alpha = mode === "transparent" ? ALPHA : 1;
+      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
+    }
+    return items.sort((a, b) => a.shape - b.shape);
+  }
+
+  /** The robot in one configuration. @param {Settings} s @param {Numbers} poses @param {number} at @param {Color} color
+   * @param {Role} role @param {number} index @param {Mode} [given] @returns {Item[]} */
+  robot(s, poses, at, color, role, index, given) {
+    /** @type {Item[]} */
+    const items = [];
+    for (let b = 0; b < this.scene.robot; b++) {
+      if (!s.bodies[b].visible) continue;
+      const mode = given ?? this.modeOf(s, b);
+      const alpha = mode === "transparent" ? ALPHA : 1;
+      items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color, alpha, mode, cut: false, layer: LAYERS[role], body: b, role, index });
+    }
+    return items;
+  }
+
+  /** Start and goals. @param {Settings} s @param {Palette} colors @returns {Item[]} */
+  ends(s, colors) {
+    const start = s.start ? this.robot(s, this.scene.start.poses, 0, colors.start, "start", 0) : [];
+    const goals = s.goals ? this.scene.goals.flatMap((g, i) => this.robot(s, g.poses, 0, colors.goal, "goal", i)) : [];
+    return [...goals, ...start];
+  }
+
+  /** The robot on its path, and its copies. @param {Settings} s @param {Palette} colors @returns {Item[]} */
+  moving(s, colors) {
+    const path = this.scene.paths[s.path];
+    if (!path?.count) return [];
+    const now = this.robot(s, posesAt(path, this.scene.robot, s.time, this.robotPoses), 0, colors.robot, "robot", Math.round(s.time));
+    if (s.animation !== "all") return now;
+    // Start and goal stand at the ends already.
+    const copies = copyIndices(path.count, s.copies).filter((i) => !(i === 0 && s.start) && !(i === path.count - 1 && s.goals));
+    const poses = copies.flatMap((i) => this.robot(s, path.poses, 7 * this.scene.robot * i, colors.robot, "copy", i, s.copyMode));
+    return [...poses.sort((a, b) => a.shape - b.shape), ...now];
+  }
+
+  /** @param {Settings} s @param {Palette} colors @returns {Picture["lines"]} */
+  lines(s, colors) {
+    const trees = this.trees.flatMap(({ lines, upTo }, i) => {
+      const count = upTo[Math.round(s.growth * (upTo.length - 1))];
+      return s.trees[i] ? [{ set: lines, count, width: 1, color: treeColor(this.scene.trees[i], i, colors) }] : [];
+    });
+    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.lines, count: this.roadmap.lines.count, width: 1, color: null }] : [];
+    const traces = this.traces.flatMap((set, i) => {
+      if (!s.trace) return [];
+      const shown = i === s.path;
+      return [{ set, count: set.count, width: shown ? 3 : 1, color: shown ? colors.path : colors.other }];
+    });
+    return [...roadmap, ...trees, ...traces];
+  }
+
+  /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
+  points(s, colors) {
+    const roots = this.trees.flatMap(({ roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(this.scene.trees[i], i, colors) }] : []));
+    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null }] : [];
+    this.marker.clear();
+    if (s.marked) this.marker.append(new Float32Array(s.marked), () => [1, 1, 1, 1]);
+    return [...roadmap, ...roots, { set: this.marker, count: this.marker.count, color: colors.picked }];
+  }
+
+  /** The section plane: what lies on its positive side is cut away. @param {Settings} s @returns {Picture["plane"]} */
+  plane(s) {
+    const { axis, at, flipped } = s.section;
+    if (axis < 0) return null;
+    const [low, high] = this.scene.bounds;
+    const sign = flipped ? -1 : 1;
+    const where = low[axis] + (high[axis] - low[axis]) * at;
+    /** @type {[number, number, number, number]} */
+    const plane = [0, 0, 0, sign * where];
+    plane[axis] = sign;
+    return plane;
+  }
+}

@@ -1,0 +1,271 @@
+// Draws a picture with WebGL2: first what is opaque, then lines and points, then what is transparent, far to near.
+
+import { COPY, LineSet, PointSet, ShapeBuffers, program, uniforms } from "mp/buffers.js";
+import { dot, normalize, place } from "mp/math.js";
+import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGMENT, SURFACE_VERTEX } from "mp/shaders.js";
+
+/** @typedef {import("mp/camera.js").Camera} Camera */
+/** @typedef {import("mp/colors.js").Palette} Palette */
+/** @typedef {import("mp/colors.js").Color} Color */
+/** @typedef {import("mp/math.js").Numbers} Numbers */
+/** @typedef {import("mp/math.js").Mat4} Mat4 */
+/** @typedef {import("mp/math.js").Vec3} Vec3 */
+/** @typedef {import("mp/shapes.js").Shape} Shape */
+/** @typedef {"solid" | "transparent" | "wire"} Mode */
+/** @typedef {"obstacle" | "robot" | "copy" | "start" | "goal"} Role */
+/** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number,
+ *  body: number, role: Role, index: number}} Item
+ *  A copy of a shape; `index` is the number of the goal or of the configuration. Of surfaces at the same place, the one with the highest layer is seen. */
+/** @typedef {{set: LineSet, count: number, width: number, color: Color | null}} Lines */
+/** @typedef {{set: PointSet, count: number, color: Color | null}} Points */
+/** @typedef {{items: Item[], lines: Lines[], points: Points[], plane: [number, number, number, number] | null, edges: boolean,
+ *  flat: boolean}} Picture  `flat`: a planar scene, where later things hide earlier ones. */
+/** @typedef {{first: number, count: number, item: Item, items: Item[]}} Batch copies that are drawn by one call */
+
+const LOST = "This page needs WebGL2, which this browser does not offer or has switched off.";
+
+export class Renderer {
+  /** @param {HTMLCanvasElement} canvas @param {Shape[]} shapes */
+  constructor(canvas, shapes) {
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
+    if (!gl) throw new Error(LOST);
+    this.gl = gl;
+    this.surface = program(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
+    this.line = program(gl, LINE_VERTEX, LINE_FRAGMENT);
+    this.point = program(gl, POINT_VERTEX, POINT_FRAGMENT);
+    this.surfaceAt = uniforms(gl, this.surface);
+    this.lineAt = uniforms(gl, this.line);
+    this.pointAt = uniforms(gl, this.point);
+    this.copies = gl.createBuffer();
+    this.copyNumbers = new Float32Array(64 * COPY);
+    this.strip = gl.createBuffer();
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.strip);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([0, -1, 1, -1, 0, 1, 1, 1]), gl.STATIC_DRAW);
+    this.shapes = shapes.map((s) => new ShapeBuffers(gl, s, this.copies, this.strip));
+    this.calls = 0;
+    this.triangles = 0;
+  }
+
+  lineSet() {
+    return new LineSet(this.gl, this.strip);
+  }
+
+  pointSet() {
+    return new PointSet(this.gl);
+  }
+
+  /** @param {Picture} picture @param {Camera} camera @param {Palette} palette @param {number} ratio device pixels per pixel */
+  draw(picture, camera, palette, ratio) {
+    const gl = this.gl;
+    this.calls = 0;
+    this.triangles = 0;
+    this.frame = { camera, palette, ratio, ...camera.matrices() };
+    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    gl.clearColor(...palette.background, 1);
+    gl.depthMask(true);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(picture.flat ? gl.ALWAYS : gl.LEQUAL);
+    gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+    const opaque = grouped(picture.items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer));
+    const clear = grouped(this.farToNear(picture.items.filter((i) => i.mode === "transparent"), picture.flat));
+    this.upload([...opaque.items, ...clear.items]);
+    const under = opaque.batches.filter((b) => b.item.layer === 0);
+    this.drawSurfaces(under, 0, picture);
+    this.drawLines(picture);
+    this.drawSurfaces(opaque.batches.filter((b) => b.item.layer > 0), 0, picture);
+    this.drawSurfaces(clear.batches, opaque.items.length, picture);
+    this.drawPoints(picture);
+    gl.bindVertexArray(null);
+  }
+
+  /** @param {Item[]} items @param {boolean} flat */
+  farToNear(items, flat) {
+    if (flat) return items.sort((a, b) => a.layer - b.layer);
+    const { back } = this.now.camera.axes();
+    const depth = items.map((item) => {
+      const { low, high } = this.shapes[item.shape].shape;
+      /** @type {Vec3} */
+      const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
+      return dot(place(item.pose, item.at, middle), back);
+    });
+    return items.map((_, i) => i).sort((a, b) => depth[a] - depth[b]).map((i) => items[i]);
+  }
+
+  get now() {
+    if (!this.frame) throw new Error("Nothing is being drawn.");
+    return this.frame;
+  }
+
+  /** Writes the numbers of all copies to the graphics card. @param {Item[]} items */
+  upload(items) {
+    if (this.copyNumbers.length < items.length * COPY) this.copyNumbers = new Float32Array(2 * items.length * COPY);
+    const out = this.copyNumbers;
+    items.forEach((item, i) => {
+      const o = i * COPY;
+      for (let k = 0; k < 7; k++) out[o + k] = item.pose[item.at + k];
+      for (let k = 0; k < 3; k++) out[o + 7 + k] = item.color[k];
+      out[o + 10] = item.alpha;
+      out[o + 11] = item.cut ? (this.shapes[item.shape].shape.closed ? 2 : 1) : 0;
+    });
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, this.copies);
+    gl.bufferData(gl.ARRAY_BUFFER, out.subarray(0, items.length * COPY), gl.DYNAMIC_DRAW);
+  }
+
+  /** @param {Batch[]} batches @param {number} shift of the copies' indices @param {Picture} picture */
+  drawSurfaces(batches, shift, picture) {
+    const gl = this.gl;
+    for (const batch of batches) {
+      this.useSurface(picture);
+      const buffers = this.shapes[batch.item.shape];
+      const first = batch.first + shift;
+      const clear = batch.item.mode === "transparent";
+      if (clear) gl.enable(gl.BLEND);
+      gl.depthMask(!clear);
+      if (batch.item.mode !== "wire") this.fill(buffers, batch, first);
+      if (batch.item.mode === "wire" || picture.edges) this.edges(buffers, batch, first);
+      if (buffers.lines.count) this.bodyLines(buffers.lines, batch, picture);
+      gl.disable(gl.BLEND);
+      gl.depthMask(true);
+    }
+  }
+
+  /** @param {Picture} picture */
+  useSurface(picture) {
+    const gl = this.gl;
+    const { view, projection, palette, camera } = this.now;
+    const at = this.surfaceAt;
+    gl.useProgram(this.surface);
+    gl.uniformMatrix4fv(at.view, false, view);
+    gl.uniformMatrix4fv(at.projection, false, projection);
+    gl.uniform4fv(at.plane, picture.plane ?? [0, 0, 0, 1]);
+    gl.uniform1f(at.cutting, picture.plane ? 1 : 0);
+    gl.uniform1f(at.flatView, camera.perspective ? 0 : 1);
+    gl.uniform3fv(at.cutColor, palette.cut);
+    const sun = normalize([0.4, -0.6, 1]);
+    gl.uniform3f(at.sun, ...rotated(view, sun));
+  }
+
+  /** @param {ShapeBuffers} buffers @param {Batch} batch @param {number} first */
+  fill(buffers, batch, first) {
+    const gl = this.gl;
+    const { vao, count } = buffers.triangles;
+    if (!count) return;
+    gl.uniform1f(this.surfaceAt.shaded, 1);
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 10 - 2 * batch.item.layer);
+    // Of a transparent closed body only the outside is drawn, so that each of its faces counts once.
+    if (batch.item.mode === "transparent" && buffers.shape.closed && !batch.item.cut) gl.enable(gl.CULL_FACE);
+    gl.bindVertexArray(vao);
+    buffers.bindCopies(first);
+    gl.drawElementsInstanced(gl.TRIANGLES, count, gl.UNSIGNED_INT, 0, batch.count);
+    gl.disable(gl.CULL_FACE);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    this.counted((count / 3) * batch.count);
+  }
+
+  /** @param {ShapeBuffers} buffers @param {Batch} batch @param {number} first */
+  edges(buffers, batch, first) {
+    const gl = this.gl;
+    const wire = batch.item.mode === "wire";
+    const { vao, count } = wire ? buffers.wire : buffers.edges;
+    if (!count) return;
+    const { palette } = this.now;
+    gl.uniform1f(this.surfaceAt.shaded, 0);
+    const alpha = wire ? 0 : batch.item.mode === "transparent" ? 0.9 : 1;
+    gl.uniform4f(this.surfaceAt.line, ...palette.edge, alpha);
+    gl.bindVertexArray(vao);
+    buffers.bindCopies(first);
+    gl.drawElementsInstanced(gl.LINES, count, gl.UNSIGNED_INT, 0, batch.count);
+    this.counted(0);
+  }
+
+  /** Lines that belong to a body: copy by copy. @param {LineSet} set @param {Batch} batch @param {Picture} picture */
+  bodyLines(set, batch, picture) {
+    const gl = this.gl;
+    this.useLine(picture);
+    for (const item of batch.items) {
+      gl.uniform3f(this.lineAt.origin, item.pose[item.at], item.pose[item.at + 1], item.pose[item.at + 2]);
+      gl.uniform4f(this.lineAt.turn, item.pose[item.at + 3], item.pose[item.at + 4], item.pose[item.at + 5], item.pose[item.at + 6]);
+      gl.uniform4f(this.lineAt.paint, ...item.color, item.alpha);
+      gl.uniform1f(this.lineAt.cut, item.cut ? 1 : 0);
+      this.strips(set, set.count, item.mode === "wire" ? 1.2 : 3);
+    }
+  }
+
+  /** @param {Picture} picture */
+  useLine(picture) {
+    const gl = this.gl;
+    gl.useProgram(this.line);
+    gl.uniformMatrix4fv(this.lineAt.both, false, this.now.both);
+    gl.uniform4fv(this.lineAt.plane, picture.plane ?? [0, 0, 0, 1]);
+    gl.uniform2f(this.lineAt.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
+  }
+
+  /** @param {LineSet} set @param {number} count @param {number} width pixels */
+  strips(set, count, width) {
+    const gl = this.gl;
+    gl.uniform1f(this.lineAt.width, width * this.now.ratio);
+    gl.bindVertexArray(set.vao);
+    gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
+    this.counted(2 * count);
+  }
+
+  /** Trees, roadmap and traces. @param {Picture} picture */
+  drawLines(picture) {
+    const gl = this.gl;
+    this.useLine(picture);
+    gl.uniform3f(this.lineAt.origin, 0, 0, 0);
+    gl.uniform4f(this.lineAt.turn, 0, 0, 0, 1);
+    gl.uniform1f(this.lineAt.cut, 0);
+    for (const { set, count, width, color } of picture.lines) {
+      if (!count) continue;
+      gl.uniform4f(this.lineAt.paint, ...(color ?? [0, 0, 0]), color ? 1 : 0);
+      this.strips(set, count, width);
+    }
+  }
+
+  /** @param {Picture} picture */
+  drawPoints(picture) {
+    const gl = this.gl;
+    gl.useProgram(this.point);
+    gl.uniformMatrix4fv(this.pointAt.both, false, this.now.both);
+    gl.uniform1f(this.pointAt.ratio, this.now.ratio);
+    for (const { set, count, color } of picture.points) {
+      if (!count) continue;
+      gl.uniform4f(this.pointAt.paint, ...(color ?? [0, 0, 0]), color ? 1 : 0);
+      gl.bindVertexArray(set.vao);
+      gl.drawArrays(gl.POINTS, 0, count);
+      this.counted(0);
+    }
+  }
+
+  /** @param {number} triangles */
+  counted(triangles) {
+    this.calls++;
+    this.triangles += triangles;
+  }
+}
+
+/** A direction of the world as the eye sees it. @param {Mat4} m @param {Vec3} v @returns {Vec3} */
+function rotated(m, v) {
+  /** @param {number} r */
+  const row = (r) => m[r] * v[0] + m[4 + r] * v[1] + m[8 + r] * v[2];
+  return [row(0), row(1), row(2)];
+}
+
+/** Neighbours that one call can draw. @param {Item[]} items @returns {{items: Item[], batches: Batch[]}} */
+function grouped(items) {
+  /** @type {Batch[]} */
+  const batches = [];
+  items.forEach((item, i) => {
+    const last = batches[batches.length - 1]?.item;
+    const joins = last && last.shape === item.shape && last.mode === item.mode && last.layer === item.layer && last.cut === item.cut;
+    if (joins) {
+      batches[batches.length - 1].count++;
+      batches[batches.length - 1].items.push(item);
+    } else batches.push({ first: i, count: 1, item, items: [item] });
+  });
+  return { items, batches };
+}

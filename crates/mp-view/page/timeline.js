@@ -1,0 +1,174 @@
+// The robot on its path, in the three ways of Benitez et al. (2010): all configurations at once, step by step forwards and
+// backwards, and automatically.
+
+import { brief, button, byId, el, labelled, select, slider } from "mp/dom.js";
+import { ClearancePlot } from "mp/plot.js";
+
+/** @typedef {import("mp/scene.js").Scene} Scene */
+/** @typedef {import("mp/picture.js").Settings} Settings */
+/** @typedef {import("mp/picture.js").Animation} Animation */
+/** @typedef {import("mp/renderer.js").Mode} Mode */
+/** @typedef {"stop" | "loop" | "return"} AtEnd what happens at the end of the path */
+
+/** @type {[Animation, string][]} */
+const ANIMATIONS = [["all", "All at once"], ["step", "Step by step"], ["auto", "Automatic"]];
+
+export class Timeline {
+  /** @param {Scene} scene @param {Settings} settings @param {() => void} changed */
+  constructor(scene, settings, changed) {
+    this.scene = scene;
+    this.settings = settings;
+    this.changed = changed;
+    this.playing = false;
+    this.speed = 1;
+    this.direction = 1;
+    /** @type {AtEnd} */
+    this.atEnd = "loop";
+    this.lastTime = 0;
+    this.build();
+    this.showPath();
+  }
+
+  get path() {
+    return this.scene.paths[this.settings.path] ?? null;
+  }
+
+  get last() {
+    return Math.max(0, (this.path?.count ?? 0) - 1);
+  }
+
+  build() {
+    const s = this.settings;
+    this.modes = ANIMATIONS.map(([value, label]) => {
+      const input = el("input", { type: "radio", name: "animation", value, checked: value === s.animation, onchange: () => this.setAnimation(value) });
+      return el("label", {}, input, el("span", {}, label));
+    });
+    this.playButton = button("Play", () => this.toggle(), { class: "wide" });
+    this.slider = slider({ low: 0, high: 1, step: 1, value: 0 }, (t) => this.scrub(t), { "aria-label": "Configuration" });
+    this.output = el("output", { class: "count" });
+    this.plot = new ClearancePlot(el("canvas", { class: "plot", role: "img" }), (t) => this.scrub(t));
+    this.autoControls = el("span", { class: "group" },
+      labelled("Speed", select([["0.25", "¼×"], ["0.5", "½×"], ["1", "1×"], ["2", "2×"], ["4", "4×"]], "1", (v) => (this.speed = Number(v)))),
+      labelled("At the end", select([["loop", "again"], ["return", "back"], ["stop", "stop"]], "loop", (v) => (this.atEnd = /** @type {AtEnd} */ (v)))));
+    this.copies = slider({ low: 2, high: 200, step: 1, value: s.copies }, (n) => this.set(() => (s.copies = n)));
+    /** @type {[Mode, string][]} */
+    const modes = [["transparent", "transparent"], ["solid", "solid"], ["wire", "wire"]];
+    this.allControls = el("span", { class: "group" },
+      labelled("Copies", this.copies),
+      labelled("as", select(modes, s.copyMode, (v) => this.set(() => (s.copyMode = /** @type {Mode} */ (v))), { "aria-label": "How copies are drawn" })));
+    byId("timeline").replaceChildren(
+      el("div", { class: "bar" },
+        el("span", { class: "segments", role: "radiogroup", "aria-label": "Animation" }, ...this.modes),
+        el("span", { class: "group" },
+          button("⏮", () => this.scrub(0), { "aria-label": "First configuration", title: "First (Home)" }),
+          button("◀", () => this.step(-1), { "aria-label": "Previous configuration", title: "Previous (←)" }),
+          this.playButton,
+          button("▶", () => this.step(1), { "aria-label": "Next configuration", title: "Next (→)" }),
+          button("⏭", () => this.scrub(this.last), { "aria-label": "Last configuration", title: "Last (End)" })),
+        this.autoControls, this.allControls, this.output),
+      this.slider, this.plot.canvas);
+  }
+
+  /** @param {() => void} change */
+  set(change) {
+    change();
+    this.changed();
+  }
+
+  /** After another path was chosen. */
+  showPath() {
+    byId("timeline").hidden = !this.path;
+    this.slider.max = String(this.last);
+    this.settings.time = Math.min(this.settings.time, this.last);
+    const { copies } = this;
+    if (copies) copies.max = String(Math.min(400, Math.max(2, this.last + 1)));
+    this.plot?.show(this.path);
+    this.update();
+  }
+
+  /** Shows the settings in the controls. */
+  update() {
+    const { animation, time, copies } = this.settings;
+    this.modes?.forEach((label) => {
+      const input = /** @type {HTMLInputElement} */ (label.firstElementChild);
+      input.checked = input.value === animation;
+    });
+    this.slider.step = animation === "step" ? "1" : "any";
+    this.slider.valueAsNumber = time;
+    const words = `${brief(Math.round(time) + 1)} of ${brief(this.last + 1)}`;
+    this.slider.setAttribute("aria-valuetext", `Configuration ${words}`);
+    if (this.output) this.output.textContent = animation === "all" ? `${words} · ${Math.min(copies, this.last + 1)} shown` : words;
+    if (this.playButton) this.playButton.textContent = this.playing ? "Pause" : "Play";
+    if (this.autoControls) this.autoControls.hidden = animation !== "auto";
+    if (this.allControls) this.allControls.hidden = animation !== "all";
+    this.plot?.draw(time);
+  }
+
+  /** @param {Animation} animation */
+  setAnimation(animation) {
+    this.settings.animation = animation;
+    this.playing = animation === "auto";
+    this.lastTime = 0;
+    if (animation === "step") this.settings.time = Math.round(this.settings.time);
+    if (animation === "auto" && this.settings.time >= this.last) this.settings.time = 0;
+    this.changed();
+  }
+
+  toggle() {
+    if (this.settings.animation !== "auto") return this.setAnimation("auto");
+    this.playing = !this.playing;
+    this.lastTime = 0;
+    if (this.playing && this.settings.time >= this.last) this.settings.time = 0;
+    this.changed();
+  }
+
+  /** Goes to a time, in configurations. @param {number} time */
+  scrub(time) {
+    const { animation } = this.settings;
+    this.playing = false;
+    const t = Math.max(0, Math.min(this.last, time));
+    this.settings.time = animation === "step" ? Math.round(t) : t;
+    this.changed();
+  }
+
+  /** One configuration on or back. @param {number} by */
+  step(by) {
+    if (this.settings.animation === "auto") this.settings.animation = "step";
+    const { time } = this.settings;
+    this.scrub(by > 0 ? Math.floor(time + 1e-6) + by : Math.ceil(time - 1e-6) + by);
+  }
+
+  /** Moves on while it plays; returns whether it plays. @param {number} now milliseconds */
+  advance(now) {
+    if (!this.playing || !this.last) return false;
+    const seconds = this.lastTime ? Math.min(0.1, (now - this.lastTime) / 1000) : 0;
+    this.lastTime = now;
+    // The whole path takes 4 to 16 seconds.
+    const rate = this.last / Math.max(4, Math.min(16, this.last / 25));
+    const time = this.settings.time + seconds * rate * this.speed * this.direction;
+    if (time < 0 || time > this.last) this.turn(time);
+    else this.settings.time = time;
+    return this.playing;
+  }
+
+  /** At an end of the path. @param {number} time */
+  turn(time) {
+    this.settings.time = Math.max(0, Math.min(this.last, time));
+    if (this.atEnd === "stop") this.playing = false;
+    if (this.atEnd === "return") this.direction = time < 0 ? 1 : -1;
+    else this.direction = 1;
+    if (this.atEnd === "loop") this.settings.time = 0;
+  }
+
+  /** @param {KeyboardEvent} e @returns {boolean} whether the key was used */
+  key(e) {
+    if (!this.path || e.shiftKey) return false;
+    if (e.key === "ArrowRight") this.step(1);
+    else if (e.key === "ArrowLeft") this.step(-1);
+    else if (e.key === "Home") this.scrub(0);
+    else if (e.key === "End") this.scrub(this.last);
+    else if (e.key === " " && !(e.target instanceof HTMLButtonElement)) this.toggle();
+    else return false;
+    return true;
+  }
+}
