@@ -92,7 +92,8 @@ pub(crate) struct Plan {
     /// output. `{scene}` and `{seed}` are replaced by scene and seed.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// The file for the picture (`.png`; for worlds in the plane also `.svg`). `{scene}` and `{seed}` are replaced by
+    /// The file for the picture (`.png`; for worlds in the plane also `.svg`), or for the page of the viewer (`.html`),
+    /// which opens in a browser without a network. `{scene}` and `{seed}` are replaced by
     /// scene and seed.
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
@@ -140,7 +141,8 @@ pub(crate) struct Render {
     pub(crate) scene: PathBuf,
     /// A path: text, `.json` or `.csv`; `-` for standard input.
     pub(crate) path: Option<PathBuf>,
-    /// The file for the picture (`.png`; for worlds in the plane also `.svg`).
+    /// The file for the picture (`.png`; for worlds in the plane also `.svg`), for the page of the viewer (`.html`), which
+    /// opens in a browser without a network, or for the scene that the page shows (`.mpv`).
     #[arg(long, visible_alias = "out", value_name = "FILE")]
     pub(crate) picture: PathBuf,
     /// Width and height in pixels.

@@ -2,6 +2,7 @@
 
 use crate::input::is_standard;
 use crate::output;
+use crate::picture::Picture;
 use mp_plan::{Error, PathFileKind, Scene, is_same_file};
 use std::path::{Path, PathBuf};
 
@@ -89,7 +90,7 @@ impl Files {
         if let Some(out) = out.as_ref().filter(|out| !is_standard(out)) {
             PathFileKind::of(out)?;
         }
-        picture.map_or(Ok(()), |picture| scene.picture_kind(&picture).map(|_| ()))
+        picture.map_or(Ok(()), |picture| Picture::of(scene, &picture).map(|_| ()))
     }
 }
 

@@ -5,6 +5,7 @@ use crate::files::Files;
 use crate::input::{is_standard, scene};
 use crate::interrupt;
 use crate::output::{note, print, print_json, write};
+use crate::picture::Picture;
 use crate::progress::Line;
 use crate::request::request;
 use crate::text::{caption, summary, table};
@@ -116,8 +117,8 @@ fn one(
     }
     if let Some(file) = picture {
         line.say("drawing the picture");
-        let kind = scene.picture_kind(&file)?;
-        write(&file, &scene.picture(Some(&path), &caption(&report), kind, PICTURE_SIZE)?)?;
+        let picture = Picture::of(scene, &file)?;
+        write(&file, &picture.bytes(scene, Some(&path), Some(&report), &caption(&report), PICTURE_SIZE)?)?;
         report.picture_file = Some(file.display().to_string());
     }
     Ok(report)

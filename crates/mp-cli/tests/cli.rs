@@ -283,6 +283,29 @@ fn pictures_are_the_same_twice() {
     assert!(some(|[r, g, b]| *r > 120 && *g < 90 && *b < 90) > 50, "the goal is red");
 }
 
+/// The page of the viewer: the same twice, nothing from elsewhere, and the scene inside is what the program wrote.
+#[test]
+fn pages_hold_scene_and_path() {
+    let dir = Dir::new();
+    dir.write("p.txt", "3\n-2 0 1 0 0 0\n0 0 1 0.3 0 0\n2 0 1 0.7 0 0\n");
+    for name in ["a.html", "b.html", "scene.mpv"] {
+        let run = mp(&dir, &["render", "window.env", "p.txt", "--out", name]);
+        assert_eq!(run.code, 0, "{run:?}");
+    }
+    let page = dir.read("a.html");
+    assert_eq!(page, dir.read("b.html"));
+    assert!(page.starts_with("<!doctype html>") && page.contains("<canvas") && !page.contains("https://"));
+    let scene = mp_view::SceneFile::parse(&dir.bytes("scene.mpv")).unwrap();
+    assert_eq!((scene.name.as_str(), scene.bodies.len(), scene.paths.len()), ("window", 5, 1));
+    assert!(!scene.paths[0].verified, "this path goes through a wall");
+
+    let run = mp(&dir, &["plan", "window.env", "--out", "q.txt", "--picture", "run.html", "--json"]);
+    assert_eq!((run.code, &run.json()["picture_file"]), (0, &"run.html".into()), "{run:?}");
+    assert!(dir.read("run.html").len() > 100_000);
+    let run = mp(&dir, &["render", "window.env", "--out", "x.pdf"]);
+    assert!(run.code != 0 && run.stderr.contains(".pdf"), "{run:?}");
+}
+
 #[test]
 fn scenes_are_exported_for_other_planners() {
     let dir = Dir::new();

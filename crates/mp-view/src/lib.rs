@@ -20,6 +20,7 @@ mod bytes;
 mod error;
 mod model;
 mod of_scene;
+mod page;
 
 pub use error::ViewError;
 pub use model::{
