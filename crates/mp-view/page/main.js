@@ -39,7 +39,7 @@ function firstSettings(scene) {
     path: scene.paths.length ? 0 : -1,
     animation: "step",
     time: 0,
-    copies: 40,
+    copies: 30,
     copyMode: "transparent",
     start: true,
     goals: true,

@@ -134,7 +134,7 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
+      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: mode === "wire" ? colors.wire : colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
     }
     return items.sort((a, b) => a.shape - b.shape);
   }
@@ -176,24 +176,24 @@ export class PictureMaker {
   lines(s, colors) {
     const trees = this.trees.flatMap(({ lines, upTo }, i) => {
       const count = upTo[Math.round(s.growth * (upTo.length - 1))];
-      return s.trees[i] ? [{ set: lines, count, width: 1, color: treeColor(this.scene.trees[i], i, colors) }] : [];
+      return s.trees[i] ? [{ set: lines, count, width: 1, color: treeColor(this.scene.trees[i], i, colors), alpha: 0.6, over: false }] : [];
     });
-    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.lines, count: this.roadmap.lines.count, width: 1, color: null }] : [];
+    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.lines, count: this.roadmap.lines.count, width: 1, color: null, alpha: 1, over: false }] : [];
     const traces = this.traces.flatMap((set, i) => {
       if (!s.trace) return [];
       const shown = i === s.path;
-      return [{ set, count: set.count, width: shown ? 3 : 1, color: shown ? colors.path : colors.other }];
+      return [{ set, count: set.count, width: shown ? 3 : 1, color: shown ? colors.path : colors.other, alpha: 1, over: true }];
     });
     return [...roadmap, ...trees, ...traces];
   }
 
   /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
   points(s, colors) {
-    const roots = this.trees.flatMap(({ roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(this.scene.trees[i], i, colors) }] : []));
-    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null }] : [];
+    const roots = this.trees.flatMap(({ roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(this.scene.trees[i], i, colors), over: false }] : []));
+    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null, over: false }] : [];
     this.marker.clear();
     if (s.marked) this.marker.append(new Float32Array(s.marked), () => [1, 1, 1, 1]);
-    return [...roadmap, ...roots, { set: this.marker, count: this.marker.count, color: colors.picked }];
+    return [...roadmap, ...roots, { set: this.marker, count: this.marker.count, color: colors.picked, over: true }];
   }
 
   /** The section plane: what lies on its positive side is cut away. @param {Settings} s @returns {Picture["plane"]} */

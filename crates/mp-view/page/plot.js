@@ -1,5 +1,7 @@
 // The clearance along the path as a small plot. Press or drag in it to go to a configuration.
 
+import { brief } from "mp/dom.js";
+
 /** @typedef {import("mp/scene.js").Path} Path */
 
 export class ClearancePlot {
@@ -33,7 +35,7 @@ export class ClearancePlot {
 
   range() {
     const [low, high] = this.extremes();
-    return `${Number(low.toPrecision(3))} to ${Number(high.toPrecision(3))} m`;
+    return `${brief(low)} to ${brief(high)} m`;
   }
 
   /** @param {number} time */
@@ -62,7 +64,7 @@ export class ClearancePlot {
     context.fillStyle = style.color;
     context.font = "11px system-ui, sans-serif";
     const now = clearance[Math.min(Math.round(time), clearance.length - 1)];
-    context.fillText(`clearance ${Number(now.toPrecision(3))} m (least ${Number(low.toPrecision(3))} m)`, 4, 11);
+    context.fillText(`clearance ${brief(now)} m (least ${brief(low)} m)`, 4, 11);
   }
 
   /** @param {CanvasRenderingContext2D} context @param {Float32Array} values @param {(i: number) => number} x

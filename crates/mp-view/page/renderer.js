@@ -16,8 +16,9 @@ import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGM
 /** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number,
  *  body: number, role: Role, index: number}} Item
  *  A copy of a shape; `index` is the number of the goal or of the configuration. Of surfaces at the same place, the one with the highest layer is seen. */
-/** @typedef {{set: LineSet, count: number, width: number, color: Color | null}} Lines */
-/** @typedef {{set: PointSet, count: number, color: Color | null}} Points */
+/** @typedef {{set: LineSet, count: number, width: number, color: Color | null, alpha: number, over: boolean}} Lines */
+/** @typedef {{set: PointSet, count: number, color: Color | null, over: boolean}} Points
+ *  What is `over` is drawn over transparent things. */
 /** @typedef {{items: Item[], lines: Lines[], points: Points[], plane: [number, number, number, number] | null, edges: boolean,
  *  flat: boolean}} Picture  `flat`: a planar scene, where later things hide earlier ones. */
 /** @typedef {{first: number, count: number, item: Item, items: Item[]}} Batch copies that are drawn by one call */
@@ -67,21 +68,26 @@ export class Renderer {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(picture.flat ? gl.ALWAYS : gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    const opaque = grouped(picture.items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer));
-    const clear = grouped(this.farToNear(picture.items.filter((i) => i.mode === "transparent"), picture.flat));
-    this.upload([...opaque.items, ...clear.items]);
-    const under = opaque.batches.filter((b) => b.item.layer === 0);
-    this.drawSurfaces(under, 0, picture);
-    this.drawLines(picture);
-    this.drawSurfaces(opaque.batches.filter((b) => b.item.layer > 0), 0, picture);
-    this.drawSurfaces(clear.batches, opaque.items.length, picture);
-    this.drawPoints(picture);
+    const [low, middle, high] = picture.flat ? layered(picture.items) : this.byDepth(picture.items);
+    this.upload([...low, ...middle, ...high]);
+    this.drawSurfaces(low, 0, picture);
+    this.drawLines(picture, false);
+    this.drawPoints(picture, false);
+    this.drawSurfaces(middle, low.length, picture);
+    this.drawLines(picture, true);
+    this.drawSurfaces(high, low.length + middle.length, picture);
+    this.drawPoints(picture, true);
     gl.bindVertexArray(null);
   }
 
-  /** @param {Item[]} items @param {boolean} flat */
-  farToNear(items, flat) {
-    if (flat) return items.sort((a, b) => a.layer - b.layer);
+  /** What is drawn before the lines, after them, and after the traces. @param {Item[]} items @returns {Item[][]} */
+  byDepth(items) {
+    const opaque = items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer);
+    return [opaque, this.farToNear(items.filter((i) => i.mode === "transparent")), []];
+  }
+
+  /** @param {Item[]} items */
+  farToNear(items) {
     const { back } = this.now.camera.axes();
     const depth = items.map((item) => {
       const { low, high } = this.shapes[item.shape].shape;
@@ -113,10 +119,10 @@ export class Renderer {
     gl.bufferData(gl.ARRAY_BUFFER, out.subarray(0, items.length * COPY), gl.DYNAMIC_DRAW);
   }
 
-  /** @param {Batch[]} batches @param {number} shift of the copies' indices @param {Picture} picture */
-  drawSurfaces(batches, shift, picture) {
+  /** @param {Item[]} items @param {number} shift of the copies' indices @param {Picture} picture */
+  drawSurfaces(items, shift, picture) {
     const gl = this.gl;
-    for (const batch of batches) {
+    for (const batch of grouped(items)) {
       this.useSurface(picture);
       const buffers = this.shapes[batch.item.shape];
       const first = batch.first + shift;
@@ -212,28 +218,28 @@ export class Renderer {
     this.counted(2 * count);
   }
 
-  /** Trees, roadmap and traces. @param {Picture} picture */
-  drawLines(picture) {
+  /** Trees, roadmap and traces. @param {Picture} picture @param {boolean} over */
+  drawLines(picture, over) {
     const gl = this.gl;
     this.useLine(picture);
     gl.uniform3f(this.lineAt.origin, 0, 0, 0);
     gl.uniform4f(this.lineAt.turn, 0, 0, 0, 1);
     gl.uniform1f(this.lineAt.cut, 0);
-    for (const { set, count, width, color } of picture.lines) {
-      if (!count) continue;
-      gl.uniform4f(this.lineAt.paint, ...(color ?? [0, 0, 0]), color ? 1 : 0);
+    gl.enable(gl.BLEND);
+    for (const { set, count, width, color, alpha } of picture.lines.filter((l) => l.over === over && l.count)) {
+      gl.uniform4f(this.lineAt.paint, ...(color ?? [0, 0, 0]), color ? alpha : 0);
       this.strips(set, count, width);
     }
+    gl.disable(gl.BLEND);
   }
 
-  /** @param {Picture} picture */
-  drawPoints(picture) {
+  /** @param {Picture} picture @param {boolean} over */
+  drawPoints(picture, over) {
     const gl = this.gl;
     gl.useProgram(this.point);
     gl.uniformMatrix4fv(this.pointAt.both, false, this.now.both);
     gl.uniform1f(this.pointAt.ratio, this.now.ratio);
-    for (const { set, count, color } of picture.points) {
-      if (!count) continue;
+    for (const { set, count, color } of picture.points.filter((p) => p.over === over && p.count)) {
       gl.uniform4f(this.pointAt.paint, ...(color ?? [0, 0, 0]), color ? 1 : 0);
       gl.bindVertexArray(set.vao);
       gl.drawArrays(gl.POINTS, 0, count);
@@ -255,7 +261,13 @@ function rotated(m, v) {
   return [row(0), row(1), row(2)];
 }
 
-/** Neighbours that one call can draw. @param {Item[]} items @returns {{items: Item[], batches: Batch[]}} */
+/** Of a planar scene: obstacles, start, goals and copies, the robot. @param {Item[]} items @returns {Item[][]} */
+function layered(items) {
+  const sorted = items.sort((a, b) => a.layer - b.layer);
+  return [sorted.filter((i) => i.layer === 0), sorted.filter((i) => i.layer > 0 && i.layer < 4), sorted.filter((i) => i.layer === 4)];
+}
+
+/** Neighbours that one call can draw. @param {Item[]} items @returns {Batch[]} */
 function grouped(items) {
   /** @type {Batch[]} */
   const batches = [];
@@ -267,5 +279,5 @@ function grouped(items) {
       batches[batches.length - 1].items.push(item);
     } else batches.push({ first: i, count: 1, item, items: [item] });
   });
-  return { items, batches };
+  return batches;
 }

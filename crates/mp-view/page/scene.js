@@ -85,7 +85,7 @@ class Blob {
     const end = this.begin + offset + count * Kind.BYTES_PER_ELEMENT;
     check(end <= this.bytes.length, `The scene file is too short: the array of ${what} reaches beyond its end.`);
     check(count % group === 0, `In the scene file, the array of ${what} must have a multiple of ${group} entries.`);
-    return /** @type {Arrays[K]} */ (new Kind(this.bytes.buffer, this.bytes.byteOffset + this.begin + offset, count));
+    return /** @type {Arrays[K]} */ (new Kind(/** @type {ArrayBuffer} */ (this.bytes.buffer), this.bytes.byteOffset + this.begin + offset, count));
   }
 
   /** An array of finite numbers.

@@ -60,11 +60,11 @@ export class Timeline {
       el("div", { class: "bar" },
         el("span", { class: "segments", role: "radiogroup", "aria-label": "Animation" }, ...this.modes),
         el("span", { class: "group" },
-          button("⏮", () => this.scrub(0), { "aria-label": "First configuration", title: "First (Home)" }),
-          button("◀", () => this.step(-1), { "aria-label": "Previous configuration", title: "Previous (←)" }),
+          button("«", () => this.scrub(0), { "aria-label": "First configuration", title: "First (Home)" }),
+          button("‹", () => this.step(-1), { "aria-label": "Previous configuration", title: "Previous (←)" }),
           this.playButton,
-          button("▶", () => this.step(1), { "aria-label": "Next configuration", title: "Next (→)" }),
-          button("⏭", () => this.scrub(this.last), { "aria-label": "Last configuration", title: "Last (End)" })),
+          button("›", () => this.step(1), { "aria-label": "Next configuration", title: "Next (→)" }),
+          button("»", () => this.scrub(this.last), { "aria-label": "Last configuration", title: "Last (End)" })),
         this.autoControls, this.allControls, this.output),
       this.slider, this.plot.canvas);
   }
@@ -78,6 +78,7 @@ export class Timeline {
   /** After another path was chosen. */
   showPath() {
     byId("timeline").hidden = !this.path;
+    if (!this.slider) return;
     this.slider.max = String(this.last);
     this.settings.time = Math.min(this.settings.time, this.last);
     const { copies } = this;
@@ -93,6 +94,7 @@ export class Timeline {
       const input = /** @type {HTMLInputElement} */ (label.firstElementChild);
       input.checked = input.value === animation;
     });
+    if (!this.slider) return;
     this.slider.step = animation === "step" ? "1" : "any";
     this.slider.valueAsNumber = time;
     const words = `${brief(Math.round(time) + 1)} of ${brief(this.last + 1)}`;
