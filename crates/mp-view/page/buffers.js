@@ -1,6 +1,6 @@
 // Buffers on the graphics card: shapes, and lines and points that can grow.
 
-/** @typedef {import("mp/shapes.js").Shape} Shape */
+/** @import { Shape } from "mp/shapes.js" */
 /** @typedef {[number, number, number, number]} Rgba between 0 and 1 */
 
 /** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {WebGLProgram} */
@@ -42,7 +42,6 @@ class GrowingBuffer {
     this.size = 0;
     this.room = 0;
   }
-
   /** @param {ArrayBufferView} bytes */
   append(bytes) {
     const gl = this.gl;
@@ -51,7 +50,6 @@ class GrowingBuffer {
     gl.bufferSubData(gl.ARRAY_BUFFER, this.size, bytes);
     this.size += bytes.byteLength;
   }
-
   /** @param {number} needed bytes */
   grow(needed) {
     const gl = this.gl;
@@ -77,11 +75,7 @@ class ColoredRows {
     this.rows = new GrowingBuffer(gl);
     this.vao = gl.createVertexArray();
   }
-
-  get count() {
-    return this.rows.size / this.stride;
-  }
-
+  get count() { return this.rows.size / this.stride; }
   /** Adds rows at the end. @param {Float32Array} coordinates @param {(row: number) => Rgba} color */
   append(coordinates, color) {
     const count = coordinates.length / this.floats;
@@ -97,14 +91,11 @@ class ColoredRows {
     this.rows.append(bytes);
     this.bind();
   }
-
   /** Tells the vertex array where the rows are, as the buffer may be a new one. */
   bind() {}
 
   /** Forgets all rows. */
-  clear() {
-    this.rows.size = 0;
-  }
+  clear() { this.rows.size = 0; }
 }
 
 /** Segments: two ends and a colour each. */
@@ -114,7 +105,6 @@ export class LineSet extends ColoredRows {
     super(gl, 6);
     this.strip = strip;
   }
-
   bind() {
     const gl = this.gl;
     gl.bindVertexArray(this.vao);
@@ -134,9 +124,7 @@ export class LineSet extends ColoredRows {
 /** Points: a place and a colour each; the fourth number of the colour is the size as a part of 16 pixels. */
 export class PointSet extends ColoredRows {
   /** @param {WebGL2RenderingContext} gl */
-  constructor(gl) {
-    super(gl, 3);
-  }
+  constructor(gl) { super(gl, 3); }
 
   bind() {
     const gl = this.gl;
@@ -170,12 +158,8 @@ export class ShapeBuffers {
     this.lines = new LineSet(gl, strip);
     this.lines.append(shape.segments, () => [1, 1, 1, 1]);
   }
-
   /** All edges; made when they are first drawn. */
-  get wire() {
-    return (this.allEdges ??= this.indexed(this.shape.wire));
-  }
-
+  get wire() { return (this.allEdges ??= this.indexed(this.shape.wire)); }
   /** @param {Uint32Array} indices */
   indexed(indices) {
     const gl = this.gl;
@@ -193,7 +177,6 @@ export class ShapeBuffers {
     gl.bindVertexArray(null);
     return { vao, count: indices.length };
   }
-
   /** Takes the copies from the one with this index on. @param {number} first */
   bindCopies(first) {
     const gl = this.gl;

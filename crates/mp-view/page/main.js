@@ -12,11 +12,10 @@ import { fromBase64, readScene } from "mp/scene.js";
 import { shapesOf } from "mp/shapes.js";
 import { Timeline } from "mp/timeline.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/picture.js").Settings} Settings */
-/** @typedef {import("mp/picture.js").Animation} Animation */
-/** @typedef {import("mp/renderer.js").Mode} Mode */
-/** @typedef {import("mp/camera.js").ViewName} ViewName */
+/** @import { ViewName } from "mp/camera.js" */
+/** @import { Animation, Settings } from "mp/picture.js" */
+/** @import { Mode } from "mp/renderer.js" */
+/** @import { Scene } from "mp/scene.js" */
 /** @typedef {{drawCalls: number, triangles: number, milliseconds: number, frames: number}} Stats
  *  `milliseconds`: the time that scripts took for the last frame. */
 
@@ -78,13 +77,11 @@ class Viewer {
     if (scene.planar) this.setPerspective(false);
     this.look(scene.planar ? "top" : "iso");
   }
-
   /** Takes the graphics card into use: at the beginning, and after it was lost. */
   start() {
     this.renderer = new Renderer(this.canvas, this.shapes);
     this.pictures = new PictureMaker(this.scene, this.ofBody, this.renderer);
   }
-
   /** @returns {import("mp/panels.js").Actions} */
   actions() {
     return {
@@ -97,7 +94,6 @@ class Viewer {
       savePicture: () => this.savePicture(),
     };
   }
-
   listen() {
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     addEventListener("keydown", (e) => this.key(e));
@@ -114,7 +110,6 @@ class Viewer {
       this.changed();
     });
   }
-
   resize() {
     const ratio = Math.min(devicePixelRatio || 1, 2);
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -128,14 +123,12 @@ class Viewer {
     if (fresh) this.camera.fit();
     if (this.stats.frames) this.draw();
   }
-
   /** Asks for one redraw, soon. */
   changed() {
     if (this.waiting) return;
     this.waiting = true;
     requestAnimationFrame((now) => this.frame(now));
   }
-
   /** @param {number} now milliseconds */
   frame(now) {
     this.waiting = false;
@@ -149,7 +142,6 @@ class Viewer {
     }
     if (flies || plays) this.changed();
   }
-
   /** Draws now. */
   draw() {
     if (this.lost || !this.pictures || !this.renderer) return;
@@ -161,39 +153,33 @@ class Viewer {
     const milliseconds = performance.now() - begin;
     this.stats = { drawCalls: this.renderer.calls, triangles: this.renderer.triangles, milliseconds, frames: this.stats.frames + 1 };
   }
-
   /** @param {ViewName} view */
   look(view) {
     this.camera.look(view);
     this.fit();
   }
-
   fit() {
     this.camera.fit();
     this.changed();
   }
-
   /** @param {boolean} on */
   setPerspective(on) {
     this.camera.perspective = on;
     this.panels?.showPerspective(on);
     this.changed();
   }
-
   /** @param {string} theme */
   setTheme(theme) {
     document.documentElement.dataset.theme = theme;
     this.settings.dark = theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
     this.changed();
   }
-
   /** @param {number} path */
   choosePath(path) {
     this.settings.path = path;
     this.timeline?.showPath();
     this.changed();
   }
-
   savePicture() {
     this.draw();
     this.canvas.toBlob((blob) => {
@@ -203,7 +189,6 @@ class Viewer {
       setTimeout(() => URL.revokeObjectURL(link.href), 10000);
     });
   }
-
   /** Says what is at a pixel. @param {number} x @param {number} y */
   click(x, y) {
     const picked = this.picture ? (this.picker?.pick(x, y, this.picture, this.settings) ?? null) : null;
@@ -213,21 +198,18 @@ class Viewer {
     this.panels?.showPicked(picked, () => this.forget());
     this.changed();
   }
-
   /** Looks at what is at a pixel. @param {number} x @param {number} y */
   center(x, y) {
     const picked = this.picture && this.picker?.pick(x, y, this.picture, this.settings);
     if (picked) this.camera.target = picked.point;
     this.changed();
   }
-
   forget() {
     this.settings.marked = null;
     byId("hint").textContent = "";
     this.panels?.showPicked(null, () => {});
     this.changed();
   }
-
   /** @param {KeyboardEvent} e */
   key(e) {
     if (isTyping(e.target) || e.ctrlKey || e.metaKey || e.altKey || document.querySelector("dialog[open]")) return;
@@ -244,7 +226,6 @@ class Viewer {
     else if (e.key === "?") byId("help-button").click();
     else if (e.key === "Escape") this.forget();
   }
-
   /** A way to show the path, or to draw surfaces. @param {Animation | Mode} mode */
   setMode(mode) {
     if (mode === "all" || mode === "step" || mode === "auto") this.timeline?.setAnimation(mode);

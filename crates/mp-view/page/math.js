@@ -44,13 +44,11 @@ export const unplace = (pose, at, p) => unrotate(pose, at, sub(p, [pose[at], pos
 /** The pose that moves nothing. */
 export const IDENTITY = Object.freeze([0, 0, 0, 0, 0, 0, 1]);
 
-/**
- * Interpolates poses: places linearly, quaternions linearly on the shorter way and then normalised.
+/** Interpolates poses: places linearly, quaternions linearly on the shorter way and then normalised.
  * @param {Numbers} from @param {number} a where the first pose begins
  * @param {Numbers} to @param {number} b where the second pose begins
  * @param {number} t between 0 and 1
- * @param {Float32Array | number[]} out @param {number} at
- */
+ * @param {Float32Array | number[]} out @param {number} at */
 export function lerpPose(from, a, to, b, t, out, at) {
   for (let k = 0; k < 3; k++) out[at + k] = from[a + k] + (to[b + k] - from[a + k]) * t;
   let same = 0;

@@ -2,12 +2,11 @@
 
 import { brief, button, byId, checkbox, el, factList, labelled, select, slider } from "mp/dom.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/scene.js").Path} Path */
-/** @typedef {import("mp/picture.js").Settings} Settings */
-/** @typedef {import("mp/picking.js").Picked} Picked */
-/** @typedef {import("mp/renderer.js").Mode} Mode */
-/** @typedef {import("mp/camera.js").ViewName} ViewName */
+/** @import { ViewName } from "mp/camera.js" */
+/** @import { Picked } from "mp/picking.js" */
+/** @import { Settings } from "mp/picture.js" */
+/** @import { Mode } from "mp/renderer.js" */
+/** @import { Path, Scene } from "mp/scene.js" */
 /** @typedef {{changed: () => void, look: (view: ViewName) => void, fit: () => void, setPerspective: (on: boolean) => void,
  *  choosePath: (path: number) => void, setTheme: (theme: string) => void, savePicture: () => void}} Actions */
 
@@ -49,7 +48,6 @@ export class Panels {
     this.triangles = triangles;
     this.build();
   }
-
   build() {
     const { scene } = this;
     document.title = scene.name || "Scene";
@@ -64,13 +62,11 @@ export class Panels {
     this.buildHelp();
     this.buildPanelButton();
   }
-
   /** @param {() => void} change */
   set(change) {
     change();
     this.actions.changed();
   }
-
   /** @returns {HTMLElement[]} */
   pictureControls() {
     const { settings: s, actions } = this;
@@ -88,7 +84,6 @@ export class Panels {
       button("Save picture", actions.savePicture),
     ];
   }
-
   sectionControls() {
     const { settings: s } = this;
     this.axis = select([["-1", "none"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "-1", (v) => this.setSection(Number(v)));
@@ -97,7 +92,6 @@ export class Panels {
     this.sectionPlace = el("div", { hidden: true }, labelled("Place of the section", at), flip);
     return el("div", {}, labelled("Section through obstacles", this.axis), this.sectionPlace);
   }
-
   /** @param {number} axis −1 for none */
   setSection(axis) {
     this.settings.section.axis = axis;
@@ -105,19 +99,14 @@ export class Panels {
     if (this.sectionPlace) this.sectionPlace.hidden = axis < 0;
     this.actions.changed();
   }
-
   /** @param {Mode} mode */
   setMode(mode) {
     this.settings.mode = mode;
     if (this.mode) this.mode.value = mode;
     this.actions.changed();
   }
-
   /** @param {boolean} on */
-  showPerspective(on) {
-    if (this.projection) this.projection.value = on ? "perspective" : "parallel";
-  }
-
+  showPerspective(on) { if (this.projection) this.projection.value = on ? "perspective" : "parallel"; }
   /** @returns {HTMLElement[]} */
   shownControls() {
     const { scene, settings: s } = this;
@@ -137,7 +126,6 @@ export class Panels {
     }
     return boxes;
   }
-
   /** @returns {HTMLElement[]} */
   bodyList() {
     const { scene, settings: s } = this;
@@ -150,7 +138,6 @@ export class Panels {
     });
     return [el("ul", { class: "bodies" }, ...rows)];
   }
-
   /** @returns {HTMLElement[]} */
   pathList() {
     const { scene, settings: s, actions } = this;
@@ -160,7 +147,6 @@ export class Panels {
     });
     return [el("ul", { class: "paths" }, ...rows)];
   }
-
   /** @returns {[string, string][]} */
   sceneFacts() {
     const { scene } = this;
@@ -179,7 +165,6 @@ export class Panels {
     });
     return facts;
   }
-
   /** The numbers of the present configuration. */
   update() {
     const { scene, settings: s } = this;
@@ -189,7 +174,6 @@ export class Panels {
     const facts = scene.columns.flatMap((c, k) => [el("dt", {}, c.name), el("dd", {}, `${brief(path.rows[i + k])} ${c.unit}`)]);
     this.row?.replaceChildren(...facts);
   }
-
   /** @param {Picked | null} picked @param {() => void} close */
   showPicked(picked, close) {
     if (!picked) return this.picked?.replaceChildren();
@@ -197,7 +181,6 @@ export class Panels {
     this.picked?.replaceChildren(el("div", { class: "card" }, el("header", {}, el("strong", {}, picked.title), closer), factList(picked.facts)));
     byId("hint").textContent = [picked.title, ...picked.facts.slice(0, 2).map(([name, value]) => `${name} ${value}`)].join(" · ");
   }
-
   buildHelp() {
     const dialog = /** @type {HTMLDialogElement} */ (byId("help"));
     const close = button("Close", () => dialog.close());
@@ -205,12 +188,10 @@ export class Panels {
     dialog.setAttribute("aria-labelledby", "help-title");
     byId("help-button").onclick = () => dialog.showModal();
   }
-
   buildPanelButton() {
     byId("panel-button").onclick = () => this.togglePanel();
     if (matchMedia("(max-width: 700px)").matches) this.togglePanel();
   }
-
   togglePanel() {
     const shown = document.body.classList.toggle("no-panel") === false;
     byId("panel-button").setAttribute("aria-expanded", String(shown));

@@ -3,15 +3,12 @@
 import { brief } from "mp/dom.js";
 import { add, cross, dot, place, pointAt, scale, sub, unplace, unrotate } from "mp/math.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/camera.js").Camera} Camera */
-/** @typedef {import("mp/camera.js").Ray} Ray */
-/** @typedef {import("mp/math.js").Vec3} Vec3 */
-/** @typedef {import("mp/math.js").Mat4} Mat4 */
-/** @typedef {import("mp/shapes.js").Shape} Shape */
-/** @typedef {import("mp/renderer.js").Picture} Picture */
-/** @typedef {import("mp/renderer.js").Item} Item */
-/** @typedef {import("mp/picture.js").Settings} Settings */
+/** @import { Camera, Ray } from "mp/camera.js" */
+/** @import { Mat4, Vec3 } from "mp/math.js" */
+/** @import { Settings } from "mp/picture.js" */
+/** @import { Item, Picture } from "mp/renderer.js" */
+/** @import { Scene } from "mp/scene.js" */
+/** @import { Shape } from "mp/shapes.js" */
 /** @typedef {{title: string, facts: [string, string][], point: Vec3, time: number | null, marked: boolean}} Picked
  *  `time` is set for a configuration of the path. */
 /** @typedef {{points: Float32Array, count: number, describe: (i: number) => Omit<Picked, "point">}} Cloud points to click on */
@@ -74,7 +71,6 @@ export class Picker {
     this.shapes = shapes;
     this.camera = camera;
   }
-
   /** @param {number} x @param {number} y pixels @param {Picture} picture @param {Settings} settings @returns {Picked | null} */
   pick(x, y, picture, settings) {
     const ray = this.camera.ray(x, y);
@@ -84,7 +80,6 @@ export class Picker {
     if (point) return point;
     return surface ? this.describeItem(surface.item, add(ray.origin, scale(ray.direction, surface.t)), settings) : null;
   }
-
   /** The nearest body. @param {Ray} ray @param {[number, number]} pixel @param {Picture} picture */
   surface(ray, pixel, picture) {
     const { plane, flat } = picture;
@@ -102,7 +97,6 @@ export class Picker {
     }
     return best;
   }
-
   /** @param {Ray} ray @param {[number, number]} pixel @param {Item} item @param {Shape} shape @param {Mat4} both */
   meetLines(ray, pixel, item, shape, both) {
     let best = Infinity;
@@ -113,7 +107,6 @@ export class Picker {
     }
     return best;
   }
-
   /** The point nearest to the pixel that no surface hides. @param {Ray} ray @param {number} x @param {number} y
    * @param {Settings} settings @param {number} limit @returns {Picked | null} */
   point(ray, x, y, settings, limit) {
@@ -134,7 +127,6 @@ export class Picker {
     }
     return best;
   }
-
   /** All points that can be clicked. @param {Settings} s @returns {Cloud[]} */
   clouds(s) {
     const { paths, trees, roadmap } = this.scene;
@@ -149,7 +141,6 @@ export class Picker {
     if (roadmap && s.roadmap) clouds.push({ points: roadmap.nodes, count: roadmap.kind.length, describe: (i) => this.describeMilestone(i) });
     return clouds;
   }
-
   /** @param {number} p @param {number} i @returns {Omit<Picked, "point">} */
   describeConfiguration(p, i) {
     const path = this.scene.paths[p];
@@ -157,13 +148,11 @@ export class Picker {
     if (path.clearance) facts.push(["clearance", `at least ${brief(path.clearance[i])} m`]);
     return { title: `Configuration ${i + 1} of ${path.count}, path “${path.name}”`, facts, time: i, marked: true };
   }
-
   /** The numbers of a configuration. @param {number} p @param {number} i @returns {[string, string][]} */
   rowFacts(p, i) {
     const { columns, paths } = this.scene;
     return columns.map((c, k) => [c.name, `${brief(paths[p].rows[i * columns.length + k])} ${c.unit}`]);
   }
-
   /** @param {number} t @param {number} i @returns {Omit<Picked, "point">} */
   describeNode(t, i) {
     const { name, nodes, parents } = this.scene.trees[t];
@@ -172,7 +161,6 @@ export class Picker {
     const parent = parents[i] < 0 ? "none: this is a root" : `node ${brief(parents[i])}`;
     return { title: `Node ${brief(i)} of the tree “${name}”`, facts: [placeFact(pointAt(nodes, i)), ["parent", parent], ["steps to the root", brief(depth)]], time: null, marked: true };
   }
-
   /** @param {number} i @returns {Omit<Picked, "point">} */
   describeMilestone(i) {
     const { nodes, component, kind, edges } = /** @type {NonNullable<Scene["roadmap"]>} */ (this.scene.roadmap);
@@ -185,7 +173,6 @@ export class Picker {
       marked: true,
     };
   }
-
   /** @param {Item} item @param {Vec3} point @param {Settings} s @returns {Picked} */
   describeItem(item, point, s) {
     const body = this.scene.bodies[item.body];

@@ -2,7 +2,7 @@
 
 import { brief } from "mp/dom.js";
 
-/** @typedef {import("mp/scene.js").Path} Path */
+/** @import { Path } from "mp/scene.js" */
 
 export class ClearancePlot {
   /** @param {HTMLCanvasElement} canvas @param {(time: number) => void} scrub */
@@ -19,25 +19,21 @@ export class ClearancePlot {
     canvas.addEventListener("pointerdown", (e) => (canvas.setPointerCapture(e.pointerId), go(e)));
     canvas.addEventListener("pointermove", (e) => canvas.hasPointerCapture(e.pointerId) && go(e));
   }
-
   /** @param {Path | null} path */
   show(path) {
     this.path = path?.clearance ? path : null;
     this.canvas.hidden = !this.path;
     this.canvas.setAttribute("aria-label", this.path ? `Clearance along the path: ${this.range()}` : "");
   }
-
   /** The finite clearances' least and greatest. @returns {[number, number]} */
   extremes() {
     const all = [...(this.path?.clearance ?? [])].filter(Number.isFinite);
     return all.reduce(([low, high], x) => [Math.min(low, x), Math.max(high, x)], /** @type {[number, number]} */ ([Infinity, 0]));
   }
-
   range() {
     const [low, high] = this.extremes();
     return `${brief(low)} to ${brief(high)} m`;
   }
-
   /** @param {number} time */
   draw(time) {
     const context = this.canvas.getContext("2d");
@@ -66,7 +62,6 @@ export class ClearancePlot {
     const now = clearance[Math.min(Math.round(time), clearance.length - 1)];
     context.fillText(`clearance ${brief(now)} m (least ${brief(low)} m)`, 4, 11);
   }
-
   /** @param {CanvasRenderingContext2D} context @param {Float32Array} values @param {(i: number) => number} x
    * @param {(c: number) => number} y @param {string} color */
   curve(context, values, x, y, color) {

@@ -4,13 +4,10 @@ import { COPY, LineSet, PointSet, ShapeBuffers, program, uniforms } from "mp/buf
 import { dot, normalize, place } from "mp/math.js";
 import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGMENT, SURFACE_VERTEX } from "mp/shaders.js";
 
-/** @typedef {import("mp/camera.js").Camera} Camera */
-/** @typedef {import("mp/colors.js").Palette} Palette */
-/** @typedef {import("mp/colors.js").Color} Color */
-/** @typedef {import("mp/math.js").Numbers} Numbers */
-/** @typedef {import("mp/math.js").Mat4} Mat4 */
-/** @typedef {import("mp/math.js").Vec3} Vec3 */
-/** @typedef {import("mp/shapes.js").Shape} Shape */
+/** @import { Camera } from "mp/camera.js" */
+/** @import { Color, Palette } from "mp/colors.js" */
+/** @import { Mat4, Numbers, Vec3 } from "mp/math.js" */
+/** @import { Shape } from "mp/shapes.js" */
 /** @typedef {"solid" | "transparent" | "wire"} Mode */
 /** @typedef {"obstacle" | "robot" | "copy" | "start" | "goal"} Role */
 /** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number,
@@ -46,15 +43,9 @@ export class Renderer {
     this.calls = 0;
     this.triangles = 0;
   }
+  lineSet() { return new LineSet(this.gl, this.strip); }
 
-  lineSet() {
-    return new LineSet(this.gl, this.strip);
-  }
-
-  pointSet() {
-    return new PointSet(this.gl);
-  }
-
+  pointSet() { return new PointSet(this.gl); }
   /** @param {Picture} picture @param {Camera} camera @param {Palette} palette @param {number} ratio device pixels per pixel */
   draw(picture, camera, palette, ratio) {
     const gl = this.gl;
@@ -79,13 +70,11 @@ export class Renderer {
     this.drawPoints(picture, true);
     gl.bindVertexArray(null);
   }
-
   /** What is drawn before the lines, after them, and after the traces. @param {Item[]} items @returns {Item[][]} */
   byDepth(items) {
     const opaque = items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer);
     return [opaque, this.farToNear(items.filter((i) => i.mode === "transparent")), []];
   }
-
   /** @param {Item[]} items */
   farToNear(items) {
     const { back } = this.now.camera.axes();
@@ -97,12 +86,10 @@ export class Renderer {
     });
     return items.map((_, i) => i).sort((a, b) => depth[a] - depth[b]).map((i) => items[i]);
   }
-
   get now() {
     if (!this.frame) throw new Error("Nothing is being drawn.");
     return this.frame;
   }
-
   /** Writes the numbers of all copies to the graphics card. @param {Item[]} items */
   upload(items) {
     if (this.copyNumbers.length < items.length * COPY) this.copyNumbers = new Float32Array(2 * items.length * COPY);
@@ -118,7 +105,6 @@ export class Renderer {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.copies);
     gl.bufferData(gl.ARRAY_BUFFER, out.subarray(0, items.length * COPY), gl.DYNAMIC_DRAW);
   }
-
   /** @param {Item[]} items @param {number} shift of the copies' indices @param {Picture} picture */
   drawSurfaces(items, shift, picture) {
     const gl = this.gl;
@@ -136,7 +122,6 @@ export class Renderer {
       gl.depthMask(true);
     }
   }
-
   /** @param {Picture} picture */
   useSurface(picture) {
     const gl = this.gl;
@@ -152,7 +137,6 @@ export class Renderer {
     const sun = normalize([0.4, -0.6, 1]);
     gl.uniform3f(at.sun, ...rotated(view, sun));
   }
-
   /** @param {ShapeBuffers} buffers @param {Batch} batch @param {number} first */
   fill(buffers, batch, first) {
     const gl = this.gl;
@@ -170,7 +154,6 @@ export class Renderer {
     gl.disable(gl.POLYGON_OFFSET_FILL);
     this.counted((count / 3) * batch.count);
   }
-
   /** @param {ShapeBuffers} buffers @param {Batch} batch @param {number} first */
   edges(buffers, batch, first) {
     const gl = this.gl;
@@ -186,7 +169,6 @@ export class Renderer {
     gl.drawElementsInstanced(gl.LINES, count, gl.UNSIGNED_INT, 0, batch.count);
     this.counted(0);
   }
-
   /** Lines that belong to a body: copy by copy. @param {LineSet} set @param {Batch} batch @param {Picture} picture */
   bodyLines(set, batch, picture) {
     const gl = this.gl;
@@ -199,7 +181,6 @@ export class Renderer {
       this.strips(set, set.count, item.mode === "wire" ? 1.2 : 3);
     }
   }
-
   /** @param {Picture} picture */
   useLine(picture) {
     const gl = this.gl;
@@ -208,7 +189,6 @@ export class Renderer {
     gl.uniform4fv(this.lineAt.plane, picture.plane ?? [0, 0, 0, 1]);
     gl.uniform2f(this.lineAt.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
   }
-
   /** @param {LineSet} set @param {number} count @param {number} width pixels */
   strips(set, count, width) {
     const gl = this.gl;
@@ -217,7 +197,6 @@ export class Renderer {
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     this.counted(2 * count);
   }
-
   /** Trees, roadmap and traces. @param {Picture} picture @param {boolean} over */
   drawLines(picture, over) {
     const gl = this.gl;
@@ -232,7 +211,6 @@ export class Renderer {
     }
     gl.disable(gl.BLEND);
   }
-
   /** @param {Picture} picture @param {boolean} over */
   drawPoints(picture, over) {
     const gl = this.gl;
@@ -246,7 +224,6 @@ export class Renderer {
       this.counted(0);
     }
   }
-
   /** @param {number} triangles */
   counted(triangles) {
     this.calls++;

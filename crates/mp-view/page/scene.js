@@ -22,9 +22,7 @@
 const KINDS = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, i32: Int32Array, u8: Uint8Array };
 
 /** @param {boolean} holds @param {string} sentence @returns {asserts holds} */
-function check(holds, sentence) {
-  if (!holds) throw new Error(sentence);
-}
+function check(holds, sentence) { if (!holds) throw new Error(sentence); }
 
 /** @param {unknown} value @param {string} what @returns {Json} */
 function object(value, what) {
@@ -69,9 +67,7 @@ class Blob {
     this.bytes = bytes;
     this.begin = begin;
   }
-
-  /** The array that a head entry names, without copying it.
-   * @template {keyof Arrays} K
+  /** The array that a head entry names, without copying it. @template {keyof Arrays} K
    * @param {unknown} entry @param {K} type @param {string} what @param {number} group entries that belong together
    * @returns {Arrays[K]} */
   array(entry, type, what, group = 1) {
@@ -87,9 +83,7 @@ class Blob {
     check(count % group === 0, `In the scene file, the array of ${what} must have a multiple of ${group} entries.`);
     return /** @type {Arrays[K]} */ (new Kind(/** @type {ArrayBuffer} */ (this.bytes.buffer), this.bytes.byteOffset + this.begin + offset, count));
   }
-
-  /** An array of finite numbers.
-   * @template {"f32" | "f64"} K
+  /** An array of finite numbers. @template {"f32" | "f64"} K
    * @param {unknown} entry @param {K} type @param {string} what @param {number} group @returns {Arrays[K]} */
   finite(entry, type, what, group) {
     const array = this.array(entry, type, what, group);

@@ -2,8 +2,7 @@
 
 import { triangulate } from "mp/triangulate.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/scene.js").Body} Body */
+/** @import { Body, Scene } from "mp/scene.js" */
 /** @typedef {{positions: Float32Array, triangles: Uint32Array, edges: Uint32Array, wire: Uint32Array, segments: Float32Array,
  *  closed: boolean, low: number[], high: number[]}} Shape
  *  `edges` are the feature edges and `wire` all edges, as pairs of corners; `segments` are lines, six numbers each. */

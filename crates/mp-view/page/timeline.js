@@ -4,10 +4,9 @@
 import { brief, button, byId, el, labelled, select, slider } from "mp/dom.js";
 import { ClearancePlot } from "mp/plot.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/picture.js").Settings} Settings */
-/** @typedef {import("mp/picture.js").Animation} Animation */
-/** @typedef {import("mp/renderer.js").Mode} Mode */
+/** @import { Animation, Settings } from "mp/picture.js" */
+/** @import { Mode } from "mp/renderer.js" */
+/** @import { Scene } from "mp/scene.js" */
 /** @typedef {"stop" | "loop" | "return"} AtEnd what happens at the end of the path */
 
 /** @type {[Animation, string][]} */
@@ -28,14 +27,8 @@ export class Timeline {
     this.build();
     this.showPath();
   }
-
-  get path() {
-    return this.scene.paths[this.settings.path] ?? null;
-  }
-
-  get last() {
-    return Math.max(0, (this.path?.count ?? 0) - 1);
-  }
+  get path() { return this.scene.paths[this.settings.path] ?? null; }
+  get last() { return Math.max(0, (this.path?.count ?? 0) - 1); }
 
   build() {
     const s = this.settings;
@@ -68,13 +61,11 @@ export class Timeline {
         this.autoControls, this.allControls, this.output),
       this.slider, this.plot.canvas);
   }
-
   /** @param {() => void} change */
   set(change) {
     change();
     this.changed();
   }
-
   /** After another path was chosen. */
   showPath() {
     byId("timeline").hidden = !this.path;
@@ -86,7 +77,6 @@ export class Timeline {
     this.plot?.show(this.path);
     this.update();
   }
-
   /** Shows the settings in the controls. */
   update() {
     const { animation, time, copies } = this.settings;
@@ -105,7 +95,6 @@ export class Timeline {
     if (this.allControls) this.allControls.hidden = animation !== "all";
     this.plot?.draw(time);
   }
-
   /** @param {Animation} animation */
   setAnimation(animation) {
     this.settings.animation = animation;
@@ -115,7 +104,6 @@ export class Timeline {
     if (animation === "auto" && this.settings.time >= this.last) this.settings.time = 0;
     this.changed();
   }
-
   toggle() {
     if (this.settings.animation !== "auto") return this.setAnimation("auto");
     this.playing = !this.playing;
@@ -123,7 +111,6 @@ export class Timeline {
     if (this.playing && this.settings.time >= this.last) this.settings.time = 0;
     this.changed();
   }
-
   /** Goes to a time, in configurations. @param {number} time */
   scrub(time) {
     const { animation } = this.settings;
@@ -132,14 +119,12 @@ export class Timeline {
     this.settings.time = animation === "step" ? Math.round(t) : t;
     this.changed();
   }
-
   /** One configuration on or back. @param {number} by */
   step(by) {
     if (this.settings.animation === "auto") this.settings.animation = "step";
     const { time } = this.settings;
     this.scrub(by > 0 ? Math.floor(time + 1e-6) + by : Math.ceil(time - 1e-6) + by);
   }
-
   /** Moves on while it plays; returns whether it plays. @param {number} now milliseconds */
   advance(now) {
     if (!this.playing || !this.last) return false;
@@ -152,7 +137,6 @@ export class Timeline {
     else this.settings.time = time;
     return this.playing;
   }
-
   /** At an end of the path. @param {number} time */
   turn(time) {
     this.settings.time = Math.max(0, Math.min(this.last, time));
@@ -161,7 +145,6 @@ export class Timeline {
     else this.direction = 1;
     if (this.atEnd === "loop") this.settings.time = 0;
   }
-
   /** @param {KeyboardEvent} e @returns {boolean} whether the key was used */
   key(e) {
     if (!this.path || e.shiftKey) return false;
