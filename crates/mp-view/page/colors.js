@@ -7,39 +7,24 @@
 /** @param {string} hex @returns {Color} */
 const color = (hex) => /** @type {Color} */ ([1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255));
 
-/** @type {Palette} */
-const LIGHT = {
-  background: color("#f6f5f2"),
-  obstacle: color("#d3c9ba"),
-  cut: color("#9a8a75"),
-  robot: color("#2f6fde"),
-  start: color("#178a4c"),
-  goal: color("#cf3535"),
-  path: color("#c75f00"),
-  fromStart: color("#3a66c4"),
-  fromGoal: color("#c0453f"),
-  wire: color("#857763"),
-  edge: color("#2b2a28"),
-  picked: color("#8a1fb8"),
-  other: color("#5d6470"),
+/** Of everything: the colour in light and in dark surroundings. @type {Record<keyof Palette, [string, string]>} */
+const COLORS = {
+  background: ["#f6f5f2", "#15181d"],
+  obstacle: ["#d3c9ba", "#b9b0a2"],
+  cut: ["#9a8a75", "#7d7263"],
+  robot: ["#2f6fde", "#4f90ff"],
+  start: ["#178a4c", "#35c274"],
+  goal: ["#cf3535", "#ff6460"],
+  path: ["#c75f00", "#ffa033"],
+  fromStart: ["#3a66c4", "#76a9ff"],
+  fromGoal: ["#c0453f", "#ff8b84"],
+  wire: ["#857763", "#b9b0a2"],
+  edge: ["#2b2a28", "#0a0b0d"],
+  picked: ["#8a1fb8", "#e49bff"],
+  other: ["#5d6470", "#a3abb8"],
 };
 
-/** @type {Palette} */
-const DARK = {
-  background: color("#15181d"),
-  obstacle: color("#b9b0a2"),
-  cut: color("#7d7263"),
-  robot: color("#4f90ff"),
-  start: color("#35c274"),
-  goal: color("#ff6460"),
-  path: color("#ffa033"),
-  fromStart: color("#76a9ff"),
-  fromGoal: color("#ff8b84"),
-  wire: color("#b9b0a2"),
-  edge: color("#0a0b0d"),
-  picked: color("#e49bff"),
-  other: color("#a3abb8"),
-};
+const [LIGHT, DARK] = [0, 1].map((i) => /** @type {Palette} */ (Object.fromEntries(Object.entries(COLORS).map(([k, c]) => [k, color(c[i])]))));
 
 /** @param {boolean} dark @returns {Palette} */
 export const palette = (dark) => (dark ? DARK : LIGHT);

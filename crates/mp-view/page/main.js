@@ -3,7 +3,7 @@
 import { Camera } from "mp/camera.js";
 import { palette } from "mp/colors.js";
 import { Controls, isTyping } from "mp/controls.js";
-import { byId, el } from "mp/dom.js";
+import { byId } from "mp/dom.js";
 import { Panels, VIEWS } from "mp/panels.js";
 import { Picker } from "mp/picking.js";
 import { PictureMaker } from "mp/picture.js";
@@ -69,7 +69,7 @@ class Viewer {
     const changed = () => this.changed();
     this.controls = new Controls(this.canvas, this.camera, scene.planar, { changed, clicked: (x, y) => this.click(x, y), centered: (x, y) => this.center(x, y) });
     const triangles = ofBody.reduce((sum, s) => sum + shapes[s].triangles.length / 3, 0);
-    this.panels = new Panels(scene, this.settings, this.actions(), triangles);
+    this.panels = new Panels(scene, this.settings, this, triangles);
     this.timeline = new Timeline(scene, this.settings, changed);
     this.picker = new Picker(scene, shapes, this.camera);
     this.listen();
@@ -81,18 +81,6 @@ class Viewer {
   start() {
     this.renderer = new Renderer(this.canvas, this.shapes);
     this.pictures = new PictureMaker(this.scene, this.ofBody, this.renderer);
-  }
-  /** @returns {import("mp/panels.js").Actions} */
-  actions() {
-    return {
-      changed: () => this.changed(),
-      look: (view) => this.look(view),
-      fit: () => this.fit(),
-      setPerspective: (on) => this.setPerspective(on),
-      choosePath: (path) => this.choosePath(path),
-      setTheme: (theme) => this.setTheme(theme),
-      savePicture: () => this.savePicture(),
-    };
   }
   listen() {
     new ResizeObserver(() => this.resize()).observe(this.canvas);
@@ -180,15 +168,6 @@ class Viewer {
     this.timeline?.showPath();
     this.changed();
   }
-  savePicture() {
-    this.draw();
-    this.canvas.toBlob((blob) => {
-      if (!blob) return;
-      const link = el("a", { href: URL.createObjectURL(blob), download: "picture.png" });
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-    });
-  }
   /** Says what is at a pixel. @param {number} x @param {number} y */
   click(x, y) {
     const picked = this.picture ? (this.picker?.pick(x, y, this.picture, this.settings) ?? null) : null;
@@ -237,7 +216,7 @@ class Viewer {
 async function sceneBytes() {
   const inside = document.getElementById("scene")?.textContent?.trim();
   if (inside) return fromBase64(inside);
-  const none = "This page holds no scene. Choose a scene file (.mpv):";
+  const none = "This page holds no scene, and there is no file scene.mpv beside it.";
   if (location.protocol === "file:") throw new Error(none);
   const answer = await fetch("scene.mpv").catch(() => null);
   if (!answer?.ok) throw new Error(none);
@@ -250,26 +229,6 @@ function show(bytes) {
   viewer.draw();
   document.body.classList.remove("loading");
   return viewer;
-}
-
-/** Lets a person choose a file, where the page has no scene that can be shown. @returns {Promise<Viewer>} */
-function choose() {
-  return new Promise((done) => {
-    const input = el("input", { type: "file", accept: ".mpv", "aria-label": "Scene file", class: "choose" });
-    input.onchange = async () => {
-      const file = input.files?.[0];
-      if (!file) return;
-      try {
-        const chosen = show(new Uint8Array(await file.arrayBuffer()));
-        showError("");
-        input.remove();
-        done(chosen);
-      } catch (error) {
-        showError(sentence(error));
-      }
-    };
-    byId("alert").after(input);
-  });
 }
 
 /** @type {Viewer | null} */
@@ -287,7 +246,6 @@ const ready = (async () => {
     viewer = show(await sceneBytes());
   } catch (error) {
     showError(sentence(error));
-    choose().then((chosen) => (viewer = chosen));
     throw error;
   }
 })();

@@ -8,7 +8,7 @@ import { brief, button, byId, checkbox, el, factList, labelled, select, slider }
 /** @import { Mode } from "mp/renderer.js" */
 /** @import { Path, Scene } from "mp/scene.js" */
 /** @typedef {{changed: () => void, look: (view: ViewName) => void, fit: () => void, setPerspective: (on: boolean) => void,
- *  choosePath: (path: number) => void, setTheme: (theme: string) => void, savePicture: () => void}} Actions */
+ *  choosePath: (path: number) => void, setTheme: (theme: string) => void}} Actions */
 
 /** @type {[Mode, string][]} */
 const MODES = [["solid", "solid"], ["transparent", "transparent"], ["wire", "wire"]];
@@ -19,23 +19,13 @@ export const VIEWS = [["front", "Front"], ["back", "Back"], ["left", "Left"], ["
 /** @type {[string, string][]} */
 const HELP = [
   ["Drag", "turn the view (in the plane: move it)"],
-  ["Shift + drag, right button", "move the view (in the plane: turn it)"],
-  ["Wheel, two fingers, + and −", "zoom"],
-  ["Click", "say what is there"],
-  ["Double click", "look at this place"],
-  ["W A S D, Q E", "fly: forwards, left, backwards, right; down, up"],
-  ["Shift + arrow keys", "turn the view"],
-  ["1 … 7", "front, back, left, right, top, bottom, iso"],
-  ["F", "fit everything"],
-  ["O", "perspective or parallel view"],
-  ["M", "solid, transparent or wire"],
-  ["X", "section: none, x, y, z"],
-  ["← →", "step by step along the path"],
-  ["Home, End", "first and last configuration"],
-  ["Space", "play and pause"],
-  ["C", "all configurations at once"],
-  ["P", "show or hide the panel"],
-  ["Esc", "forget what was picked"],
+  ["Shift + drag, right button", "move the view (in the plane: turn it)"], ["Wheel, two fingers, + and −", "zoom"],
+  ["Click", "say what is there"], ["Double click", "look at this place"],
+  ["W A S D, Q E", "fly: forwards, left, backwards, right; down, up"], ["Shift + arrow keys", "turn the view"],
+  ["1 … 7", "front, back, left, right, top, bottom, iso"], ["F", "fit everything"],
+  ["O", "perspective or parallel view"], ["M", "solid, transparent or wire"], ["X", "section: none, x, y, z"],
+  ["← →", "step by step along the path"], ["Home, End", "first and last configuration"], ["Space", "play and pause"],
+  ["C", "all configurations at once"], ["P", "show or hide the panel"], ["Esc", "forget what was picked"],
   ["?", "this help"],
 ];
 
@@ -73,15 +63,14 @@ export class Panels {
     const views = VIEWS.map(([view, label], i) => button(label, () => actions.look(view), { title: `${label} view (${i + 1})` }));
     this.mode = select(MODES, s.mode, (v) => this.set(() => (s.mode = /** @type {Mode} */ (v))));
     this.projection = select([["perspective", "perspective"], ["parallel", "parallel"]], "perspective", (v) => actions.setPerspective(v === "perspective"));
-    const theme = select([["auto", "as the system"], ["light", "light"], ["dark", "dark"]], "auto", actions.setTheme);
+    const theme = select([["auto", "as the system"], ["light", "light"], ["dark", "dark"]], "auto", (t) => actions.setTheme(t));
     return [
-      el("div", { class: "buttons", role: "group", "aria-label": "Views" }, ...views, button("Fit", actions.fit, { title: "Fit everything (F)" })),
+      el("div", { class: "buttons", role: "group", "aria-label": "Views" }, ...views, button("Fit", () => actions.fit(), { title: "Fit everything (F)" })),
       labelled("Surfaces", this.mode),
       labelled("View", this.projection),
       checkbox("Edges", s.edges, (on) => this.set(() => (s.edges = on))),
       this.sectionControls(),
       labelled("Colours", theme),
-      button("Save picture", actions.savePicture),
     ];
   }
   sectionControls() {

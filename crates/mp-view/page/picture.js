@@ -107,6 +107,8 @@ export class PictureMaker {
     const items = [...this.obstacles(s, colors), ...this.ends(s, colors), ...this.moving(s, colors)];
     return { items, lines: this.lines(s, colors), points: this.points(s, colors), plane: this.plane(s), edges: s.edges, flat: this.scene.planar };
   }
+  /** @param {number} body */
+  linesOnly(body) { return this.scene.bodies[body].mesh < 0 && this.scene.bodies[body].area < 0; }
   /** @param {Settings} s @param {number} body */
   modeOf(s, body) { return s.bodies[body].mode || s.mode; }
   /** @param {Settings} s @param {Palette} colors @returns {Item[]} */
@@ -117,7 +119,7 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: mode === "wire" ? colors.wire : colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
+      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: mode === "wire" || this.linesOnly(b) ? colors.wire : colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
     }
     return items.sort((a, b) => a.shape - b.shape);
   }

@@ -113,7 +113,7 @@ export class Renderer {
       const buffers = this.shapes[batch.item.shape];
       const first = batch.first + shift;
       const clear = batch.item.mode === "transparent";
-      if (clear) gl.enable(gl.BLEND);
+      if (clear || batch.item.role === "copy") gl.enable(gl.BLEND);
       gl.depthMask(!clear);
       if (batch.item.mode !== "wire") this.fill(buffers, batch, first);
       if (batch.item.mode === "wire" || picture.edges) this.edges(buffers, batch, first);
@@ -162,7 +162,7 @@ export class Renderer {
     if (!count) return;
     const { palette } = this.now;
     gl.uniform1f(this.surfaceAt.shaded, 0);
-    const alpha = wire ? 0 : batch.item.mode === "transparent" ? 0.9 : 1;
+    const alpha = wire ? 0 : batch.item.role === "copy" ? 0.4 : batch.item.mode === "transparent" ? 0.9 : 1;
     gl.uniform4f(this.surfaceAt.line, ...palette.edge, alpha);
     gl.bindVertexArray(vao);
     buffers.bindCopies(first);
