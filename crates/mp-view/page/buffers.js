@@ -23,8 +23,7 @@ export function program(gl, vertex, fragment) {
 /** The places of all uniforms of a program. @param {WebGL2RenderingContext} gl @param {WebGLProgram} of
  * @returns {Record<string, WebGLUniformLocation | null>} */
 export function uniforms(gl, of) {
-  /** @type {Record<string, WebGLUniformLocation | null>} */
-  const out = {};
+  /** @type {Record<string, WebGLUniformLocation | null>} */ const out = {};
   const count = gl.getProgramParameter(of, gl.ACTIVE_UNIFORMS) ?? 0;
   for (let i = 0; i < count; i++) {
     const name = gl.getActiveUniform(of, i)?.name ?? "";
@@ -69,8 +68,7 @@ class GrowingBuffer {
 class ColoredRows {
   /** @param {WebGL2RenderingContext} gl @param {number} floats coordinates of a row */
   constructor(gl, floats) {
-    this.gl = gl;
-    this.floats = floats;
+    this.gl = gl; this.floats = floats;
     this.stride = 4 * floats + 4;
     this.rows = new GrowingBuffer(gl);
     this.vao = gl.createVertexArray();
@@ -145,16 +143,13 @@ export const COPY = 12;
 export class ShapeBuffers {
   /** @param {WebGL2RenderingContext} gl @param {Shape} shape @param {WebGLBuffer | null} copies @param {WebGLBuffer | null} strip */
   constructor(gl, shape, copies, strip) {
-    this.gl = gl;
-    this.shape = shape;
-    this.copies = copies;
+    this.gl = gl; this.shape = shape; this.copies = copies;
     this.corners = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
     gl.bufferData(gl.ARRAY_BUFFER, shape.positions, gl.STATIC_DRAW);
     this.triangles = this.indexed(shape.triangles);
     this.edges = this.indexed(shape.edges);
-    /** @type {{vao: WebGLVertexArrayObject | null, count: number} | null} */
-    this.allEdges = null;
+    /** @type {{vao: WebGLVertexArrayObject | null, count: number} | null} */ this.allEdges = null;
     this.lines = new LineSet(gl, strip);
     this.lines.append(shape.segments, () => [1, 1, 1, 1]);
   }

@@ -24,8 +24,7 @@ export class Camera {
   constructor(bounds) {
     const low = /** @type {Vec3} */ (bounds[0]);
     const high = /** @type {Vec3} */ (bounds[1]);
-    /** @type {Vec3} */
-    this.center = scale(add(low, high), 0.5);
+    /** @type {Vec3} */ this.center = scale(add(low, high), 0.5);
     this.corners = [low, high];
     const size = sub(high, low);
     this.radius = Math.max(Math.hypot(...size) / 2, 1e-6);
@@ -35,8 +34,7 @@ export class Camera {
     this.yaw = 0;
     this.pitch = 0;
     this.distance = 1;
-    /** @type {Vec3} */
-    this.target = this.center;
+    /** @type {Vec3} */ this.target = this.center;
     this.look("iso");
   }
   /** Turns to a standard view; the target stays. @param {ViewName} name */
@@ -44,10 +42,8 @@ export class Camera {
   /** The axes of the picture in the world: to the right, upwards, and towards the viewer. @returns {{right: Vec3, up: Vec3, back: Vec3}} */
   axes() {
     const [cy, sy, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
-    /** @type {Vec3} */
-    const back = [cp * cy, cp * sy, sp];
-    /** @type {Vec3} */
-    const right = [-sy, cy, 0];
+    /** @type {Vec3} */ const back = [cp * cy, cp * sy, sp];
+    /** @type {Vec3} */ const right = [-sy, cy, 0];
     return { right, up: cross(back, right), back };
   }
   /** @returns {Vec3} */

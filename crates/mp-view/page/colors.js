@@ -25,7 +25,6 @@ const COLORS = {
 };
 
 const [LIGHT, DARK] = [0, 1].map((i) => /** @type {Palette} */ (Object.fromEntries(Object.entries(COLORS).map(([k, c]) => [k, color(c[i])]))));
-
 /** @param {boolean} dark @returns {Palette} */
 export const palette = (dark) => (dark ? DARK : LIGHT);
 

@@ -4,22 +4,16 @@
 /** @typedef {{changed: () => void, clicked: (x: number, y: number) => void, centered: (x: number, y: number) => void}} Listener */
 
 const FLY_KEYS = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
-
 /** Whether keys belong to the control that has the focus. @param {EventTarget | null} target */
 export const isTyping = (target) => target instanceof HTMLElement && target.matches("input:not([type=checkbox]), select, textarea, [contenteditable]");
 
 export class Controls {
   /** @param {HTMLCanvasElement} canvas @param {Camera} camera @param {boolean} planar @param {Listener} listener */
   constructor(canvas, camera, planar, listener) {
-    this.canvas = canvas;
-    this.camera = camera;
-    this.planar = planar;
-    this.listener = listener;
-    /** @type {Map<number, {x: number, y: number}>} */
-    this.pointers = new Map();
+    this.canvas = canvas; this.camera = camera; this.planar = planar; this.listener = listener;
+    /** @type {Map<number, {x: number, y: number}>} */ this.pointers = new Map();
     this.moved = 0;
-    /** @type {Set<string>} */
-    this.held = new Set();
+    /** @type {Set<string>} */ this.held = new Set();
     this.lastTime = 0;
     this.listen();
   }

@@ -59,11 +59,9 @@ class Viewer {
     this.settings = firstSettings(scene);
     this.canvas = /** @type {HTMLCanvasElement} */ (byId("canvas"));
     const { shapes, ofBody } = shapesOf(scene);
-    this.shapes = shapes;
-    this.ofBody = ofBody;
+    this.shapes = shapes; this.ofBody = ofBody;
     this.camera = new Camera(scene.bounds);
-    /** @type {Stats} */
-    this.stats = { drawCalls: 0, triangles: 0, milliseconds: 0, frames: 0 };
+    /** @type {Stats} */ this.stats = { drawCalls: 0, triangles: 0, milliseconds: 0, frames: 0 };
     this.waiting = false;
     this.start();
     const changed = () => this.changed();

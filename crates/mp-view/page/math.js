@@ -25,8 +25,7 @@ export const pointAt = (points, i) => [points[3 * i], points[3 * i + 1], points[
 
 /** Turns `v` by the quaternion at `at` of `q`. @param {Numbers} q @param {number} at @param {Vec3} v @returns {Vec3} */
 export function rotate(q, at, v) {
-  /** @type {Vec3} */
-  const axis = [q[at], q[at + 1], q[at + 2]];
+  /** @type {Vec3} */ const axis = [q[at], q[at + 1], q[at + 2]];
   const t = add(cross(axis, v), scale(v, q[at + 3]));
   return add(v, scale(cross(axis, t), 2));
 }
@@ -40,7 +39,6 @@ export const unrotate = (pose, at, v) =>
 
 /** A point of the world in the frame of the body. @param {Numbers} pose @param {number} at @param {Vec3} p @returns {Vec3} */
 export const unplace = (pose, at, p) => unrotate(pose, at, sub(p, [pose[at], pose[at + 1], pose[at + 2]]));
-
 /** The pose that moves nothing. */
 export const IDENTITY = Object.freeze([0, 0, 0, 0, 0, 0, 1]);
 

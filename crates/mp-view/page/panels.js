@@ -12,7 +12,6 @@ import { brief, button, byId, checkbox, el, factList, labelled, select, slider }
 
 /** @type {[Mode, string][]} */
 const MODES = [["solid", "solid"], ["transparent", "transparent"], ["wire", "wire"]];
-
 /** @type {[ViewName, string][]} */
 export const VIEWS = [["front", "Front"], ["back", "Back"], ["left", "Left"], ["right", "Right"], ["top", "Top"], ["bottom", "Bottom"], ["iso", "Iso"]];
 
@@ -32,10 +31,7 @@ const HELP = [
 export class Panels {
   /** @param {Scene} scene @param {Settings} settings @param {Actions} actions @param {number} triangles */
   constructor(scene, settings, actions, triangles) {
-    this.scene = scene;
-    this.settings = settings;
-    this.actions = actions;
-    this.triangles = triangles;
+    this.scene = scene; this.settings = settings; this.actions = actions; this.triangles = triangles;
     this.build();
   }
   build() {
@@ -118,8 +114,7 @@ export class Panels {
   /** @returns {HTMLElement[]} */
   bodyList() {
     const { scene, settings: s } = this;
-    /** @type {[string, string][]} */
-    const modes = [["", "as all"], ...MODES];
+    /** @type {[string, string][]} */ const modes = [["", "as all"], ...MODES];
     const rows = scene.bodies.map((body, b) => {
       const seen = checkbox(body.name, true, (on) => this.set(() => (s.bodies[b].visible = on)));
       const mode = select(modes, "", (v) => this.set(() => (s.bodies[b].mode = /** @type {Mode | ""} */ (v))), { "aria-label": `How “${body.name}” is drawn` });

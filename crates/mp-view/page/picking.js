@@ -67,9 +67,7 @@ function pixelsTo(p, a, b) {
 export class Picker {
   /** @param {Scene} scene @param {Shape[]} shapes @param {Camera} camera */
   constructor(scene, shapes, camera) {
-    this.scene = scene;
-    this.shapes = shapes;
-    this.camera = camera;
+    this.scene = scene; this.shapes = shapes; this.camera = camera;
   }
   /** @param {number} x @param {number} y pixels @param {Picture} picture @param {Settings} settings @returns {Picked | null} */
   pick(x, y, picture, settings) {
@@ -86,8 +84,7 @@ export class Picker {
     /** @param {number} t */
     const kept = (t) => !plane || dot([plane[0], plane[1], plane[2]], add(ray.origin, scale(ray.direction, t))) <= plane[3];
     const { both } = this.camera.matrices();
-    /** @type {{t: number, item: Item} | null} */
-    let best = null;
+    /** @type {{t: number, item: Item} | null} */ let best = null;
     for (const item of picture.items) {
       const shape = this.shapes[item.shape];
       const t = Math.min(meetItem(ray, item, shape, kept), this.meetLines(ray, pixel, item, shape, both));
@@ -112,8 +109,7 @@ export class Picker {
   point(ray, x, y, settings, limit) {
     const { both } = this.camera.matrices();
     let near = NEAR;
-    /** @type {Picked | null} */
-    let best = null;
+    /** @type {Picked | null} */ let best = null;
     for (const { points, count, describe } of this.clouds(settings)) {
       for (let i = 0; i < count; i++) {
         const point = pointAt(points, i);
@@ -131,8 +127,7 @@ export class Picker {
   clouds(s) {
     const { paths, trees, roadmap } = this.scene;
     const path = paths[s.path];
-    /** @type {Cloud[]} */
-    const clouds = [];
+    /** @type {Cloud[]} */ const clouds = [];
     if (path && s.trace) clouds.push({ points: path.trace, count: path.count, describe: (i) => this.describeConfiguration(s.path, i) });
     trees.forEach((tree, t) => {
       const count = Math.round(s.growth * tree.parents.length);
@@ -177,8 +172,7 @@ export class Picker {
   describeItem(item, point, s) {
     const body = this.scene.bodies[item.body];
     const shape = this.shapes[item.shape];
-    /** @type {[string, string][]} */
-    const facts = [["part of", PARTS[item.role](item.index)], placeFact(point)];
+    /** @type {[string, string][]} */ const facts = [["part of", PARTS[item.role](item.index)], placeFact(point)];
     facts.push(["size", [0, 1, 2].map((k) => brief(shape.high[k] - shape.low[k])).join(" × ") + " m"]);
     if (shape.triangles.length) facts.push(["triangles", brief(shape.triangles.length / 3)]);
     if (item.role === "copy" || item.role === "robot") facts.push(...this.rowFacts(s.path, item.index));

@@ -18,7 +18,6 @@ import { segmentsOf } from "mp/shapes.js";
 
 /** The share of light that transparent things keep. */
 const ALPHA = 0.3;
-
 /** What is seen where two things are at the same place. @type {Record<Role, number>} */
 const LAYERS = { obstacle: 0, goal: 1, start: 2, copy: 3, robot: 4 };
 
@@ -67,9 +66,7 @@ function treeSegments(tree) {
 export class PictureMaker {
   /** @param {Scene} scene @param {number[]} ofBody the shape of each body @param {Renderer} renderer */
   constructor(scene, ofBody, renderer) {
-    this.scene = scene;
-    this.ofBody = ofBody;
-    this.renderer = renderer;
+    this.scene = scene; this.ofBody = ofBody; this.renderer = renderer;
     this.robotPoses = new Float32Array(7 * scene.robot);
     this.trees = scene.trees.map((tree) => this.treeLines(tree));
     this.traces = scene.paths.map((path) => this.traceLines(path));
@@ -113,8 +110,7 @@ export class PictureMaker {
   modeOf(s, body) { return s.bodies[body].mode || s.mode; }
   /** @param {Settings} s @param {Palette} colors @returns {Item[]} */
   obstacles(s, colors) {
-    /** @type {Item[]} */
-    const items = [];
+    /** @type {Item[]} */ const items = [];
     for (let b = this.scene.robot; b < this.scene.bodies.length; b++) {
       if (!s.bodies[b].visible) continue;
       const mode = this.modeOf(s, b);
@@ -126,8 +122,7 @@ export class PictureMaker {
   /** The robot in one configuration. @param {Settings} s @param {Numbers} poses @param {number} at @param {Color} color
    * @param {Role} role @param {number} index @param {Mode} [given] @returns {Item[]} */
   robot(s, poses, at, color, role, index, given) {
-    /** @type {Item[]} */
-    const items = [];
+    /** @type {Item[]} */ const items = [];
     for (let b = 0; b < this.scene.robot; b++) {
       if (!s.bodies[b].visible) continue;
       const mode = given ?? this.modeOf(s, b);
@@ -182,8 +177,7 @@ export class PictureMaker {
     const [low, high] = this.scene.bounds;
     const sign = flipped ? -1 : 1;
     const where = low[axis] + (high[axis] - low[axis]) * at;
-    /** @type {[number, number, number, number]} */
-    const plane = [0, 0, 0, sign * where];
+    /** @type {[number, number, number, number]} */ const plane = [0, 0, 0, sign * where];
     plane[axis] = sign;
     return plane;
   }

@@ -8,8 +8,7 @@ export class ClearancePlot {
   /** @param {HTMLCanvasElement} canvas @param {(time: number) => void} scrub */
   constructor(canvas, scrub) {
     this.canvas = canvas;
-    /** @type {Path | null} */
-    this.path = null;
+    /** @type {Path | null} */ this.path = null;
     /** @param {PointerEvent} e */
     const go = (e) => {
       const box = canvas.getBoundingClientRect();

@@ -80,8 +80,7 @@ export class Renderer {
     const { back } = this.now.camera.axes();
     const depth = items.map((item) => {
       const { low, high } = this.shapes[item.shape].shape;
-      /** @type {Vec3} */
-      const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
+      /** @type {Vec3} */ const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
       return dot(place(item.pose, item.at, middle), back);
     });
     return items.map((_, i) => i).sort((a, b) => depth[a] - depth[b]).map((i) => items[i]);
@@ -246,8 +245,7 @@ function layered(items) {
 
 /** Neighbours that one call can draw. @param {Item[]} items @returns {Batch[]} */
 function grouped(items) {
-  /** @type {Batch[]} */
-  const batches = [];
+  /** @type {Batch[]} */ const batches = [];
   items.forEach((item, i) => {
     const last = batches[batches.length - 1]?.item;
     const joins = last && last.shape === item.shape && last.mode === item.mode && last.layer === item.layer && last.cut === item.cut;

@@ -64,8 +64,7 @@ function index(value, end, what) {
 class Blob {
   /** @param {Uint8Array} bytes @param {number} begin where the arrays begin */
   constructor(bytes, begin) {
-    this.bytes = bytes;
-    this.begin = begin;
+    this.bytes = bytes; this.begin = begin;
   }
   /** The array that a head entry names, without copying it. @template {keyof Arrays} K
    * @param {unknown} entry @param {K} type @param {string} what @param {number} group entries that belong together
@@ -107,8 +106,7 @@ function readHead(bytes) {
   check(size % 8 === 0, "The scene file is damaged: the length of its head is not a multiple of 8.");
   check(8 + size <= bytes.length, "The scene file is too short: its head reaches beyond its end.");
   const source = new TextDecoder().decode(bytes.subarray(8, 8 + size));
-  /** @type {unknown} */
-  let head;
+  /** @type {unknown} */ let head;
   try {
     // A seed may have more digits than a number holds; it is only shown, so it becomes text.
     head = JSON.parse(source.replace(/(?<!\\)"seed":\s*(\d{16,})/g, '"seed":"$1"'));
@@ -248,8 +246,7 @@ export function readScene(given) {
 
 /** The bytes of base64 text. @param {string} base64 @returns {Uint8Array} */
 export function fromBase64(base64) {
-  /** @type {string} */
-  let binary;
+  /** @type {string} */ let binary;
   try {
     binary = atob(base64.trim());
   } catch {

@@ -48,8 +48,7 @@ function normalsOf(p, triangles) {
  * @param {Uint32Array} triangles @param {Uint32Array} first
  * @returns {Map<number, {a: number, b: number, triangles: number[], turns: number}>} */
 function edgesOf(triangles, first) {
-  /** @type {Map<number, {a: number, b: number, triangles: number[], turns: number}>} */
-  const edges = new Map();
+  /** @type {Map<number, {a: number, b: number, triangles: number[], turns: number}>} */ const edges = new Map();
   for (let i = 0; i < triangles.length; i++) {
     const t = i - (i % 3);
     const a = first[triangles[i]];
@@ -80,10 +79,8 @@ function volumeOf(p, triangles) {
  * @param {Float32Array} positions @param {Uint32Array} triangles */
 function outline(positions, triangles) {
   const normals = normalsOf(positions, triangles);
-  /** @type {number[]} */
-  const edges = [];
-  /** @type {number[]} */
-  const wire = [];
+  /** @type {number[]} */ const edges = [];
+  /** @type {number[]} */ const wire = [];
   let closed = triangles.length > 0;
   for (const edge of edgesOf(triangles, weld(positions)).values()) {
     wire.push(edge.a, edge.b);
@@ -133,10 +130,8 @@ function shapeOf(scene, body) {
 /** The shapes of a scene, each once, and for each body the index of its shape.
  * @param {Scene} scene @returns {{shapes: Shape[], ofBody: number[]}} */
 export function shapesOf(scene) {
-  /** @type {Map<string, number>} */
-  const known = new Map();
-  /** @type {Shape[]} */
-  const shapes = [];
+  /** @type {Map<string, number>} */ const known = new Map();
+  /** @type {Shape[]} */ const shapes = [];
   const ofBody = scene.bodies.map((body) => {
     const key = `${body.mesh} ${body.area} ${body.lines.join(",")}`;
     let i = known.get(key);

@@ -15,14 +15,11 @@ const ANIMATIONS = [["all", "All at once"], ["step", "Step by step"], ["auto", "
 export class Timeline {
   /** @param {Scene} scene @param {Settings} settings @param {() => void} changed */
   constructor(scene, settings, changed) {
-    this.scene = scene;
-    this.settings = settings;
-    this.changed = changed;
+    this.scene = scene; this.settings = settings; this.changed = changed;
     this.playing = false;
     this.speed = 1;
     this.direction = 1;
-    /** @type {AtEnd} */
-    this.atEnd = "loop";
+    /** @type {AtEnd} */ this.atEnd = "loop";
     this.lastTime = 0;
     this.build();
     this.showPath();

@@ -4,17 +4,14 @@
 
 /** Twice the signed area of a triangle; positive when it turns left. @param {Point} a @param {Point} b @param {Point} c */
 const turn = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-
 /** @param {Point} a @param {Point} b */
 const same = (a, b) => a[0] === b[0] && a[1] === b[1];
 
 /** The points of a ring without repetitions. @param {ArrayLike<number>} ring @returns {Point[]} */
 function pointsOf(ring) {
-  /** @type {Point[]} */
-  const points = [];
+  /** @type {Point[]} */ const points = [];
   for (let i = 0; i + 1 < ring.length; i += 2) {
-    /** @type {Point} */
-    const p = [ring[i], ring[i + 1]];
+    /** @type {Point} */ const p = [ring[i], ring[i + 1]];
     if (!points.length || !same(points[points.length - 1], p)) points.push(p);
   }
   while (points.length > 1 && same(points[0], points[points.length - 1])) points.pop();
@@ -30,7 +27,6 @@ function oriented(ring, left) {
 
 /** Whether `p` is in the triangle that turns left, or on its border. @param {Point} p @param {Point} a @param {Point} b @param {Point} c */
 const inside = (p, a, b, c) => turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
-
 /** Whether two segments cross in their inside. @param {Point} a @param {Point} b @param {Point} c @param {Point} d */
 const crosses = (a, b, c, d) => turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
 
@@ -79,8 +75,7 @@ function isEar(points, left, at) {
 /** @param {Point[]} points counter-clockwise @returns {number[]} */
 function clipEars(points) {
   const left = points.map((_, i) => i);
-  /** @type {number[]} */
-  const triangles = [];
+  /** @type {number[]} */ const triangles = [];
   let at = 0;
   let tried = 0;
   while (left.length > 2) {
