@@ -34,15 +34,13 @@ export function uniforms(gl, of) {
 
 /** A buffer that keeps what it has when it grows. */
 class GrowingBuffer {
-  /** @param {WebGL2RenderingContext} gl */
-  constructor(gl) {
+  constructor(/** @type {WebGL2RenderingContext} */ gl) {
     this.gl = gl;
     this.buffer = gl.createBuffer();
     this.size = 0;
     this.room = 0;
   }
-  /** @param {ArrayBufferView} bytes */
-  append(bytes) {
+  append(/** @type {ArrayBufferView} */ bytes) {
     const gl = this.gl;
     if (this.size + bytes.byteLength > this.room) this.grow(this.size + bytes.byteLength);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
@@ -121,8 +119,7 @@ export class LineSet extends ColoredRows {
 
 /** Points: a place and a colour each; the fourth number of the colour is the size as a part of 16 pixels. */
 export class PointSet extends ColoredRows {
-  /** @param {WebGL2RenderingContext} gl */
-  constructor(gl) { super(gl, 3); }
+  constructor(/** @type {WebGL2RenderingContext} */ gl) { super(gl, 3); }
 
   bind() {
     const gl = this.gl;
@@ -155,8 +152,7 @@ export class ShapeBuffers {
   }
   /** All edges; made when they are first drawn. */
   get wire() { return (this.allEdges ??= this.indexed(this.shape.wire)); }
-  /** @param {Uint32Array} indices */
-  indexed(indices) {
+  indexed(/** @type {Uint32Array} */ indices) {
     const gl = this.gl;
     const vao = gl.createVertexArray();
     gl.bindVertexArray(vao);

@@ -31,7 +31,6 @@ export const palette = (dark) => (dark ? DARK : LIGHT);
 /** A colour for a component of a roadmap; neighbouring numbers differ clearly. @param {number} component @returns {Color} */
 export function componentColor(component) {
   const hue = (0.58 + component * 0.381966) % 1;
-  /** @param {number} shift */
-  const channel = (shift) => 0.47 + 0.3 * Math.cos(2 * Math.PI * (hue + shift));
+  const channel = (/** @type {number} */ shift) => 0.47 + 0.3 * Math.cos(2 * Math.PI * (hue + shift));
   return [channel(0), channel(-1 / 3), channel(-2 / 3)];
 }

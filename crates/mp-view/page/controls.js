@@ -35,15 +35,13 @@ export class Controls {
     const box = this.canvas.getBoundingClientRect();
     return [e.clientX - box.left, e.clientY - box.top];
   }
-  /** @param {PointerEvent} e */
-  down(e) {
+  down(/** @type {PointerEvent} */ e) {
     this.canvas.setPointerCapture(e.pointerId);
     const [x, y] = this.at(e);
     if (this.pointers.size === 0) this.moved = 0;
     this.pointers.set(e.pointerId, { x, y });
   }
-  /** @param {PointerEvent} e */
-  move(e) {
+  move(/** @type {PointerEvent} */ e) {
     const last = this.pointers.get(e.pointerId);
     if (!last) return;
     const [x, y] = this.at(e);
@@ -71,20 +69,17 @@ export class Controls {
     this.camera.pan((x - last.x) / 2, (y - last.y) / 2);
     if (now > 10) this.camera.zoom(before / now, (x + still.x) / 2, (y + still.y) / 2);
   }
-  /** @param {PointerEvent} e */
-  up(e) {
+  up(/** @type {PointerEvent} */ e) {
     const was = this.pointers.delete(e.pointerId);
     if (was && this.moved <= 4 && e.button === 0 && this.pointers.size === 0) this.listener.clicked(...this.at(e));
   }
-  /** @param {WheelEvent} e */
-  wheel(e) {
+  wheel(/** @type {WheelEvent} */ e) {
     e.preventDefault();
     const pixels = e.deltaY * (e.deltaMode === 1 ? 33 : e.deltaMode === 2 ? 400 : 1);
     this.camera.zoom(Math.exp(Math.max(-500, Math.min(500, pixels)) * 0.0015), ...this.at(e));
     this.listener.changed();
   }
-  /** @param {KeyboardEvent} e */
-  key(e) {
+  key(/** @type {KeyboardEvent} */ e) {
     if (isTyping(e.target) || e.ctrlKey || e.metaKey || e.altKey) return;
     if (FLY_KEYS.has(e.code)) this.held.add(e.code);
     else if (e.shiftKey && e.key.startsWith("Arrow")) this.turn(e);
@@ -93,8 +88,7 @@ export class Controls {
     else return;
     this.listener.changed();
   }
-  /** @param {KeyboardEvent} e */
-  turn(e) {
+  turn(/** @type {KeyboardEvent} */ e) {
     e.preventDefault();
     const step = 15;
     this.camera.orbit(e.key === "ArrowLeft" ? -step : e.key === "ArrowRight" ? step : 0, e.key === "ArrowUp" ? step : e.key === "ArrowDown" ? -step : 0);

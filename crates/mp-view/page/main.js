@@ -19,8 +19,7 @@ import { Timeline } from "mp/timeline.js";
 /** @typedef {{drawCalls: number, triangles: number, milliseconds: number, frames: number}} Stats
  *  `milliseconds`: the time that scripts took for the last frame. */
 
-/** @param {string} text */
-function showError(text) {
+function showError(/** @type {string} */ text) {
   const box = byId("alert");
   box.textContent = text;
   box.hidden = text === "";
@@ -53,8 +52,7 @@ function firstSettings(scene) {
 }
 
 class Viewer {
-  /** @param {Scene} scene */
-  constructor(scene) {
+  constructor(/** @type {Scene} */ scene) {
     this.scene = scene;
     this.settings = firstSettings(scene);
     this.canvas = /** @type {HTMLCanvasElement} */ (byId("canvas"));
@@ -139,8 +137,7 @@ class Viewer {
     const milliseconds = performance.now() - begin;
     this.stats = { drawCalls: this.renderer.calls, triangles: this.renderer.triangles, milliseconds, frames: this.stats.frames + 1 };
   }
-  /** @param {ViewName} view */
-  look(view) {
+  look(/** @type {ViewName} */ view) {
     this.camera.look(view);
     this.fit();
   }
@@ -148,20 +145,17 @@ class Viewer {
     this.camera.fit();
     this.changed();
   }
-  /** @param {boolean} on */
-  setPerspective(on) {
+  setPerspective(/** @type {boolean} */ on) {
     this.camera.perspective = on;
     this.panels?.showPerspective(on);
     this.changed();
   }
-  /** @param {string} theme */
-  setTheme(theme) {
+  setTheme(/** @type {string} */ theme) {
     document.documentElement.dataset.theme = theme;
     this.settings.dark = theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
     this.changed();
   }
-  /** @param {number} path */
-  choosePath(path) {
+  choosePath(/** @type {number} */ path) {
     this.settings.path = path;
     this.timeline?.showPath();
     this.changed();
@@ -187,8 +181,7 @@ class Viewer {
     this.panels?.showPicked(null, () => {});
     this.changed();
   }
-  /** @param {KeyboardEvent} e */
-  key(e) {
+  key(/** @type {KeyboardEvent} */ e) {
     if (isTyping(e.target) || e.ctrlKey || e.metaKey || e.altKey || document.querySelector("dialog[open]")) return;
     if (this.timeline?.key(e)) return e.preventDefault();
     const s = this.settings;

@@ -100,7 +100,6 @@ export function viewMatrix(right, up, back, eye) {
 
 /** Multiplies a matrix and the point (p, 1). @param {Mat4} m @param {Vec3} p @returns {[number, number, number, number]} */
 export function transform(m, p) {
-  /** @param {number} r */
-  const row = (r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
+  const row = (/** @type {number} */ r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
   return [row(0), row(1), row(2), row(3)];
 }

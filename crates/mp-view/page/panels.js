@@ -48,8 +48,7 @@ export class Panels {
     this.buildHelp();
     this.buildPanelButton();
   }
-  /** @param {() => void} change */
-  set(change) {
+  set(/** @type {() => void} */ change) {
     change();
     this.actions.changed();
   }
@@ -84,8 +83,7 @@ export class Panels {
     if (this.sectionPlace) this.sectionPlace.hidden = axis < 0;
     this.actions.changed();
   }
-  /** @param {Mode} mode */
-  setMode(mode) {
+  setMode(/** @type {Mode} */ mode) {
     this.settings.mode = mode;
     if (this.mode) this.mode.value = mode;
     this.actions.changed();
@@ -185,8 +183,7 @@ export class Panels {
 /** @param {string} title @param {boolean} open @param {HTMLElement[]} content */
 const section = (title, open, content) => el("details", { open }, el("summary", {}, title), el("div", { class: "content" }, ...content));
 
-/** @param {Path} path */
-function pathWords(path) {
+function pathWords(/** @type {Path} */ path) {
   const words = [`${brief(path.count)} configurations`];
   if (Number.isFinite(path.length)) words.push(`length ${brief(path.length)}`);
   if (path.clearance?.length) words.push(`clearance at least ${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m`);

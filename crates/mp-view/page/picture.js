@@ -73,8 +73,7 @@ export class PictureMaker {
     this.roadmap = scene.roadmap ? this.roadmapLines() : null;
     this.marker = renderer.pointSet();
   }
-  /** @param {Tree} tree */
-  treeLines(tree) {
+  treeLines(/** @type {Tree} */ tree) {
     const { segments, upTo } = treeSegments(tree);
     const lines = this.renderer.lineSet();
     lines.append(segments, () => [1, 1, 1, 1]);
@@ -82,8 +81,7 @@ export class PictureMaker {
     tree.parents.forEach((parent, i) => parent < 0 && roots.append(tree.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]));
     return { lines, upTo, roots };
   }
-  /** @param {Path} path */
-  traceLines(path) {
+  traceLines(/** @type {Path} */ path) {
     const lines = this.renderer.lineSet();
     lines.append(segmentsOf([path.trace]), () => [1, 1, 1, 1]);
     return lines;

@@ -9,8 +9,7 @@ export class ClearancePlot {
   constructor(canvas, scrub) {
     this.canvas = canvas;
     /** @type {Path | null} */ this.path = null;
-    /** @param {PointerEvent} e */
-    const go = (e) => {
+    const go = (/** @type {PointerEvent} */ e) => {
       const box = canvas.getBoundingClientRect();
       const part = Math.max(0, Math.min(1, (e.clientX - box.left) / box.width));
       if (this.path) scrub(part * (this.path.count - 1));
@@ -18,8 +17,7 @@ export class ClearancePlot {
     canvas.addEventListener("pointerdown", (e) => (canvas.setPointerCapture(e.pointerId), go(e)));
     canvas.addEventListener("pointermove", (e) => canvas.hasPointerCapture(e.pointerId) && go(e));
   }
-  /** @param {Path | null} path */
-  show(path) {
+  show(/** @type {Path | null} */ path) {
     this.path = path?.clearance ? path : null;
     this.canvas.hidden = !this.path;
     this.canvas.setAttribute("aria-label", this.path ? `Clearance along the path: ${this.range()}` : "");
@@ -33,8 +31,7 @@ export class ClearancePlot {
     const [low, high] = this.extremes();
     return `${brief(low)} to ${brief(high)} m`;
   }
-  /** @param {number} time */
-  draw(time) {
+  draw(/** @type {number} */ time) {
     const context = this.canvas.getContext("2d");
     const clearance = this.path?.clearance;
     if (!context || !clearance || this.canvas.clientWidth === 0) return;
@@ -46,10 +43,8 @@ export class ClearancePlot {
     const style = getComputedStyle(this.canvas);
     const [low, high] = this.extremes();
     const last = Math.max(1, clearance.length - 1);
-    /** @param {number} i */
-    const x = (i) => 1 + (i / last) * (width - 2);
-    /** @param {number} c */
-    const y = (c) => height - 2 - (Math.min(c, high) / (high || 1)) * (height - 16);
+    const x = (/** @type {number} */ i) => 1 + (i / last) * (width - 2);
+    const y = (/** @type {number} */ c) => height - 2 - (Math.min(c, high) / (high || 1)) * (height - 16);
     this.curve(context, clearance, x, y, style.getPropertyValue("--path"));
     context.strokeStyle = style.color;
     context.beginPath();

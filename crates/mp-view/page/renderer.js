@@ -75,8 +75,7 @@ export class Renderer {
     const opaque = items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer);
     return [opaque, this.farToNear(items.filter((i) => i.mode === "transparent")), []];
   }
-  /** @param {Item[]} items */
-  farToNear(items) {
+  farToNear(/** @type {Item[]} */ items) {
     const { back } = this.now.camera.axes();
     const depth = items.map((item) => {
       const { low, high } = this.shapes[item.shape].shape;
@@ -121,8 +120,7 @@ export class Renderer {
       gl.depthMask(true);
     }
   }
-  /** @param {Picture} picture */
-  useSurface(picture) {
+  useSurface(/** @type {Picture} */ picture) {
     const gl = this.gl;
     const { view, projection, palette, camera } = this.now;
     const at = this.surfaceAt;
@@ -180,8 +178,7 @@ export class Renderer {
       this.strips(set, set.count, item.mode === "wire" ? 1.2 : 3);
     }
   }
-  /** @param {Picture} picture */
-  useLine(picture) {
+  useLine(/** @type {Picture} */ picture) {
     const gl = this.gl;
     gl.useProgram(this.line);
     gl.uniformMatrix4fv(this.lineAt.both, false, this.now.both);
@@ -223,8 +220,7 @@ export class Renderer {
       this.counted(0);
     }
   }
-  /** @param {number} triangles */
-  counted(triangles) {
+  counted(/** @type {number} */ triangles) {
     this.calls++;
     this.triangles += triangles;
   }
@@ -232,8 +228,7 @@ export class Renderer {
 
 /** A direction of the world as the eye sees it. @param {Mat4} m @param {Vec3} v @returns {Vec3} */
 function rotated(m, v) {
-  /** @param {number} r */
-  const row = (r) => m[r] * v[0] + m[4 + r] * v[1] + m[8 + r] * v[2];
+  const row = (/** @type {number} */ r) => m[r] * v[0] + m[4 + r] * v[1] + m[8 + r] * v[2];
   return [row(0), row(1), row(2)];
 }
 

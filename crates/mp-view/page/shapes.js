@@ -105,8 +105,7 @@ export function segmentsOf(polylines) {
   return out;
 }
 
-/** @param {Float32Array[]} arrays */
-function boxOf(arrays) {
+function boxOf(/** @type {Float32Array[]} */ arrays) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (const points of arrays) {

@@ -29,10 +29,7 @@ export class Timeline {
 
   build() {
     const s = this.settings;
-    this.modes = ANIMATIONS.map(([value, label]) => {
-      const input = el("input", { type: "radio", name: "animation", value, checked: value === s.animation, onchange: () => this.setAnimation(value) });
-      return el("label", {}, input, el("span", {}, label));
-    });
+    this.modes = ANIMATIONS.map(([value, label]) => button(label, () => this.setAnimation(value), { value }));
     this.playButton = button("Play", () => this.toggle(), { class: "wide" });
     this.slider = slider({ low: 0, high: 1, step: 1, value: 0 }, (t) => this.scrub(t), { "aria-label": "Configuration" });
     this.output = el("output", { class: "count" });
@@ -48,7 +45,7 @@ export class Timeline {
       labelled("as", select(modes, s.copyMode, (v) => this.set(() => (s.copyMode = /** @type {Mode} */ (v))), { "aria-label": "How copies are drawn" })));
     byId("timeline").replaceChildren(
       el("div", { class: "bar" },
-        el("span", { class: "segments", role: "radiogroup", "aria-label": "Animation" }, ...this.modes),
+        el("span", { class: "segments", role: "group", "aria-label": "Animation" }, ...this.modes),
         el("span", { class: "group" },
           button("«", () => this.scrub(0), { "aria-label": "First configuration", title: "First (Home)" }),
           button("‹", () => this.step(-1), { "aria-label": "Previous configuration", title: "Previous (←)" }),
@@ -58,8 +55,7 @@ export class Timeline {
         this.autoControls, this.allControls, this.output),
       this.slider, this.plot.canvas);
   }
-  /** @param {() => void} change */
-  set(change) {
+  set(/** @type {() => void} */ change) {
     change();
     this.changed();
   }
@@ -77,10 +73,7 @@ export class Timeline {
   /** Shows the settings in the controls. */
   update() {
     const { animation, time, copies } = this.settings;
-    this.modes?.forEach((label) => {
-      const input = /** @type {HTMLInputElement} */ (label.firstElementChild);
-      input.checked = input.value === animation;
-    });
+    this.modes?.forEach((mode) => mode.setAttribute("aria-pressed", String(mode.value === animation)));
     if (!this.slider) return;
     this.slider.step = animation === "step" ? "1" : "any";
     this.slider.valueAsNumber = time;
@@ -92,8 +85,7 @@ export class Timeline {
     if (this.allControls) this.allControls.hidden = animation !== "all";
     this.plot?.draw(time);
   }
-  /** @param {Animation} animation */
-  setAnimation(animation) {
+  setAnimation(/** @type {Animation} */ animation) {
     this.settings.animation = animation;
     this.playing = animation === "auto";
     this.lastTime = 0;
