@@ -1,6 +1,6 @@
 // Buffers on the graphics card: shapes, and lines and points that can grow.
 
-/** @typedef {import("mp/shapes.js").Shape} Shape */
+/** @import { Shape } from "mp/shapes.js" */
 /** @typedef {[number, number, number, number]} Rgba between 0 and 1 */
 
 /** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment @returns {WebGLProgram} */
@@ -23,8 +23,7 @@ export function program(gl, vertex, fragment) {
 /** The places of all uniforms of a program. @param {WebGL2RenderingContext} gl @param {WebGLProgram} of
  * @returns {Record<string, WebGLUniformLocation | null>} */
 export function uniforms(gl, of) {
-  /** @type {Record<string, WebGLUniformLocation | null>} */
-  const out = {};
+  /** @type {Record<string, WebGLUniformLocation | null>} */ const out = {};
   const count = gl.getProgramParameter(of, gl.ACTIVE_UNIFORMS) ?? 0;
   for (let i = 0; i < count; i++) {
     const name = gl.getActiveUniform(of, i)?.name ?? "";
@@ -35,23 +34,19 @@ export function uniforms(gl, of) {
 
 /** A buffer that keeps what it has when it grows. */
 class GrowingBuffer {
-  /** @param {WebGL2RenderingContext} gl */
-  constructor(gl) {
+  constructor(/** @type {WebGL2RenderingContext} */ gl) {
     this.gl = gl;
     this.buffer = gl.createBuffer();
     this.size = 0;
     this.room = 0;
   }
-
-  /** @param {ArrayBufferView} bytes */
-  append(bytes) {
+  append(/** @type {ArrayBufferView} */ bytes) {
     const gl = this.gl;
     if (this.size + bytes.byteLength > this.room) this.grow(this.size + bytes.byteLength);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.buffer);
     gl.bufferSubData(gl.ARRAY_BUFFER, this.size, bytes);
     this.size += bytes.byteLength;
   }
-
   /** @param {number} needed bytes */
   grow(needed) {
     const gl = this.gl;
@@ -71,17 +66,12 @@ class GrowingBuffer {
 class ColoredRows {
   /** @param {WebGL2RenderingContext} gl @param {number} floats coordinates of a row */
   constructor(gl, floats) {
-    this.gl = gl;
-    this.floats = floats;
+    this.gl = gl; this.floats = floats;
     this.stride = 4 * floats + 4;
     this.rows = new GrowingBuffer(gl);
     this.vao = gl.createVertexArray();
   }
-
-  get count() {
-    return this.rows.size / this.stride;
-  }
-
+  get count() { return this.rows.size / this.stride; }
   /** Adds rows at the end. @param {Float32Array} coordinates @param {(row: number) => Rgba} color */
   append(coordinates, color) {
     const count = coordinates.length / this.floats;
@@ -97,14 +87,11 @@ class ColoredRows {
     this.rows.append(bytes);
     this.bind();
   }
-
   /** Tells the vertex array where the rows are, as the buffer may be a new one. */
   bind() {}
 
   /** Forgets all rows. */
-  clear() {
-    this.rows.size = 0;
-  }
+  clear() { this.rows.size = 0; }
 }
 
 /** Segments: two ends and a colour each. */
@@ -114,7 +101,6 @@ export class LineSet extends ColoredRows {
     super(gl, 6);
     this.strip = strip;
   }
-
   bind() {
     const gl = this.gl;
     gl.bindVertexArray(this.vao);
@@ -133,10 +119,7 @@ export class LineSet extends ColoredRows {
 
 /** Points: a place and a colour each; the fourth number of the colour is the size as a part of 16 pixels. */
 export class PointSet extends ColoredRows {
-  /** @param {WebGL2RenderingContext} gl */
-  constructor(gl) {
-    super(gl, 3);
-  }
+  constructor(/** @type {WebGL2RenderingContext} */ gl) { super(gl, 3); }
 
   bind() {
     const gl = this.gl;
@@ -157,27 +140,19 @@ export const COPY = 12;
 export class ShapeBuffers {
   /** @param {WebGL2RenderingContext} gl @param {Shape} shape @param {WebGLBuffer | null} copies @param {WebGLBuffer | null} strip */
   constructor(gl, shape, copies, strip) {
-    this.gl = gl;
-    this.shape = shape;
-    this.copies = copies;
+    this.gl = gl; this.shape = shape; this.copies = copies;
     this.corners = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
     gl.bufferData(gl.ARRAY_BUFFER, shape.positions, gl.STATIC_DRAW);
     this.triangles = this.indexed(shape.triangles);
     this.edges = this.indexed(shape.edges);
-    /** @type {{vao: WebGLVertexArrayObject | null, count: number} | null} */
-    this.allEdges = null;
+    /** @type {{vao: WebGLVertexArrayObject | null, count: number} | null} */ this.allEdges = null;
     this.lines = new LineSet(gl, strip);
     this.lines.append(shape.segments, () => [1, 1, 1, 1]);
   }
-
   /** All edges; made when they are first drawn. */
-  get wire() {
-    return (this.allEdges ??= this.indexed(this.shape.wire));
-  }
-
-  /** @param {Uint32Array} indices */
-  indexed(indices) {
+  get wire() { return (this.allEdges ??= this.indexed(this.shape.wire)); }
+  indexed(/** @type {Uint32Array} */ indices) {
     const gl = this.gl;
     const vao = gl.createVertexArray();
     gl.bindVertexArray(vao);
@@ -193,7 +168,6 @@ export class ShapeBuffers {
     gl.bindVertexArray(null);
     return { vao, count: indices.length };
   }
-
   /** Takes the copies from the one with this index on. @param {number} first */
   bindCopies(first) {
     const gl = this.gl;

@@ -2,8 +2,7 @@
 
 import { add, clamp, cross, dot, multiply, normalize, orthographic, perspective, scale, sub, transform, viewMatrix } from "mp/math.js";
 
-/** @typedef {import("mp/math.js").Vec3} Vec3 */
-/** @typedef {import("mp/math.js").Mat4} Mat4 */
+/** @import { Mat4, Vec3 } from "mp/math.js" */
 /** @typedef {"front" | "back" | "left" | "right" | "top" | "bottom" | "iso"} ViewName */
 /** @typedef {{origin: Vec3, direction: Vec3}} Ray */
 
@@ -25,8 +24,7 @@ export class Camera {
   constructor(bounds) {
     const low = /** @type {Vec3} */ (bounds[0]);
     const high = /** @type {Vec3} */ (bounds[1]);
-    /** @type {Vec3} */
-    this.center = scale(add(low, high), 0.5);
+    /** @type {Vec3} */ this.center = scale(add(low, high), 0.5);
     this.corners = [low, high];
     const size = sub(high, low);
     this.radius = Math.max(Math.hypot(...size) / 2, 1e-6);
@@ -36,31 +34,20 @@ export class Camera {
     this.yaw = 0;
     this.pitch = 0;
     this.distance = 1;
-    /** @type {Vec3} */
-    this.target = this.center;
+    /** @type {Vec3} */ this.target = this.center;
     this.look("iso");
   }
-
   /** Turns to a standard view; the target stays. @param {ViewName} name */
-  look(name) {
-    [this.yaw, this.pitch] = VIEWS[name];
-  }
-
+  look(name) { [this.yaw, this.pitch] = VIEWS[name]; }
   /** The axes of the picture in the world: to the right, upwards, and towards the viewer. @returns {{right: Vec3, up: Vec3, back: Vec3}} */
   axes() {
     const [cy, sy, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
-    /** @type {Vec3} */
-    const back = [cp * cy, cp * sy, sp];
-    /** @type {Vec3} */
-    const right = [-sy, cy, 0];
+    /** @type {Vec3} */ const back = [cp * cy, cp * sy, sp];
+    /** @type {Vec3} */ const right = [-sy, cy, 0];
     return { right, up: cross(back, right), back };
   }
-
   /** @returns {Vec3} */
-  eye() {
-    return add(this.target, scale(this.axes().back, this.distance));
-  }
-
+  eye() { return add(this.target, scale(this.axes().back, this.distance)); }
   /** Shows the whole scene from the present direction. */
   fit() {
     this.target = this.center;
@@ -74,24 +61,18 @@ export class Camera {
       this.distance = Math.max(this.distance, (half * 1.08) / tan + (this.perspective ? dot(p, back) : 0));
     }
   }
-
   /** @param {number} dx pixels @param {number} dy pixels */
   orbit(dx, dy) {
     this.yaw -= dx * 0.006;
     this.pitch = clamp(this.pitch + dy * 0.006, -Math.PI / 2, Math.PI / 2);
   }
-
   /** The size of a pixel at the target, metres. */
-  pixel() {
-    return (2 * this.distance * Math.tan(FOV / 2)) / this.height;
-  }
-
+  pixel() { return (2 * this.distance * Math.tan(FOV / 2)) / this.height; }
   /** @param {number} dx pixels @param {number} dy pixels */
   pan(dx, dy) {
     const { right, up } = this.axes();
     this.target = add(this.target, add(scale(right, -dx * this.pixel()), scale(up, dy * this.pixel())));
   }
-
   /** Makes the distance `factor` times as long; what is under the pixel stays there.
    * @param {number} factor @param {number} x @param {number} y */
   zoom(factor, x = this.width / 2, y = this.height / 2) {
@@ -100,13 +81,11 @@ export class Camera {
     this.pan((this.width / 2 - x) * moved, (this.height / 2 - y) * moved);
     this.distance = distance;
   }
-
   /** Moves eye and target: to the right, upwards and forwards, metres. @param {number} x @param {number} y @param {number} z */
   fly(x, y, z) {
     const { right, up, back } = this.axes();
     this.target = add(this.target, add(scale(right, x), add(scale(up, y), scale(back, -z))));
   }
-
   /** @returns {{view: Mat4, projection: Mat4, both: Mat4}} */
   matrices() {
     const { right, up, back } = this.axes();
@@ -121,7 +100,6 @@ export class Camera {
     const view = viewMatrix(right, up, back, eye);
     return { view, projection, both: multiply(projection, view) };
   }
-
   /** The ray through a pixel. @param {number} x @param {number} y @returns {Ray} */
   ray(x, y) {
     const { right, up, back } = this.axes();
@@ -131,7 +109,6 @@ export class Camera {
     if (this.perspective) return { origin: this.eye(), direction: normalize(sub(through, this.eye())) };
     return { origin: add(through, scale(back, this.radius * 3 + this.distance)), direction: scale(back, -1) };
   }
-
   /** The pixel of a point, or null when it is behind the viewer. @param {Mat4} both @param {Vec3} point @returns {[number, number] | null} */
   project(both, point) {
     const [x, y, , w] = transform(both, point);

@@ -1,29 +1,22 @@
 // Mouse, pen, fingers and keys move the camera. A press that does not move is a click.
 
-/** @typedef {import("mp/camera.js").Camera} Camera */
+/** @import { Camera } from "mp/camera.js" */
 /** @typedef {{changed: () => void, clicked: (x: number, y: number) => void, centered: (x: number, y: number) => void}} Listener */
 
 const FLY_KEYS = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
-
 /** Whether keys belong to the control that has the focus. @param {EventTarget | null} target */
 export const isTyping = (target) => target instanceof HTMLElement && target.matches("input:not([type=checkbox]), select, textarea, [contenteditable]");
 
 export class Controls {
   /** @param {HTMLCanvasElement} canvas @param {Camera} camera @param {boolean} planar @param {Listener} listener */
   constructor(canvas, camera, planar, listener) {
-    this.canvas = canvas;
-    this.camera = camera;
-    this.planar = planar;
-    this.listener = listener;
-    /** @type {Map<number, {x: number, y: number}>} */
-    this.pointers = new Map();
+    this.canvas = canvas; this.camera = camera; this.planar = planar; this.listener = listener;
+    /** @type {Map<number, {x: number, y: number}>} */ this.pointers = new Map();
     this.moved = 0;
-    /** @type {Set<string>} */
-    this.held = new Set();
+    /** @type {Set<string>} */ this.held = new Set();
     this.lastTime = 0;
     this.listen();
   }
-
   listen() {
     const c = this.canvas;
     c.addEventListener("pointerdown", (e) => this.down(e));
@@ -37,23 +30,18 @@ export class Controls {
     addEventListener("keyup", (e) => this.held.delete(e.code));
     addEventListener("blur", () => this.held.clear());
   }
-
   /** @param {MouseEvent} e @returns {[number, number]} */
   at(e) {
     const box = this.canvas.getBoundingClientRect();
     return [e.clientX - box.left, e.clientY - box.top];
   }
-
-  /** @param {PointerEvent} e */
-  down(e) {
+  down(/** @type {PointerEvent} */ e) {
     this.canvas.setPointerCapture(e.pointerId);
     const [x, y] = this.at(e);
     if (this.pointers.size === 0) this.moved = 0;
     this.pointers.set(e.pointerId, { x, y });
   }
-
-  /** @param {PointerEvent} e */
-  move(e) {
+  move(/** @type {PointerEvent} */ e) {
     const last = this.pointers.get(e.pointerId);
     if (!last) return;
     const [x, y] = this.at(e);
@@ -64,7 +52,6 @@ export class Controls {
     this.pointers.set(e.pointerId, { x, y });
     this.listener.changed();
   }
-
   /** One pointer turns the view; with Shift or another button it moves it. In a plane it is the other way round.
    * @param {PointerEvent} e @param {number} dx @param {number} dy */
   drag(e, dx, dy) {
@@ -72,7 +59,6 @@ export class Controls {
     if (other !== this.planar) this.camera.pan(dx, dy);
     else this.camera.orbit(dx, dy);
   }
-
   /** Two fingers zoom and move. @param {number} id @param {number} x @param {number} y */
   pinch(id, x, y) {
     const last = this.pointers.get(id);
@@ -83,23 +69,17 @@ export class Controls {
     this.camera.pan((x - last.x) / 2, (y - last.y) / 2);
     if (now > 10) this.camera.zoom(before / now, (x + still.x) / 2, (y + still.y) / 2);
   }
-
-  /** @param {PointerEvent} e */
-  up(e) {
+  up(/** @type {PointerEvent} */ e) {
     const was = this.pointers.delete(e.pointerId);
     if (was && this.moved <= 4 && e.button === 0 && this.pointers.size === 0) this.listener.clicked(...this.at(e));
   }
-
-  /** @param {WheelEvent} e */
-  wheel(e) {
+  wheel(/** @type {WheelEvent} */ e) {
     e.preventDefault();
     const pixels = e.deltaY * (e.deltaMode === 1 ? 33 : e.deltaMode === 2 ? 400 : 1);
     this.camera.zoom(Math.exp(Math.max(-500, Math.min(500, pixels)) * 0.0015), ...this.at(e));
     this.listener.changed();
   }
-
-  /** @param {KeyboardEvent} e */
-  key(e) {
+  key(/** @type {KeyboardEvent} */ e) {
     if (isTyping(e.target) || e.ctrlKey || e.metaKey || e.altKey) return;
     if (FLY_KEYS.has(e.code)) this.held.add(e.code);
     else if (e.shiftKey && e.key.startsWith("Arrow")) this.turn(e);
@@ -108,14 +88,11 @@ export class Controls {
     else return;
     this.listener.changed();
   }
-
-  /** @param {KeyboardEvent} e */
-  turn(e) {
+  turn(/** @type {KeyboardEvent} */ e) {
     e.preventDefault();
     const step = 15;
     this.camera.orbit(e.key === "ArrowLeft" ? -step : e.key === "ArrowRight" ? step : 0, e.key === "ArrowUp" ? step : e.key === "ArrowDown" ? -step : 0);
   }
-
   /** Moves while keys are held; returns whether it moved. @param {number} now milliseconds */
   fly(now) {
     const seconds = Math.min(0.1, (now - this.lastTime) / 1000);

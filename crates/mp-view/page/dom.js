@@ -2,8 +2,7 @@
 
 /** @typedef {Record<string, string | number | boolean | ((event: Event) => void)>} Properties */
 
-/** An element with attributes, listeners (`onclick: …`) and children.
- * @template {keyof HTMLElementTagNameMap} K
+/** An element with attributes, listeners (`onclick: …`) and children. @template {keyof HTMLElementTagNameMap} K
  * @param {K} tag @param {Properties} [properties] @param {(Node | string)[]} children @returns {HTMLElementTagNameMap[K]} */
 export function el(tag, properties = {}, ...children) {
   const element = document.createElement(tag);

@@ -3,7 +3,7 @@
 import { Camera } from "mp/camera.js";
 import { palette } from "mp/colors.js";
 import { Controls, isTyping } from "mp/controls.js";
-import { byId, el } from "mp/dom.js";
+import { byId } from "mp/dom.js";
 import { Panels, VIEWS } from "mp/panels.js";
 import { Picker } from "mp/picking.js";
 import { PictureMaker } from "mp/picture.js";
@@ -12,16 +12,14 @@ import { fromBase64, readScene } from "mp/scene.js";
 import { shapesOf } from "mp/shapes.js";
 import { Timeline } from "mp/timeline.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/picture.js").Settings} Settings */
-/** @typedef {import("mp/picture.js").Animation} Animation */
-/** @typedef {import("mp/renderer.js").Mode} Mode */
-/** @typedef {import("mp/camera.js").ViewName} ViewName */
+/** @import { ViewName } from "mp/camera.js" */
+/** @import { Animation, Settings } from "mp/picture.js" */
+/** @import { Mode } from "mp/renderer.js" */
+/** @import { Scene } from "mp/scene.js" */
 /** @typedef {{drawCalls: number, triangles: number, milliseconds: number, frames: number}} Stats
  *  `milliseconds`: the time that scripts took for the last frame. */
 
-/** @param {string} text */
-function showError(text) {
+function showError(/** @type {string} */ text) {
   const box = byId("alert");
   box.textContent = text;
   box.hidden = text === "";
@@ -39,7 +37,7 @@ function firstSettings(scene) {
     path: scene.paths.length ? 0 : -1,
     animation: "step",
     time: 0,
-    copies: 40,
+    copies: 30,
     copyMode: "transparent",
     start: true,
     goals: true,
@@ -54,23 +52,20 @@ function firstSettings(scene) {
 }
 
 class Viewer {
-  /** @param {Scene} scene */
-  constructor(scene) {
+  constructor(/** @type {Scene} */ scene) {
     this.scene = scene;
     this.settings = firstSettings(scene);
     this.canvas = /** @type {HTMLCanvasElement} */ (byId("canvas"));
     const { shapes, ofBody } = shapesOf(scene);
-    this.shapes = shapes;
-    this.ofBody = ofBody;
+    this.shapes = shapes; this.ofBody = ofBody;
     this.camera = new Camera(scene.bounds);
-    /** @type {Stats} */
-    this.stats = { drawCalls: 0, triangles: 0, milliseconds: 0, frames: 0 };
+    /** @type {Stats} */ this.stats = { drawCalls: 0, triangles: 0, milliseconds: 0, frames: 0 };
     this.waiting = false;
     this.start();
     const changed = () => this.changed();
     this.controls = new Controls(this.canvas, this.camera, scene.planar, { changed, clicked: (x, y) => this.click(x, y), centered: (x, y) => this.center(x, y) });
     const triangles = ofBody.reduce((sum, s) => sum + shapes[s].triangles.length / 3, 0);
-    this.panels = new Panels(scene, this.settings, this.actions(), triangles);
+    this.panels = new Panels(scene, this.settings, this, triangles);
     this.timeline = new Timeline(scene, this.settings, changed);
     this.picker = new Picker(scene, shapes, this.camera);
     this.listen();
@@ -78,26 +73,11 @@ class Viewer {
     if (scene.planar) this.setPerspective(false);
     this.look(scene.planar ? "top" : "iso");
   }
-
   /** Takes the graphics card into use: at the beginning, and after it was lost. */
   start() {
     this.renderer = new Renderer(this.canvas, this.shapes);
     this.pictures = new PictureMaker(this.scene, this.ofBody, this.renderer);
   }
-
-  /** @returns {import("mp/panels.js").Actions} */
-  actions() {
-    return {
-      changed: () => this.changed(),
-      look: (view) => this.look(view),
-      fit: () => this.fit(),
-      setPerspective: (on) => this.setPerspective(on),
-      choosePath: (path) => this.choosePath(path),
-      setTheme: (theme) => this.setTheme(theme),
-      savePicture: () => this.savePicture(),
-    };
-  }
-
   listen() {
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     addEventListener("keydown", (e) => this.key(e));
@@ -114,7 +94,6 @@ class Viewer {
       this.changed();
     });
   }
-
   resize() {
     const ratio = Math.min(devicePixelRatio || 1, 2);
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -128,14 +107,12 @@ class Viewer {
     if (fresh) this.camera.fit();
     if (this.stats.frames) this.draw();
   }
-
   /** Asks for one redraw, soon. */
   changed() {
     if (this.waiting) return;
     this.waiting = true;
     requestAnimationFrame((now) => this.frame(now));
   }
-
   /** @param {number} now milliseconds */
   frame(now) {
     this.waiting = false;
@@ -149,7 +126,6 @@ class Viewer {
     }
     if (flies || plays) this.changed();
   }
-
   /** Draws now. */
   draw() {
     if (this.lost || !this.pictures || !this.renderer) return;
@@ -161,49 +137,29 @@ class Viewer {
     const milliseconds = performance.now() - begin;
     this.stats = { drawCalls: this.renderer.calls, triangles: this.renderer.triangles, milliseconds, frames: this.stats.frames + 1 };
   }
-
-  /** @param {ViewName} view */
-  look(view) {
+  look(/** @type {ViewName} */ view) {
     this.camera.look(view);
     this.fit();
   }
-
   fit() {
     this.camera.fit();
     this.changed();
   }
-
-  /** @param {boolean} on */
-  setPerspective(on) {
+  setPerspective(/** @type {boolean} */ on) {
     this.camera.perspective = on;
     this.panels?.showPerspective(on);
     this.changed();
   }
-
-  /** @param {string} theme */
-  setTheme(theme) {
+  setTheme(/** @type {string} */ theme) {
     document.documentElement.dataset.theme = theme;
     this.settings.dark = theme === "auto" ? matchMedia("(prefers-color-scheme: dark)").matches : theme === "dark";
     this.changed();
   }
-
-  /** @param {number} path */
-  choosePath(path) {
+  choosePath(/** @type {number} */ path) {
     this.settings.path = path;
     this.timeline?.showPath();
     this.changed();
   }
-
-  savePicture() {
-    this.draw();
-    this.canvas.toBlob((blob) => {
-      if (!blob) return;
-      const link = el("a", { href: URL.createObjectURL(blob), download: "picture.png" });
-      link.click();
-      setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-    });
-  }
-
   /** Says what is at a pixel. @param {number} x @param {number} y */
   click(x, y) {
     const picked = this.picture ? (this.picker?.pick(x, y, this.picture, this.settings) ?? null) : null;
@@ -213,23 +169,19 @@ class Viewer {
     this.panels?.showPicked(picked, () => this.forget());
     this.changed();
   }
-
   /** Looks at what is at a pixel. @param {number} x @param {number} y */
   center(x, y) {
     const picked = this.picture && this.picker?.pick(x, y, this.picture, this.settings);
     if (picked) this.camera.target = picked.point;
     this.changed();
   }
-
   forget() {
     this.settings.marked = null;
     byId("hint").textContent = "";
     this.panels?.showPicked(null, () => {});
     this.changed();
   }
-
-  /** @param {KeyboardEvent} e */
-  key(e) {
+  key(/** @type {KeyboardEvent} */ e) {
     if (isTyping(e.target) || e.ctrlKey || e.metaKey || e.altKey || document.querySelector("dialog[open]")) return;
     if (this.timeline?.key(e)) return e.preventDefault();
     const s = this.settings;
@@ -244,7 +196,6 @@ class Viewer {
     else if (e.key === "?") byId("help-button").click();
     else if (e.key === "Escape") this.forget();
   }
-
   /** A way to show the path, or to draw surfaces. @param {Animation | Mode} mode */
   setMode(mode) {
     if (mode === "all" || mode === "step" || mode === "auto") this.timeline?.setAnimation(mode);
@@ -256,7 +207,7 @@ class Viewer {
 async function sceneBytes() {
   const inside = document.getElementById("scene")?.textContent?.trim();
   if (inside) return fromBase64(inside);
-  const none = "This page holds no scene. Choose a scene file (.mpv):";
+  const none = "This page holds no scene, and there is no file scene.mpv beside it.";
   if (location.protocol === "file:") throw new Error(none);
   const answer = await fetch("scene.mpv").catch(() => null);
   if (!answer?.ok) throw new Error(none);
@@ -269,26 +220,6 @@ function show(bytes) {
   viewer.draw();
   document.body.classList.remove("loading");
   return viewer;
-}
-
-/** Lets a person choose a file, where the page has no scene that can be shown. @returns {Promise<Viewer>} */
-function choose() {
-  return new Promise((done) => {
-    const input = el("input", { type: "file", accept: ".mpv", "aria-label": "Scene file", class: "choose" });
-    input.onchange = async () => {
-      const file = input.files?.[0];
-      if (!file) return;
-      try {
-        const chosen = show(new Uint8Array(await file.arrayBuffer()));
-        showError("");
-        input.remove();
-        done(chosen);
-      } catch (error) {
-        showError(sentence(error));
-      }
-    };
-    byId("alert").after(input);
-  });
 }
 
 /** @type {Viewer | null} */
@@ -306,7 +237,6 @@ const ready = (async () => {
     viewer = show(await sceneBytes());
   } catch (error) {
     showError(sentence(error));
-    choose().then((chosen) => (viewer = chosen));
     throw error;
   }
 })();

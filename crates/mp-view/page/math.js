@@ -25,8 +25,7 @@ export const pointAt = (points, i) => [points[3 * i], points[3 * i + 1], points[
 
 /** Turns `v` by the quaternion at `at` of `q`. @param {Numbers} q @param {number} at @param {Vec3} v @returns {Vec3} */
 export function rotate(q, at, v) {
-  /** @type {Vec3} */
-  const axis = [q[at], q[at + 1], q[at + 2]];
+  /** @type {Vec3} */ const axis = [q[at], q[at + 1], q[at + 2]];
   const t = add(cross(axis, v), scale(v, q[at + 3]));
   return add(v, scale(cross(axis, t), 2));
 }
@@ -40,17 +39,14 @@ export const unrotate = (pose, at, v) =>
 
 /** A point of the world in the frame of the body. @param {Numbers} pose @param {number} at @param {Vec3} p @returns {Vec3} */
 export const unplace = (pose, at, p) => unrotate(pose, at, sub(p, [pose[at], pose[at + 1], pose[at + 2]]));
-
 /** The pose that moves nothing. */
 export const IDENTITY = Object.freeze([0, 0, 0, 0, 0, 0, 1]);
 
-/**
- * Interpolates poses: places linearly, quaternions linearly on the shorter way and then normalised.
+/** Interpolates poses: places linearly, quaternions linearly on the shorter way and then normalised.
  * @param {Numbers} from @param {number} a where the first pose begins
  * @param {Numbers} to @param {number} b where the second pose begins
  * @param {number} t between 0 and 1
- * @param {Float32Array | number[]} out @param {number} at
- */
+ * @param {Float32Array | number[]} out @param {number} at */
 export function lerpPose(from, a, to, b, t, out, at) {
   for (let k = 0; k < 3; k++) out[at + k] = from[a + k] + (to[b + k] - from[a + k]) * t;
   let same = 0;
@@ -104,7 +100,6 @@ export function viewMatrix(right, up, back, eye) {
 
 /** Multiplies a matrix and the point (p, 1). @param {Mat4} m @param {Vec3} p @returns {[number, number, number, number]} */
 export function transform(m, p) {
-  /** @param {number} r */
-  const row = (r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
+  const row = (/** @type {number} */ r) => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r];
   return [row(0), row(1), row(2), row(3)];
 }

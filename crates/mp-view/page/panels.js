@@ -2,54 +2,38 @@
 
 import { brief, button, byId, checkbox, el, factList, labelled, select, slider } from "mp/dom.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/scene.js").Path} Path */
-/** @typedef {import("mp/picture.js").Settings} Settings */
-/** @typedef {import("mp/picking.js").Picked} Picked */
-/** @typedef {import("mp/renderer.js").Mode} Mode */
-/** @typedef {import("mp/camera.js").ViewName} ViewName */
+/** @import { ViewName } from "mp/camera.js" */
+/** @import { Picked } from "mp/picking.js" */
+/** @import { Settings } from "mp/picture.js" */
+/** @import { Mode } from "mp/renderer.js" */
+/** @import { Path, Scene } from "mp/scene.js" */
 /** @typedef {{changed: () => void, look: (view: ViewName) => void, fit: () => void, setPerspective: (on: boolean) => void,
- *  choosePath: (path: number) => void, setTheme: (theme: string) => void, savePicture: () => void}} Actions */
+ *  choosePath: (path: number) => void, setTheme: (theme: string) => void}} Actions */
 
 /** @type {[Mode, string][]} */
 const MODES = [["solid", "solid"], ["transparent", "transparent"], ["wire", "wire"]];
-
 /** @type {[ViewName, string][]} */
 export const VIEWS = [["front", "Front"], ["back", "Back"], ["left", "Left"], ["right", "Right"], ["top", "Top"], ["bottom", "Bottom"], ["iso", "Iso"]];
 
 /** @type {[string, string][]} */
 const HELP = [
   ["Drag", "turn the view (in the plane: move it)"],
-  ["Shift + drag, right button", "move the view (in the plane: turn it)"],
-  ["Wheel, two fingers, + and −", "zoom"],
-  ["Click", "say what is there"],
-  ["Double click", "look at this place"],
-  ["W A S D, Q E", "fly: forwards, left, backwards, right; down, up"],
-  ["Shift + arrow keys", "turn the view"],
-  ["1 … 7", "front, back, left, right, top, bottom, iso"],
-  ["F", "fit everything"],
-  ["O", "perspective or parallel view"],
-  ["M", "solid, transparent or wire"],
-  ["X", "section: none, x, y, z"],
-  ["← →", "step by step along the path"],
-  ["Home, End", "first and last configuration"],
-  ["Space", "play and pause"],
-  ["C", "all configurations at once"],
-  ["P", "show or hide the panel"],
-  ["Esc", "forget what was picked"],
+  ["Shift + drag, right button", "move the view (in the plane: turn it)"], ["Wheel, two fingers, + and −", "zoom"],
+  ["Click", "say what is there"], ["Double click", "look at this place"],
+  ["W A S D, Q E", "fly: forwards, left, backwards, right; down, up"], ["Shift + arrow keys", "turn the view"],
+  ["1 … 7", "front, back, left, right, top, bottom, iso"], ["F", "fit everything"],
+  ["O", "perspective or parallel view"], ["M", "solid, transparent or wire"], ["X", "section: none, x, y, z"],
+  ["← →", "step by step along the path"], ["Home, End", "first and last configuration"], ["Space", "play and pause"],
+  ["C", "all configurations at once"], ["P", "show or hide the panel"], ["Esc", "forget what was picked"],
   ["?", "this help"],
 ];
 
 export class Panels {
   /** @param {Scene} scene @param {Settings} settings @param {Actions} actions @param {number} triangles */
   constructor(scene, settings, actions, triangles) {
-    this.scene = scene;
-    this.settings = settings;
-    this.actions = actions;
-    this.triangles = triangles;
+    this.scene = scene; this.settings = settings; this.actions = actions; this.triangles = triangles;
     this.build();
   }
-
   build() {
     const { scene } = this;
     document.title = scene.name || "Scene";
@@ -64,31 +48,26 @@ export class Panels {
     this.buildHelp();
     this.buildPanelButton();
   }
-
-  /** @param {() => void} change */
-  set(change) {
+  set(/** @type {() => void} */ change) {
     change();
     this.actions.changed();
   }
-
   /** @returns {HTMLElement[]} */
   pictureControls() {
     const { settings: s, actions } = this;
     const views = VIEWS.map(([view, label], i) => button(label, () => actions.look(view), { title: `${label} view (${i + 1})` }));
     this.mode = select(MODES, s.mode, (v) => this.set(() => (s.mode = /** @type {Mode} */ (v))));
     this.projection = select([["perspective", "perspective"], ["parallel", "parallel"]], "perspective", (v) => actions.setPerspective(v === "perspective"));
-    const theme = select([["auto", "as the system"], ["light", "light"], ["dark", "dark"]], "auto", actions.setTheme);
+    const theme = select([["auto", "as the system"], ["light", "light"], ["dark", "dark"]], "auto", (t) => actions.setTheme(t));
     return [
-      el("div", { class: "buttons", role: "group", "aria-label": "Views" }, ...views, button("Fit", actions.fit, { title: "Fit everything (F)" })),
+      el("div", { class: "buttons", role: "group", "aria-label": "Views" }, ...views, button("Fit", () => actions.fit(), { title: "Fit everything (F)" })),
       labelled("Surfaces", this.mode),
       labelled("View", this.projection),
       checkbox("Edges", s.edges, (on) => this.set(() => (s.edges = on))),
       this.sectionControls(),
       labelled("Colours", theme),
-      button("Save picture", actions.savePicture),
     ];
   }
-
   sectionControls() {
     const { settings: s } = this;
     this.axis = select([["-1", "none"], ["0", "across x"], ["1", "across y"], ["2", "across z"]], "-1", (v) => this.setSection(Number(v)));
@@ -97,7 +76,6 @@ export class Panels {
     this.sectionPlace = el("div", { hidden: true }, labelled("Place of the section", at), flip);
     return el("div", {}, labelled("Section through obstacles", this.axis), this.sectionPlace);
   }
-
   /** @param {number} axis −1 for none */
   setSection(axis) {
     this.settings.section.axis = axis;
@@ -105,19 +83,13 @@ export class Panels {
     if (this.sectionPlace) this.sectionPlace.hidden = axis < 0;
     this.actions.changed();
   }
-
-  /** @param {Mode} mode */
-  setMode(mode) {
+  setMode(/** @type {Mode} */ mode) {
     this.settings.mode = mode;
     if (this.mode) this.mode.value = mode;
     this.actions.changed();
   }
-
   /** @param {boolean} on */
-  showPerspective(on) {
-    if (this.projection) this.projection.value = on ? "perspective" : "parallel";
-  }
-
+  showPerspective(on) { if (this.projection) this.projection.value = on ? "perspective" : "parallel"; }
   /** @returns {HTMLElement[]} */
   shownControls() {
     const { scene, settings: s } = this;
@@ -137,12 +109,10 @@ export class Panels {
     }
     return boxes;
   }
-
   /** @returns {HTMLElement[]} */
   bodyList() {
     const { scene, settings: s } = this;
-    /** @type {[string, string][]} */
-    const modes = [["", "as all"], ...MODES];
+    /** @type {[string, string][]} */ const modes = [["", "as all"], ...MODES];
     const rows = scene.bodies.map((body, b) => {
       const seen = checkbox(body.name, true, (on) => this.set(() => (s.bodies[b].visible = on)));
       const mode = select(modes, "", (v) => this.set(() => (s.bodies[b].mode = /** @type {Mode | ""} */ (v))), { "aria-label": `How “${body.name}” is drawn` });
@@ -150,7 +120,6 @@ export class Panels {
     });
     return [el("ul", { class: "bodies" }, ...rows)];
   }
-
   /** @returns {HTMLElement[]} */
   pathList() {
     const { scene, settings: s, actions } = this;
@@ -160,7 +129,6 @@ export class Panels {
     });
     return [el("ul", { class: "paths" }, ...rows)];
   }
-
   /** @returns {[string, string][]} */
   sceneFacts() {
     const { scene } = this;
@@ -179,7 +147,6 @@ export class Panels {
     });
     return facts;
   }
-
   /** The numbers of the present configuration. */
   update() {
     const { scene, settings: s } = this;
@@ -189,7 +156,6 @@ export class Panels {
     const facts = scene.columns.flatMap((c, k) => [el("dt", {}, c.name), el("dd", {}, `${brief(path.rows[i + k])} ${c.unit}`)]);
     this.row?.replaceChildren(...facts);
   }
-
   /** @param {Picked | null} picked @param {() => void} close */
   showPicked(picked, close) {
     if (!picked) return this.picked?.replaceChildren();
@@ -197,7 +163,6 @@ export class Panels {
     this.picked?.replaceChildren(el("div", { class: "card" }, el("header", {}, el("strong", {}, picked.title), closer), factList(picked.facts)));
     byId("hint").textContent = [picked.title, ...picked.facts.slice(0, 2).map(([name, value]) => `${name} ${value}`)].join(" · ");
   }
-
   buildHelp() {
     const dialog = /** @type {HTMLDialogElement} */ (byId("help"));
     const close = button("Close", () => dialog.close());
@@ -205,12 +170,10 @@ export class Panels {
     dialog.setAttribute("aria-labelledby", "help-title");
     byId("help-button").onclick = () => dialog.showModal();
   }
-
   buildPanelButton() {
     byId("panel-button").onclick = () => this.togglePanel();
     if (matchMedia("(max-width: 700px)").matches) this.togglePanel();
   }
-
   togglePanel() {
     const shown = document.body.classList.toggle("no-panel") === false;
     byId("panel-button").setAttribute("aria-expanded", String(shown));
@@ -220,8 +183,7 @@ export class Panels {
 /** @param {string} title @param {boolean} open @param {HTMLElement[]} content */
 const section = (title, open, content) => el("details", { open }, el("summary", {}, title), el("div", { class: "content" }, ...content));
 
-/** @param {Path} path */
-function pathWords(path) {
+function pathWords(/** @type {Path} */ path) {
   const words = [`${brief(path.count)} configurations`];
   if (Number.isFinite(path.length)) words.push(`length ${brief(path.length)}`);
   if (path.clearance?.length) words.push(`clearance at least ${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m`);

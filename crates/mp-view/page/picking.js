@@ -3,15 +3,12 @@
 import { brief } from "mp/dom.js";
 import { add, cross, dot, place, pointAt, scale, sub, unplace, unrotate } from "mp/math.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/camera.js").Camera} Camera */
-/** @typedef {import("mp/camera.js").Ray} Ray */
-/** @typedef {import("mp/math.js").Vec3} Vec3 */
-/** @typedef {import("mp/math.js").Mat4} Mat4 */
-/** @typedef {import("mp/shapes.js").Shape} Shape */
-/** @typedef {import("mp/renderer.js").Picture} Picture */
-/** @typedef {import("mp/renderer.js").Item} Item */
-/** @typedef {import("mp/picture.js").Settings} Settings */
+/** @import { Camera, Ray } from "mp/camera.js" */
+/** @import { Mat4, Vec3 } from "mp/math.js" */
+/** @import { Settings } from "mp/picture.js" */
+/** @import { Item, Picture } from "mp/renderer.js" */
+/** @import { Scene } from "mp/scene.js" */
+/** @import { Shape } from "mp/shapes.js" */
 /** @typedef {{title: string, facts: [string, string][], point: Vec3, time: number | null, marked: boolean}} Picked
  *  `time` is set for a configuration of the path. */
 /** @typedef {{points: Float32Array, count: number, describe: (i: number) => Omit<Picked, "point">}} Cloud points to click on */
@@ -70,11 +67,8 @@ function pixelsTo(p, a, b) {
 export class Picker {
   /** @param {Scene} scene @param {Shape[]} shapes @param {Camera} camera */
   constructor(scene, shapes, camera) {
-    this.scene = scene;
-    this.shapes = shapes;
-    this.camera = camera;
+    this.scene = scene; this.shapes = shapes; this.camera = camera;
   }
-
   /** @param {number} x @param {number} y pixels @param {Picture} picture @param {Settings} settings @returns {Picked | null} */
   pick(x, y, picture, settings) {
     const ray = this.camera.ray(x, y);
@@ -84,15 +78,13 @@ export class Picker {
     if (point) return point;
     return surface ? this.describeItem(surface.item, add(ray.origin, scale(ray.direction, surface.t)), settings) : null;
   }
-
   /** The nearest body. @param {Ray} ray @param {[number, number]} pixel @param {Picture} picture */
   surface(ray, pixel, picture) {
     const { plane, flat } = picture;
     /** @param {number} t */
     const kept = (t) => !plane || dot([plane[0], plane[1], plane[2]], add(ray.origin, scale(ray.direction, t))) <= plane[3];
     const { both } = this.camera.matrices();
-    /** @type {{t: number, item: Item} | null} */
-    let best = null;
+    /** @type {{t: number, item: Item} | null} */ let best = null;
     for (const item of picture.items) {
       const shape = this.shapes[item.shape];
       const t = Math.min(meetItem(ray, item, shape, kept), this.meetLines(ray, pixel, item, shape, both));
@@ -102,7 +94,6 @@ export class Picker {
     }
     return best;
   }
-
   /** @param {Ray} ray @param {[number, number]} pixel @param {Item} item @param {Shape} shape @param {Mat4} both */
   meetLines(ray, pixel, item, shape, both) {
     let best = Infinity;
@@ -113,14 +104,12 @@ export class Picker {
     }
     return best;
   }
-
   /** The point nearest to the pixel that no surface hides. @param {Ray} ray @param {number} x @param {number} y
    * @param {Settings} settings @param {number} limit @returns {Picked | null} */
   point(ray, x, y, settings, limit) {
     const { both } = this.camera.matrices();
     let near = NEAR;
-    /** @type {Picked | null} */
-    let best = null;
+    /** @type {Picked | null} */ let best = null;
     for (const { points, count, describe } of this.clouds(settings)) {
       for (let i = 0; i < count; i++) {
         const point = pointAt(points, i);
@@ -134,13 +123,11 @@ export class Picker {
     }
     return best;
   }
-
   /** All points that can be clicked. @param {Settings} s @returns {Cloud[]} */
   clouds(s) {
     const { paths, trees, roadmap } = this.scene;
     const path = paths[s.path];
-    /** @type {Cloud[]} */
-    const clouds = [];
+    /** @type {Cloud[]} */ const clouds = [];
     if (path && s.trace) clouds.push({ points: path.trace, count: path.count, describe: (i) => this.describeConfiguration(s.path, i) });
     trees.forEach((tree, t) => {
       const count = Math.round(s.growth * tree.parents.length);
@@ -149,7 +136,6 @@ export class Picker {
     if (roadmap && s.roadmap) clouds.push({ points: roadmap.nodes, count: roadmap.kind.length, describe: (i) => this.describeMilestone(i) });
     return clouds;
   }
-
   /** @param {number} p @param {number} i @returns {Omit<Picked, "point">} */
   describeConfiguration(p, i) {
     const path = this.scene.paths[p];
@@ -157,13 +143,11 @@ export class Picker {
     if (path.clearance) facts.push(["clearance", `at least ${brief(path.clearance[i])} m`]);
     return { title: `Configuration ${i + 1} of ${path.count}, path “${path.name}”`, facts, time: i, marked: true };
   }
-
   /** The numbers of a configuration. @param {number} p @param {number} i @returns {[string, string][]} */
   rowFacts(p, i) {
     const { columns, paths } = this.scene;
     return columns.map((c, k) => [c.name, `${brief(paths[p].rows[i * columns.length + k])} ${c.unit}`]);
   }
-
   /** @param {number} t @param {number} i @returns {Omit<Picked, "point">} */
   describeNode(t, i) {
     const { name, nodes, parents } = this.scene.trees[t];
@@ -172,7 +156,6 @@ export class Picker {
     const parent = parents[i] < 0 ? "none: this is a root" : `node ${brief(parents[i])}`;
     return { title: `Node ${brief(i)} of the tree “${name}”`, facts: [placeFact(pointAt(nodes, i)), ["parent", parent], ["steps to the root", brief(depth)]], time: null, marked: true };
   }
-
   /** @param {number} i @returns {Omit<Picked, "point">} */
   describeMilestone(i) {
     const { nodes, component, kind, edges } = /** @type {NonNullable<Scene["roadmap"]>} */ (this.scene.roadmap);
@@ -185,13 +168,11 @@ export class Picker {
       marked: true,
     };
   }
-
   /** @param {Item} item @param {Vec3} point @param {Settings} s @returns {Picked} */
   describeItem(item, point, s) {
     const body = this.scene.bodies[item.body];
     const shape = this.shapes[item.shape];
-    /** @type {[string, string][]} */
-    const facts = [["part of", PARTS[item.role](item.index)], placeFact(point)];
+    /** @type {[string, string][]} */ const facts = [["part of", PARTS[item.role](item.index)], placeFact(point)];
     facts.push(["size", [0, 1, 2].map((k) => brief(shape.high[k] - shape.low[k])).join(" × ") + " m"]);
     if (shape.triangles.length) facts.push(["triangles", brief(shape.triangles.length / 3)]);
     if (item.role === "copy" || item.role === "robot") facts.push(...this.rowFacts(s.path, item.index));

@@ -4,20 +4,11 @@ import { componentColor, palette } from "mp/colors.js";
 import { lerpPose } from "mp/math.js";
 import { segmentsOf } from "mp/shapes.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/scene.js").Tree} Tree */
-/** @typedef {import("mp/scene.js").Path} Path */
-/** @typedef {import("mp/colors.js").Color} Color */
-/** @typedef {import("mp/colors.js").Palette} Palette */
-/** @typedef {import("mp/math.js").Numbers} Numbers */
-/** @typedef {import("mp/math.js").Vec3} Vec3 */
-/** @typedef {import("mp/renderer.js").Renderer} Renderer */
-/** @typedef {import("mp/renderer.js").Picture} Picture */
-/** @typedef {import("mp/renderer.js").Item} Item */
-/** @typedef {import("mp/renderer.js").Mode} Mode */
-/** @typedef {import("mp/renderer.js").Role} Role */
-/** @typedef {import("mp/buffers.js").LineSet} LineSet */
-/** @typedef {import("mp/buffers.js").PointSet} PointSet */
+/** @import { LineSet, PointSet } from "mp/buffers.js" */
+/** @import { Color, Palette } from "mp/colors.js" */
+/** @import { Numbers, Vec3 } from "mp/math.js" */
+/** @import { Item, Mode, Picture, Renderer, Role } from "mp/renderer.js" */
+/** @import { Path, Scene, Tree } from "mp/scene.js" */
 /** @typedef {"all" | "step" | "auto"} Animation the three ways to show a path */
 /** @typedef {{mode: Mode, bodies: {visible: boolean, mode: Mode | ""}[], edges: boolean, path: number, animation: Animation,
  *  time: number, copies: number, copyMode: Mode, start: boolean, goals: boolean, trace: boolean, trees: boolean[],
@@ -27,7 +18,6 @@ import { segmentsOf } from "mp/shapes.js";
 
 /** The share of light that transparent things keep. */
 const ALPHA = 0.3;
-
 /** What is seen where two things are at the same place. @type {Record<Role, number>} */
 const LAYERS = { obstacle: 0, goal: 1, start: 2, copy: 3, robot: 4 };
 
@@ -76,18 +66,14 @@ function treeSegments(tree) {
 export class PictureMaker {
   /** @param {Scene} scene @param {number[]} ofBody the shape of each body @param {Renderer} renderer */
   constructor(scene, ofBody, renderer) {
-    this.scene = scene;
-    this.ofBody = ofBody;
-    this.renderer = renderer;
+    this.scene = scene; this.ofBody = ofBody; this.renderer = renderer;
     this.robotPoses = new Float32Array(7 * scene.robot);
     this.trees = scene.trees.map((tree) => this.treeLines(tree));
     this.traces = scene.paths.map((path) => this.traceLines(path));
     this.roadmap = scene.roadmap ? this.roadmapLines() : null;
     this.marker = renderer.pointSet();
   }
-
-  /** @param {Tree} tree */
-  treeLines(tree) {
+  treeLines(/** @type {Tree} */ tree) {
     const { segments, upTo } = treeSegments(tree);
     const lines = this.renderer.lineSet();
     lines.append(segments, () => [1, 1, 1, 1]);
@@ -95,14 +81,11 @@ export class PictureMaker {
     tree.parents.forEach((parent, i) => parent < 0 && roots.append(tree.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]));
     return { lines, upTo, roots };
   }
-
-  /** @param {Path} path */
-  traceLines(path) {
+  traceLines(/** @type {Path} */ path) {
     const lines = this.renderer.lineSet();
     lines.append(segmentsOf([path.trace]), () => [1, 1, 1, 1]);
     return lines;
   }
-
   roadmapLines() {
     const { nodes, edges, component, kind } = /** @type {NonNullable<Scene["roadmap"]>} */ (this.scene.roadmap);
     const segments = new Float32Array(3 * edges.length);
@@ -113,37 +96,31 @@ export class PictureMaker {
     points.append(nodes, (i) => [...componentColor(component[i]), [0.3, 0.65, 0.4, 0.3][Math.min(kind[i], 3)]]);
     return { lines, points };
   }
-
   /** @param {Settings} s @returns {Picture} */
   make(s) {
     const colors = palette(s.dark);
     const items = [...this.obstacles(s, colors), ...this.ends(s, colors), ...this.moving(s, colors)];
     return { items, lines: this.lines(s, colors), points: this.points(s, colors), plane: this.plane(s), edges: s.edges, flat: this.scene.planar };
   }
-
+  /** @param {number} body */
+  linesOnly(body) { return this.scene.bodies[body].mesh < 0 && this.scene.bodies[body].area < 0; }
   /** @param {Settings} s @param {number} body */
-  modeOf(s, body) {
-    return s.bodies[body].mode || s.mode;
-  }
-
+  modeOf(s, body) { return s.bodies[body].mode || s.mode; }
   /** @param {Settings} s @param {Palette} colors @returns {Item[]} */
   obstacles(s, colors) {
-    /** @type {Item[]} */
-    const items = [];
+    /** @type {Item[]} */ const items = [];
     for (let b = this.scene.robot; b < this.scene.bodies.length; b++) {
       if (!s.bodies[b].visible) continue;
       const mode = this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
+      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: mode === "wire" || this.linesOnly(b) ? colors.wire : colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
     }
     return items.sort((a, b) => a.shape - b.shape);
   }
-
   /** The robot in one configuration. @param {Settings} s @param {Numbers} poses @param {number} at @param {Color} color
    * @param {Role} role @param {number} index @param {Mode} [given] @returns {Item[]} */
   robot(s, poses, at, color, role, index, given) {
-    /** @type {Item[]} */
-    const items = [];
+    /** @type {Item[]} */ const items = [];
     for (let b = 0; b < this.scene.robot; b++) {
       if (!s.bodies[b].visible) continue;
       const mode = given ?? this.modeOf(s, b);
@@ -152,14 +129,12 @@ export class PictureMaker {
     }
     return items;
   }
-
   /** Start and goals. @param {Settings} s @param {Palette} colors @returns {Item[]} */
   ends(s, colors) {
     const start = s.start ? this.robot(s, this.scene.start.poses, 0, colors.start, "start", 0) : [];
     const goals = s.goals ? this.scene.goals.flatMap((g, i) => this.robot(s, g.poses, 0, colors.goal, "goal", i)) : [];
     return [...goals, ...start];
   }
-
   /** The robot on its path, and its copies. @param {Settings} s @param {Palette} colors @returns {Item[]} */
   moving(s, colors) {
     const path = this.scene.paths[s.path];
@@ -171,31 +146,28 @@ export class PictureMaker {
     const poses = copies.flatMap((i) => this.robot(s, path.poses, 7 * this.scene.robot * i, colors.robot, "copy", i, s.copyMode));
     return [...poses.sort((a, b) => a.shape - b.shape), ...now];
   }
-
   /** @param {Settings} s @param {Palette} colors @returns {Picture["lines"]} */
   lines(s, colors) {
     const trees = this.trees.flatMap(({ lines, upTo }, i) => {
       const count = upTo[Math.round(s.growth * (upTo.length - 1))];
-      return s.trees[i] ? [{ set: lines, count, width: 1, color: treeColor(this.scene.trees[i], i, colors) }] : [];
+      return s.trees[i] ? [{ set: lines, count, width: 1, color: treeColor(this.scene.trees[i], i, colors), alpha: 0.6, over: false }] : [];
     });
-    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.lines, count: this.roadmap.lines.count, width: 1, color: null }] : [];
+    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.lines, count: this.roadmap.lines.count, width: 1, color: null, alpha: 1, over: false }] : [];
     const traces = this.traces.flatMap((set, i) => {
       if (!s.trace) return [];
       const shown = i === s.path;
-      return [{ set, count: set.count, width: shown ? 3 : 1, color: shown ? colors.path : colors.other }];
+      return [{ set, count: set.count, width: shown ? 3 : 1, color: shown ? colors.path : colors.other, alpha: 1, over: true }];
     });
     return [...roadmap, ...trees, ...traces];
   }
-
   /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
   points(s, colors) {
-    const roots = this.trees.flatMap(({ roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(this.scene.trees[i], i, colors) }] : []));
-    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null }] : [];
+    const roots = this.trees.flatMap(({ roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(this.scene.trees[i], i, colors), over: false }] : []));
+    const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null, over: false }] : [];
     this.marker.clear();
     if (s.marked) this.marker.append(new Float32Array(s.marked), () => [1, 1, 1, 1]);
-    return [...roadmap, ...roots, { set: this.marker, count: this.marker.count, color: colors.picked }];
+    return [...roadmap, ...roots, { set: this.marker, count: this.marker.count, color: colors.picked, over: true }];
   }
-
   /** The section plane: what lies on its positive side is cut away. @param {Settings} s @returns {Picture["plane"]} */
   plane(s) {
     const { axis, at, flipped } = s.section;
@@ -203,8 +175,7 @@ export class PictureMaker {
     const [low, high] = this.scene.bounds;
     const sign = flipped ? -1 : 1;
     const where = low[axis] + (high[axis] - low[axis]) * at;
-    /** @type {[number, number, number, number]} */
-    const plane = [0, 0, 0, sign * where];
+    /** @type {[number, number, number, number]} */ const plane = [0, 0, 0, sign * where];
     plane[axis] = sign;
     return plane;
   }

@@ -1,15 +1,15 @@
 // The clearance along the path as a small plot. Press or drag in it to go to a configuration.
 
-/** @typedef {import("mp/scene.js").Path} Path */
+import { brief } from "mp/dom.js";
+
+/** @import { Path } from "mp/scene.js" */
 
 export class ClearancePlot {
   /** @param {HTMLCanvasElement} canvas @param {(time: number) => void} scrub */
   constructor(canvas, scrub) {
     this.canvas = canvas;
-    /** @type {Path | null} */
-    this.path = null;
-    /** @param {PointerEvent} e */
-    const go = (e) => {
+    /** @type {Path | null} */ this.path = null;
+    const go = (/** @type {PointerEvent} */ e) => {
       const box = canvas.getBoundingClientRect();
       const part = Math.max(0, Math.min(1, (e.clientX - box.left) / box.width));
       if (this.path) scrub(part * (this.path.count - 1));
@@ -17,27 +17,21 @@ export class ClearancePlot {
     canvas.addEventListener("pointerdown", (e) => (canvas.setPointerCapture(e.pointerId), go(e)));
     canvas.addEventListener("pointermove", (e) => canvas.hasPointerCapture(e.pointerId) && go(e));
   }
-
-  /** @param {Path | null} path */
-  show(path) {
+  show(/** @type {Path | null} */ path) {
     this.path = path?.clearance ? path : null;
     this.canvas.hidden = !this.path;
     this.canvas.setAttribute("aria-label", this.path ? `Clearance along the path: ${this.range()}` : "");
   }
-
   /** The finite clearances' least and greatest. @returns {[number, number]} */
   extremes() {
     const all = [...(this.path?.clearance ?? [])].filter(Number.isFinite);
     return all.reduce(([low, high], x) => [Math.min(low, x), Math.max(high, x)], /** @type {[number, number]} */ ([Infinity, 0]));
   }
-
   range() {
     const [low, high] = this.extremes();
-    return `${Number(low.toPrecision(3))} to ${Number(high.toPrecision(3))} m`;
+    return `${brief(low)} to ${brief(high)} m`;
   }
-
-  /** @param {number} time */
-  draw(time) {
+  draw(/** @type {number} */ time) {
     const context = this.canvas.getContext("2d");
     const clearance = this.path?.clearance;
     if (!context || !clearance || this.canvas.clientWidth === 0) return;
@@ -49,10 +43,8 @@ export class ClearancePlot {
     const style = getComputedStyle(this.canvas);
     const [low, high] = this.extremes();
     const last = Math.max(1, clearance.length - 1);
-    /** @param {number} i */
-    const x = (i) => 1 + (i / last) * (width - 2);
-    /** @param {number} c */
-    const y = (c) => height - 2 - (Math.min(c, high) / (high || 1)) * (height - 16);
+    const x = (/** @type {number} */ i) => 1 + (i / last) * (width - 2);
+    const y = (/** @type {number} */ c) => height - 2 - (Math.min(c, high) / (high || 1)) * (height - 16);
     this.curve(context, clearance, x, y, style.getPropertyValue("--path"));
     context.strokeStyle = style.color;
     context.beginPath();
@@ -62,9 +54,8 @@ export class ClearancePlot {
     context.fillStyle = style.color;
     context.font = "11px system-ui, sans-serif";
     const now = clearance[Math.min(Math.round(time), clearance.length - 1)];
-    context.fillText(`clearance ${Number(now.toPrecision(3))} m (least ${Number(low.toPrecision(3))} m)`, 4, 11);
+    context.fillText(`clearance ${brief(now)} m (least ${brief(low)} m)`, 4, 11);
   }
-
   /** @param {CanvasRenderingContext2D} context @param {Float32Array} values @param {(i: number) => number} x
    * @param {(c: number) => number} y @param {string} color */
   curve(context, values, x, y, color) {

@@ -4,20 +4,18 @@ import { COPY, LineSet, PointSet, ShapeBuffers, program, uniforms } from "mp/buf
 import { dot, normalize, place } from "mp/math.js";
 import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGMENT, SURFACE_VERTEX } from "mp/shaders.js";
 
-/** @typedef {import("mp/camera.js").Camera} Camera */
-/** @typedef {import("mp/colors.js").Palette} Palette */
-/** @typedef {import("mp/colors.js").Color} Color */
-/** @typedef {import("mp/math.js").Numbers} Numbers */
-/** @typedef {import("mp/math.js").Mat4} Mat4 */
-/** @typedef {import("mp/math.js").Vec3} Vec3 */
-/** @typedef {import("mp/shapes.js").Shape} Shape */
+/** @import { Camera } from "mp/camera.js" */
+/** @import { Color, Palette } from "mp/colors.js" */
+/** @import { Mat4, Numbers, Vec3 } from "mp/math.js" */
+/** @import { Shape } from "mp/shapes.js" */
 /** @typedef {"solid" | "transparent" | "wire"} Mode */
 /** @typedef {"obstacle" | "robot" | "copy" | "start" | "goal"} Role */
 /** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number,
  *  body: number, role: Role, index: number}} Item
  *  A copy of a shape; `index` is the number of the goal or of the configuration. Of surfaces at the same place, the one with the highest layer is seen. */
-/** @typedef {{set: LineSet, count: number, width: number, color: Color | null}} Lines */
-/** @typedef {{set: PointSet, count: number, color: Color | null}} Points */
+/** @typedef {{set: LineSet, count: number, width: number, color: Color | null, alpha: number, over: boolean}} Lines */
+/** @typedef {{set: PointSet, count: number, color: Color | null, over: boolean}} Points
+ *  What is `over` is drawn over transparent things. */
 /** @typedef {{items: Item[], lines: Lines[], points: Points[], plane: [number, number, number, number] | null, edges: boolean,
  *  flat: boolean}} Picture  `flat`: a planar scene, where later things hide earlier ones. */
 /** @typedef {{first: number, count: number, item: Item, items: Item[]}} Batch copies that are drawn by one call */
@@ -45,15 +43,9 @@ export class Renderer {
     this.calls = 0;
     this.triangles = 0;
   }
+  lineSet() { return new LineSet(this.gl, this.strip); }
 
-  lineSet() {
-    return new LineSet(this.gl, this.strip);
-  }
-
-  pointSet() {
-    return new PointSet(this.gl);
-  }
-
+  pointSet() { return new PointSet(this.gl); }
   /** @param {Picture} picture @param {Camera} camera @param {Palette} palette @param {number} ratio device pixels per pixel */
   draw(picture, camera, palette, ratio) {
     const gl = this.gl;
@@ -67,36 +59,35 @@ export class Renderer {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(picture.flat ? gl.ALWAYS : gl.LEQUAL);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-    const opaque = grouped(picture.items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer));
-    const clear = grouped(this.farToNear(picture.items.filter((i) => i.mode === "transparent"), picture.flat));
-    this.upload([...opaque.items, ...clear.items]);
-    const under = opaque.batches.filter((b) => b.item.layer === 0);
-    this.drawSurfaces(under, 0, picture);
-    this.drawLines(picture);
-    this.drawSurfaces(opaque.batches.filter((b) => b.item.layer > 0), 0, picture);
-    this.drawSurfaces(clear.batches, opaque.items.length, picture);
-    this.drawPoints(picture);
+    const [low, middle, high] = picture.flat ? layered(picture.items) : this.byDepth(picture.items);
+    this.upload([...low, ...middle, ...high]);
+    this.drawSurfaces(low, 0, picture);
+    this.drawLines(picture, false);
+    this.drawPoints(picture, false);
+    this.drawSurfaces(middle, low.length, picture);
+    this.drawLines(picture, true);
+    this.drawSurfaces(high, low.length + middle.length, picture);
+    this.drawPoints(picture, true);
     gl.bindVertexArray(null);
   }
-
-  /** @param {Item[]} items @param {boolean} flat */
-  farToNear(items, flat) {
-    if (flat) return items.sort((a, b) => a.layer - b.layer);
+  /** What is drawn before the lines, after them, and after the traces. @param {Item[]} items @returns {Item[][]} */
+  byDepth(items) {
+    const opaque = items.filter((i) => i.mode !== "transparent").sort((a, b) => a.layer - b.layer);
+    return [opaque, this.farToNear(items.filter((i) => i.mode === "transparent")), []];
+  }
+  farToNear(/** @type {Item[]} */ items) {
     const { back } = this.now.camera.axes();
     const depth = items.map((item) => {
       const { low, high } = this.shapes[item.shape].shape;
-      /** @type {Vec3} */
-      const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
+      /** @type {Vec3} */ const middle = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2];
       return dot(place(item.pose, item.at, middle), back);
     });
     return items.map((_, i) => i).sort((a, b) => depth[a] - depth[b]).map((i) => items[i]);
   }
-
   get now() {
     if (!this.frame) throw new Error("Nothing is being drawn.");
     return this.frame;
   }
-
   /** Writes the numbers of all copies to the graphics card. @param {Item[]} items */
   upload(items) {
     if (this.copyNumbers.length < items.length * COPY) this.copyNumbers = new Float32Array(2 * items.length * COPY);
@@ -112,16 +103,15 @@ export class Renderer {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.copies);
     gl.bufferData(gl.ARRAY_BUFFER, out.subarray(0, items.length * COPY), gl.DYNAMIC_DRAW);
   }
-
-  /** @param {Batch[]} batches @param {number} shift of the copies' indices @param {Picture} picture */
-  drawSurfaces(batches, shift, picture) {
+  /** @param {Item[]} items @param {number} shift of the copies' indices @param {Picture} picture */
+  drawSurfaces(items, shift, picture) {
     const gl = this.gl;
-    for (const batch of batches) {
+    for (const batch of grouped(items)) {
       this.useSurface(picture);
       const buffers = this.shapes[batch.item.shape];
       const first = batch.first + shift;
       const clear = batch.item.mode === "transparent";
-      if (clear) gl.enable(gl.BLEND);
+      if (clear || batch.item.role === "copy") gl.enable(gl.BLEND);
       gl.depthMask(!clear);
       if (batch.item.mode !== "wire") this.fill(buffers, batch, first);
       if (batch.item.mode === "wire" || picture.edges) this.edges(buffers, batch, first);
@@ -130,9 +120,7 @@ export class Renderer {
       gl.depthMask(true);
     }
   }
-
-  /** @param {Picture} picture */
-  useSurface(picture) {
+  useSurface(/** @type {Picture} */ picture) {
     const gl = this.gl;
     const { view, projection, palette, camera } = this.now;
     const at = this.surfaceAt;
@@ -146,7 +134,6 @@ export class Renderer {
     const sun = normalize([0.4, -0.6, 1]);
     gl.uniform3f(at.sun, ...rotated(view, sun));
   }
-
   /** @param {ShapeBuffers} buffers @param {Batch} batch @param {number} first */
   fill(buffers, batch, first) {
     const gl = this.gl;
@@ -164,7 +151,6 @@ export class Renderer {
     gl.disable(gl.POLYGON_OFFSET_FILL);
     this.counted((count / 3) * batch.count);
   }
-
   /** @param {ShapeBuffers} buffers @param {Batch} batch @param {number} first */
   edges(buffers, batch, first) {
     const gl = this.gl;
@@ -173,14 +159,13 @@ export class Renderer {
     if (!count) return;
     const { palette } = this.now;
     gl.uniform1f(this.surfaceAt.shaded, 0);
-    const alpha = wire ? 0 : batch.item.mode === "transparent" ? 0.9 : 1;
+    const alpha = wire ? 0 : batch.item.role === "copy" ? 0.4 : batch.item.mode === "transparent" ? 0.9 : 1;
     gl.uniform4f(this.surfaceAt.line, ...palette.edge, alpha);
     gl.bindVertexArray(vao);
     buffers.bindCopies(first);
     gl.drawElementsInstanced(gl.LINES, count, gl.UNSIGNED_INT, 0, batch.count);
     this.counted(0);
   }
-
   /** Lines that belong to a body: copy by copy. @param {LineSet} set @param {Batch} batch @param {Picture} picture */
   bodyLines(set, batch, picture) {
     const gl = this.gl;
@@ -193,16 +178,13 @@ export class Renderer {
       this.strips(set, set.count, item.mode === "wire" ? 1.2 : 3);
     }
   }
-
-  /** @param {Picture} picture */
-  useLine(picture) {
+  useLine(/** @type {Picture} */ picture) {
     const gl = this.gl;
     gl.useProgram(this.line);
     gl.uniformMatrix4fv(this.lineAt.both, false, this.now.both);
     gl.uniform4fv(this.lineAt.plane, picture.plane ?? [0, 0, 0, 1]);
     gl.uniform2f(this.lineAt.size, gl.drawingBufferWidth, gl.drawingBufferHeight);
   }
-
   /** @param {LineSet} set @param {number} count @param {number} width pixels */
   strips(set, count, width) {
     const gl = this.gl;
@@ -211,38 +193,34 @@ export class Renderer {
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     this.counted(2 * count);
   }
-
-  /** Trees, roadmap and traces. @param {Picture} picture */
-  drawLines(picture) {
+  /** Trees, roadmap and traces. @param {Picture} picture @param {boolean} over */
+  drawLines(picture, over) {
     const gl = this.gl;
     this.useLine(picture);
     gl.uniform3f(this.lineAt.origin, 0, 0, 0);
     gl.uniform4f(this.lineAt.turn, 0, 0, 0, 1);
     gl.uniform1f(this.lineAt.cut, 0);
-    for (const { set, count, width, color } of picture.lines) {
-      if (!count) continue;
-      gl.uniform4f(this.lineAt.paint, ...(color ?? [0, 0, 0]), color ? 1 : 0);
+    gl.enable(gl.BLEND);
+    for (const { set, count, width, color, alpha } of picture.lines.filter((l) => l.over === over && l.count)) {
+      gl.uniform4f(this.lineAt.paint, ...(color ?? [0, 0, 0]), color ? alpha : 0);
       this.strips(set, count, width);
     }
+    gl.disable(gl.BLEND);
   }
-
-  /** @param {Picture} picture */
-  drawPoints(picture) {
+  /** @param {Picture} picture @param {boolean} over */
+  drawPoints(picture, over) {
     const gl = this.gl;
     gl.useProgram(this.point);
     gl.uniformMatrix4fv(this.pointAt.both, false, this.now.both);
     gl.uniform1f(this.pointAt.ratio, this.now.ratio);
-    for (const { set, count, color } of picture.points) {
-      if (!count) continue;
+    for (const { set, count, color } of picture.points.filter((p) => p.over === over && p.count)) {
       gl.uniform4f(this.pointAt.paint, ...(color ?? [0, 0, 0]), color ? 1 : 0);
       gl.bindVertexArray(set.vao);
       gl.drawArrays(gl.POINTS, 0, count);
       this.counted(0);
     }
   }
-
-  /** @param {number} triangles */
-  counted(triangles) {
+  counted(/** @type {number} */ triangles) {
     this.calls++;
     this.triangles += triangles;
   }
@@ -250,15 +228,19 @@ export class Renderer {
 
 /** A direction of the world as the eye sees it. @param {Mat4} m @param {Vec3} v @returns {Vec3} */
 function rotated(m, v) {
-  /** @param {number} r */
-  const row = (r) => m[r] * v[0] + m[4 + r] * v[1] + m[8 + r] * v[2];
+  const row = (/** @type {number} */ r) => m[r] * v[0] + m[4 + r] * v[1] + m[8 + r] * v[2];
   return [row(0), row(1), row(2)];
 }
 
-/** Neighbours that one call can draw. @param {Item[]} items @returns {{items: Item[], batches: Batch[]}} */
+/** Of a planar scene: obstacles, start, goals and copies, the robot. @param {Item[]} items @returns {Item[][]} */
+function layered(items) {
+  const sorted = items.sort((a, b) => a.layer - b.layer);
+  return [sorted.filter((i) => i.layer === 0), sorted.filter((i) => i.layer > 0 && i.layer < 4), sorted.filter((i) => i.layer === 4)];
+}
+
+/** Neighbours that one call can draw. @param {Item[]} items @returns {Batch[]} */
 function grouped(items) {
-  /** @type {Batch[]} */
-  const batches = [];
+  /** @type {Batch[]} */ const batches = [];
   items.forEach((item, i) => {
     const last = batches[batches.length - 1]?.item;
     const joins = last && last.shape === item.shape && last.mode === item.mode && last.layer === item.layer && last.cut === item.cut;
@@ -267,5 +249,5 @@ function grouped(items) {
       batches[batches.length - 1].items.push(item);
     } else batches.push({ first: i, count: 1, item, items: [item] });
   });
-  return { items, batches };
+  return batches;
 }

@@ -22,9 +22,7 @@
 const KINDS = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, i32: Int32Array, u8: Uint8Array };
 
 /** @param {boolean} holds @param {string} sentence @returns {asserts holds} */
-function check(holds, sentence) {
-  if (!holds) throw new Error(sentence);
-}
+function check(holds, sentence) { if (!holds) throw new Error(sentence); }
 
 /** @param {unknown} value @param {string} what @returns {Json} */
 function object(value, what) {
@@ -66,12 +64,9 @@ function index(value, end, what) {
 class Blob {
   /** @param {Uint8Array} bytes @param {number} begin where the arrays begin */
   constructor(bytes, begin) {
-    this.bytes = bytes;
-    this.begin = begin;
+    this.bytes = bytes; this.begin = begin;
   }
-
-  /** The array that a head entry names, without copying it.
-   * @template {keyof Arrays} K
+  /** The array that a head entry names, without copying it. @template {keyof Arrays} K
    * @param {unknown} entry @param {K} type @param {string} what @param {number} group entries that belong together
    * @returns {Arrays[K]} */
   array(entry, type, what, group = 1) {
@@ -85,11 +80,9 @@ class Blob {
     const end = this.begin + offset + count * Kind.BYTES_PER_ELEMENT;
     check(end <= this.bytes.length, `The scene file is too short: the array of ${what} reaches beyond its end.`);
     check(count % group === 0, `In the scene file, the array of ${what} must have a multiple of ${group} entries.`);
-    return /** @type {Arrays[K]} */ (new Kind(this.bytes.buffer, this.bytes.byteOffset + this.begin + offset, count));
+    return /** @type {Arrays[K]} */ (new Kind(/** @type {ArrayBuffer} */ (this.bytes.buffer), this.bytes.byteOffset + this.begin + offset, count));
   }
-
-  /** An array of finite numbers.
-   * @template {"f32" | "f64"} K
+  /** An array of finite numbers. @template {"f32" | "f64"} K
    * @param {unknown} entry @param {K} type @param {string} what @param {number} group @returns {Arrays[K]} */
   finite(entry, type, what, group) {
     const array = this.array(entry, type, what, group);
@@ -113,8 +106,7 @@ function readHead(bytes) {
   check(size % 8 === 0, "The scene file is damaged: the length of its head is not a multiple of 8.");
   check(8 + size <= bytes.length, "The scene file is too short: its head reaches beyond its end.");
   const source = new TextDecoder().decode(bytes.subarray(8, 8 + size));
-  /** @type {unknown} */
-  let head;
+  /** @type {unknown} */ let head;
   try {
     // A seed may have more digits than a number holds; it is only shown, so it becomes text.
     head = JSON.parse(source.replace(/(?<!\\)"seed":\s*(\d{16,})/g, '"seed":"$1"'));
@@ -254,8 +246,7 @@ export function readScene(given) {
 
 /** The bytes of base64 text. @param {string} base64 @returns {Uint8Array} */
 export function fromBase64(base64) {
-  /** @type {string} */
-  let binary;
+  /** @type {string} */ let binary;
   try {
     binary = atob(base64.trim());
   } catch {

@@ -56,7 +56,7 @@ void main() {
   }
   vec3 normal = slope / max(length(slope), 1e-30);
   float head = max(dot(normal, flatView > 0.0 ? vec3(0, 0, 1) : normalize(-eye)), 0.0);
-  float light = 0.36 + 0.44 * head + 0.3 * max(dot(normal, sun), 0.0);
+  float light = 0.48 + 0.34 * head + 0.26 * max(dot(normal, sun), 0.0);
   result = vec4(min(tint.rgb * light, 1.0), tint.a);
 }`;
 

@@ -2,8 +2,7 @@
 
 import { triangulate } from "mp/triangulate.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/scene.js").Body} Body */
+/** @import { Body, Scene } from "mp/scene.js" */
 /** @typedef {{positions: Float32Array, triangles: Uint32Array, edges: Uint32Array, wire: Uint32Array, segments: Float32Array,
  *  closed: boolean, low: number[], high: number[]}} Shape
  *  `edges` are the feature edges and `wire` all edges, as pairs of corners; `segments` are lines, six numbers each. */
@@ -49,8 +48,7 @@ function normalsOf(p, triangles) {
  * @param {Uint32Array} triangles @param {Uint32Array} first
  * @returns {Map<number, {a: number, b: number, triangles: number[], turns: number}>} */
 function edgesOf(triangles, first) {
-  /** @type {Map<number, {a: number, b: number, triangles: number[], turns: number}>} */
-  const edges = new Map();
+  /** @type {Map<number, {a: number, b: number, triangles: number[], turns: number}>} */ const edges = new Map();
   for (let i = 0; i < triangles.length; i++) {
     const t = i - (i % 3);
     const a = first[triangles[i]];
@@ -81,10 +79,8 @@ function volumeOf(p, triangles) {
  * @param {Float32Array} positions @param {Uint32Array} triangles */
 function outline(positions, triangles) {
   const normals = normalsOf(positions, triangles);
-  /** @type {number[]} */
-  const edges = [];
-  /** @type {number[]} */
-  const wire = [];
+  /** @type {number[]} */ const edges = [];
+  /** @type {number[]} */ const wire = [];
   let closed = triangles.length > 0;
   for (const edge of edgesOf(triangles, weld(positions)).values()) {
     wire.push(edge.a, edge.b);
@@ -109,8 +105,7 @@ export function segmentsOf(polylines) {
   return out;
 }
 
-/** @param {Float32Array[]} arrays */
-function boxOf(arrays) {
+function boxOf(/** @type {Float32Array[]} */ arrays) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   for (const points of arrays) {
@@ -134,10 +129,8 @@ function shapeOf(scene, body) {
 /** The shapes of a scene, each once, and for each body the index of its shape.
  * @param {Scene} scene @returns {{shapes: Shape[], ofBody: number[]}} */
 export function shapesOf(scene) {
-  /** @type {Map<string, number>} */
-  const known = new Map();
-  /** @type {Shape[]} */
-  const shapes = [];
+  /** @type {Map<string, number>} */ const known = new Map();
+  /** @type {Shape[]} */ const shapes = [];
   const ofBody = scene.bodies.map((body) => {
     const key = `${body.mesh} ${body.area} ${body.lines.join(",")}`;
     let i = known.get(key);

@@ -4,10 +4,9 @@
 import { brief, button, byId, el, labelled, select, slider } from "mp/dom.js";
 import { ClearancePlot } from "mp/plot.js";
 
-/** @typedef {import("mp/scene.js").Scene} Scene */
-/** @typedef {import("mp/picture.js").Settings} Settings */
-/** @typedef {import("mp/picture.js").Animation} Animation */
-/** @typedef {import("mp/renderer.js").Mode} Mode */
+/** @import { Animation, Settings } from "mp/picture.js" */
+/** @import { Mode } from "mp/renderer.js" */
+/** @import { Scene } from "mp/scene.js" */
 /** @typedef {"stop" | "loop" | "return"} AtEnd what happens at the end of the path */
 
 /** @type {[Animation, string][]} */
@@ -16,33 +15,21 @@ const ANIMATIONS = [["all", "All at once"], ["step", "Step by step"], ["auto", "
 export class Timeline {
   /** @param {Scene} scene @param {Settings} settings @param {() => void} changed */
   constructor(scene, settings, changed) {
-    this.scene = scene;
-    this.settings = settings;
-    this.changed = changed;
+    this.scene = scene; this.settings = settings; this.changed = changed;
     this.playing = false;
     this.speed = 1;
     this.direction = 1;
-    /** @type {AtEnd} */
-    this.atEnd = "loop";
+    /** @type {AtEnd} */ this.atEnd = "loop";
     this.lastTime = 0;
     this.build();
     this.showPath();
   }
-
-  get path() {
-    return this.scene.paths[this.settings.path] ?? null;
-  }
-
-  get last() {
-    return Math.max(0, (this.path?.count ?? 0) - 1);
-  }
+  get path() { return this.scene.paths[this.settings.path] ?? null; }
+  get last() { return Math.max(0, (this.path?.count ?? 0) - 1); }
 
   build() {
     const s = this.settings;
-    this.modes = ANIMATIONS.map(([value, label]) => {
-      const input = el("input", { type: "radio", name: "animation", value, checked: value === s.animation, onchange: () => this.setAnimation(value) });
-      return el("label", {}, input, el("span", {}, label));
-    });
+    this.modes = ANIMATIONS.map(([value, label]) => button(label, () => this.setAnimation(value), { value }));
     this.playButton = button("Play", () => this.toggle(), { class: "wide" });
     this.slider = slider({ low: 0, high: 1, step: 1, value: 0 }, (t) => this.scrub(t), { "aria-label": "Configuration" });
     this.output = el("output", { class: "count" });
@@ -58,26 +45,24 @@ export class Timeline {
       labelled("as", select(modes, s.copyMode, (v) => this.set(() => (s.copyMode = /** @type {Mode} */ (v))), { "aria-label": "How copies are drawn" })));
     byId("timeline").replaceChildren(
       el("div", { class: "bar" },
-        el("span", { class: "segments", role: "radiogroup", "aria-label": "Animation" }, ...this.modes),
+        el("span", { class: "segments", role: "group", "aria-label": "Animation" }, ...this.modes),
         el("span", { class: "group" },
-          button("⏮", () => this.scrub(0), { "aria-label": "First configuration", title: "First (Home)" }),
-          button("◀", () => this.step(-1), { "aria-label": "Previous configuration", title: "Previous (←)" }),
+          button("«", () => this.scrub(0), { "aria-label": "First configuration", title: "First (Home)" }),
+          button("‹", () => this.step(-1), { "aria-label": "Previous configuration", title: "Previous (←)" }),
           this.playButton,
-          button("▶", () => this.step(1), { "aria-label": "Next configuration", title: "Next (→)" }),
-          button("⏭", () => this.scrub(this.last), { "aria-label": "Last configuration", title: "Last (End)" })),
+          button("›", () => this.step(1), { "aria-label": "Next configuration", title: "Next (→)" }),
+          button("»", () => this.scrub(this.last), { "aria-label": "Last configuration", title: "Last (End)" })),
         this.autoControls, this.allControls, this.output),
       this.slider, this.plot.canvas);
   }
-
-  /** @param {() => void} change */
-  set(change) {
+  set(/** @type {() => void} */ change) {
     change();
     this.changed();
   }
-
   /** After another path was chosen. */
   showPath() {
     byId("timeline").hidden = !this.path;
+    if (!this.slider) return;
     this.slider.max = String(this.last);
     this.settings.time = Math.min(this.settings.time, this.last);
     const { copies } = this;
@@ -85,14 +70,11 @@ export class Timeline {
     this.plot?.show(this.path);
     this.update();
   }
-
   /** Shows the settings in the controls. */
   update() {
     const { animation, time, copies } = this.settings;
-    this.modes?.forEach((label) => {
-      const input = /** @type {HTMLInputElement} */ (label.firstElementChild);
-      input.checked = input.value === animation;
-    });
+    this.modes?.forEach((mode) => mode.setAttribute("aria-pressed", String(mode.value === animation)));
+    if (!this.slider) return;
     this.slider.step = animation === "step" ? "1" : "any";
     this.slider.valueAsNumber = time;
     const words = `${brief(Math.round(time) + 1)} of ${brief(this.last + 1)}`;
@@ -103,9 +85,7 @@ export class Timeline {
     if (this.allControls) this.allControls.hidden = animation !== "all";
     this.plot?.draw(time);
   }
-
-  /** @param {Animation} animation */
-  setAnimation(animation) {
+  setAnimation(/** @type {Animation} */ animation) {
     this.settings.animation = animation;
     this.playing = animation === "auto";
     this.lastTime = 0;
@@ -113,7 +93,6 @@ export class Timeline {
     if (animation === "auto" && this.settings.time >= this.last) this.settings.time = 0;
     this.changed();
   }
-
   toggle() {
     if (this.settings.animation !== "auto") return this.setAnimation("auto");
     this.playing = !this.playing;
@@ -121,7 +100,6 @@ export class Timeline {
     if (this.playing && this.settings.time >= this.last) this.settings.time = 0;
     this.changed();
   }
-
   /** Goes to a time, in configurations. @param {number} time */
   scrub(time) {
     const { animation } = this.settings;
@@ -130,14 +108,12 @@ export class Timeline {
     this.settings.time = animation === "step" ? Math.round(t) : t;
     this.changed();
   }
-
   /** One configuration on or back. @param {number} by */
   step(by) {
     if (this.settings.animation === "auto") this.settings.animation = "step";
     const { time } = this.settings;
     this.scrub(by > 0 ? Math.floor(time + 1e-6) + by : Math.ceil(time - 1e-6) + by);
   }
-
   /** Moves on while it plays; returns whether it plays. @param {number} now milliseconds */
   advance(now) {
     if (!this.playing || !this.last) return false;
@@ -150,7 +126,6 @@ export class Timeline {
     else this.settings.time = time;
     return this.playing;
   }
-
   /** At an end of the path. @param {number} time */
   turn(time) {
     this.settings.time = Math.max(0, Math.min(this.last, time));
@@ -159,7 +134,6 @@ export class Timeline {
     else this.direction = 1;
     if (this.atEnd === "loop") this.settings.time = 0;
   }
-
   /** @param {KeyboardEvent} e @returns {boolean} whether the key was used */
   key(e) {
     if (!this.path || e.shiftKey) return false;

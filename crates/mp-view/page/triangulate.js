@@ -4,17 +4,14 @@
 
 /** Twice the signed area of a triangle; positive when it turns left. @param {Point} a @param {Point} b @param {Point} c */
 const turn = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-
 /** @param {Point} a @param {Point} b */
 const same = (a, b) => a[0] === b[0] && a[1] === b[1];
 
 /** The points of a ring without repetitions. @param {ArrayLike<number>} ring @returns {Point[]} */
 function pointsOf(ring) {
-  /** @type {Point[]} */
-  const points = [];
+  /** @type {Point[]} */ const points = [];
   for (let i = 0; i + 1 < ring.length; i += 2) {
-    /** @type {Point} */
-    const p = [ring[i], ring[i + 1]];
+    /** @type {Point} */ const p = [ring[i], ring[i + 1]];
     if (!points.length || !same(points[points.length - 1], p)) points.push(p);
   }
   while (points.length > 1 && same(points[0], points[points.length - 1])) points.pop();
@@ -30,47 +27,35 @@ function oriented(ring, left) {
 
 /** Whether `p` is in the triangle that turns left, or on its border. @param {Point} p @param {Point} a @param {Point} b @param {Point} c */
 const inside = (p, a, b, c) => turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0;
+/** Whether two segments cross in their inside. @param {Point} a @param {Point} b @param {Point} c @param {Point} d */
+const crosses = (a, b, c, d) => turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0;
 
-/** The corner of `ring` that the point `m` sees: on the ray to the right, or the corner nearest to that ray.
- * @param {Point[]} ring @param {Point} m @returns {number} */
-function visibleCorner(ring, m) {
-  let x = Infinity;
-  let best = -1;
-  for (let i = 0; i < ring.length; i++) {
-    const a = ring[i];
-    const b = ring[(i + 1) % ring.length];
-    if (a[1] > m[1] || b[1] < m[1] || a[1] === b[1]) continue;
-    const at = a[0] + ((m[1] - a[1]) / (b[1] - a[1])) * (b[0] - a[0]);
-    if (at < m[0] || at >= x) continue;
-    x = at;
-    best = a[0] > b[0] ? i : (i + 1) % ring.length;
-  }
-  if (best < 0) return -1;
-  // Corners in the triangle of m, the hit and the corner found would hide that corner: take the one nearest to the ray.
-  const p = ring[best];
-  /** @type {Point} */
-  const hit = [x, m[1]];
-  if (same(p, hit)) return best;
-  const [b, c] = p[1] > m[1] ? [hit, p] : [p, hit];
-  let slope = Math.abs(p[1] - m[1]) / (p[0] - m[0]);
-  for (let i = 0; i < ring.length; i++) {
-    const q = ring[i];
-    if (same(q, p) || q[0] <= m[0] || !inside(q, m, b, c)) continue;
-    const steep = Math.abs(q[1] - m[1]) / (q[0] - m[0]);
-    const reflex = turn(ring[(i + ring.length - 1) % ring.length], q, ring[(i + 1) % ring.length]) < 0;
-    if (reflex && steep < slope) {
-      slope = steep;
-      best = i;
-    }
-  }
-  return best;
+/** Whether the way from corner `i` to `m` begins inside the ring. @param {Point[]} ring @param {number} i @param {Point} m */
+function beginsInside(ring, i, m) {
+  const [a, p, b] = [ring[(i + ring.length - 1) % ring.length], ring[i], ring[(i + 1) % ring.length]];
+  const [fromA, toB] = [turn(a, p, m) > 0, turn(p, b, m) > 0];
+  return turn(a, p, b) >= 0 ? fromA && toB : fromA || toB;
 }
 
-/** The ring with a hole joined to it. @param {Point[]} ring @param {Point[]} hole @returns {Point[]} */
-function bridged(ring, hole) {
+/** Whether `p` is to the right of `q`, or above it. @param {Point} p @param {Point} q */
+const beyond = (p, q) => p[0] > q[0] || (p[0] === q[0] && p[1] > q[1]);
+
+/** The nearest corner of `ring` that `m`, the rightmost corner of a hole, sees to the right, or −1. @param {Point[]} ring @param {Point[][]} holes
+ * @param {Point} m @returns {number} */
+function visibleCorner(ring, holes, m) {
+  const away = ring.map((p) => Math.hypot(p[0] - m[0], p[1] - m[1]));
+  const order = ring.map((_, i) => i).filter((i) => beyond(ring[i], m)).sort((i, j) => away[i] - away[j]);
+  const borders = [ring, ...holes];
+  const free = (/** @type {number} */ i) => borders.every((b) => b.every((a, k) => !crosses(ring[i], m, a, b[(k + 1) % b.length])));
+  return order.find((i) => beginsInside(ring, i, m) && free(i)) ?? -1;
+}
+
+/** The ring with the first of the holes joined to it. @param {Point[]} ring @param {Point[][]} holes @returns {Point[]} */
+function bridged(ring, holes) {
+  const hole = holes[0];
   let right = 0;
-  hole.forEach((p, i) => (right = p[0] > hole[right][0] ? i : right));
-  const corner = visibleCorner(ring, hole[right]);
+  hole.forEach((p, i) => (right = beyond(p, hole[right]) ? i : right));
+  const corner = visibleCorner(ring, holes, hole[right]);
   if (corner < 0) return ring;
   const around = [...hole.slice(right), ...hole.slice(0, right + 1)];
   return [...ring.slice(0, corner + 1), ...around, ...ring.slice(corner)];
@@ -90,8 +75,7 @@ function isEar(points, left, at) {
 /** @param {Point[]} points counter-clockwise @returns {number[]} */
 function clipEars(points) {
   const left = points.map((_, i) => i);
-  /** @type {number[]} */
-  const triangles = [];
+  /** @type {number[]} */ const triangles = [];
   let at = 0;
   let tried = 0;
   while (left.length > 2) {
@@ -121,7 +105,7 @@ export function triangulate(rings) {
     .filter((hole) => hole.length > 2)
     .map((hole) => oriented(hole, false))
     .sort((a, b) => Math.max(...b.map((p) => p[0])) - Math.max(...a.map((p) => p[0])))
-    .forEach((hole) => (ring = bridged(ring, hole)));
+    .forEach((_, i, sorted) => (ring = bridged(ring, sorted.slice(i))));
   return {
     positions: new Float32Array(ring.flatMap((p) => [p[0], p[1], 0])),
     triangles: new Uint32Array(ring.length > 2 ? clipEars(ring) : []),
