@@ -8,7 +8,8 @@ import { Panels, VIEWS } from "mp/panels.js";
 import { Picker } from "mp/picking.js";
 import { PictureMaker } from "mp/picture.js";
 import { Renderer } from "mp/renderer.js";
-import { fromBase64, readScene } from "mp/scene.js";
+import { unpack } from "mp/packed.js";
+import { readScene } from "mp/scene.js";
 import { shapesOf } from "mp/shapes.js";
 import { Timeline } from "mp/timeline.js";
 
@@ -206,7 +207,7 @@ class Viewer {
 /** The bytes of the scene: in this page, or beside it. @returns {Promise<Uint8Array>} */
 async function sceneBytes() {
   const inside = document.getElementById("scene")?.textContent?.trim();
-  if (inside) return fromBase64(inside);
+  if (inside) return unpack(inside);
   const none = "This page holds no scene, and there is no file scene.mpv beside it.";
   if (location.protocol === "file:") throw new Error(none);
   const answer = await fetch("scene.mpv").catch(() => null);

@@ -186,7 +186,7 @@ const section = (title, open, content) => el("details", { open }, el("summary", 
 function pathWords(/** @type {Path} */ path) {
   const words = [`${brief(path.count)} configurations`];
   if (Number.isFinite(path.length)) words.push(`length ${brief(path.length)}`);
-  if (path.clearance?.length) words.push(`clearance at least ${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m`);
+  if (path.clearance?.length) words.push(`least clearance shown ${brief(path.clearance.reduce((a, b) => Math.min(a, b)))} m`);
   words.push(path.verified ? "verified" : "not verified");
   return words.join(", ");
 }

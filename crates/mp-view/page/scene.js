@@ -243,16 +243,3 @@ export function readScene(given) {
     report: head.report == null ? null : object(head.report, "report"),
   };
 }
-
-/** The bytes of base64 text. @param {string} base64 @returns {Uint8Array} */
-export function fromBase64(base64) {
-  /** @type {string} */ let binary;
-  try {
-    binary = atob(base64.trim());
-  } catch {
-    throw new Error("The scene in this page is damaged: it is not base64.");
-  }
-  const bytes = new Uint8Array(binary.length);
-  for (let i = 0; i < binary.length; i++) bytes[i] = binary.charCodeAt(i);
-  return bytes;
-}

@@ -3,6 +3,8 @@
 use crate::SceneFile;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use flate2::{Compression, write::GzEncoder};
+use std::io::Write as _;
 
 /// The modules of the page, by their names in imports.
 macro_rules! modules {
@@ -11,7 +13,7 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 17] = modules!(
+const MODULES: [(&str, &str); 18] = modules!(
     "buffers",
     "camera",
     "colors",
@@ -19,6 +21,7 @@ const MODULES: [(&str, &str); 17] = modules!(
     "dom",
     "main",
     "math",
+    "packed",
     "panels",
     "picking",
     "picture",
@@ -44,7 +47,7 @@ impl SceneFile {
             format!("\"{name}\":\"data:text/javascript;base64,{}\"", STANDARD.encode(text))
         };
         let imports = MODULES.map(import).join(",");
-        let scene = STANDARD.encode(self.to_bytes());
+        let scene = STANDARD.encode(packed(&self.to_bytes()));
         HTML.replace("<!--STYLE-->", &format!("<style>\n{STYLE}</style>"))
             .replace(
                 "<!--IMPORTMAP-->",
@@ -55,6 +58,14 @@ impl SceneFile {
                 &format!("<script id=\"scene\" type=\"application/octet-stream\">{scene}</script>"),
             )
     }
+}
+
+/// Packed by gzip, which browsers unpack. The same bytes give the same bytes.
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+    let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
+    // Writing to memory does not fail; the page reads bytes that are not packed too.
+    written.unwrap_or_else(|_| bytes.to_vec())
 }
 
 #[cfg(test)]
