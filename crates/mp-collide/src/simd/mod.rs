@@ -153,7 +153,8 @@ pub(crate) fn run<K: Kernel>(isa: Isa, kernel: K) -> K::Output {
     if isa == Isa::Neon {
         return kernel.run::<arm::Neon>();
     }
-    #[cfg(all(not(feature = "scalar"), target_arch = "aarch64"))]
+    // On other processors there is nothing to choose from.
+    #[cfg(not(any(target_arch = "x86_64", all(feature = "scalar", target_arch = "aarch64"))))]
     let _ = isa;
     kernel.run::<Scalar>()
 }
