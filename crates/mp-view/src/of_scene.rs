@@ -76,10 +76,11 @@ impl SceneFile {
         Ok(())
     }
 
-    /// Adds the report of a run, and its path if it has one.
+    /// Adds the report of a run, and its path if it has one. The scene's verifier checks the path again, because a report
+    /// may come from a file.
     ///
     /// # Errors
-    /// When the report is of another scene.
+    /// When the path is of another robot.
     pub fn add_report(&mut self, scene: &Scene, report: &Report) -> Result<(), Error> {
         if let Some(rows) = report.path.clone() {
             let path = PathRows { format: scene.path_format(), columns: report.columns.clone(), rows };
