@@ -27,6 +27,8 @@ pub(crate) struct Outbox {
     run: u64,
     growth: Growth,
     progress: Option<Message>,
+    /// Whether it is time to tell of growth again.
+    ready: bool,
     /// What is told as it is, in order.
     rest: VecDeque<Message>,
 }
@@ -43,18 +45,20 @@ impl Outbox {
     pub(crate) fn new(run: u64, scene: Scene, request: &Request) -> SharedOutbox {
         let roadmap = mp_plan::roadmap_planners().iter().any(|info| info.is_called(&request.planner));
         let growth = Growth::new(scene, roadmap);
-        Arc::new(Mutex::new(Self { run, growth, progress: None, rest: VecDeque::new() }))
+        Arc::new(Mutex::new(Self { run, growth, progress: None, ready: false, rest: VecDeque::new() }))
     }
 
     /// The next event: growth before all that came later.
     pub(crate) fn take(&mut self) -> Option<Message> {
-        self.growth.take(self.run).or_else(|| self.progress.take()).or_else(|| self.rest.pop_front())
+        let growth = if std::mem::take(&mut self.ready) { self.growth.take(self.run) } else { None };
+        growth.or_else(|| self.progress.take()).or_else(|| self.rest.pop_front())
     }
 
     /// Tells that the run failed.
     pub(crate) fn fail(&mut self, error: &Error) {
         let failed = Message::event("failed", self.run);
         let (message, help) = failure(error);
+        self.ready = true;
         self.rest.push_back(failed.with("message", message).with("help", help));
     }
 
@@ -70,6 +74,7 @@ impl Outbox {
             let track = scene.track(&rows).ok()?;
             Some(PathTrack::of(&report.planner, report.verified, report.path_length, track))
         });
+        self.ready = true;
         let path = path.map(|path| json(&path_head(&path, &mut message.data)));
         self.rest.push_back(message.with("path", path));
     }
@@ -108,6 +113,7 @@ impl Recorder<'_> {
             message.set("time_s", self.clock.now().as_secs_f64() - self.began);
         }
         outbox.progress = Some(message);
+        outbox.ready = true;
         drop(outbox);
         (self.wake)();
     }
@@ -125,6 +131,9 @@ impl Watch for Recorder<'_> {
         let mut outbox = locked(self.outbox);
         let message = Message::event("found", outbox.run).with("length", length);
         outbox.rest.push_back(message);
+        outbox.ready = true;
+        drop(outbox);
+        (self.wake)();
     }
     fn wants_events(&self) -> bool {
         true

@@ -11,7 +11,6 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
 
 /// A session of one page. Requests may come from several threads; runs have threads of their own. When it is dropped, its runs
 /// are cancelled and waited for.
@@ -36,12 +35,8 @@ impl fmt::Debug for Session {
     }
 }
 
-/// The runs of a session, and when growth and progress were last told.
-#[derive(Default)]
-struct Runs {
-    list: BTreeMap<u64, RunThread>,
-    last: Option<Instant>,
-}
+/// The runs of a session by their numbers.
+type Runs = BTreeMap<u64, RunThread>;
 
 struct RunThread {
     orders: Arc<Orders>,
@@ -101,9 +96,6 @@ fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// `grown` and `progress` come at most this often.
-const PERIOD: Duration = Duration::from_millis(50);
-
 impl Session {
     /// A session. `wake` is called from any thread when there are events; it must return at once.
     pub fn new(opening: Opening, wake: impl Fn() + Send + Sync + 'static) -> Self {
@@ -130,35 +122,29 @@ impl Session {
         let mut runs = unpoisoned(&self.runs);
         match (about, scene) {
             (AboutRun::Plan { request, paused }, Some(scene)) => {
-                if runs.list.contains_key(&run) {
+                if runs.contains_key(&run) {
                     return Err(Error::new(format!("run {run} goes on already")));
                 }
                 // What is wrong with start, goal and request is the reply, not an event.
                 scene.prepare(&request)?;
-                runs.list.insert(run, begin(run, scene, *request, paused, Arc::clone(&self.wake)));
+                runs.insert(run, begin(run, scene, *request, paused, Arc::clone(&self.wake)));
             }
             // A run that has ended meanwhile needs no order.
-            (AboutRun::Order(order), _) => runs.list.get(&run).iter().for_each(|run| run.orders.give(order)),
-            (AboutRun::Cancel, _) => runs.list.get(&run).iter().for_each(|run| run.orders.cancel()),
+            (AboutRun::Order(order), _) => runs.get(&run).iter().for_each(|run| run.orders.give(order)),
+            (AboutRun::Cancel, _) => runs.get(&run).iter().for_each(|run| run.orders.cancel()),
             (AboutRun::Plan { .. }, None) => {}
         }
         Ok(Message::default())
     }
 
-    /// The next event, if there is one. Growth and progress are joined until they are taken, and taken at most twenty times a
-    /// second: `wake` is called again when it is time.
+    /// The next event, if there is one. Growth and progress are joined until they are taken.
     #[must_use]
     pub fn take_event(&self) -> Option<Vec<u8>> {
         let mut runs = unpoisoned(&self.runs);
-        let early = runs.last.is_some_and(|last| last.elapsed() < PERIOD);
         let mut ended = Vec::new();
         let mut event = None;
-        for (number, run) in &runs.list {
+        for (number, run) in runs.iter() {
             let over = run.thread.as_ref().is_none_or(JoinHandle::is_finished);
-            // What a run told before it ended is not held back.
-            if early && !over {
-                continue;
-            }
             event = locked(&run.outbox).take();
             if event.is_some() {
                 break;
@@ -167,15 +153,7 @@ impl Session {
                 ended.push(*number);
             }
         }
-        for number in ended {
-            runs.list.remove(&number);
-        }
-        match &event {
-            Some(message) if message.head.get("event").is_some_and(|e| e == "progress") => {
-                runs.last = Some(Instant::now());
-            }
-            _ => {}
-        }
+        ended.iter().for_each(|number| drop(runs.remove(number)));
         event.map(|message| message.to_bytes())
     }
 }
@@ -183,8 +161,8 @@ impl Session {
 impl Drop for Session {
     fn drop(&mut self) {
         let mut runs = unpoisoned(&self.runs);
-        runs.list.values().for_each(|run| run.orders.cancel());
-        for run in runs.list.values_mut() {
+        runs.values().for_each(|run| run.orders.cancel());
+        for run in runs.values_mut() {
             if let Some(thread) = run.thread.take() {
                 // It has told already when it panicked.
                 let _ = thread.join();
