@@ -38,6 +38,24 @@ pub enum RenderError {
         /// The upper right one, metres.
         high: Point2<f64>,
     },
+    /// A text does not name what it should.
+    #[error("`{text}`: expected {expected}")]
+    Text {
+        /// The text.
+        text: String,
+        /// What it should name.
+        expected: &'static str,
+    },
+    /// A film has no frames, or they cannot be shown so fast.
+    #[error("cannot make a film of {seconds} s with {rate} frames per second: expected {expected}")]
+    Timing {
+        /// Its length, seconds.
+        seconds: f64,
+        /// Frames per second.
+        rate: f64,
+        /// What is possible.
+        expected: &'static str,
+    },
     /// A point of a curve is not on the axes.
     #[error(
         "cannot draw ({x}, {y}) of the curve `{name}`: expected finite numbers, x above 0 and y not below 0"
