@@ -166,10 +166,16 @@ impl<'s> Shot<'s> {
                 backdrop
             }
         };
+        // What one wants to see through glass is drawn over it.
+        let transparent = self.scene.mode == Mode::Transparent;
+        if transparent {
+            ghosts.over(&mut layer.colour, 0.8);
+        }
         path::draw_copies(&mut layer, camera, &lights, copies);
         path::draw_trace(&mut layer, camera, &self.scene.trace);
-        let most = if self.scene.mode == Mode::Transparent { 0.8 } else { 0.5 };
-        ghosts.over(&mut layer.colour, most);
+        if !transparent {
+            ghosts.over(&mut layer.colour, 0.5);
+        }
         decorate::labels(&mut layer, self.size, self.scene);
         layer
     }
@@ -244,7 +250,7 @@ impl<'s> Shot<'s> {
             let colour = mix(srgb(INK), srgb(OBSTACLES[n % OBSTACLES.len()]), 0.25);
             decorate::wires(&mut layer, camera, o, colour, [0.75, 0.1]);
         }
-        let faint = if self.animation.step { [0.6, 0.3] } else { [0.3, 0.12] };
+        let faint = if self.animation.step { [0.7, 0.45] } else { [0.45, 0.3] };
         for (body, colour) in copies {
             decorate::wires(&mut layer, camera, body, scaled(*colour, 0.8), faint);
         }
