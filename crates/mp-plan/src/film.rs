@@ -227,24 +227,13 @@ fn write(
         for picture in &drawn {
             match &mut writer {
                 Writer::Gif(gif) => gif.add(picture),
-                // Ctrl-C stops ffmpeg too.
-                Writer::Mp4(mp4) => match mp4.add(picture) {
-                    Err(_) if is_raised(cancel) => return Ok(None),
-                    added => added?,
-                },
+                Writer::Mp4(mp4) => mp4.add(picture)?,
             }
         }
         progress(numbers[0] + drawn.len());
     }
     match writer {
         Writer::Gif(gif) => Ok(Some(gif.finish())),
-        Writer::Mp4(mp4) => match mp4.finish() {
-            Err(_) if is_raised(cancel) => Ok(None),
-            finished => finished.map(Some),
-        },
+        Writer::Mp4(mp4) => mp4.finish().map(Some),
     }
-}
-
-fn is_raised(cancel: &Cancel) -> bool {
-    cancel.0.load(std::sync::atomic::Ordering::Relaxed)
 }

@@ -26,7 +26,11 @@ impl Mp4 {
         let log = File::create(folder.path().join(LOG)).map_err(unmade)?;
         let (size, rate) = (format!("{width}x{height}"), rate.to_string());
         // One thread and nothing about time or machine in the file: the same frames give the same bytes.
-        let child = Command::new("ffmpeg")
+        let mut command = Command::new("ffmpeg");
+        // Ctrl-C is for this program, which then stops ffmpeg.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let child = command
             .args(["-hide_banner", "-loglevel", "error", "-y"])
             .args([
                 "-f",

@@ -46,15 +46,13 @@ pub enum RenderError {
         /// What it should name.
         expected: &'static str,
     },
-    /// A film has no frames, or they cannot be shown so fast.
-    #[error("cannot make a film of {seconds} s with {rate} frames per second: expected {expected}")]
-    Timing {
-        /// Its length, seconds.
-        seconds: f64,
+    /// The frames of a film cannot be shown so fast.
+    #[error("cannot show {rate} frames per second: expected a rate above 0 and up to {most}")]
+    Rate {
         /// Frames per second.
         rate: f64,
-        /// What is possible.
-        expected: &'static str,
+        /// The most that is possible.
+        most: f64,
     },
     /// A point of a curve is not on the axes.
     #[error(

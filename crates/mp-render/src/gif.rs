@@ -42,10 +42,9 @@ impl Gif {
     /// # Errors
     /// When there is no sample, or the rate is not above 0 and up to [`MAX_RATE`](Self::MAX_RATE).
     pub fn new(samples: &[Picture], rate: f64) -> Result<Self, RenderError> {
-        let timing = |expected| RenderError::Timing { seconds: 0.0, rate, expected };
-        let first = samples.first().ok_or_else(|| timing("at least one frame"))?;
+        let first = samples.first().ok_or(RenderError::Size { width: 0, height: 0 })?;
         if !(rate > 0.0 && rate <= Self::MAX_RATE) {
-            return Err(timing("a rate above 0 and up to 50"));
+            return Err(RenderError::Rate { rate, most: Self::MAX_RATE });
         }
         let palette = Palette::new(samples, usize::from(UNCHANGED));
         let size = (first.width(), first.height());
