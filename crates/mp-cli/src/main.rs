@@ -11,6 +11,7 @@ mod input;
 mod interrupt;
 mod log;
 mod output;
+mod page_planner;
 mod picture;
 mod plan;
 mod progress;

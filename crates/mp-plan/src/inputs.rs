@@ -21,6 +21,12 @@ impl Files for Recording<'_> {
         }
         self.files.read(path, limit)
     }
+    fn holds(&self, path: &Path) -> bool {
+        self.files.holds(path)
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        self.files.absolute(folder)
+    }
 }
 
 impl Scene {
