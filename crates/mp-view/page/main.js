@@ -1,7 +1,11 @@
 // The page: reads the scene inside, or asks the planner for one, and shows it.
 
 import { showError } from "mp/dom.js";
+import { EndsPanel } from "mp/endspanel.js";
+import { Gallery } from "mp/gallery.js";
 import { unpack } from "mp/packed.js";
+import { PlanningPanel } from "mp/planning.js";
+import { SaveDialog } from "mp/saving.js";
 import { readScene } from "mp/scene.js";
 import { sessionOfPage } from "mp/session.js";
 import { Viewer } from "mp/viewer.js";
@@ -48,9 +52,14 @@ function show(bytes) {
 /** Makes the page one that builds and plans. @param {Session} session @param {Viewer} viewer @param {boolean} shown whether a scene is shown */
 async function connect(session, viewer, shown) {
   const workbench = new Workbench(viewer, session, await session.request({ do: "hello" }));
+  const gallery = new Gallery(workbench);
+  new SaveDialog(workbench);
+  new PlanningPanel(workbench);
+  new EndsPanel(workbench);
   const { opened, scenes } = workbench.hello;
   if (opened) workbench.take(opened, "open");
   else if (shown) await openInside(workbench, scenes);
+  else gallery.show();
   return workbench;
 }
 

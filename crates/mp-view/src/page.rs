@@ -13,14 +13,17 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 26] = modules!(
+const MODULES: [(&str, &str); 32] = modules!(
     "buffers",
     "camera",
     "colors",
     "controls",
     "dom",
     "ends",
+    "endspanel",
+    "gallery",
     "growing",
+    "live",
     "main",
     "math",
     "message",
@@ -28,8 +31,11 @@ const MODULES: [(&str, &str); 26] = modules!(
     "panels",
     "picking",
     "picture",
+    "planning",
     "plot",
     "renderer",
+    "runs",
+    "saving",
     "scene",
     "session",
     "shaders",
