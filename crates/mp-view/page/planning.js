@@ -140,7 +140,8 @@ export class PlanningPanel {
     try {
       await this.workbench.session.request({ do: "plan", run: run.id, request, ...this.workbench.ends.request(), paused });
     } catch (error) {
-      this.fail(run, error instanceof Error ? error.message : String(error), error);
+      // A run that has ended meanwhile has said why.
+      if (!ended(run)) this.fail(run, error instanceof Error ? error.message : String(error), error);
     }
   }
   /** @param {string} what @param {object} [more] */
