@@ -1,6 +1,6 @@
 // Saving: the path, the page and the scene, as files beside the scene or as downloads.
 
-import { button, el, labelled, select } from "mp/dom.js";
+import { button, checkbox, el, labelled, select } from "mp/dom.js";
 
 /** @import { Message } from "mp/message.js" */
 /** @import { Path } from "mp/scene.js" */
@@ -58,13 +58,15 @@ export class SaveDialog {
     const save = async () => {
       const [, request, format] = KINDS[Number(kind.value)];
       note.textContent = "Saving…";
-      const problem = await this.save(request, format, name.value.trim(), false, (text) => (note.textContent = text)).then(() => null, (error) => error);
+      const problem = await this.save(request, format, name.value.trim(), overwrite.querySelector("input")?.checked ?? false, (text) => (note.textContent = text)).then(() => null, (error) => error);
       if (!problem) return;
       note.replaceChildren(el("strong", { class: "bad" }, problem.message), el("small", {}, problem.help ?? ""));
     };
     const folder = this.workbench.hello.folder;
+    const overwrite = checkbox("replace a file with this name", false, () => {});
+    overwrite.hidden = !folder;
     const where = el("small", {}, folder ? `The file is written to ${folder}.` : "The file comes as a download.");
-    dialog.append(el("h2", {}, "Save"), labelled("What", kind), labelled("Name", name), where, note,
+    dialog.append(el("h2", {}, "Save"), labelled("What", kind), labelled("Name", name), where, overwrite, note,
       el("div", { class: "buttons" }, button("Save", save, { class: "main" }), button("Close", () => dialog.close())));
     dialog.addEventListener("close", () => dialog.remove());
     document.body.append(dialog);
