@@ -27,7 +27,7 @@ export function byId(id) {
 export function showError(error, ...actions) {
   const box = byId("alert");
   const help = error instanceof Error && "help" in error && typeof error.help === "string" ? error.help : "";
-  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []), ...actions);
+  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []), ...actions, el("button", { type: "button", class: "close", "aria-label": "Close this message", onclick: () => (box.hidden = true) }));
   box.hidden = error === "";
 }
 

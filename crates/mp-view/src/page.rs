@@ -86,6 +86,14 @@ pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
         .replace("<!--PLANNER-->", &planner)
 }
 
+/// As [`page`] with the planner inside, for a scene that does not come with the program: `open` is the request by which the
+/// page opens it in its planner, as docs/formats/session.md describes it.
+#[must_use]
+pub fn page_that_opens(scene: &SceneFile, module: &[u8], open: &[u8]) -> String {
+    let html = page(Some(scene), Planner::Inside(module));
+    html.replacen("<script id=\"planner\"", &format!("{}\n<script id=\"planner\"", data("open", open)), 1)
+}
+
 /// Bytes as a part of the page.
 fn data(id: &str, bytes: &[u8]) -> String {
     let text = STANDARD.encode(packed(bytes));
