@@ -42,6 +42,7 @@ export class Panels {
     this.configuration = section("Configuration", false, [this.row]);
     this.facts = el("div", {});
     byId("about").replaceChildren(this.picked, section("Picture", true, this.pictureControls()), this.shown, this.paths, this.configuration, this.facts);
+    this.showPaths();
     this.buildHelp();
     this.buildPanelButton();
   }
