@@ -29,6 +29,13 @@ export function showError(error, ...actions) {
   const help = error instanceof Error && "help" in error && typeof error.help === "string" ? error.help : "";
   box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []), ...actions, el("button", { type: "button", class: "close", "aria-label": "Close this message", onclick: () => (box.hidden = true) }));
   box.hidden = error === "";
+  box.classList.remove("note");
+}
+
+/** Shows something worth knowing where errors are shown. @param {string} text */
+export function showNote(text) {
+  showError(text);
+  byId("alert").classList.add("note");
 }
 
 /** @param {string} label @param {() => void} press @param {Properties} [properties] */
