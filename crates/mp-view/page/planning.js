@@ -209,7 +209,7 @@ export class PlanningPanel {
     run.state = "done";
     run.report = report;
     if (path) {
-      run.path = this.viewer.addPath({ ...readPath(path, scene.columns.length, scene.robot), name: `run ${run.id}: ${run.planner}`, ofRun: true });
+      run.path = this.viewer.addPath({ ...readPath(path, scene.columns.length, scene.robot), name: `run ${run.id}: ${run.planner}`, ofRun: true, written: report.path ?? null });
       if (this.runs.chosen === run) this.runs.choose(run);
     }
     const seed = this.seed;
