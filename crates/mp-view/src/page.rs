@@ -13,12 +13,14 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 18] = modules!(
+const MODULES: [(&str, &str); 20] = modules!(
     "buffers",
     "camera",
     "colors",
     "controls",
+    "document",
     "dom",
+    "gizmo",
     "main",
     "math",
     "packed",
