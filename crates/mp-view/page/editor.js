@@ -82,6 +82,8 @@ export class Editor {
   refresh() {
     if (!this.exists(this.selection)) this.selection = null;
     this.handles.setTarget(this.target());
+    const s = this.selection;
+    this.viewer.panels?.markBody(!s ? -1 : "obstacle" in s ? this.viewer.scene.robot + s.obstacle : 0);
     if (this.history) setUnsaved(this.history.dirty);
     for (const listener of this.onchange) listener();
   }
@@ -113,7 +115,7 @@ export class Editor {
     if (body < 0) return this.select(null);
     const { robot } = this.viewer.scene;
     if (body >= robot) return this.select(this.document ? { obstacle: body - robot } : null);
-    this.select(role === "goal" ? { end: index } : { end: "start" });
+    this.select(role === "goal" ? { end: index } : role === "start" ? { end: "start" } : null);
   }
   /** Selects the next or the previous part. @param {number} step */
   selectNext(step) {
@@ -153,7 +155,7 @@ export class Editor {
     const shown = new Map(before.map((body, b) => [body.name, this.viewer.settings.bodies[b]]));
     if (!(await this.workbench.edit(next))) return false;
     this.viewer.scene.bodies.forEach((body, b) => Object.assign(this.viewer.settings.bodies[b], shown.get(body.name)));
-    this.viewer.showBodies();
+    this.viewer.panels?.showBodies();
     this.sent = next;
     return true;
   }

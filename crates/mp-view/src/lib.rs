@@ -26,3 +26,4 @@ pub use error::ViewError;
 pub use model::{
     Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
 };
+pub use page::{Planner, page};
