@@ -62,6 +62,7 @@ export class Editor {
     this.viewer.onselect.push((body, role, index) => this.selectBody(body, role, index));
     this.viewer.keys.push((e) => this.key(e));
     workbench.onopened.push((_, how) => this.opened(how));
+    workbench.onleft.push(() => this.opened("open"));
     this.ends.onchange.push((end, settled) => this.endChanged(end, settled));
     addEventListener("keydown", (e) => this.shortcut(e));
     if (workbench.open) this.opened("open");

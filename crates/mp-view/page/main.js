@@ -1,6 +1,9 @@
 // The page: reads the scene inside, or asks the planner for one, and shows it.
 
 import { showError } from "mp/dom.js";
+import { Editor } from "mp/editor.js";
+import { Inspector } from "mp/inspector.js";
+import { Opening } from "mp/opening.js";
 import { unpack } from "mp/packed.js";
 import { readScene } from "mp/scene.js";
 import { sessionOfPage } from "mp/session.js";
@@ -48,6 +51,9 @@ function show(bytes) {
 /** Makes the page one that builds and plans. @param {Session} session @param {Viewer} viewer @param {boolean} shown whether a scene is shown */
 async function connect(session, viewer, shown) {
   const workbench = new Workbench(viewer, session, await session.request({ do: "hello" }));
+  const editor = new Editor(workbench);
+  const opening = new Opening(editor);
+  new Inspector(editor, () => opening.chooseMesh());
   const { opened, scenes } = workbench.hello;
   if (opened) workbench.take(opened, "open");
   else if (shown) await openInside(workbench, scenes);

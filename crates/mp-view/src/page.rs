@@ -13,7 +13,7 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 30] = modules!(
+const MODULES: [(&str, &str); 33] = modules!(
     "buffers",
     "camera",
     "colors",
@@ -22,12 +22,15 @@ const MODULES: [(&str, &str); 30] = modules!(
     "dom",
     "editor",
     "ends",
+    "files",
     "gizmo",
     "growing",
     "handles",
+    "inspector",
     "main",
     "math",
     "message",
+    "opening",
     "packed",
     "panels",
     "picking",
