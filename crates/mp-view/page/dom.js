@@ -22,11 +22,12 @@ export function byId(id) {
   return element;
 }
 
-/** Shows what went wrong, and what to do, at the top of the page; an empty text removes it. @param {unknown} error */
-export function showError(error) {
+/** Shows what went wrong, and what to do, at the top of the page; an empty text removes it.
+ * @param {unknown} error @param {HTMLElement[]} actions buttons beside it */
+export function showError(error, ...actions) {
   const box = byId("alert");
   const help = error instanceof Error && "help" in error && typeof error.help === "string" ? error.help : "";
-  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []));
+  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []), ...actions);
   box.hidden = error === "";
 }
 

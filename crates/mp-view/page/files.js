@@ -54,12 +54,3 @@ export function chooseFiles(endings, several) {
     input.click();
   });
 }
-
-/** Offers files as downloads, each on its own. @param {{name: string, bytes: Uint8Array}[]} files */
-export function download(files) {
-  for (const { name, bytes } of files) {
-    const address = URL.createObjectURL(new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (bytes)]));
-    el("a", { href: address, download: name }).click();
-    setTimeout(() => URL.revokeObjectURL(address), 60_000);
-  }
-}

@@ -2,9 +2,13 @@
 
 import { showError } from "mp/dom.js";
 import { Editor } from "mp/editor.js";
+import { EndsPanel } from "mp/endspanel.js";
+import { Gallery } from "mp/gallery.js";
 import { Inspector } from "mp/inspector.js";
 import { Opening } from "mp/opening.js";
 import { unpack } from "mp/packed.js";
+import { PlanningPanel } from "mp/planning.js";
+import { SaveDialog } from "mp/saving.js";
 import { readScene } from "mp/scene.js";
 import { sessionOfPage } from "mp/session.js";
 import { Viewer } from "mp/viewer.js";
@@ -51,12 +55,16 @@ function show(bytes) {
 /** Makes the page one that builds and plans. @param {Session} session @param {Viewer} viewer @param {boolean} shown whether a scene is shown */
 async function connect(session, viewer, shown) {
   const workbench = new Workbench(viewer, session, await session.request({ do: "hello" }));
+  const gallery = new Gallery(workbench);
   const editor = new Editor(workbench);
-  const opening = new Opening(editor);
+  const opening = new Opening(editor, new SaveDialog(workbench));
   new Inspector(editor, () => opening.chooseMesh());
+  new PlanningPanel(workbench);
+  new EndsPanel(workbench);
   const { opened, scenes } = workbench.hello;
   if (opened) workbench.take(opened, "open");
   else if (shown) await openInside(workbench, scenes);
+  else gallery.show();
   return workbench;
 }
 

@@ -1,29 +1,28 @@
-// Files into the page and out of it: the menu, dropping files, what becomes of each, and saving.
+// Files into the page: the menu, dropping files, and what becomes of each.
 
-import { ask, button, el, labelled, select, showError } from "mp/dom.js";
+import { button, showError } from "mp/dom.js";
 import { askRole, HELP } from "mp/editor.js";
-import { ENDINGS, MESH_ENDINGS, chooseFiles, download, kindOf, readFiles } from "mp/files.js";
+import { ENDINGS, MESH_ENDINGS, chooseFiles, kindOf, readFiles } from "mp/files.js";
 import { readPath, readScene } from "mp/scene.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Editor } from "mp/editor.js" */
 /** @import { NamedFile } from "mp/files.js" */
-/** @import { Message } from "mp/message.js" */
-/** @typedef {"own" | "gempa"} Format */
+/** @import { Document } from "mp/document.js" */
+/** @import { SaveDialog } from "mp/saving.js" */
 
 export class Opening {
-  /** @param {Editor} editor */
-  constructor(editor) {
-    this.editor = editor;
+  /** @param {Editor} editor @param {SaveDialog} saving */
+  constructor(editor, saving) {
+    this.editor = editor; this.saving = saving;
     this.workbench = editor.workbench;
     this.viewer = editor.viewer;
     this.session = editor.workbench.session;
-    /** @type {Format} */ this.format = "own";
-    this.save = button("Save…", () => this.askSave(), { title: "Save (Ctrl + S)" });
+    saving.document = () => editor.document;
+    saving.onsaved = (document) => this.saved(/** @type {Document} */ (document));
     this.undo = button("↶", () => editor.undo(), { "aria-label": "Undo" });
     this.redo = button("↷", () => editor.redo(), { "aria-label": "Redo" });
-    this.said = el("span", { role: "status", class: "said" });
-    const menu = [button("New", () => editor.create(), { title: "New environment" }), button("Open…", () => this.choose(), { title: "Open files (Ctrl + O)" }), this.save, this.undo, this.redo, this.said];
+    const menu = [button("New", () => editor.create(), { title: "New environment" }), button("Open…", () => this.choose(), { title: "Open files (Ctrl + O)" }), this.undo, this.redo];
     for (const control of menu) this.viewer.addMenu(control);
     this.viewer.panels?.addHelp(HELP);
     editor.onchange.push(() => this.update());
@@ -33,18 +32,20 @@ export class Opening {
   }
   update() {
     const { history } = this.editor;
-    if (history?.dirty) this.said.textContent = "";
-    this.save.disabled = !this.workbench.open;
     for (const [control, word, label] of /** @type {[HTMLButtonElement, string, string | null][]} */ ([
       [this.undo, "Undo", history?.undoLabel ?? null], [this.redo, "Redo", history?.redoLabel ?? null]])) {
       control.disabled = label === null;
       control.title = label ? `${word}: ${label}` : `Nothing to ${word.toLowerCase()}`;
     }
   }
+  saved(/** @type {Document} */ document) {
+    this.editor.history?.markSaved(document);
+    this.editor.refresh();
+  }
   key(/** @type {KeyboardEvent} */ e) {
     if (!(e.ctrlKey || e.metaKey) || e.altKey || e.shiftKey || document.querySelector("dialog[open]")) return;
     if (e.key === "o") this.choose();
-    else if (e.key === "s" && this.workbench.open) this.askSave();
+    else if (e.key === "s") this.saving.show();
     else return;
     e.preventDefault();
   }
@@ -111,45 +112,5 @@ export class Opening {
       faults.push(...(reply.faults ?? []).map((/** @type {string} */ fault) => `${file.name}: ${fault}`));
     }
     showError(faults.join(" "));
-  }
-  /** Asks for name and format, and saves. */
-  askSave() {
-    const { document: edited } = this.editor;
-    const name = el("input", { type: "text", "aria-label": "Name", value: edited?.name ?? this.viewer.scene.name });
-    const format = select([["own", "our own (.mp.json), with names, colours and figures"], ["gempa", "GEMPA environment (.env) and its meshes"]], this.format, (v) => (this.format = /** @type {Format} */ (v)), { "aria-label": "Format" });
-    const dialog = el("dialog", { "aria-label": "Save", class: "save" });
-    const where = this.workbench.hello.folder ? `Files are written to ${this.workbench.hello.folder}.` : "The files are offered as downloads.";
-    const form = el("form", { method: "dialog" },
-      el("h2", {}, "Save the environment"), labelled("Name", name), labelled("Format", format), el("p", {}, where),
-      el("div", { class: "buttons" }, button("Cancel", () => dialog.close()), el("button", { value: "save" }, "Save")));
-    dialog.append(form);
-    dialog.addEventListener("close", () => {
-      dialog.remove();
-      if (dialog.returnValue === "save") this.workbench.attempt(() => this.saveAs(name.value.trim() || "environment", this.format));
-    });
-    document.body.append(dialog);
-    dialog.showModal();
-    name.select();
-  }
-  /** @param {string} name @param {Format} format */
-  async saveAs(name, format) {
-    const { document: edited, history } = this.editor;
-    const reply = await this.saved({ do: "save", document: edited, format, name });
-    if (!reply) return;
-    if (edited) history?.markSaved(edited);
-    this.editor.refresh();
-    const written = /** @type {string[] | undefined} */ (reply.written);
-    if (!written?.length) download(reply.files ?? []);
-    this.said.textContent = (written?.length ? `Saved: ${written.join(", ")}` : `Downloaded: ${reply.files.map((/** @type {NamedFile} */ f) => f.name).join(", ")}`);
-  }
-  /** The reply to a request to save; where a file is there already, it is asked whether to replace it. @param {Message} request @returns {Promise<Message | null>} */
-  async saved(request) {
-    try {
-      return await this.session.request(request);
-    } catch (error) {
-      const exists = /exists/.test(error instanceof Error ? error.message : "");
-      if (!exists || !(await ask(`${/** @type {Error} */ (error).message}.`, "Replace it", "Keep it"))) throw error;
-      return this.session.request({ ...request, overwrite: true });
-    }
   }
 }

@@ -216,7 +216,7 @@ function pathWords(/** @type {Path} */ path) {
 }
 
 /** The figures of a report that people ask for first. @param {Record<string, unknown>} report @returns {[string, string][]} */
-function reportFacts(report) {
+export function reportFacts(report) {
   /** @type {[name: string, member: string, unit: string][]} */
   const wanted = [
     ["planner", "planner", ""], ["metric", "metric", ""], ["motion check", "motion", ""], ["seed", "seed", ""], ["time", "time_s", "s"],

@@ -186,7 +186,7 @@ const PARTS = {
 };
 
 /** @param {Vec3} p @returns {[string, string]} */
-const placeFact = (p) => ["place", `${p.map(brief).join(", ")} m`];
+export const placeFact = (p) => ["place", `${p.map(brief).join(", ")} m`];
 
 /** @param {Tree} tree @param {number} i @returns {Omit<Picked, "point">} */
 export function describeNode({ name, nodes, parents }, i) {

@@ -132,8 +132,8 @@ export class PictureMaker {
   }
   /** Start and goals. @param {Settings} s @param {Palette} colors @returns {Item[]} */
   ends(s, colors) {
-    const start = s.start ? this.robot(s, this.scene.start.poses, 0, colors.start, "start", 0) : [];
-    const goals = s.goals ? this.scene.goals.flatMap((g, i) => this.robot(s, g.poses, 0, colors.goal, "goal", i)) : [];
+    const start = s.start ? this.robot(s, this.scene.start.poses, 0, this.scene.start.refused ? colors.refused : colors.start, "start", 0) : [];
+    const goals = s.goals ? this.scene.goals.flatMap((g, i) => this.robot(s, g.poses, 0, g.refused ? colors.refused : colors.goal, "goal", i)) : [];
     return [...goals, ...start];
   }
   /** The robot on its path, and its copies. @param {Settings} s @param {Palette} colors @returns {Item[]} */

@@ -11,7 +11,7 @@ import { decode } from "mp/message.js";
 /** @typedef {{name: string, role: "robot" | "obstacle", mesh: number, area: number, lines: number[], pose: number[],
  *  color: Color | null, stretch: Vec3}} Body
  *  `mesh` and `area` are -1 where the body has none. `stretch` is 1, 1, 1 but while handles scale the body. */
-/** @typedef {{row: number[], poses: number[]}} Configuration */
+/** @typedef {{row: number[], poses: number[], refused?: boolean}} Configuration  `refused`: the planner said that it is not free */
 /** @typedef {{name: string, count: number, rows: Float64Array, poses: Float32Array, trace: Float32Array,
  *  clearance: Float32Array | null, verified: boolean, length: number, ofRun: boolean}} Path
  *  `ofRun`: made by a run of this page */

@@ -211,6 +211,11 @@ export class Viewer {
     this.timeline?.showPath();
     this.changed();
   }
+  /** Shows a second path beside the chosen one. @param {number} path −1 for none */
+  compare(path) {
+    this.settings.other = path;
+    this.changed();
+  }
   /** Says what is at a pixel. @param {number} x @param {number} y */
   click(x, y) {
     const picked = this.picture ? (this.picker?.pick(x, y, this.picture, this.settings) ?? null) : null;

@@ -13,7 +13,7 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 33] = modules!(
+const MODULES: [(&str, &str); 39] = modules!(
     "buffers",
     "camera",
     "colors",
@@ -22,11 +22,14 @@ const MODULES: [(&str, &str); 33] = modules!(
     "dom",
     "editor",
     "ends",
+    "endspanel",
     "files",
+    "gallery",
     "gizmo",
     "growing",
     "handles",
     "inspector",
+    "live",
     "main",
     "math",
     "message",
@@ -35,8 +38,11 @@ const MODULES: [(&str, &str); 33] = modules!(
     "panels",
     "picking",
     "picture",
+    "planning",
     "plot",
     "renderer",
+    "runs",
+    "saving",
     "scene",
     "session",
     "shaders",
