@@ -57,6 +57,7 @@ export class Editor {
     /** @type {Selection | null} */ this.selection = null;
     /** Called after anything changed here. @type {(() => void)[]} */ this.onchange = [];
     /** Commands wait for the ones before. */ this.queue = Promise.resolve();
+    /** Whether the document moves the ends, and whether handles do. */ this.applying = this.byHandles = false;
     this.handles = new Handles(this.viewer.canvas, this.viewer.camera, () => this.viewer.changed());
     this.viewer.ondraw.push(() => this.handles.draw());
     this.viewer.onselect.push((body, role, index) => this.selectBody(body, role, index));
@@ -183,17 +184,18 @@ export class Editor {
   endChanged(end, settled) {
     const { history } = this;
     const row = this.ends.at(end)?.row;
-    if (!settled || !row) return;
+    // A verdict may come while handles still drag.
+    if (!settled || !row || this.handles.active) return;
     if (history && !this.applying && (end === "start" || end === 0)) {
       const name = end === "start" ? "start" : "goal";
       if (!same(history.document[name], row)) {
-        history.commit(doc.movePart(history.document, name, /** @type {Six} */ ([...row])), `move the ${name}`, name);
+        history.commit(doc.movePart(history.document, name, /** @type {Six} */ ([...row])), `move the ${name}`, this.byHandles ? "" : name);
         this.refresh();
       }
       // Without bounds of its own the room is around all bodies: it grows with them.
       const outside = this.ends.verdicts.get(end)?.in_bounds === false;
       if (outside && !history.document.bounds && !this.growing) this.growRoom();
-    } else if (this.selection && "end" in this.selection && this.selection.end === end && !this.handles.active) this.handles.setTarget(this.target());
+    } else if (this.selection && "end" in this.selection && this.selection.end === end) this.handles.setTarget(this.target());
   }
   growRoom() {
     this.growing = true;
@@ -246,7 +248,9 @@ export class Editor {
     /** @param {Change} change @param {boolean} settled */
     const set = (change, settled) => {
       const poses = Array.from({ length: scene.robot }, (_, b) => changedPose(first.poses, 7 * b, frame.origin, change)).flat();
+      this.byHandles = true;
       this.ends.set(end, rowOfSix(kind, changedSix(six, change), scene.columns.length), { settled, poses });
+      this.byHandles = false;
     };
     return {
       frame,

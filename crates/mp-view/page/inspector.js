@@ -178,8 +178,9 @@ function renew(within, fields, kind) {
       old.defaultValue = now.defaultValue;
       if (!typing) old.value = now.value;
     } else if (old instanceof HTMLSelectElement && now instanceof HTMLSelectElement) {
+      const { value } = now;
       old.replaceChildren(...now.children);
-      old.value = now.value;
+      old.value = value;
     } else old.textContent = now?.textContent ?? "";
   });
 }

@@ -55,9 +55,10 @@ function show(bytes) {
 /** Makes the page one that builds and plans. @param {Session} session @param {Viewer} viewer @param {boolean} shown whether a scene is shown */
 async function connect(session, viewer, shown) {
   const workbench = new Workbench(viewer, session, await session.request({ do: "hello" }));
-  const gallery = new Gallery(workbench);
   const editor = new Editor(workbench);
-  const opening = new Opening(editor, new SaveDialog(workbench));
+  const opening = new Opening(editor);
+  const gallery = new Gallery(workbench);
+  opening.saveBy(new SaveDialog(workbench));
   new Inspector(editor, () => opening.chooseMesh());
   new PlanningPanel(workbench);
   new EndsPanel(workbench);

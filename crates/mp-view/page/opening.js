@@ -12,23 +12,32 @@ import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 /** @import { SaveDialog } from "mp/saving.js" */
 
 export class Opening {
-  /** @param {Editor} editor @param {SaveDialog} saving */
-  constructor(editor, saving) {
-    this.editor = editor; this.saving = saving;
+  /** @param {Editor} editor */
+  constructor(editor) {
+    this.editor = editor;
     this.workbench = editor.workbench;
     this.viewer = editor.viewer;
     this.session = editor.workbench.session;
-    saving.document = () => editor.document;
-    saving.onsaved = (document) => this.saved(/** @type {Document} */ (document));
     this.undo = button("↶", () => editor.undo(), { "aria-label": "Undo" });
     this.redo = button("↷", () => editor.redo(), { "aria-label": "Redo" });
-    const menu = [button("New", () => editor.create(), { title: "New environment" }), button("Open…", () => this.choose(), { title: "Open files (Ctrl + O)" }), this.undo, this.redo];
-    for (const control of menu) this.viewer.addMenu(control);
+    this.viewer.addMenu(button("New", () => editor.create(), { title: "New environment" }));
+    this.viewer.addMenu(button("Open…", () => this.choose(), { title: "Open files (Ctrl + O)" }));
     this.viewer.panels?.addHelp(HELP);
     editor.onchange.push(() => this.update());
     addEventListener("keydown", (e) => this.key(e));
     this.listenToDrops();
     this.update();
+  }
+  /** Saves what is edited by this dialog; what comes after it in the menu. @param {SaveDialog} saving */
+  saveBy(saving) {
+    this.saving = saving;
+    saving.document = () => this.editor.document;
+    saving.onsaved = (document) => {
+      this.editor.history?.markSaved(/** @type {Document} */ (document));
+      this.editor.refresh();
+    };
+    this.viewer.addMenu(this.undo);
+    this.viewer.addMenu(this.redo);
   }
   update() {
     const { history } = this.editor;
@@ -38,14 +47,10 @@ export class Opening {
       control.title = label ? `${word}: ${label}` : `Nothing to ${word.toLowerCase()}`;
     }
   }
-  saved(/** @type {Document} */ document) {
-    this.editor.history?.markSaved(document);
-    this.editor.refresh();
-  }
   key(/** @type {KeyboardEvent} */ e) {
     if (!(e.ctrlKey || e.metaKey) || e.altKey || e.shiftKey || document.querySelector("dialog[open]")) return;
     if (e.key === "o") this.choose();
-    else if (e.key === "s") this.saving.show();
+    else if (e.key === "s") this.saving?.show();
     else return;
     e.preventDefault();
   }

@@ -134,7 +134,9 @@ export class Panels {
       const seen = el("input", { type: "checkbox", checked: s.bodies[b].visible, "aria-label": `Show “${body.name}”`, onchange: () => this.set(() => (s.bodies[b].visible = seen.checked)) });
       const name = button(body.name, () => actions.select(b), { class: "name", "aria-pressed": "false" });
       const mode = select(modes, s.bodies[b].mode, (v) => this.set(() => (s.bodies[b].mode = /** @type {Mode | ""} */ (v))), { "aria-label": `How “${body.name}” is drawn` });
-      return el("li", { class: body.role }, seen, name, mode);
+      const row = el("li", { class: body.role }, seen, name, mode);
+      if (body.color) row.style.borderColor = `rgb(${body.color.map((x) => Math.round(255 * x)).join(" ")})`;
+      return row;
     });
     this.bodies.firstElementChild?.replaceChildren(`Bodies (${scene.bodies.length})`);
     this.bodies.lastElementChild?.replaceChildren(el("ul", { class: "bodies" }, ...rows));
