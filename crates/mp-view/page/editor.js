@@ -2,7 +2,7 @@
 
 import { ask } from "mp/dom.js";
 import * as doc from "mp/document.js";
-import { changedPose, changedSix, fromAngles, poseOfSix, tidy } from "mp/gizmo.js";
+import { changedPose, changedSix, fromAngles, niceStep, poseOfSix, tidy } from "mp/gizmo.js";
 import { Handles } from "mp/handles.js";
 import { isTyping } from "mp/controls.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
@@ -291,10 +291,18 @@ export class Editor {
   /** Adds a figure or a mesh, where the camera looks, and selects it. @param {string} name @param {DocumentShape} shape @param {"obstacle" | "robot"} as */
   add(name, shape, as) {
     if (as === "robot") return this.run(`make ${name} the robot`, (d) => doc.replaceRobot(d, name, shape)).then(() => this.select({ end: "start" }));
-    const [x, y, z] = this.viewer.camera.target;
-    /** @type {Six} */ const pose = [tidy(Number(x.toPrecision(3))), tidy(Number(y.toPrecision(3))), this.document?.space === "SE2" ? 0 : tidy(Number(z.toPrecision(3))), 0, 0, 0];
     const count = this.document?.obstacles.length ?? 0;
-    return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, pose)).then(() => this.selectNew(count));
+    return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, this.freePlace(d))).then(() => this.selectNew(count));
+  }
+  /** A place near the middle of the picture where no body has its origin. @param {Document} d @returns {Six} */
+  freePlace(d) {
+    const step = niceStep(this.viewer.camera.pixel(), 60);
+    const [x, y, z] = this.viewer.camera.target.map((c) => tidy(Math.round(c / step) * step));
+    const taken = [d.start, d.goal, ...d.obstacles.map((o) => o.pose)];
+    const height = d.space === "SE2" ? 0 : z;
+    let right = x;
+    while (taken.some((p) => Math.hypot(p[0] - right, p[1] - y, p[2] - height) < step / 2)) right = tidy(right + step);
+    return [right, y, height, 0, 0, 0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */
   selectNew(count) {
@@ -304,8 +312,7 @@ export class Editor {
   duplicate() {
     const { part, document } = this;
     if (part === null || !document) return;
-    const step = 60 * this.viewer.camera.pixel();
-    const shift = tidy(Number(step.toPrecision(1)));
+    const shift = niceStep(this.viewer.camera.pixel(), 60);
     const count = document.obstacles.length;
     return this.run(`duplicate ${doc.bodyOf(document, part).name}`, (d) => doc.duplicate(d, part, [shift, shift, 0])).then(() => this.selectNew(count));
   }
