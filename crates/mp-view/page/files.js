@@ -30,6 +30,18 @@ export function kindOf({ name, bytes }) {
   return count === 2 || (count === 1 && numbers === 6) ? "path" : "mesh";
 }
 
+/** Endings of scenes: first what is a scene for sure, last what a scene may name. */
+const SCENES = [".mp.json", ".env", ".cfg", ".toml", ".txt", ".urdf", ".yaml", ".yml", ".png", ".pgm"];
+
+/** The name of the file that is the scene, among files of this kind. @param {NamedFile[]} scenes @returns {string} */
+export function mainOf(scenes) {
+  const rank = (/** @type {string} */ name) => SCENES.findIndex((ending) => name.toLowerCase().endsWith(ending));
+  const best = Math.min(...scenes.map(({ name }) => rank(name)));
+  const first = scenes.filter(({ name }) => rank(name) === best);
+  if (first.length > 1) throw new Error(`These are several scenes: ${first.map(({ name }) => name).join(", ")}. Open one at a time, with the files that it names.`);
+  return first[0].name;
+}
+
 /** Reads files that were chosen or dropped. @param {Iterable<File>} files @returns {Promise<NamedFile[]>} */
 export function readFiles(files) {
   return Promise.all([...files].map(async (file) => {

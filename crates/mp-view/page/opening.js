@@ -2,7 +2,7 @@
 
 import { button, showError } from "mp/dom.js";
 import { askRole, HELP } from "mp/editor.js";
-import { ENDINGS, MESH_ENDINGS, chooseFiles, kindOf, readFiles } from "mp/files.js";
+import { ENDINGS, MESH_ENDINGS, chooseFiles, kindOf, mainOf, readFiles } from "mp/files.js";
 import { readPath, readScene } from "mp/scene.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
@@ -80,7 +80,7 @@ export class Opening {
     if (viewer.length) return this.showOnly(viewer[0]);
     if (scenes.length) {
       const needed = files.filter((file) => kindOf(file) !== "path");
-      if (!(await this.workbench.openScene({ files: needed, ...(scenes.length === 1 && { main: scenes[0].name }) }))) return;
+      if (!(await this.workbench.openScene({ files: needed, main: mainOf(scenes) }))) return;
     } else if (meshes.length) await this.addMeshes(meshes);
     else if (!paths.length && files.length) throw new Error(`“${files[0].name}” is no file that is read here. Scenes, meshes and paths end in ${ENDINGS.replaceAll(",", " ")}.`);
     if (paths.length) await this.addPaths(paths);

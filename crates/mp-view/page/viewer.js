@@ -112,7 +112,7 @@ export class Viewer {
   }
   /** Brings the scene to the graphics card; what was there of another scene is freed. */
   prepare() {
-    const { shapes, ofBody } = shapesOf(this.scene);
+    const { shapes, ofBody } = shapesOf(this.scene, this.shapes);
     this.shapes = shapes; this.ofBody = ofBody;
     this.pictures?.free();
     if (!this.renderer) this.start();

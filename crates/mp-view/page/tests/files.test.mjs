@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { kindOf } from "mp/files.js";
+import { kindOf, mainOf } from "mp/files.js";
 
 const kind = (name, text = "") => kindOf({ name, bytes: new TextEncoder().encode(text) });
 
@@ -22,4 +22,12 @@ test("text files are told apart by their first lines", () => {
   assert.equal(kind("a.txt", "2\n0 0 0 1 0 0 1 1 0\n"), "mesh");
   assert.equal(kind("a.txt", "3\n0 0 0 0 0 0\n"), "path");
   assert.equal(kind("a.txt", "2 6\n0 1.2 0.9 0 -0.5 0\n"), "path");
+});
+
+test("the scene among several files is found", () => {
+  const main = (...names) => mainOf(names.map((name) => ({ name, bytes: new Uint8Array(0) })));
+  assert.equal(main("map.pgm", "map.yaml", "world.TOML"), "world.TOML");
+  assert.equal(main("map.pgm", "map.yaml"), "map.yaml");
+  assert.equal(main("arm.urdf", "problem.toml"), "problem.toml");
+  assert.throws(() => main("a.env", "b.env"), /a\.env, b\.env/);
 });
