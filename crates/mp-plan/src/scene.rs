@@ -5,13 +5,13 @@ use crate::robot::{PlanarScene, RigidScene};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Sweep,
+    Body, Column, Control, Error, Explanation, PathFormat, PathRows, PreparedRun, Report, Request, RobotKind, Sweep,
     Track, Verdict,
 };
-use mp_geom::Aabb;
-use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SpaceKind};
+use mp_geom::{Aabb, TriMesh, six_from_pose};
+use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SceneDocument, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,6 +32,8 @@ pub struct Scene {
     robot: Arc<dyn AnyRobot>,
     file: Option<PathBuf>,
     pub(crate) inputs: Arc<[PathBuf]>,
+    /// What it was made from, if that is a document of an editor. Its meshes are written into it.
+    pub(crate) document: Option<Arc<SceneDocument>>,
 }
 
 impl fmt::Debug for Scene {
@@ -43,7 +45,7 @@ impl fmt::Debug for Scene {
 impl Scene {
     /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`], [`ArmScene`](crate::ArmScene), [`PlanarScene`].
     pub fn new(robot: impl RobotKind + 'static) -> Self {
-        Self { robot: Arc::new(robot), file: None, inputs: Arc::default() }
+        Self { robot: Arc::new(robot), file: None, inputs: Arc::default(), document: None }
     }
 
     /// A scene of a rigid body among meshes.
@@ -68,6 +70,32 @@ impl Scene {
             PlanarShape::Disc(_) => Self::new(PlanarScene::<DiscRobot>::new(problem)?),
             PlanarShape::Polygon(_) => Self::new(PlanarScene::<PolygonRobot>::new(problem)?),
         })
+    }
+
+    /// A scene of the document of an editor. `mesh` gives the meshes that are not written into it, by the names of their
+    /// files.
+    ///
+    /// # Errors
+    /// When the document is not valid, or a mesh is missing.
+    pub fn from_document(
+        document: SceneDocument,
+        mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
+    ) -> Result<Self, Error> {
+        let scene = Self::from_problem(document.problem(&document.name, mesh)?)?;
+        Ok(Self { document: Some(Arc::new(document.with_meshes(mesh)?)), ..scene })
+    }
+
+    /// The scene as an editor keeps it, with all meshes written into it. `None` unless the robot is a rigid body among
+    /// meshes.
+    #[must_use]
+    pub fn document(&self) -> Option<SceneDocument> {
+        let problem = self.robot.rigid_problem()?;
+        let mut document = match &self.document {
+            Some(document) => SceneDocument::clone(document),
+            None => SceneDocument::with_meshes_of(problem),
+        };
+        (document.start, document.goal) = (six_from_pose(&problem.start), six_from_pose(&problem.goal));
+        Some(document)
     }
 
     /// Sets the file that reports name as the source of the scene.
@@ -137,6 +165,16 @@ impl Scene {
         self.robot.goals()
     }
 
+    /// The same scene with another start and other goals, as rows. They need not be free: planning and
+    /// [`check_ends`](Self::check_ends) refuse them then.
+    ///
+    /// # Errors
+    /// When there is no goal, a row does not have as many numbers as the robot's configurations, or the kind of robot is your
+    /// own and does not support it.
+    pub fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Self, Error> {
+        Ok(Self { robot: self.robot.with_ends(start, goals)?, ..self.clone() })
+    }
+
     /// Plans a path: searches for it, shortens it, and verifies it as it will be written. The same scene and request give
     /// the same report except for its times, on any number of threads.
     ///
@@ -156,6 +194,16 @@ impl Scene {
         let mut report = self.robot.plan(request, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
+    }
+
+    /// Prepares a run that is advanced in pieces.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn prepare<'s>(&'s self, request: &'s Request) -> Result<PreparedRun<'s>, Error> {
+        self.check_ends()?;
+        let file = self.file.as_ref().map(|file| file.display().to_string());
+        Ok(PreparedRun { prepared: self.robot.prepare(request)?, file })
     }
 
     /// Builds a roadmap for many queries, with the planner of the request, which must build roadmaps, until its budget is
@@ -233,6 +281,14 @@ impl Scene {
     /// When the row does not have as many numbers as the robot's configurations.
     pub fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
         self.robot.poses(row)
+    }
+
+    /// The point (m) whose curve pictures show, at a configuration.
+    ///
+    /// # Errors
+    /// When the row does not have as many numbers as the robot's configurations.
+    pub fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error> {
+        self.robot.traced(row)
     }
 
     /// Poses of the robot along a path; without a path, at start and goal only.

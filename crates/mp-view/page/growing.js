@@ -15,6 +15,9 @@ function withRoom(array, needed) {
 /** @type {Rgba} */
 const WHITE = [1, 1, 1, 1];
 
+/** Stands for a parent that is not known; roots have −1. */
+const ORPHAN = -2;
+
 /** Points or segments that are kept beside their copy on the graphics card. @template {LineSet | PointSet} S */
 export class KeptRows {
   /** @param {S} set @param {Rgba} color */
@@ -83,7 +86,7 @@ export class GrowingTree {
     const segments = new Float32Array(6 * (this.count - from));
     for (let i = from; i < this.count; i++) {
       this.segment(i, segments, 6 * (i - from));
-      if (this.parents[i] < 0) this.roots.append(this.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]);
+      if (this.parents[i] === -1) this.roots.append(this.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]);
     }
     this.lines.append(segments, () => WHITE);
   }
@@ -113,7 +116,8 @@ export class GrowingTree {
     this.parents = new Int32Array(survivors.length);
     survivors.forEach((old, i) => {
       this.nodes.set(nodes.subarray(3 * old, 3 * old + 3), 3 * i);
-      this.parents[i] = parents[old] < 0 ? -1 : now[parents[old]];
+      // A parent that is gone is replaced by the same event, which rewires the node.
+      this.parents[i] = parents[old] < 0 ? parents[old] : now[parents[old]] < 0 ? ORPHAN : now[parents[old]];
     });
     this.count = survivors.length;
     this.lines.clear();

@@ -59,11 +59,14 @@ export class Panels {
     if (scene.report) parts.push(section("Report", true, [factList(reportFacts(scene.report))]));
     this.facts.replaceChildren(...parts);
   }
-  /** Shows the list of paths again. */
+  /** Shows what can be shown of the scene, and its paths. */
   showPaths() {
+    const { paths, columns } = this.scene;
     this.shown.lastElementChild?.replaceChildren(...this.shownControls());
     this.paths.lastElementChild?.replaceChildren(...this.pathList());
-    this.paths.hidden = this.configuration.hidden = !this.scene.paths.length;
+    this.shown.hidden = !columns.length;
+    this.paths.hidden = paths.every((path) => path.ofRun);
+    this.configuration.hidden = !paths.length;
   }
   set(/** @type {() => void} */ change) {
     change();
@@ -148,7 +151,8 @@ export class Panels {
   /** @returns {HTMLElement[]} */
   pathList() {
     const { scene, settings: s, actions } = this;
-    const rows = scene.paths.map((path, p) => {
+    // The paths of runs are in the table of runs.
+    const rows = scene.paths.filter((path) => !path.ofRun).map((path, p) => {
       const input = el("input", { type: "radio", name: "path", checked: p === s.path, onchange: () => actions.choosePath(p) });
       return el("li", {}, el("label", { class: "check" }, input, el("span", {}, path.name, el("small", {}, pathWords(path)))));
     });

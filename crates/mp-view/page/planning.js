@@ -8,8 +8,10 @@ import { readPath } from "mp/scene.js";
 /** @import { Message } from "mp/message.js" */
 /** @import { Run } from "mp/runs.js" */
 /** @import { Workbench } from "mp/workbench.js" */
+/** @typedef {{name: string, default: string, summary: string}} Parameter */
 /** @typedef {{name: string, aliases: string[], summary: string, family: "tree" | "roadmap",
- *  parameters: {name: string, default: string, summary: string}[]}} PlannerInfo */
+ *  citation: string, parameters: Parameter[]}} PlannerInfo */
+/** @typedef {{prefix: string, summary: string, around: string[] | null, parameters: Parameter[]}} MetaInfo */
 
 /** @type {[string, string][]} */
 const HELP = [
@@ -24,6 +26,12 @@ const numberField = (value, more = {}) => el("input", { type: "number", min: 0, 
 
 /** The number in a field, or null when it is empty. @param {HTMLInputElement} field */
 const numberIn = (field) => (field.value.trim() === "" ? null : field.valueAsNumber);
+
+/** Whether a box is checked, and can be. @param {HTMLElement | undefined} box */
+function isOn(box) {
+  const input = box?.querySelector("input");
+  return input ? input.checked && !input.disabled : false;
+}
 
 export class PlanningPanel {
   constructor(/** @type {Workbench} */ workbench) {
@@ -42,36 +50,39 @@ export class PlanningPanel {
     this.viewer.panels?.addHelp(HELP);
   }
   build() {
-    const { planners, meta_planners: metas, metrics } = this.workbench.hello;
+    const { planners, meta_planners: metas, metrics, request } = this.workbench.hello;
     /** @type {PlannerInfo[]} */ this.planners = planners;
     const group = (/** @type {string} */ family, /** @type {string} */ label) =>
       el("optgroup", { label }, ...planners.filter((/** @type {PlannerInfo} */ p) => p.family === family).map((/** @type {PlannerInfo} */ p) => el("option", { value: p.name }, p.name)));
     this.planner = el("select", { onchange: () => this.showPlanner() }, group("tree", "Trees"), group("roadmap", "Roadmaps"));
-    if (planners.some((/** @type {PlannerInfo} */ p) => p.name === "rrt-connect")) this.planner.value = "rrt-connect";
-    /** @type {[string, string][]} */ const prefixes = metas.map((/** @type {{prefix: string, summary: string}} */ m) => [m.prefix, `${m.prefix} ${m.summary}`]);
-    this.meta = select([["", "none"], ...prefixes], "", () => {});
+    this.planner.value = request.planner;
+    // In a name, a meta-planner that runs only some planners stands next to them.
+    const inOrder = [...metas].sort((a, b) => Number(a.around !== null) - Number(b.around !== null));
+    this.metas = inOrder.map((/** @type {MetaInfo} */ meta) => ({ meta, box: checkbox(`${meta.prefix} ${meta.summary}`, false, () => this.showPlanner()) }));
     this.summary = el("small", {});
     this.parameters = el("div", { class: "content" });
-    this.metric = select(metrics.map((/** @type {{name: string, formula: string}} */ m) => [m.name, m.formula ? `${m.name}: ${m.formula}` : m.name]), "default", () => {});
-    this.motion = select([["certified", "certified"], ["discrete", "discrete"]], "certified", (value) => { if (this.resolution) this.resolution.parentElement?.toggleAttribute("hidden", value !== "discrete"); });
-    this.resolution = el("input", { type: "text", value: "1%" });
-    this.seed = numberField(1, { step: 1, max: Number.MAX_SAFE_INTEGER, placeholder: "0" });
+    this.metric = select(metrics.map((/** @type {{name: string, formula: string}} */ m) => [m.name, m.formula ? `${m.name}: ${m.formula}` : m.name]), request.metric, () => {});
+    const [motion, resolution] = request.motion.split(":");
+    const step = el("input", { type: "text", value: resolution ?? "1%" });
+    this.resolution = step;
+    const stepRow = labelled("Step of the check", step);
+    stepRow.hidden = motion !== "discrete";
+    this.motion = select([["certified", "certified"], ["discrete", "discrete"]], motion, (value) => (stepRow.hidden = value !== "discrete"));
+    this.seed = numberField(request.seed, { step: 1, max: Number.MAX_SAFE_INTEGER, placeholder: "0" });
     this.next = checkbox("another seed for each run", false, () => {});
-    this.time = numberField(30, { step: "any" });
-    this.iterations = numberField(null, { step: 1 });
-    this.nodes = numberField(null, { step: 1 });
-    this.finish = select(FINISH, "shorten", () => {});
-    this.first = checkbox("stop at the first path", false, () => {});
-    const resolution = labelled("Step of the check", this.resolution);
-    resolution.hidden = true;
+    this.time = numberField(request.budget.time_s, { step: "any" });
+    this.iterations = numberField(request.budget.iterations, { step: 1 });
+    this.nodes = numberField(request.budget.nodes, { step: 1 });
+    this.finish = select(FINISH, request.finish, () => {});
+    this.first = checkbox("stop at the first path", request.first_only, () => {});
     const search = section("How to search", false, [
-      labelled("Metric", this.metric), labelled("Motion check", this.motion), resolution,
+      labelled("Metric", this.metric), labelled("Motion check", this.motion), stepRow,
       labelled("Seed", this.seed), this.next,
       labelled("Most seconds", this.time), labelled("Most iterations", this.iterations), labelled("Most nodes", this.nodes),
       labelled("The path found", this.finish), this.first]);
     this.panel = section("Plan", true, [
-      labelled("Planner", this.planner), this.summary, labelled("Around it", this.meta),
-      section("Settings of the planner", false, [this.parameters]), search, ...this.runControls()]);
+      labelled("Planner", this.planner), this.summary, section("Settings of the planner", false, [this.parameters]),
+      section("Around the planner", false, this.metas.map(({ box }) => box)), search, ...this.runControls()]);
     this.viewer.addPanel(this.panel);
   }
   /** Buttons of the run, and what it does. @returns {HTMLElement[]} */
@@ -99,30 +110,39 @@ export class PlanningPanel {
   }
   /** Shows the summary and the parameters of the planner that is chosen. */
   showPlanner() {
-    const info = this.planners?.find((p) => p.name === this.planner?.value);
-    if (this.summary) this.summary.textContent = info ? [info.summary, info.aliases.length ? `Also called ${info.aliases.join(", ")}.` : ""].join(" ").trim() : "";
-    const fields = (info?.parameters ?? []).map((p) => {
-      const field = el("input", { type: "text", placeholder: p.default, name: p.name });
+    const name = this.planner?.value ?? "";
+    const info = this.planners?.find((p) => p.name === name);
+    const words = info ? [info.summary, info.citation ? `(${info.citation})` : "", info.aliases.length ? `Also called ${info.aliases.join(", ")}.` : ""] : [];
+    if (this.summary) this.summary.textContent = words.filter((word) => word).join(" ");
+    for (const { meta, box } of this.metas ?? []) {
+      const input = box.querySelector("input");
+      if (input) input.disabled = meta.around !== null && !meta.around.includes(name);
+    }
+    const known = new Map([...(this.parameters?.querySelectorAll("input") ?? [])].map((field) => [field.name, field.value]));
+    const fields = [...(info?.parameters ?? []), ...this.around().flatMap((meta) => meta.parameters)].map((p) => {
+      const field = el("input", { type: "text", placeholder: p.default, name: p.name, value: known.get(p.name) ?? "" });
       return el("div", {}, labelled(p.name, field), el("small", {}, p.summary));
     });
     this.parameters?.replaceChildren(...(fields.length ? fields : ["This planner has no settings."]));
   }
+  /** The meta-planners that are chosen, the outermost first. */
+  around() { return (this.metas ?? []).filter(({ box }) => isOn(box)).map(({ meta }) => meta); }
+
   /** The request as docs/formats/report.md describes it. @returns {Message} */
   request() {
     /** @type {Record<string, string>} */ const settings = {};
     for (const field of this.parameters?.querySelectorAll("input") ?? []) if (field.value.trim()) settings[field.name] = field.value.trim();
     const value = (/** @type {HTMLInputElement | HTMLSelectElement | undefined} */ control) => control?.value ?? "";
-    const checked = (/** @type {HTMLElement | undefined} */ box) => box?.querySelector("input")?.checked ?? false;
     const limit = (/** @type {HTMLInputElement | undefined} */ field) => (field ? numberIn(field) : null);
     return {
-      planner: value(this.meta) + value(this.planner),
+      planner: this.around().map(({ prefix }) => prefix).join("") + value(this.planner),
       settings,
       metric: value(this.metric),
       motion: value(this.motion) === "discrete" ? `discrete:${value(this.resolution)}` : "certified",
       budget: { time_s: limit(this.time), iterations: limit(this.iterations), nodes: limit(this.nodes) },
       seed: limit(this.seed) ?? 0,
       finish: value(this.finish),
-      first_only: checked(this.first),
+      first_only: isOn(this.first),
     };
   }
   get going() { return this.run !== null && !ended(this.run); }
@@ -140,7 +160,8 @@ export class PlanningPanel {
     try {
       await this.workbench.session.request({ do: "plan", run: run.id, request, ...this.workbench.ends.request(), paused });
     } catch (error) {
-      this.fail(run, error instanceof Error ? error.message : String(error), error);
+      // A run that has ended meanwhile has said why.
+      if (!ended(run)) this.fail(run, error instanceof Error ? error.message : String(error), error);
     }
   }
   /** @param {string} what @param {object} [more] */
@@ -187,7 +208,7 @@ export class PlanningPanel {
       if (this.runs.chosen === run) this.runs.choose(run);
     }
     const seed = this.seed;
-    if (seed && this.next?.querySelector("input")?.checked) seed.valueAsNumber = (numberIn(seed) ?? 0) + 1;
+    if (seed && isOn(this.next)) seed.valueAsNumber = (numberIn(seed) ?? 0) + 1;
     if (!report.solved) this.explain();
   }
   /** @param {Run} run @param {string} message @param {unknown} error shown at the top, unless null */

@@ -59,7 +59,7 @@ export class Runs {
   }
   /** A run begins, and is shown. @param {number} id @param {string} planner @param {number} seed @returns {Run} */
   begin(id, planner, seed) {
-    const choose = el("input", { type: "radio", name: "run", "aria-label": `Show run ${id}`, onchange: () => this.choose(run) });
+    const choose = el("input", { type: "radio", name: "path", "aria-label": `Show run ${id}`, onchange: () => this.choose(run) });
     const compare = el("input", { type: "checkbox", "aria-label": `Compare with run ${id}`, onchange: () => this.compare(compare.checked ? run : null) });
     const cells = HEADS.slice(2).map(() => el("td", {}));
     const row = el("tr", {}, el("td", {}, choose), el("td", {}, compare), ...cells);

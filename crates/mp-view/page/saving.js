@@ -1,6 +1,6 @@
 // Saving: the environment, the path, the page and the scene, as files beside the scene or as downloads.
 
-import { ask, button, el, labelled, select } from "mp/dom.js";
+import { button, checkbox, el, labelled, select } from "mp/dom.js";
 
 /** @import { Message } from "mp/message.js" */
 /** @import { Path } from "mp/scene.js" */
@@ -67,20 +67,24 @@ export class SaveDialog {
     const save = async () => {
       const [, request, format] = KINDS[Number(kind.value)];
       note.textContent = "Saving…";
-      const problem = await this.save(request, format, name.value.trim()).then((text) => void (note.textContent = text), (error) => error);
+      const replace = overwrite.querySelector("input")?.checked ?? false;
+      const problem = await this.save(request, format, name.value.trim(), replace).then((text) => void (note.textContent = text), (error) => error);
       if (!problem) return;
       note.replaceChildren(el("strong", { class: "bad" }, problem.message), el("small", {}, problem.help ?? ""));
     };
     const folder = this.workbench.hello.folder;
+    const overwrite = checkbox("replace a file with this name", false, () => {});
+    overwrite.hidden = !folder;
     const where = el("small", {}, folder ? `The file is written to ${folder}.` : "The file comes as a download.");
-    dialog.append(el("h2", {}, "Save"), labelled("What", kind), labelled("Name", name), where, note,
+    dialog.append(el("h2", {}, "Save"), labelled("What", kind), labelled("Name", name), where, overwrite, note,
       el("div", { class: "buttons" }, button("Save", save, { class: "main" }), button("Close", () => dialog.close())));
     dialog.addEventListener("close", () => dialog.remove());
     document.body.append(dialog);
     dialog.showModal();
   }
-  /** Saves, and says where the files are. @param {Saving} request @param {string} format @param {string} name @returns {Promise<string>} */
-  async save(request, format, name) {
+  /** Saves, and says where the files are. @param {Saving} request @param {string} format @param {string} name
+   * @param {boolean} overwrite whether files that are there already are replaced @returns {Promise<string>} */
+  async save(request, format, name, overwrite) {
     const { viewer, session, hello } = this.workbench;
     const { scene, settings } = viewer;
     const columns = scene.columns.length;
@@ -91,12 +95,7 @@ export class SaveDialog {
       save_path: { rows: path ? rowsOf(path, columns) : [] },
       export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })) },
     }[request];
-    const message = { do: request, format, name, ...what };
-    const reply = await session.request(message).catch(async (error) => {
-      const replace = /exists already/.test(error.message) && (await ask(`${error.message}.`, "Replace it", "Keep it"));
-      if (!replace) throw error;
-      return session.request({ ...message, overwrite: true });
-    });
+    const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) });
     if (edited) this.onsaved(edited);
     return deliver(reply, hello.folder);
   }

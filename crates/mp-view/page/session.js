@@ -10,8 +10,8 @@ import { PlannerWorker } from "mp/worker.js";
 /** @typedef {{send: (bytes: Uint8Array<ArrayBuffer>, request: Message) => Promise<Uint8Array>, close: () => void,
  *  reconnect: () => Promise<void>}} Link  messages to the planner and back */
 
-/** How long a worker may take to answer a cancel before it is ended, milliseconds. */
-const PATIENCE = 100;
+/** How long a worker may take to answer a cancel before it is ended, milliseconds: a cancel has an effect within 100. */
+const PATIENCE = 80;
 /** Requests about one run. */
 const OF_RUN = ["pause", "resume", "step", "cancel"];
 
@@ -148,8 +148,9 @@ class WorkerLink {
       const { message, help } = stopped(text);
       end({ event: "failed", run, message, help });
     };
-    const worker = await this.worker(onevent, onfault, (made) => this.runs.set(run, made));
-    const reply = await worker.send(bytes);
+    const refuse = (/** @type {Error} */ error) => { throw stopped(error.message); };
+    const worker = await this.worker(onevent, onfault, (made) => this.runs.set(run, made)).catch(refuse);
+    const reply = await worker.send(bytes).catch(refuse);
     if (decode(reply, "message").error) {
       this.runs.delete(run);
       worker.end("The run was refused.");
