@@ -1,6 +1,6 @@
 // Builds scenes: what is selected, the commands that change the document, undo and redo, and what the handles move.
 
-import { ask } from "mp/dom.js";
+import { ask, brief } from "mp/dom.js";
 import * as doc from "mp/document.js";
 import { changedPose, changedSix, fromAngles, niceStep, poseOfSix, tidy } from "mp/gizmo.js";
 import { Handles } from "mp/handles.js";
@@ -8,7 +8,7 @@ import { isTyping } from "mp/controls.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Document, DocumentShape, Part, Six, Three } from "mp/document.js" */
-/** @import { End } from "mp/ends.js" */
+/** @import { End, Verdict } from "mp/ends.js" */
 /** @import { Change, HandleMode } from "mp/gizmo.js" */
 /** @import { Target } from "mp/handles.js" */
 /** @import { Role } from "mp/renderer.js" */
@@ -245,6 +245,7 @@ export class Editor {
     /** @type {HandleMode[]} */ const modes = scene.columns.length > 2 ? ["move", "turn"] : ["move"];
     if (document) modes.push("scale");
     const frame = frameOf(six);
+    let words = "";
     /** @param {Change} change @param {boolean} settled */
     const set = (change, settled) => {
       const poses = Array.from({ length: scene.robot }, (_, b) => changedPose(first.poses, 7 * b, frame.origin, change)).flat();
@@ -256,6 +257,7 @@ export class Editor {
       frame,
       modes,
       planar: scene.planar,
+      words: () => (words = verdictWords(this.ends.verdicts.get(end)) || words),
       preview: (change) => {
         if (isScaling(change)) scene.bodies.slice(0, scene.robot).forEach((body) => (body.stretch = change.factor));
         else set(change, false);
@@ -351,6 +353,15 @@ export class Editor {
     else return;
     e.preventDefault();
   }
+}
+
+/** What the planner says of a configuration, in short. @param {Verdict | undefined} verdict */
+function verdictWords(verdict) {
+  if (!verdict) return "";
+  if (verdict.touching.length) return `touches ${verdict.touching.join(", ")}`;
+  if (!verdict.in_bounds) return "out of bounds";
+  if (!verdict.free) return verdict.fault ?? "not free";
+  return verdict.clearance === null ? "free" : `clearance ${brief(verdict.clearance)} m`;
 }
 
 /** @param {Six} six */

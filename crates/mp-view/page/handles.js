@@ -7,8 +7,9 @@ import { add, dot, sub } from "mp/math.js";
 /** @import { Camera } from "mp/camera.js" */
 /** @import { Change, Frame, Handle, HandleMode, Pixel } from "mp/gizmo.js" */
 /** @import { Vec3 } from "mp/math.js" */
-/** @typedef {{frame: Frame, modes: HandleMode[], planar: boolean, preview: (change: Change) => void, done: (change: Change | null) => void}} Target
- *  What the handles belong to. `preview` is called while they are dragged; `done` at the end, with null when it was given up. */
+/** @typedef {{frame: Frame, modes: HandleMode[], planar: boolean, preview: (change: Change) => void, done: (change: Change | null) => void,
+ *  words?: () => string}} Target
+ *  What the handles belong to. `words` are shown beside them while they are dragged. `preview` is called while they are dragged; `done` at the end, with null when it was given up. */
 
 /** The length of a handle, pixels. */
 const LENGTH = 92;
@@ -166,13 +167,14 @@ export class Handles {
   /** @param {CanvasRenderingContext2D} context @param {Pixel | null} at @param {Vec3} place */
   drawWords(context, at, place) {
     if (!at || !this.active) return;
-    const words = changeWords(this.active.change, this.active.drag.handle, place);
+    const { change, drag, target } = this.active;
+    const lines = [changeWords(change, drag.handle, place), target.words?.() ?? ""].filter((line) => line);
     context.font = "600 13px system-ui, sans-serif";
-    const width = context.measureText(words).width;
+    const width = Math.max(...lines.map((line) => context.measureText(line).width));
     context.fillStyle = "#15181dd0";
-    context.fillRect(at[0] + 14, at[1] + 14, width + 12, 22);
+    context.fillRect(at[0] + 14, at[1] + 14, width + 12, 4 + 18 * lines.length);
     context.fillStyle = "#ffffff";
-    context.fillText(words, at[0] + 20, at[1] + 30);
+    lines.forEach((line, i) => context.fillText(line, at[0] + 20, at[1] + 30 + 18 * i));
   }
 }
 
