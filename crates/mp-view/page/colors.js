@@ -4,8 +4,8 @@
 /** @typedef {{background: Color, obstacle: Color, cut: Color, robot: Color, start: Color, goal: Color, path: Color, compared: Color, rejected: Color, refused: Color,
  *  fromStart: Color, fromGoal: Color, wire: Color, edge: Color, picked: Color, other: Color}} Palette */
 
-/** @param {string} hex @returns {Color} */
-const color = (hex) => /** @type {Color} */ ([1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255));
+/** @param {string} hex as #rrggbb @returns {Color} */
+export const hexColor = (hex) => /** @type {Color} */ ([1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255));
 
 /** Of everything: the colour in light and in dark surroundings. @type {Record<keyof Palette, [string, string]>} */
 const COLORS = {
@@ -27,7 +27,7 @@ const COLORS = {
   other: ["#5d6470", "#a3abb8"],
 };
 
-const [LIGHT, DARK] = [0, 1].map((i) => /** @type {Palette} */ (Object.fromEntries(Object.entries(COLORS).map(([k, c]) => [k, color(c[i])]))));
+const [LIGHT, DARK] = [0, 1].map((i) => /** @type {Palette} */ (Object.fromEntries(Object.entries(COLORS).map(([k, c]) => [k, hexColor(c[i])]))));
 /** @param {boolean} dark @returns {Palette} */
 export const palette = (dark) => (dark ? DARK : LIGHT);
 

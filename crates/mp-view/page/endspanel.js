@@ -26,6 +26,7 @@ export class EndsPanel {
     this.panel.addEventListener("toggle", () => this.checkOnce());
     workbench.viewer.addPanel(this.panel);
     workbench.onopened.push(() => this.show());
+    workbench.onleft.push(() => (this.panel.hidden = true));
     this.ends.onchange.push((end) => this.changed(end));
   }
   /** Shows the ends of another scene. */

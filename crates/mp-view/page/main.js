@@ -1,9 +1,12 @@
 // The page: reads the scene inside, or asks the planner for one, and shows it.
 
 import { showError } from "mp/dom.js";
+import { Editor } from "mp/editor.js";
 import { EndsPanel } from "mp/endspanel.js";
 import { Gallery } from "mp/gallery.js";
+import { Inspector } from "mp/inspector.js";
 import { decode } from "mp/message.js";
+import { Opening } from "mp/opening.js";
 import { unpack } from "mp/packed.js";
 import { PlanningPanel } from "mp/planning.js";
 import { SaveDialog } from "mp/saving.js";
@@ -44,8 +47,11 @@ function show(bytes) {
 /** Makes the page one that builds and plans. @param {Session} session @param {Viewer} viewer @returns {Promise<Workbench>} */
 async function connect(session, viewer) {
   const workbench = new Workbench(viewer, session, await session.request({ do: "hello" }));
+  const editor = new Editor(workbench);
+  const opening = new Opening(editor);
   const gallery = new Gallery(workbench);
-  new SaveDialog(workbench);
+  opening.saveBy(new SaveDialog(workbench));
+  new Inspector(editor, () => opening.chooseMesh());
   new PlanningPanel(workbench);
   new EndsPanel(workbench);
   const { opened } = workbench.hello;

@@ -110,7 +110,9 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: mode === "wire" || this.linesOnly(b) ? colors.wire : colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
+      const { pose, stretch, color: own } = this.scene.bodies[b];
+      const color = own ?? (mode === "wire" || this.linesOnly(b) ? colors.wire : colors.obstacle);
+      items.push({ shape: this.ofBody[b], pose, at: 0, color, alpha, mode, cut: s.section.axis >= 0, layer: 0, stretch, body: b, role: "obstacle", index: 0 });
     }
     return items.sort((a, b) => a.shape - b.shape);
   }
@@ -122,7 +124,9 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = given ?? this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color, alpha, mode, cut: false, layer: LAYERS[role], body: b, role, index });
+      const { stretch, color: own } = this.scene.bodies[b];
+      const shown = role === "start" || role === "goal" ? color : (own ?? color);
+      items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color: shown, alpha, mode, cut: false, layer: LAYERS[role], stretch, body: b, role, index });
     }
     return items;
   }

@@ -51,6 +51,7 @@ export class PlanningPanel {
     this.showState();
     workbench.onevent.push((event) => this.event(event));
     workbench.onopened.push(() => this.opened());
+    workbench.onleft.push(() => this.opened());
     workbench.onlost.push(() => this.lost());
     this.viewer.keys.push((e) => this.key(e));
     this.viewer.panels?.addHelp(HELP);
@@ -236,7 +237,7 @@ export class PlanningPanel {
     if (this.run && this.going) this.fail(this.run, "the planner is gone", null);
     this.showState();
   }
-  /** After another scene was opened, or this one was changed. */
+  /** After another scene was opened or shown, or this one was changed. */
   opened() {
     this.cancel();
     this.run = null;

@@ -1,4 +1,4 @@
-// Saving: the path, the page and the scene, as files beside the scene or as downloads.
+// Saving: the environment, the path, the page and the scene, as files beside the scene or as downloads.
 
 import { button, checkbox, el, labelled, select } from "mp/dom.js";
 
@@ -6,8 +6,11 @@ import { button, checkbox, el, labelled, select } from "mp/dom.js";
 /** @import { Path } from "mp/scene.js" */
 /** @import { Workbench } from "mp/workbench.js" */
 
-/** What can be saved: label, request, format. @type {[label: string, request: "save_path" | "export", format: string][]} */
+/** @typedef {"save" | "save_path" | "export"} Saving */
+/** What can be saved: label, request, format. @type {[label: string, request: Saving, format: string][]} */
 const KINDS = [
+  ["the environment, to edit again (.mp.json)", "save", "own"],
+  ["the environment for GEMPA (.env and meshes)", "save", "gempa"],
   ["the path, as text", "save_path", "txt"],
   ["the path, as JSON", "save_path", "json"],
   ["the path, as CSV", "save_path", "csv"],
@@ -41,24 +44,31 @@ const fileName = (name) => name.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.
 export class SaveDialog {
   constructor(/** @type {Workbench} */ workbench) {
     this.workbench = workbench;
-    this.opener = button("Save…", () => this.show(), { "aria-haspopup": "dialog" });
+    /** The document as it is now, edited or not. @type {() => Message | null} */ this.document = () => workbench.document;
+    /** Called when a document was saved. @type {(document: Message) => void} */ this.onsaved = () => {};
+    this.opener = button("Save…", () => this.show(), { "aria-haspopup": "dialog", title: "Save (Ctrl + S)" });
     this.opener.disabled = true;
     workbench.viewer.addMenu(this.opener);
     workbench.onopened.push(() => (this.opener.disabled = false));
+    workbench.onleft.push(() => (this.opener.disabled = true));
   }
   show() {
     const { viewer } = this.workbench;
+    if (this.opener.disabled) return;
     const path = viewer.scene.paths[viewer.settings.path];
+    const edited = this.document();
     /** @type {[string, string][]} */
     const options = KINDS.map(([label], i) => [String(i), label]);
-    const kind = select(options.filter((_, i) => path || KINDS[i][1] !== "save_path"), path ? "0" : "3", () => {});
-    const name = el("input", { type: "text", value: fileName(viewer.scene.name), required: true });
+    const possible = options.filter((_, i) => (KINDS[i][1] === "save" ? edited : KINDS[i][1] === "export" || path));
+    const kind = select(possible, possible[0][0], () => {});
+    const name = el("input", { type: "text", value: fileName(String(edited?.name ?? viewer.scene.name)), required: true });
     const note = el("p", { role: "status" });
     const dialog = el("dialog", { "aria-label": "Save" });
     const save = async () => {
       const [, request, format] = KINDS[Number(kind.value)];
       note.textContent = "Saving…";
-      const problem = await this.save(request, format, name.value.trim(), overwrite.querySelector("input")?.checked ?? false, (text) => (note.textContent = text)).then(() => null, (error) => error);
+      const replace = overwrite.querySelector("input")?.checked ?? false;
+      const problem = await this.save(request, format, name.value.trim(), replace).then((text) => void (note.textContent = text), (error) => error);
       if (!problem) return;
       note.replaceChildren(el("strong", { class: "bad" }, problem.message), el("small", {}, problem.help ?? ""));
     };
@@ -72,15 +82,21 @@ export class SaveDialog {
     document.body.append(dialog);
     dialog.showModal();
   }
-  /** @param {"save_path" | "export"} request @param {string} format @param {string} name @param {boolean} overwrite
-   * @param {(text: string) => void} say */
-  async save(request, format, name, overwrite, say) {
+  /** Saves, and says where the files are. @param {Saving} request @param {string} format @param {string} name
+   * @param {boolean} overwrite whether files that are there already are replaced @returns {Promise<string>} */
+  async save(request, format, name, overwrite) {
     const { viewer, session, hello } = this.workbench;
     const { scene, settings } = viewer;
     const columns = scene.columns.length;
     const path = scene.paths[settings.path];
-    const what = request === "save_path" ? { rows: path ? rowsOf(path, columns) : [] } : { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })) };
+    const edited = request === "save" ? this.document() : null;
+    const what = {
+      save: { document: edited },
+      save_path: { rows: path ? rowsOf(path, columns) : [] },
+      export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })) },
+    }[request];
     const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) });
-    say(deliver(reply, hello.folder));
+    if (edited) this.onsaved(edited);
+    return deliver(reply, hello.folder);
   }
 }

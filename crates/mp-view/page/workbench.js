@@ -19,6 +19,7 @@ export class Workbench {
     /** Whether the session has a scene open. */ this.open = false;
     /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
      * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];
+    /** Called after the session's scene was left. @type {(() => void)[]} */ this.onleft = [];
     /** Called when the planner is gone. @type {((error: SessionError) => void)[]} */ this.onlost = [];
     /** Called with events of runs. @type {((event: Message) => void)[]} */ this.onevent = [];
     session.onevent = (event) => { for (const listener of this.onevent) listener(event); };
@@ -50,6 +51,13 @@ export class Workbench {
     this.ends.show(scene);
     showNote((reply.notes ?? []).join(". "));
     for (const listener of this.onopened) listener(reply, how);
+  }
+  /** The page shows something else than the scene of the session: there is nothing to edit or to plan. */
+  leave() {
+    this.open = false;
+    this.document = null;
+    this.ends.scene = null;
+    for (const listener of this.onleft) listener();
   }
   /** Takes the session's scene without showing it again: the page shows it already. @param {Message} reply */
   adopt(reply) {

@@ -13,20 +13,27 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 32] = modules!(
+const MODULES: [(&str, &str); 39] = modules!(
     "buffers",
     "camera",
     "colors",
     "controls",
+    "document",
     "dom",
+    "editor",
     "ends",
     "endspanel",
+    "files",
     "gallery",
+    "gizmo",
     "growing",
+    "handles",
+    "inspector",
     "live",
     "main",
     "math",
     "message",
+    "opening",
     "packed",
     "panels",
     "picking",
