@@ -57,7 +57,8 @@ async function connect(session, viewer) {
   const { opened } = workbench.hello;
   if (opened) workbench.take(opened, "open");
   else if (viewer.scene.bodies.length) await openInside(workbench);
-  else gallery.show();
+  else if (workbench.hello.scenes.length) gallery.show();
+  else await editor.create();
   return workbench;
 }
 
