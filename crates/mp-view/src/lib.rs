@@ -14,7 +14,6 @@
 //! assert_eq!(SceneFile::parse(&bytes)?, file);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-
 //!
 //! [`Session`] answers the page when it opens, edits, checks, plans and saves; [`Worker`] is the same without threads.
 
