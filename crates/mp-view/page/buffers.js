@@ -144,8 +144,8 @@ export class PointSet extends ColoredRows {
   }
 }
 
-/** Numbers of a copy of a shape: pose (7), colour (4), how it is cut (1). */
-export const COPY = 12;
+/** Numbers of a copy of a shape: pose (7), colour (4), how it is cut (1), how it is stretched (3). */
+export const COPY = 15;
 
 /** A shape on the graphics card. The corners are there once; triangles and edges have a vertex array each. */
 export class ShapeBuffers {
@@ -174,7 +174,7 @@ export class ShapeBuffers {
     this.indices.push(gl.createBuffer());
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices[this.indices.length - 1]);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
-    for (let at = 1; at <= 4; at++) {
+    for (let at = 1; at <= 5; at++) {
       gl.enableVertexAttribArray(at);
       gl.vertexAttribDivisor(at, 1);
     }
@@ -192,7 +192,7 @@ export class ShapeBuffers {
   bindCopies(first) {
     const gl = this.gl;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.copies);
-    for (const [at, size, offset] of [[1, 3, 0], [2, 4, 3], [3, 4, 7], [4, 1, 11]]) {
+    for (const [at, size, offset] of [[1, 3, 0], [2, 4, 3], [3, 4, 7], [4, 1, 11], [5, 3, 12]]) {
       gl.vertexAttribPointer(at, size, gl.FLOAT, false, 4 * COPY, 4 * (first * COPY + offset));
     }
   }

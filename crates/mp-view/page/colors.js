@@ -1,11 +1,11 @@
 // The colours of the picture, for a dark and a light background.
 
 /** @typedef {[number, number, number]} Color red, green, blue between 0 and 1 */
-/** @typedef {{background: Color, obstacle: Color, cut: Color, robot: Color, start: Color, goal: Color, path: Color, compared: Color,
+/** @typedef {{background: Color, obstacle: Color, cut: Color, robot: Color, start: Color, goal: Color, path: Color, compared: Color, rejected: Color, refused: Color,
  *  fromStart: Color, fromGoal: Color, wire: Color, edge: Color, picked: Color, other: Color}} Palette */
 
-/** @param {string} hex @returns {Color} */
-const color = (hex) => /** @type {Color} */ ([1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255));
+/** @param {string} hex as #rrggbb @returns {Color} */
+export const hexColor = (hex) => /** @type {Color} */ ([1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255));
 
 /** Of everything: the colour in light and in dark surroundings. @type {Record<keyof Palette, [string, string]>} */
 const COLORS = {
@@ -17,6 +17,8 @@ const COLORS = {
   goal: ["#cf3535", "#ff6460"],
   path: ["#c75f00", "#ffa033"],
   compared: ["#0b7d8a", "#3fd0de"],
+  rejected: ["#d02020", "#ff5a50"],
+  refused: ["#a3148c", "#ff6be6"],
   fromStart: ["#3a66c4", "#76a9ff"],
   fromGoal: ["#c0453f", "#ff8b84"],
   wire: ["#857763", "#b9b0a2"],
@@ -25,7 +27,7 @@ const COLORS = {
   other: ["#5d6470", "#a3abb8"],
 };
 
-const [LIGHT, DARK] = [0, 1].map((i) => /** @type {Palette} */ (Object.fromEntries(Object.entries(COLORS).map(([k, c]) => [k, color(c[i])]))));
+const [LIGHT, DARK] = [0, 1].map((i) => /** @type {Palette} */ (Object.fromEntries(Object.entries(COLORS).map(([k, c]) => [k, hexColor(c[i])]))));
 /** @param {boolean} dark @returns {Palette} */
 export const palette = (dark) => (dark ? DARK : LIGHT);
 

@@ -22,12 +22,20 @@ export function byId(id) {
   return element;
 }
 
-/** Shows what went wrong, and what to do, at the top of the page; an empty text removes it. @param {unknown} error */
-export function showError(error) {
+/** Shows what went wrong, and what to do, at the top of the page; an empty text removes it.
+ * @param {unknown} error @param {HTMLElement[]} actions buttons beside it */
+export function showError(error, ...actions) {
   const box = byId("alert");
   const help = error instanceof Error && "help" in error && typeof error.help === "string" ? error.help : "";
-  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []));
+  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []), ...actions, el("button", { type: "button", class: "close", "aria-label": "Close this message", onclick: () => (box.hidden = true) }));
   box.hidden = error === "";
+  box.classList.remove("note");
+}
+
+/** Shows something worth knowing where errors are shown. @param {string} text */
+export function showNote(text) {
+  showError(text);
+  byId("alert").classList.add("note");
 }
 
 /** @param {string} label @param {() => void} press @param {Properties} [properties] */

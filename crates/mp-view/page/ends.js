@@ -77,6 +77,7 @@ export class Ends {
       const wanted = now.row === row || !this.posed.has(end);
       if (verdict && wanted && verdict.poses.length === now.poses.length) now.poses = verdict.poses;
       if (now.row === row && verdict) this.verdicts.set(end, verdict);
+      if (now.row === row) now.refused = verdict !== null && !verdict.free;
       if (now.row === row && error) this.errors.set(end, error);
       this.tell(end, !this.unchecked.has(end));
     }

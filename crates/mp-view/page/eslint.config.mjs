@@ -23,7 +23,6 @@ export default [
         { property: "insertAdjacentHTML", message: "Texts from files are shown as text only: use append." },
       ],
       "no-self-compare": "error",
-      "no-shadow": "error",
       "no-sparse-arrays": "error",
       "no-unreachable": "error",
       "no-unused-vars": ["error", { argsIgnorePattern: "^_" }],

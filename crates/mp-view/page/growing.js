@@ -1,5 +1,6 @@
 // A tree on the graphics card that grows: new nodes are appended, and a node with a new parent changes its segment in place.
 
+/** @import { LineSet, PointSet, Rgba } from "mp/buffers.js" */
 /** @import { Renderer } from "mp/renderer.js" */
 /** @import { Tree } from "mp/scene.js" */
 
@@ -11,7 +12,40 @@ function withRoom(array, needed) {
   return bigger;
 }
 
-const WHITE = /** @type {const} */ ([1, 1, 1, 1]);
+/** @type {Rgba} */
+const WHITE = [1, 1, 1, 1];
+
+/** Stands for a parent that is not known; roots have −1. */
+const ORPHAN = -2;
+
+/** Points or segments that are kept beside their copy on the graphics card. @template {LineSet | PointSet} S */
+export class KeptRows {
+  /** @param {S} set @param {Rgba} color */
+  constructor(set, color = WHITE) {
+    this.set = set; this.color = color;
+    this.numbers = new Float32Array(0);
+    this.count = 0;
+  }
+  /** @param {Float32Array} coordinates of new rows */
+  append(coordinates) {
+    const begin = this.count * this.set.floats;
+    this.numbers = withRoom(this.numbers, begin + coordinates.length);
+    this.numbers.set(coordinates, begin);
+    this.set.append(coordinates, () => this.color);
+    this.count += coordinates.length / this.set.floats;
+  }
+  /** The segments between pairs of points. @param {Uint32Array} pairs */
+  join(pairs) {
+    const out = new Float32Array(3 * pairs.length);
+    for (let i = 0; i < pairs.length; i++) for (let k = 0; k < 3; k++) out[3 * i + k] = this.numbers[3 * pairs[i] + k];
+    return out;
+  }
+  /** Takes another set after the graphics card was lost. @param {S} set */
+  restart(set) {
+    this.set = set;
+    set.append(this.numbers.subarray(0, this.count * set.floats), () => this.color);
+  }
+}
 
 /** Node i has segment i, from its parent to itself; a root's segment is a point. */
 export class GrowingTree {
@@ -52,9 +86,9 @@ export class GrowingTree {
     const segments = new Float32Array(6 * (this.count - from));
     for (let i = from; i < this.count; i++) {
       this.segment(i, segments, 6 * (i - from));
-      if (this.parents[i] < 0) this.roots.append(this.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]);
+      if (this.parents[i] === -1) this.roots.append(this.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]);
     }
-    this.lines.append(segments, () => [...WHITE]);
+    this.lines.append(segments, () => WHITE);
   }
   /** @param {number} i @param {Float32Array} out @param {number} at */
   segment(i, out, at) {
@@ -82,7 +116,8 @@ export class GrowingTree {
     this.parents = new Int32Array(survivors.length);
     survivors.forEach((old, i) => {
       this.nodes.set(nodes.subarray(3 * old, 3 * old + 3), 3 * i);
-      this.parents[i] = parents[old] < 0 ? -1 : now[parents[old]];
+      // A parent that is gone is replaced by the same event, which rewires the node.
+      this.parents[i] = parents[old] < 0 ? parents[old] : now[parents[old]] < 0 ? ORPHAN : now[parents[old]];
     });
     this.count = survivors.length;
     this.lines.clear();

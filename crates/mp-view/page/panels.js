@@ -9,7 +9,7 @@ import { emptyScene } from "mp/scene.js";
 /** @import { Mode } from "mp/renderer.js" */
 /** @import { Path, Scene } from "mp/scene.js" */
 /** @typedef {{changed: () => void, look: (view: ViewName) => void, fit: () => void, setPerspective: (on: boolean) => void,
- *  choosePath: (path: number) => void, setTheme: (theme: string) => void}} Actions */
+ *  choosePath: (path: number) => void, select: (body: number) => void, setTheme: (theme: string) => void}} Actions */
 
 /** @type {[Mode, string][]} */
 const MODES = [["solid", "solid"], ["transparent", "transparent"], ["wire", "wire"]];
@@ -40,8 +40,10 @@ export class Panels {
     this.shown = section("Shown", true, []);
     this.paths = section("Paths", true, []);
     this.configuration = section("Configuration", false, [this.row]);
+    this.bodies = section("Bodies", true, []);
     this.facts = el("div", {});
-    byId("about").replaceChildren(this.picked, section("Picture", true, this.pictureControls()), this.shown, this.paths, this.configuration, this.facts);
+    byId("about").replaceChildren(this.picked, section("Picture", true, this.pictureControls()), this.shown, this.paths, this.configuration, this.bodies, this.facts);
+    this.showPaths();
     this.buildHelp();
     this.buildPanelButton();
   }
@@ -52,15 +54,20 @@ export class Panels {
     byId("title").textContent = scene.name || "Scene";
     this.showPicked(null, () => {});
     this.showPaths();
-    const parts = [section(`Bodies (${scene.bodies.length})`, scene.bodies.length <= 12, this.bodyList()), section("Scene", true, [factList(this.sceneFacts())])];
+    this.showBodies();
+    this.bodies.open = scene.bodies.length <= 12;
+    const parts = [section("Scene", true, [factList(this.sceneFacts())])];
     if (scene.report) parts.push(section("Report", true, [factList(reportFacts(scene.report))]));
     this.facts.replaceChildren(...parts);
   }
-  /** Shows the list of paths again. */
+  /** Shows what can be shown of the scene, and its paths. */
   showPaths() {
+    const { paths, columns } = this.scene;
     this.shown.lastElementChild?.replaceChildren(...this.shownControls());
     this.paths.lastElementChild?.replaceChildren(...this.pathList());
-    this.paths.hidden = this.configuration.hidden = !this.scene.paths.length;
+    this.shown.hidden = !columns.length;
+    this.paths.hidden = paths.every((path) => path.ofRun);
+    this.configuration.hidden = !paths.length;
   }
   set(/** @type {() => void} */ change) {
     change();
@@ -123,21 +130,30 @@ export class Panels {
     }
     return boxes;
   }
-  /** @returns {HTMLElement[]} */
-  bodyList() {
-    const { scene, settings: s } = this;
+  /** Shows the list of bodies again. */
+  showBodies() {
+    const { scene, settings: s, actions } = this;
     /** @type {[string, string][]} */ const modes = [["", "as all"], ...MODES];
     const rows = scene.bodies.map((body, b) => {
-      const seen = checkbox(body.name, true, (on) => this.set(() => (s.bodies[b].visible = on)));
-      const mode = select(modes, "", (v) => this.set(() => (s.bodies[b].mode = /** @type {Mode | ""} */ (v))), { "aria-label": `How “${body.name}” is drawn` });
-      return el("li", { class: body.role }, seen, mode);
+      const seen = el("input", { type: "checkbox", checked: s.bodies[b].visible, "aria-label": `Show “${body.name}”`, onchange: () => this.set(() => (s.bodies[b].visible = seen.checked)) });
+      const name = button(body.name, () => actions.select(b), { class: "name", "aria-pressed": "false" });
+      const mode = select(modes, s.bodies[b].mode, (v) => this.set(() => (s.bodies[b].mode = /** @type {Mode | ""} */ (v))), { "aria-label": `How “${body.name}” is drawn` });
+      const row = el("li", { class: body.role }, seen, name, mode);
+      if (body.color) row.style.borderColor = `rgb(${body.color.map((x) => Math.round(255 * x)).join(" ")})`;
+      return row;
     });
-    return [el("ul", { class: "bodies" }, ...rows)];
+    this.bodies.firstElementChild?.replaceChildren(`Bodies (${scene.bodies.length})`);
+    this.bodies.lastElementChild?.replaceChildren(el("ul", { class: "bodies" }, ...rows));
+  }
+  /** Marks the body that is selected, −1 for none. @param {number} body */
+  markBody(body) {
+    this.bodies.querySelectorAll("button.name").forEach((name, b) => name.setAttribute("aria-pressed", String(b === body)));
   }
   /** @returns {HTMLElement[]} */
   pathList() {
     const { scene, settings: s, actions } = this;
-    const rows = scene.paths.map((path, p) => {
+    // The paths of runs are in the table of runs.
+    const rows = scene.paths.filter((path) => !path.ofRun).map((path, p) => {
       const input = el("input", { type: "radio", name: "path", checked: p === s.path, onchange: () => actions.choosePath(p) });
       return el("li", {}, el("label", { class: "check" }, input, el("span", {}, path.name, el("small", {}, pathWords(path)))));
     });
@@ -207,7 +223,7 @@ function pathWords(/** @type {Path} */ path) {
 }
 
 /** The figures of a report that people ask for first. @param {Record<string, unknown>} report @returns {[string, string][]} */
-function reportFacts(report) {
+export function reportFacts(report) {
   /** @type {[name: string, member: string, unit: string][]} */
   const wanted = [
     ["planner", "planner", ""], ["metric", "metric", ""], ["motion check", "motion", ""], ["seed", "seed", ""], ["time", "time_s", "s"],

@@ -10,8 +10,8 @@ import { add, cross, dot, place, pointAt, scale, sub, unplace, unrotate } from "
 /** @import { Scene, Tree } from "mp/scene.js" */
 /** @import { Shape } from "mp/shapes.js" */
 /** @import { Layer } from "mp/viewer.js" */
-/** @typedef {{title: string, facts: [string, string][], point: Vec3, time: number | null, marked: boolean}} Picked
- *  `time` is set for a configuration of the path. */
+/** @typedef {{title: string, facts: [string, string][], point: Vec3, time: number | null, marked: boolean, item?: Item}} Picked
+ *  `time` is set for a configuration of the path; `item` for a body. */
 /** @typedef {{points: Float32Array, count: number, describe: (i: number) => Omit<Picked, "point">}} Cloud points to click on */
 
 /** How near to a point or line a click must be, pixels. */
@@ -171,7 +171,7 @@ export class Picker {
     if (shape.triangles.length) facts.push(["triangles", brief(shape.triangles.length / 3)]);
     if (item.role === "copy" || item.role === "robot") facts.push(...this.rowFacts(s.path, item.index));
     if (item.role === "compared") facts.push(...this.rowFacts(s.other, item.index));
-    return { title: body.name, facts, point, time: item.role === "copy" ? item.index : null, marked: false };
+    return { title: body.name, facts, point, time: item.role === "copy" ? item.index : null, marked: false, item };
   }
 }
 
@@ -186,7 +186,7 @@ const PARTS = {
 };
 
 /** @param {Vec3} p @returns {[string, string]} */
-const placeFact = (p) => ["place", `${p.map(brief).join(", ")} m`];
+export const placeFact = (p) => ["place", `${p.map(brief).join(", ")} m`];
 
 /** @param {Tree} tree @param {number} i @returns {Omit<Picked, "point">} */
 export function describeNode({ name, nodes, parents }, i) {

@@ -110,7 +110,9 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: this.scene.bodies[b].pose, at: 0, color: mode === "wire" || this.linesOnly(b) ? colors.wire : colors.obstacle, alpha, mode, cut: s.section.axis >= 0, layer: 0, body: b, role: "obstacle", index: 0 });
+      const { pose, stretch, color: own } = this.scene.bodies[b];
+      const color = own ?? (mode === "wire" || this.linesOnly(b) ? colors.wire : colors.obstacle);
+      items.push({ shape: this.ofBody[b], pose, at: 0, color, alpha, mode, cut: s.section.axis >= 0, layer: 0, stretch, body: b, role: "obstacle", index: 0 });
     }
     return items.sort((a, b) => a.shape - b.shape);
   }
@@ -122,14 +124,16 @@ export class PictureMaker {
       if (!s.bodies[b].visible) continue;
       const mode = given ?? this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
-      items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color, alpha, mode, cut: false, layer: LAYERS[role], body: b, role, index });
+      const { stretch, color: own } = this.scene.bodies[b];
+      const shown = role === "start" || role === "goal" ? color : (own ?? color);
+      items.push({ shape: this.ofBody[b], pose: poses, at: at + 7 * b, color: shown, alpha, mode, cut: false, layer: LAYERS[role], stretch, body: b, role, index });
     }
     return items;
   }
   /** Start and goals. @param {Settings} s @param {Palette} colors @returns {Item[]} */
   ends(s, colors) {
-    const start = s.start ? this.robot(s, this.scene.start.poses, 0, colors.start, "start", 0) : [];
-    const goals = s.goals ? this.scene.goals.flatMap((g, i) => this.robot(s, g.poses, 0, colors.goal, "goal", i)) : [];
+    const start = s.start ? this.robot(s, this.scene.start.poses, 0, this.scene.start.refused ? colors.refused : colors.start, "start", 0) : [];
+    const goals = s.goals ? this.scene.goals.flatMap((g, i) => this.robot(s, g.poses, 0, g.refused ? colors.refused : colors.goal, "goal", i)) : [];
     return [...goals, ...start];
   }
   /** The robot on its path, and its copies. @param {Settings} s @param {Palette} colors @returns {Item[]} */
@@ -165,11 +169,11 @@ export class PictureMaker {
   }
   /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
   points(s, colors) {
-    const roots = this.trees.flatMap(({ name, roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }] : []));
+    const marks = this.trees.flatMap(({ name, roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }] : []));
     const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null, over: false }] : [];
     this.marker.clear();
     if (s.marked) this.marker.append(new Float32Array(s.marked), () => [1, 1, 1, 1]);
-    return [...roadmap, ...roots, { set: this.marker, count: this.marker.count, color: colors.picked, over: true }];
+    return [...roadmap, ...marks, { set: this.marker, count: this.marker.count, color: colors.picked, over: true }];
   }
   /** The section plane: what lies on its positive side is cut away. @param {Settings} s @returns {Picture["plane"]} */
   plane(s) {

@@ -19,7 +19,9 @@ export class ClearancePlot {
   }
   show(/** @type {Path | null} */ path) {
     this.path = path?.clearance ? path : null;
-    this.canvas.hidden = !this.path;
+    // Without a path its place is kept, so that the picture does not move.
+    this.canvas.hidden = path !== null && !this.path;
+    this.canvas.style.visibility = this.path ? "" : "hidden";
     this.canvas.setAttribute("aria-label", this.path ? `Clearance along the path: ${this.range()}` : "");
   }
   /** The finite clearances' least and greatest. @returns {[number, number]} */

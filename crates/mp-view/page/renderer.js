@@ -11,7 +11,7 @@ import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGM
 /** @typedef {"solid" | "transparent" | "wire"} Mode */
 /** @typedef {"obstacle" | "robot" | "copy" | "compared" | "start" | "goal"} Role */
 /** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number,
- *  body: number, role: Role, index: number}} Item
+ *  stretch: Vec3, body: number, role: Role, index: number}} Item
  *  A copy of a shape; `index` is the number of the goal or of the configuration. Of surfaces at the same place, the one with the highest layer is seen. */
 /** @typedef {{set: LineSet, count: number, width: number, color: Color | null, alpha: number, over: boolean}} Lines */
 /** @typedef {{set: PointSet, count: number, color: Color | null, over: boolean}} Points
@@ -101,6 +101,7 @@ export class Renderer {
       for (let k = 0; k < 7; k++) out[o + k] = item.pose[item.at + k];
       for (let k = 0; k < 3; k++) out[o + 7 + k] = item.color[k];
       out[o + 10] = item.alpha;
+      for (let k = 0; k < 3; k++) out[o + 12 + k] = item.stretch[k];
       out[o + 11] = item.cut ? (this.shapes[item.shape].shape.closed ? 2 : 1) : 0;
     });
     const gl = this.gl;
@@ -145,7 +146,8 @@ export class Renderer {
     if (!count) return;
     gl.uniform1f(this.surfaceAt.shaded, 1);
     gl.enable(gl.POLYGON_OFFSET_FILL);
-    gl.polygonOffset(1, 10 - 2 * batch.item.layer);
+    // Bodies at the same place differ in their last digits only; the layers are farther apart.
+    gl.polygonOffset(1, 400 - 80 * batch.item.layer);
     // Of a transparent closed body only the outside is drawn, so that each of its faces counts once.
     if (batch.item.mode === "transparent" && buffers.shape.closed && !batch.item.cut) gl.enable(gl.CULL_FACE);
     gl.bindVertexArray(vao);

@@ -1,16 +1,21 @@
 // Reads a scene file (.mpv, version 1) into a typed model. A file that is not as specified gives an error in plain words.
 
+import { hexColor } from "mp/colors.js";
 import { decode } from "mp/message.js";
 
+/** @import { Color } from "mp/colors.js" */
+/** @import { Vec3 } from "mp/math.js" */
 /** @typedef {{name: string, unit: string}} Column */
 /** @typedef {{positions: Float32Array, triangles: Uint32Array}} Mesh */
 /** @typedef {{rings: Float32Array[]}} Area */
-/** @typedef {{name: string, role: "robot" | "obstacle", mesh: number, area: number, lines: number[], pose: number[]}} Body
- *  `mesh` and `area` are -1 where the body has none. */
-/** @typedef {{row: number[], poses: number[]}} Configuration */
+/** @typedef {{name: string, role: "robot" | "obstacle", mesh: number, area: number, lines: number[], pose: number[],
+ *  color: Color | null, stretch: Vec3}} Body
+ *  `mesh` and `area` are -1 where the body has none. `stretch` is 1, 1, 1 but while handles scale the body. */
+/** @typedef {{row: number[], poses: number[], refused?: boolean}} Configuration  `refused`: the planner said that it is not free */
 /** @typedef {{name: string, count: number, rows: Float64Array, poses: Float32Array, trace: Float32Array,
- *  clearance: Float32Array | null, verified: boolean, length: number, ofRun: boolean}} Path
- *  `ofRun`: made by a run of this page */
+ *  clearance: Float32Array | null, verified: boolean, length: number, ofRun: boolean,
+ *  written: number[][] | null}} Path  `ofRun`: made by a run of this page; `written`: the path's own configurations, where they are
+ *  known: `rows` are more, for the animation */
 /** @typedef {{name: string, nodes: Float32Array, parents: Int32Array}} Tree */
 /** @typedef {{nodes: Float32Array, edges: Uint32Array, component: Uint32Array, kind: Uint8Array}} Roadmap */
 /** @typedef {{name: string, space: string, planar: boolean, columns: Column[], limits: ([number, number] | null)[],
@@ -96,6 +101,13 @@ function readMesh(entry) {
   return { positions, triangles };
 }
 
+/** @param {unknown} value @param {string} name @returns {Color | null} */
+function readColor(value, name) {
+  if (value == null) return null;
+  check(/^#[0-9a-f]{6}$/i.test(String(value)), `In the scene file, the colour of the body “${name}” must be written as #rrggbb.`);
+  return hexColor(String(value));
+}
+
 /** @param {unknown} entry @param {number} i @param {{meshes: unknown[], areas: unknown[], lines: unknown[]}} parts @returns {Body} */
 function readBody(entry, i, parts) {
   const body = object(entry, "body");
@@ -107,7 +119,7 @@ function readBody(entry, i, parts) {
   const lines = maybeList(body.lines, "lines of a body").map((l) => index(l, parts.lines.length, `a line of the body “${name}”`));
   check(mesh >= 0 || area >= 0 || Array.isArray(body.lines), `In the scene file, the body “${name}” has no mesh, no area and no lines.`);
   const pose = role === "obstacle" ? numbers(body.pose, `the pose of the body “${name}”`, 7) : [];
-  return { name, role, mesh, area, lines, pose };
+  return { name, role, mesh, area, lines, pose, color: readColor(body.color, name), stretch: [1, 1, 1] };
 }
 
 /** @param {unknown} entry @param {string} what @param {number} columns @param {number} robot @returns {Configuration} */
@@ -131,7 +143,7 @@ export function readPath(entry, columns, robot) {
   const equal = rows.length === count * columns && poses.length === count * robot * 7 && (!clearance || clearance.length === count);
   check(equal, `In the scene file, the arrays of the path “${name}” do not have the same number of configurations.`);
   const length = typeof path.length === "number" ? path.length : NaN;
-  return { name, count, rows, poses, trace, clearance, verified: path.verified === true, length, ofRun: false };
+  return { name, count, rows, poses, trace, clearance, verified: path.verified === true, length, ofRun: false, written: null };
 }
 
 /** @param {unknown} entry @returns {Tree} */

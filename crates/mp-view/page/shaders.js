@@ -9,13 +9,14 @@ const ROTATE = `
 vec3 rotate(vec4 q, vec3 v) { return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v); }
 `;
 
-/** Copies of a surface; each has a pose and a colour. `cut` is 0: whole, 1: cut by the plane, 2: cut and closed. */
+/** Copies of a surface; each has a pose, a colour and a stretch along its own axes. `cut` is 0: whole, 1: cut by the plane, 2: cut and closed. */
 export const SURFACE_VERTEX = `${HEAD}
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 origin;
 layout(location = 2) in vec4 turn;
 layout(location = 3) in vec4 color;
 layout(location = 4) in float cut;
+layout(location = 5) in vec3 stretch;
 uniform mat4 view, projection;
 uniform vec4 plane;
 out vec3 eye;
@@ -24,7 +25,7 @@ out float beyond;
 flat out float cutKind;
 ${ROTATE}
 void main() {
-  vec3 world = rotate(turn, position) + origin;
+  vec3 world = rotate(turn, position * stretch) + origin;
   vec4 seen = view * vec4(world, 1.0);
   eye = seen.xyz;
   tint = color;

@@ -117,18 +117,23 @@ function boxOf(/** @type {Float32Array[]} */ arrays) {
   return { low, high };
 }
 
-/** @param {Scene} scene @param {Body} body @returns {Shape} */
-function shapeOf(scene, body) {
+/** Whether two arrays hold the same numbers. @param {Float32Array | Uint32Array} a @param {Float32Array | Uint32Array} b */
+const same = (a, b) => a.length === b.length && a.every((x, i) => x === b[i]);
+
+/** @param {Scene} scene @param {Body} body @param {Shape[]} known shapes of before: finding the edges of a large mesh takes long @returns {Shape} */
+function shapeOf(scene, body, known) {
   const none = { positions: new Float32Array(0), triangles: new Uint32Array(0) };
   const area = body.mesh < 0 && body.area >= 0;
   const { positions, triangles } = body.mesh >= 0 ? scene.meshes[body.mesh] : area ? triangulate(scene.areas[body.area].rings) : none;
+  const before = body.mesh >= 0 && !body.lines.length ? known.find((s) => !s.segments.length && same(s.triangles, triangles) && same(s.positions, positions)) : undefined;
+  if (before) return before;
   const segments = segmentsOf(body.lines.map((l) => scene.lines[l]));
   return { positions, triangles, segments, ...outline(positions, triangles), ...boxOf([positions, segments]) };
 }
 
 /** The shapes of a scene, each once, and for each body the index of its shape.
- * @param {Scene} scene @returns {{shapes: Shape[], ofBody: number[]}} */
-export function shapesOf(scene) {
+ * @param {Scene} scene @param {Shape[]} [before] those of another scene, which may have some of them @returns {{shapes: Shape[], ofBody: number[]}} */
+export function shapesOf(scene, before = []) {
   /** @type {Map<string, number>} */ const known = new Map();
   /** @type {Shape[]} */ const shapes = [];
   const ofBody = scene.bodies.map((body) => {
@@ -136,7 +141,7 @@ export function shapesOf(scene) {
     let i = known.get(key);
     if (i === undefined) {
       known.set(key, (i = shapes.length));
-      shapes.push(shapeOf(scene, body));
+      shapes.push(shapeOf(scene, body, before));
     }
     return i;
   });

@@ -66,7 +66,7 @@ export class Timeline {
   }
   /** After another path was chosen. */
   showPath() {
-    byId("timeline").hidden = !this.path;
+    byId("timeline").hidden = !this.scene?.paths.length;
     if (!this.slider) return;
     this.slider.max = String(this.last);
     this.settings.time = Math.min(this.settings.time, this.last);
@@ -82,9 +82,9 @@ export class Timeline {
     if (!this.slider) return;
     this.slider.step = animation === "step" ? "1" : "any";
     this.slider.valueAsNumber = time;
-    const words = `${brief(Math.round(time) + 1)} of ${brief(this.last + 1)}`;
+    const words = this.path ? `${brief(Math.round(time) + 1)} of ${brief(this.last + 1)}` : "no path";
     this.slider.setAttribute("aria-valuetext", `Configuration ${words}`);
-    if (this.output) this.output.textContent = animation === "all" ? `${words} · ${Math.min(copies, this.last + 1)} shown` : words;
+    if (this.output) this.output.textContent = this.path && animation === "all" ? `${words} · ${Math.min(copies, this.last + 1)} shown` : words;
     if (this.playButton) this.playButton.textContent = this.playing ? "Pause" : "Play";
     if (this.autoControls) this.autoControls.hidden = animation !== "auto";
     if (this.allControls) this.allControls.hidden = animation !== "all";

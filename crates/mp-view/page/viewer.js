@@ -16,7 +16,7 @@ import { Timeline } from "mp/timeline.js";
 /** @import { Palette } from "mp/colors.js" */
 /** @import { Cloud } from "mp/picking.js" */
 /** @import { Animation, Settings } from "mp/picture.js" */
-/** @import { Item, Mode, Picture } from "mp/renderer.js" */
+/** @import { Item, Mode, Picture, Role } from "mp/renderer.js" */
 /** @import { Path, Scene } from "mp/scene.js" */
 /** @import { Shape } from "mp/shapes.js" */
 /** @typedef {{drawCalls: number, triangles: number, milliseconds: number, frames: number}} Stats
@@ -62,6 +62,8 @@ export class Viewer {
     this.camera = new Camera(this.scene.bounds);
     /** @type {Layer[]} */ this.layers = [];
     /** Called with each key that no control has used; they return whether they used it. @type {((e: KeyboardEvent) => boolean)[]} */ this.keys = [];
+    /** Called after each drawing. @type {(() => void)[]} */ this.ondraw = [];
+    /** Called when a body is chosen, in the picture or in the list; −1 when none is. @type {((body: number, role: Role, index: number) => void)[]} */ this.onselect = [];
     /** Called after another scene is shown. @type {((scene: Scene) => void)[]} */ this.onshow = [];
     /** @type {Stats} */ this.stats = { drawCalls: 0, triangles: 0, milliseconds: 0, frames: 0 };
     this.waiting = false;
@@ -110,7 +112,7 @@ export class Viewer {
   }
   /** Brings the scene to the graphics card; what was there of another scene is freed. */
   prepare() {
-    const { shapes, ofBody } = shapesOf(this.scene);
+    const { shapes, ofBody } = shapesOf(this.scene, this.shapes);
     this.shapes = shapes; this.ofBody = ofBody;
     this.pictures?.free();
     if (!this.renderer) this.start();
@@ -182,6 +184,7 @@ export class Viewer {
     this.renderer.draw(this.picture, this.camera, palette(this.settings.dark), this.ratio ?? 1);
     this.timeline?.update();
     this.panels?.update();
+    for (const listener of this.ondraw) listener();
     const milliseconds = performance.now() - begin;
     this.stats = { drawCalls: this.renderer.calls, triangles: this.renderer.triangles, milliseconds, frames: this.stats.frames + 1 };
   }
@@ -208,6 +211,11 @@ export class Viewer {
     this.timeline?.showPath();
     this.changed();
   }
+  /** Shows a second path beside the chosen one. @param {number} path −1 for none */
+  compare(path) {
+    this.settings.other = path;
+    this.changed();
+  }
   /** Says what is at a pixel. @param {number} x @param {number} y */
   click(x, y) {
     const picked = this.picture ? (this.picker?.pick(x, y, this.picture, this.settings) ?? null) : null;
@@ -215,8 +223,13 @@ export class Viewer {
     if (picked && picked.time !== null) this.timeline?.scrub(picked.time);
     if (!picked) byId("hint").textContent = "";
     this.panels?.showPicked(picked, () => this.forget());
+    this.select(picked?.item?.body ?? -1, picked?.item?.role, picked?.item?.index);
     this.changed();
   }
+  /** Chooses a body; of the robot at its start, when it is not said. @param {number} body −1 for none @param {Role} [role]
+   * @param {number} [index] of a goal or a configuration */
+  select(body, role = "start", index = 0) { for (const listener of this.onselect) listener(body, role, index); }
+
   /** Looks at what is at a pixel. @param {number} x @param {number} y */
   center(x, y) {
     const picked = this.picture && this.picker?.pick(x, y, this.picture, this.settings);

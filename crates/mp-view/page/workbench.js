@@ -1,12 +1,12 @@
 // What is open: the session's scene, its document, start and goals. Panels of other modules ask it to open and to edit.
 
-import { showError } from "mp/dom.js";
+import { button, showError, showNote } from "mp/dom.js";
 import { Ends } from "mp/ends.js";
 import { readScene } from "mp/scene.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Message } from "mp/message.js" */
-/** @import { Session } from "mp/session.js" */
+/** @import { Session, SessionError } from "mp/session.js" */
 /** @import { Viewer } from "mp/viewer.js" */
 /** @typedef {{scene: string} | {files: {name: string, bytes: Uint8Array}[], main?: string}} Source  a shipped scene, or files */
 
@@ -19,8 +19,11 @@ export class Workbench {
     /** Whether the session has a scene open. */ this.open = false;
     /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
      * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];
+    /** Called after the session's scene was left. @type {(() => void)[]} */ this.onleft = [];
+    /** Called when the planner is gone. @type {((error: SessionError) => void)[]} */ this.onlost = [];
     /** Called with events of runs. @type {((event: Message) => void)[]} */ this.onevent = [];
     session.onevent = (event) => { for (const listener of this.onevent) listener(event); };
+    session.onlost = (error) => this.lost(error);
     this.ends.onchange.push(() => viewer.changed());
   }
   /** Opens a scene in place of this one; asks first when there are unsaved changes. Errors are shown, and then nothing has changed.
@@ -46,8 +49,15 @@ export class Workbench {
     this.document = reply.document ?? null;
     this.viewer.show(scene, { keepCamera: how === "edit" });
     this.ends.show(scene);
-    showError(reply.notes?.length ? reply.notes.join(" ") : "");
+    showNote((reply.notes ?? []).join(". "));
     for (const listener of this.onopened) listener(reply, how);
+  }
+  /** The page shows something else than the scene of the session: there is nothing to edit or to plan. */
+  leave() {
+    this.open = false;
+    this.document = null;
+    this.ends.scene = null;
+    for (const listener of this.onleft) listener();
   }
   /** Takes the session's scene without showing it again: the page shows it already. @param {Message} reply */
   adopt(reply) {
@@ -55,6 +65,15 @@ export class Workbench {
     this.document = reply.document ?? null;
     this.ends.show(this.viewer.scene);
     for (const listener of this.onopened) listener(reply, "open");
+  }
+  /** The planner is gone: what is shown stays. @param {SessionError} error */
+  lost(error) {
+    for (const listener of this.onlost) listener(error);
+    const again = async () => {
+      showError("Connecting…");
+      await this.session.reconnect().then(() => showError(""), (e) => this.lost(e));
+    };
+    showError(error, button("Reconnect", again));
   }
   /** Does something that may fail; then says why, and what to do. @param {() => Promise<void>} task @returns {Promise<boolean>} whether it succeeded */
   async attempt(task) {

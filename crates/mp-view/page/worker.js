@@ -8,9 +8,13 @@
 
 /** How long the planner works before the worker reads its messages, milliseconds. */
 const SLICE = 15;
+/** How long events of the planner are joined before the page gets them, milliseconds. */
+const PERIOD = 50;
 
-/** The program of the worker. It becomes the text of the worker, so it uses nothing from outside. @param {number} slice */
-function work(slice) {
+/** The program of the worker. It becomes the text of the worker, so it uses nothing from outside.
+ * @param {number} slice @param {number} period */
+function work(slice, period) {
+  let told = 0;
   /** @type {Promise<Planner> | null} */ let ready = null;
   let runs = false;
   const post = (/** @type {FromWorker} */ message, /** @type {Transferable[]} */ moved = []) => self.postMessage(message, { transfer: moved });
@@ -27,7 +31,10 @@ function work(slice) {
   const turn = new MessageChannel();
   turn.port1.onmessage = () => ready?.then((planner) => {
     runs = planner.advance(slice) === 1;
-    while (pass(planner, "event"));
+    if (!runs || performance.now() - told > period) {
+      while (pass(planner, "event"));
+      told = performance.now();
+    }
     if (runs) turn.port2.postMessage(null);
   }).catch(fault);
   self.onmessage = ({ data }) => {
@@ -52,7 +59,7 @@ function work(slice) {
 export class PlannerWorker {
   /** @param {WebAssembly.Module} module @param {(bytes: Uint8Array) => void} onevent @param {(text: string) => void} onfault */
   constructor(module, onevent, onfault) {
-    const address = URL.createObjectURL(new Blob([`(${work})(${SLICE})`], { type: "text/javascript" }));
+    const address = URL.createObjectURL(new Blob([`(${work})(${SLICE}, ${PERIOD})`], { type: "text/javascript" }));
     this.worker = new Worker(address);
     /** @type {{resolve: (bytes: Uint8Array) => void, reject: (error: Error) => void}[]} */ this.waiting = [];
     const fail = (/** @type {string} */ text) => {

@@ -1,0 +1,121 @@
+// Files into the page: the menu, dropping files, and what becomes of each.
+
+import { button, showError } from "mp/dom.js";
+import { askRole, HELP } from "mp/editor.js";
+import { ENDINGS, MESH_ENDINGS, chooseFiles, kindOf, mainOf, readFiles } from "mp/files.js";
+import { readPath, readScene } from "mp/scene.js";
+import { mayDiscard, setUnsaved } from "mp/unsaved.js";
+
+/** @import { Editor } from "mp/editor.js" */
+/** @import { NamedFile } from "mp/files.js" */
+/** @import { Document } from "mp/document.js" */
+/** @import { SaveDialog } from "mp/saving.js" */
+
+export class Opening {
+  /** @param {Editor} editor */
+  constructor(editor) {
+    this.editor = editor;
+    this.workbench = editor.workbench;
+    this.viewer = editor.viewer;
+    this.session = editor.workbench.session;
+    this.undo = button("↶", () => editor.undo(), { "aria-label": "Undo" });
+    this.redo = button("↷", () => editor.redo(), { "aria-label": "Redo" });
+    this.viewer.addMenu(button("New", () => editor.create(), { title: "New environment" }));
+    this.viewer.addMenu(button("Open…", () => this.choose(), { title: "Open files (Ctrl + O)" }));
+    this.viewer.panels?.addHelp(HELP);
+    editor.onchange.push(() => this.update());
+    addEventListener("keydown", (e) => this.key(e));
+    this.listenToDrops();
+    this.update();
+  }
+  /** Saves what is edited by this dialog; what comes after it in the menu. @param {SaveDialog} saving */
+  saveBy(saving) {
+    this.saving = saving;
+    saving.document = () => this.editor.document;
+    saving.onsaved = (document) => {
+      this.editor.history?.markSaved(/** @type {Document} */ (document));
+      this.editor.refresh();
+    };
+    this.viewer.addMenu(this.undo);
+    this.viewer.addMenu(this.redo);
+  }
+  update() {
+    const { history } = this.editor;
+    for (const [control, word, label] of /** @type {[HTMLButtonElement, string, string | null][]} */ ([
+      [this.undo, "Undo", history?.undoLabel ?? null], [this.redo, "Redo", history?.redoLabel ?? null]])) {
+      control.disabled = label === null;
+      control.title = label ? `${word}: ${label}` : `Nothing to ${word.toLowerCase()}`;
+    }
+  }
+  key(/** @type {KeyboardEvent} */ e) {
+    if (!(e.ctrlKey || e.metaKey) || e.altKey || e.shiftKey || document.querySelector("dialog[open]")) return;
+    if (e.key === "o") this.choose();
+    else if (e.key === "s") this.saving?.show();
+    else return;
+    e.preventDefault();
+  }
+  listenToDrops() {
+    addEventListener("dragover", (e) => {
+      if (![...(e.dataTransfer?.types ?? [])].includes("Files")) return;
+      e.preventDefault();
+      document.body.classList.add("dropping");
+    });
+    addEventListener("dragleave", (e) => e.relatedTarget === null && document.body.classList.remove("dropping"));
+    addEventListener("drop", (e) => {
+      document.body.classList.remove("dropping");
+      const files = [...(e.dataTransfer?.files ?? [])];
+      if (!files.length) return;
+      e.preventDefault();
+      this.workbench.attempt(async () => this.take(await readFiles(files)));
+    });
+  }
+  choose() { return this.workbench.attempt(async () => this.take(await chooseFiles(ENDINGS, true))); }
+
+  chooseMesh() { return this.workbench.attempt(async () => this.addMeshes(await chooseFiles(MESH_ENDINGS, true))); }
+
+  /** Does with files what they are for. @param {NamedFile[]} files */
+  async take(files) {
+    const of = (/** @type {string} */ kind) => files.filter((file) => kindOf(file) === kind);
+    const [viewer, scenes, meshes, paths] = [of("viewer"), of("scene"), of("mesh"), of("path")];
+    if (viewer.length) return this.showOnly(viewer[0]);
+    if (scenes.length) {
+      const needed = files.filter((file) => kindOf(file) !== "path");
+      if (!(await this.workbench.openScene({ files: needed, main: mainOf(scenes) }))) return;
+    } else if (meshes.length) await this.addMeshes(meshes);
+    else if (!paths.length && files.length) throw new Error(`“${files[0].name}” is no file that is read here. Scenes, meshes and paths end in ${ENDINGS.replaceAll(",", " ")}.`);
+    if (paths.length) await this.addPaths(paths);
+  }
+  /** A scene file of the viewer is shown without the session: there is nothing to plan in it. @param {NamedFile} file */
+  async showOnly({ bytes }) {
+    if (!(await mayDiscard())) return;
+    const scene = readScene(bytes);
+    this.workbench.leave();
+    this.viewer.show(scene);
+    setUnsaved(false);
+    showError("");
+  }
+  /** @param {NamedFile[]} files */
+  async addMeshes(files) {
+    if (!files.length) return;
+    if (!this.editor.history) await this.editor.create();
+    if (!this.editor.history) return;
+    for (const file of files) {
+      const { file: name } = await this.session.request({ do: "mesh", files: [file] });
+      const stem = file.name.replace(/\.[^.]*$/, "") || file.name;
+      await this.editor.add(stem, { mesh: { file: name } }, await askRole(file.name));
+    }
+  }
+  /** @param {NamedFile[]} files */
+  async addPaths(files) {
+    if (!this.workbench.open) throw new Error("A path is shown in its scene: open the scene first, or both files together.");
+    const { scene } = this.viewer;
+    /** @type {string[]} */ const faults = [];
+    for (const file of files) {
+      const reply = await this.session.request({ do: "path", files: [file] });
+      const path = readPath(reply.path, scene.columns.length, scene.robot);
+      this.viewer.choosePath(this.viewer.addPath(path));
+      faults.push(...(reply.faults ?? []).map((/** @type {string} */ fault) => `${file.name}: ${fault}`));
+    }
+    showError(faults.join(" "));
+  }
+}

@@ -1,0 +1,287 @@
+// The panel that plans: planner, settings, budgets, and the run that goes on.
+
+import { brief, button, checkbox, el, labelled, section, select, showError, slider } from "mp/dom.js";
+import { isTyping } from "mp/controls.js";
+import { Runs, ended } from "mp/runs.js";
+import { readPath } from "mp/scene.js";
+
+/** @import { Message } from "mp/message.js" */
+/** @import { Run } from "mp/runs.js" */
+/** @import { Workbench } from "mp/workbench.js" */
+/** @typedef {{name: string, range: string, default: string, summary: string}} Parameter */
+/** @typedef {{name: string, aliases: string[], summary: string, family: "tree" | "roadmap",
+ *  citation: string, parameters: Parameter[]}} PlannerInfo */
+/** @typedef {{prefix: string, summary: string, around: string[] | null, parameters: Parameter[]}} MetaInfo */
+
+/** @type {[string, string][]} */
+const HELP = [
+  ["R", "plan with these settings"], ["T", "pause and resume the run"], ["N", "some iterations, then pause"], ["K", "cancel the run"],
+  ["V", "show where edges fail: motions that were not free"],
+];
+/** @type {[string, string][]} */
+const FINISH = [["shorten", "shorten it"], ["relax", "relax it away from obstacles"], ["as-found", "leave it as found"]];
+
+/** A field for a number that may be left empty. @param {number | null} value @param {Record<string, string | number>} [more] */
+const numberField = (value, more = {}) => el("input", { type: "number", min: 0, value: value ?? "", placeholder: "no limit", ...more });
+
+/** The number in a field, or null when it is empty. @param {HTMLInputElement} field */
+const numberIn = (field) => (field.value.trim() === "" ? null : field.valueAsNumber);
+
+/** What a planner is, its paper and its other names. @param {PlannerInfo} info */
+function summaryOf({ summary, citation, aliases }) {
+  const sentence = summary.charAt(0).toUpperCase() + summary.slice(1);
+  return `${sentence}${citation ? ` (${citation})` : ""}.${aliases.length ? ` Also called ${aliases.join(", ")}.` : ""}`;
+}
+
+/** Whether a box is checked, and can be. @param {HTMLElement | undefined} box */
+function isOn(box) {
+  const input = box?.querySelector("input");
+  return input ? input.checked && !input.disabled : false;
+}
+
+export class PlanningPanel {
+  constructor(/** @type {Workbench} */ workbench) {
+    this.workbench = workbench;
+    this.viewer = workbench.viewer;
+    this.runs = new Runs(workbench.viewer);
+    /** @type {Run | null} */ this.run = null;
+    this.count = 0;
+    this.build();
+    this.showPlanner();
+    this.showState();
+    workbench.onevent.push((event) => this.event(event));
+    workbench.onopened.push(() => this.opened());
+    workbench.onleft.push(() => this.opened());
+    workbench.onlost.push(() => this.lost());
+    this.viewer.keys.push((e) => this.key(e));
+    this.viewer.panels?.addHelp(HELP);
+  }
+  build() {
+    const { planners, meta_planners: metas, metrics, request } = this.workbench.hello;
+    /** @type {PlannerInfo[]} */ this.planners = planners;
+    const group = (/** @type {string} */ family, /** @type {string} */ label) =>
+      el("optgroup", { label }, ...planners.filter((/** @type {PlannerInfo} */ p) => p.family === family).map((/** @type {PlannerInfo} */ p) => el("option", { value: p.name }, p.name)));
+    this.planner = el("select", { onchange: () => this.showPlanner() }, group("tree", "Trees"), group("roadmap", "Roadmaps"));
+    this.planner.value = request.planner;
+    // In a name, a meta-planner that runs only some planners stands next to them.
+    const inOrder = [...metas].sort((a, b) => Number(a.around !== null) - Number(b.around !== null));
+    this.metas = inOrder.map((/** @type {MetaInfo} */ meta) => ({ meta, box: checkbox(`${meta.prefix} ${meta.summary}`, false, () => this.showPlanner()) }));
+    this.summary = el("small", {});
+    this.parameters = el("div", { class: "content" });
+    this.metric = select(metrics.map((/** @type {{name: string, formula: string}} */ m) => [m.name, m.formula ? `${m.name}: ${m.formula}` : m.name]), request.metric, () => {});
+    const [motion, resolution] = request.motion.split(":");
+    const step = el("input", { type: "text", value: resolution ?? "1%" });
+    this.resolution = step;
+    const stepRow = labelled("Step of the check", step);
+    stepRow.hidden = motion !== "discrete";
+    this.motion = select([["certified", "certified"], ["discrete", "discrete"]], motion, (value) => (stepRow.hidden = value !== "discrete"));
+    this.seed = numberField(request.seed, { step: 1, max: Number.MAX_SAFE_INTEGER, placeholder: "0" });
+    this.next = checkbox("another seed for each run", false, () => {});
+    this.time = numberField(request.budget.time_s, { step: "any" });
+    this.iterations = numberField(request.budget.iterations, { step: 1 });
+    this.nodes = numberField(request.budget.nodes, { step: 1 });
+    this.finish = select(FINISH, request.finish, () => {});
+    this.first = checkbox("stop at the first path", request.first_only, () => {});
+    const search = section("How to search", false, [
+      labelled("Metric", this.metric), labelled("Motion check", this.motion), stepRow,
+      labelled("Seed", this.seed), this.next,
+      labelled("Most seconds", this.time), labelled("Most iterations", this.iterations), labelled("Most nodes", this.nodes),
+      labelled("The path found", this.finish), this.first]);
+    this.panel = section("Plan", true, [
+      labelled("Planner", this.planner), this.summary, section("Settings of the planner", false, [this.parameters]),
+      section("Around the planner", false, this.metas.map(({ box }) => box)), search, ...this.runControls()]);
+    this.viewer.addPanel(this.panel);
+  }
+  /** Buttons of the run, and what it does. @returns {HTMLElement[]} */
+  runControls() {
+    const { layer } = this.runs;
+    this.planButton = button("Plan", () => this.plan(false), { class: "main", title: "Plan (R)" });
+    this.pauseButton = button("Pause", () => this.pause(), { title: "Pause or resume (T)" });
+    this.stepButton = button("Step", () => this.step(), { title: "Some iterations, then pause (N)" });
+    this.cancelButton = button("Cancel", () => this.cancel(), { title: "Cancel (K)" });
+    this.stepSize = el("input", { type: "number", min: 1, value: 100, "aria-label": "Iterations of a step" });
+    this.counts = el("p", { class: "counts" });
+    this.status = el("p", { role: "status" });
+    this.rejected = checkbox("Where edges fail", false, (on) => this.show(() => (layer.rejected = on)));
+    const growth = slider({ low: 0, high: 1, step: "any", value: 1 }, (g) => this.show(() => (this.viewer.settings.growth = g)));
+    this.growth = growth;
+    return [
+      el("div", { class: "buttons", role: "group", "aria-label": "Run" }, this.planButton, this.pauseButton, this.cancelButton, this.stepButton, this.stepSize),
+      this.status, this.counts,
+      checkbox("Trees and roadmap of the run", true, (on) => this.show(() => (layer.search = on))), this.rejected,
+      labelled("Growth", growth)];
+  }
+  show(/** @type {() => void} */ change) {
+    change();
+    this.viewer.changed();
+  }
+  /** Shows the summary and the parameters of the planner that is chosen. */
+  showPlanner() {
+    const name = this.planner?.value ?? "";
+    const info = this.planners?.find((p) => p.name === name);
+    if (this.summary) this.summary.textContent = info ? summaryOf(info) : "";
+    for (const { meta, box } of this.metas ?? []) {
+      const input = box.querySelector("input");
+      if (input) input.disabled = meta.around !== null && !meta.around.includes(name);
+    }
+    const known = new Map([...(this.parameters?.querySelectorAll("input") ?? [])].map((field) => [field.name, field.value]));
+    const fields = [...(info?.parameters ?? []), ...this.around().flatMap((meta) => meta.parameters)].map((p) => {
+      const field = el("input", { type: "text", placeholder: p.default, name: p.name, value: known.get(p.name) ?? "" });
+      return el("div", {}, labelled(p.name, field), el("small", {}, p.range ? `${p.summary}; ${p.range}` : p.summary));
+    });
+    this.parameters?.replaceChildren(...(fields.length ? fields : ["This planner has no settings."]));
+  }
+  /** The meta-planners that are chosen, the outermost first. */
+  around() { return (this.metas ?? []).filter(({ box }) => isOn(box)).map(({ meta }) => meta); }
+
+  /** The request as docs/formats/report.md describes it. @returns {Message} */
+  request() {
+    /** @type {Record<string, string>} */ const settings = {};
+    for (const field of this.parameters?.querySelectorAll("input") ?? []) if (field.value.trim()) settings[field.name] = field.value.trim();
+    const value = (/** @type {HTMLInputElement | HTMLSelectElement | undefined} */ control) => control?.value ?? "";
+    const limit = (/** @type {HTMLInputElement | undefined} */ field) => (field ? numberIn(field) : null);
+    return {
+      planner: this.around().map(({ prefix }) => prefix).join("") + value(this.planner),
+      settings,
+      metric: value(this.metric),
+      motion: value(this.motion) === "discrete" ? `discrete:${value(this.resolution)}` : "certified",
+      budget: { time_s: limit(this.time), iterations: limit(this.iterations), nodes: limit(this.nodes) },
+      seed: limit(this.seed) ?? 0,
+      finish: value(this.finish),
+      first_only: isOn(this.first),
+    };
+  }
+  get going() { return this.run !== null && !ended(this.run); }
+
+  /** Starts a run. @param {boolean} paused */
+  async plan(paused) {
+    if (this.going || !this.workbench.open) return;
+    const request = this.request();
+    const run = this.runs.begin(++this.count, request.planner, request.seed);
+    this.run = run;
+    this.viewer.settings.growth = 1;
+    if (this.growth) this.growth.value = "1";
+    showError("");
+    this.showState();
+    try {
+      await this.workbench.session.request({ do: "plan", run: run.id, request, ...this.workbench.ends.request(), paused });
+    } catch (error) {
+      // A run that has ended meanwhile has said why.
+      if (!ended(run)) this.fail(run, error instanceof Error ? error.message : String(error), error);
+    }
+  }
+  /** @param {string} what @param {object} [more] */
+  async tell(what, more = {}) {
+    const { run } = this;
+    if (!run || !this.going) return;
+    try {
+      await this.workbench.session.request({ do: what, run: run.id, ...more });
+    } catch (error) {
+      // A run that has ended meanwhile needs no message.
+      if (!ended(run)) showError(error);
+    }
+  }
+  pause() { return this.tell(this.run?.state === "paused" ? "resume" : "pause"); }
+
+  cancel() { return this.tell("cancel"); }
+
+  async step() {
+    if (!this.going) await this.plan(true);
+    await this.tell("step", { iterations: Math.max(1, Math.round(this.stepSize?.valueAsNumber || 1)) });
+  }
+  event(/** @type {Message} */ event) {
+    const run = this.runs.all.find((r) => r.id === event.run);
+    if (!run || ended(run)) return;
+    if (event.event === "grown") run.picture?.grow(event);
+    if (event.event === "progress") {
+      run.progress = { ...run.progress, ...event };
+      run.state = event.state;
+    }
+    if (event.event === "found") run.progress.length = event.length;
+    if (event.event === "done") this.finished(run, event);
+    if (event.event === "failed") this.fail(run, event.message, event.cancelled ? null : Object.assign(new Error(event.message), { help: event.help }));
+    this.runs.update(run);
+    this.showState();
+    this.viewer.changed();
+  }
+  /** @param {Run} run @param {Message} event */
+  finished(run, { report, path }) {
+    const { scene } = this.viewer;
+    run.state = "done";
+    run.report = report;
+    if (path) {
+      run.path = this.viewer.addPath({ ...readPath(path, scene.columns.length, scene.robot), name: `run ${run.id}: ${run.planner}`, ofRun: true, written: report.path ?? null });
+      if (this.runs.chosen === run) this.runs.choose(run);
+    }
+    const seed = this.seed;
+    if (seed && isOn(this.next)) seed.valueAsNumber = (numberIn(seed) ?? 0) + 1;
+    if (!report.solved) this.explain();
+  }
+  /** @param {Run} run @param {string} message @param {unknown} error shown at the top, unless null */
+  fail(run, message, error) {
+    run.state = "failed";
+    run.note = message;
+    if (error) showError(error);
+    if (error) this.explain();
+    this.runs.update(run);
+    this.showState();
+  }
+  /** Asks whether start and goals are free: a run without a path may be their fault. */
+  explain() {
+    const { ends } = this.workbench;
+    ends.check("start");
+    this.viewer.scene.goals.forEach((_, i) => ends.check(i));
+  }
+  /** The planner is gone, and its run with it; what it has searched stays. */
+  lost() {
+    if (this.run && this.going) this.fail(this.run, "the planner is gone", null);
+    this.showState();
+  }
+  /** After another scene was opened or shown, or this one was changed. */
+  opened() {
+    this.cancel();
+    this.run = null;
+    this.runs.clear();
+    this.showState();
+  }
+  showState() {
+    const { run } = this;
+    const going = this.going;
+    const paused = run?.state === "paused";
+    if (!this.planButton || !this.pauseButton || !this.stepButton || !this.cancelButton || !this.status || !this.counts) return;
+    this.planButton.disabled = going || !this.workbench.open;
+    this.stepButton.disabled = !this.workbench.open;
+    this.pauseButton.disabled = this.cancelButton.disabled = !going;
+    const label = paused ? "Resume" : "Pause";
+    if (this.pauseButton.textContent !== label) this.pauseButton.textContent = label;
+    const status = this.stateWords();
+    if (this.status.textContent !== status) this.status.textContent = status;
+    this.counts.textContent = run && going ? this.countWords(run.progress) : "";
+    const failed = this.runs.layer.shown?.rejected.count ?? 0;
+    const text = this.rejected?.querySelector("span");
+    if (text) text.textContent = `Where edges fail${failed ? ` (${brief(failed)} motions)` : ""}`;
+  }
+  stateWords() {
+    const { run } = this;
+    if (!this.workbench.open) return "Open a scene to plan in it.";
+    if (!run) return "";
+    if (!run.report) return run.note || `Run ${run.id}: ${run.state}`;
+    const { solved, path_length: length, clearance, why } = run.report;
+    if (!solved) return `Run ${run.id} has no path: ${why ?? "it ended"}.`;
+    return `Run ${run.id}: a verified path, length ${brief(length)}${typeof clearance === "number" ? `, clearance at least ${brief(clearance)} m` : ""}.`;
+  }
+  /** @param {Message} progress */
+  countWords({ iterations = 0, nodes = 0, motions = 0, time_s: time = 0 }) {
+    return `${brief(iterations)} iterations, ${brief(nodes)} nodes, ${brief(motions)} motions, ${time.toFixed(1)} s`;
+  }
+  key(/** @type {KeyboardEvent} */ e) {
+    if (isTyping(e.target)) return false;
+    if (e.key === "r") this.plan(false);
+    else if (e.key === "t") this.pause();
+    else if (e.key === "n") this.step();
+    else if (e.key === "k") this.cancel();
+    else if (e.key === "v") this.rejected?.querySelector("input")?.click();
+    else return false;
+    return true;
+  }
+}

@@ -1,0 +1,102 @@
+// Saving: the environment, the path, the page and the scene, as files beside the scene or as downloads.
+
+import { button, checkbox, el, labelled, select } from "mp/dom.js";
+
+/** @import { Message } from "mp/message.js" */
+/** @import { Path } from "mp/scene.js" */
+/** @import { Workbench } from "mp/workbench.js" */
+
+/** @typedef {"save" | "save_path" | "export"} Saving */
+/** What can be saved: label, request, format. @type {[label: string, request: Saving, format: string][]} */
+const KINDS = [
+  ["the environment, to edit again (.mp.json)", "save", "own"],
+  ["the environment for GEMPA (.env and meshes)", "save", "gempa"],
+  ["the path, as text", "save_path", "txt"],
+  ["the path, as JSON", "save_path", "json"],
+  ["the path, as CSV", "save_path", "csv"],
+  ["this page, to send (HTML)", "export", "html"],
+  ["the scene for the viewer (MPV)", "export", "mpv"],
+];
+
+/** Gives a file to the browser to save. @param {string} name @param {Uint8Array} bytes */
+export function download(name, bytes) {
+  const address = URL.createObjectURL(new Blob([/** @type {BlobPart} */ (bytes)]));
+  el("a", { href: address, download: name }).click();
+  // The browser reads the address soon after the click.
+  setTimeout(() => URL.revokeObjectURL(address), 60000);
+}
+
+/** Hands over what a request to save gave, and says where it is. @param {Message} reply @param {string | null} folder */
+export function deliver(reply, folder) {
+  if (reply.written?.length) return `Written to ${folder ?? "the folder"}: ${reply.written.join(", ")}.`;
+  const files = reply.files ?? [];
+  for (const { name, bytes } of files) download(name, bytes);
+  return `Saved: ${files.map((/** @type {{name: string}} */ f) => f.name).join(", ")}.`;
+}
+
+/** A path's configurations, each as a list of numbers. @param {Path} path @param {number} columns @returns {number[][]} */
+const rowsOf = (path, columns) => path.written ?? Array.from({ length: path.count }, (_, i) => [...path.rows.subarray(i * columns, (i + 1) * columns)]);
+
+/** A file name made of a scene's name. @param {string} name */
+const fileName = (name) => name.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.-]+|[.-]+$/g, "") || "scene";
+
+/** The dialog that saves. */
+export class SaveDialog {
+  constructor(/** @type {Workbench} */ workbench) {
+    this.workbench = workbench;
+    /** The document as it is now, edited or not. @type {() => Message | null} */ this.document = () => workbench.document;
+    /** Called when a document was saved. @type {(document: Message) => void} */ this.onsaved = () => {};
+    this.opener = button("Save…", () => this.show(), { "aria-haspopup": "dialog", title: "Save (Ctrl + S)" });
+    this.opener.disabled = true;
+    workbench.viewer.addMenu(this.opener);
+    workbench.onopened.push(() => (this.opener.disabled = false));
+    workbench.onleft.push(() => (this.opener.disabled = true));
+  }
+  show() {
+    const { viewer } = this.workbench;
+    if (this.opener.disabled) return;
+    const path = viewer.scene.paths[viewer.settings.path];
+    const edited = this.document();
+    /** @type {[string, string][]} */
+    const options = KINDS.map(([label], i) => [String(i), label]);
+    const possible = options.filter((_, i) => (KINDS[i][1] === "save" ? edited : KINDS[i][1] === "export" || path));
+    const kind = select(possible, possible[0][0], () => {});
+    const name = el("input", { type: "text", value: fileName(String(edited?.name ?? viewer.scene.name)), required: true });
+    const note = el("p", { role: "status" });
+    const dialog = el("dialog", { "aria-label": "Save" });
+    const save = async () => {
+      const [, request, format] = KINDS[Number(kind.value)];
+      note.textContent = "Saving…";
+      const replace = overwrite.querySelector("input")?.checked ?? false;
+      const problem = await this.save(request, format, name.value.trim(), replace).then((text) => void (note.textContent = text), (error) => error);
+      if (!problem) return;
+      note.replaceChildren(el("strong", { class: "bad" }, problem.message), el("small", {}, problem.help ?? ""));
+    };
+    const folder = this.workbench.hello.folder;
+    const overwrite = checkbox("replace a file with this name", false, () => {});
+    overwrite.hidden = !folder;
+    const where = el("small", {}, folder ? `The file is written to ${folder}.` : "The file comes as a download.");
+    dialog.append(el("h2", {}, "Save"), labelled("What", kind), labelled("Name", name), where, overwrite, note,
+      el("div", { class: "buttons" }, button("Save", save, { class: "main" }), button("Close", () => dialog.close())));
+    dialog.addEventListener("close", () => dialog.remove());
+    document.body.append(dialog);
+    dialog.showModal();
+  }
+  /** Saves, and says where the files are. @param {Saving} request @param {string} format @param {string} name
+   * @param {boolean} overwrite whether files that are there already are replaced @returns {Promise<string>} */
+  async save(request, format, name, overwrite) {
+    const { viewer, session, hello } = this.workbench;
+    const { scene, settings } = viewer;
+    const columns = scene.columns.length;
+    const path = scene.paths[settings.path];
+    const edited = request === "save" ? this.document() : null;
+    const what = {
+      save: { document: edited },
+      save_path: { rows: path ? rowsOf(path, columns) : [] },
+      export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })) },
+    }[request];
+    const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) });
+    if (edited) this.onsaved(edited);
+    return deliver(reply, hello.folder);
+  }
+}
