@@ -27,8 +27,15 @@ export function byId(id) {
 export function showError(error, ...actions) {
   const box = byId("alert");
   const help = error instanceof Error && "help" in error && typeof error.help === "string" ? error.help : "";
-  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []), ...actions);
+  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []), ...actions, el("button", { type: "button", class: "close", "aria-label": "Close this message", onclick: () => (box.hidden = true) }));
   box.hidden = error === "";
+  box.classList.remove("note");
+}
+
+/** Shows something worth knowing where errors are shown. @param {string} text */
+export function showNote(text) {
+  showError(text);
+  byId("alert").classList.add("note");
 }
 
 /** @param {string} label @param {() => void} press @param {Properties} [properties] */

@@ -26,6 +26,7 @@ export class EndsPanel {
     this.panel.addEventListener("toggle", () => this.checkOnce());
     workbench.viewer.addPanel(this.panel);
     workbench.onopened.push(() => this.show());
+    workbench.onleft.push(() => (this.panel.hidden = true));
     this.ends.onchange.push((end) => this.changed(end));
   }
   /** Shows the ends of another scene. */
@@ -111,7 +112,9 @@ export class EndsPanel {
   explanation(v) {
     const clearance = typeof v.clearance === "number" ? `, clearance ${brief(v.clearance)} m` : "";
     if (v.free) return [el("strong", { class: "good" }, `Free${clearance}`)];
-    const reasons = [...(v.in_bounds ? [] : ["It is outside the limits."]), ...(v.fault ? [v.fault] : []), ...v.touching.map((what) => `Touches ${what}`)];
+    const reasons = [...(v.in_bounds ? [] : ["It is outside the limits."]), ...v.touching.map((what) => `Touches ${what}`)];
+    // A collision is named by what it touches.
+    if (v.fault && !v.touching.length) reasons.push(v.fault);
     const parts = [el("strong", { class: "bad" }, "Refused"), el("ul", {}, ...reasons.map((reason) => el("li", {}, reason)))];
     const near = v.nearest_free;
     if (near) parts.push(button("Take the nearest free configuration", () => this.ends.set(this.end, near)));

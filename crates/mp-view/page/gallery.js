@@ -8,6 +8,7 @@ import { isTyping } from "mp/controls.js";
 export class Gallery {
   constructor(/** @type {Workbench} */ workbench) {
     this.workbench = workbench;
+    if (!workbench.hello.scenes.length) return;
     workbench.viewer.addMenu(button("Gallery…", () => this.show(), { "aria-haspopup": "dialog", title: "Scenes that come with the program (G)" }));
     workbench.viewer.keys.push((e) => this.key(e));
     workbench.viewer.panels?.addHelp([["G", "the gallery of scenes"]]);

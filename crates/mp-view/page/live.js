@@ -79,8 +79,8 @@ export class RunLayer {
   /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
   points(s, colors) {
     if (!this.shown || !this.search) return [];
-    const roots = this.shown.trees.map(({ name, roots }, i) => ({ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }));
-    return [...roots, { set: this.shown.nodes.set, count: this.shown.nodes.count, color: colors.fromStart, over: false }];
+    const marks = this.shown.trees.map(({ name, roots }, i) => ({ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }));
+    return [...marks, { set: this.shown.nodes.set, count: this.shown.nodes.count, color: colors.fromStart, over: false }];
   }
   /** @param {Settings} s @returns {Cloud[]} */
   clouds(s) {

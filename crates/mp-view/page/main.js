@@ -5,6 +5,7 @@ import { Editor } from "mp/editor.js";
 import { EndsPanel } from "mp/endspanel.js";
 import { Gallery } from "mp/gallery.js";
 import { Inspector } from "mp/inspector.js";
+import { decode } from "mp/message.js";
 import { Opening } from "mp/opening.js";
 import { unpack } from "mp/packed.js";
 import { PlanningPanel } from "mp/planning.js";
@@ -14,7 +15,6 @@ import { sessionOfPage } from "mp/session.js";
 import { Viewer } from "mp/viewer.js";
 import { Workbench } from "mp/workbench.js";
 
-/** @import { Message } from "mp/message.js" */
 /** @import { Animation } from "mp/picture.js" */
 /** @import { Mode } from "mp/renderer.js" */
 /** @import { Session } from "mp/session.js" */
@@ -34,26 +34,18 @@ async function sceneBeside() {
   return new Uint8Array(await answer.arrayBuffer());
 }
 
-/** @type {Viewer | null} */
-let viewer = null;
-
-/** @returns {Viewer} */
-function present() {
-  if (!viewer) throw new Error("No scene is shown.");
-  return viewer;
-}
-
-/** Shows a scene file. @param {Uint8Array | null} bytes */
+/** Shows a scene file, or an empty picture. @param {Uint8Array | null} bytes @returns {Viewer} */
 function show(bytes) {
   const scene = bytes && readScene(bytes);
-  viewer = new Viewer();
+  const viewer = new Viewer();
   if (scene) viewer.show(scene);
   viewer.draw();
   document.body.classList.remove("loading");
+  return viewer;
 }
 
-/** Makes the page one that builds and plans. @param {Session} session @param {Viewer} viewer @param {boolean} shown whether a scene is shown */
-async function connect(session, viewer, shown) {
+/** Makes the page one that builds and plans. @param {Session} session @param {Viewer} viewer @returns {Promise<Workbench>} */
+async function connect(session, viewer) {
   const workbench = new Workbench(viewer, session, await session.request({ do: "hello" }));
   const editor = new Editor(workbench);
   const opening = new Opening(editor);
@@ -62,44 +54,51 @@ async function connect(session, viewer, shown) {
   new Inspector(editor, () => opening.chooseMesh());
   new PlanningPanel(workbench);
   new EndsPanel(workbench);
-  const { opened, scenes } = workbench.hello;
+  const { opened } = workbench.hello;
   if (opened) workbench.take(opened, "open");
-  else if (shown) await openInside(workbench, scenes);
-  else gallery.show();
+  else if (viewer.scene.bodies.length) await openInside(workbench);
+  else if (workbench.hello.scenes.length) gallery.show();
+  else await editor.create();
   return workbench;
 }
 
-/** Opens the scene inside the page also in the planner, as a shipped scene of this name.
- * @param {Workbench} workbench @param {string[]} shipped */
-async function openInside(workbench, shipped) {
-  const { session, viewer } = workbench;
-  const name = viewer.scene.name;
-  if (!shipped.includes(name)) return;
-  const reply = await session.request({ do: "open", scene: name });
-  const { columns, bodies } = readScene(reply.scene);
-  if (columns.length === viewer.scene.columns.length && bodies.length === viewer.scene.bodies.length) workbench.adopt(reply);
+/** Opens the scene inside the page also in the planner: by the request that is in the page, or as a shipped scene of this name.
+ * @param {Workbench} workbench */
+async function openInside(workbench) {
+  const { session, viewer, hello } = workbench;
+  const { name, columns, bodies } = viewer.scene;
+  const packed = document.getElementById("open")?.textContent;
+  const request = packed ? decode(await unpack(packed), "message") : hello.scenes.includes(name) ? { do: "open", scene: name } : null;
+  if (!request) return;
+  const reply = await session.request(request);
+  const scene = readScene(reply.scene);
+  // Another scene may have the same name.
+  if (scene.columns.length === columns.length && scene.bodies.length === bodies.length) workbench.adopt(reply);
 }
 
-/** Resolves when the first picture is drawn; rejects when the scene cannot be shown. */
+/** @type {Viewer | null} */
+let shown = null;
 const session = sessionOfPage();
-const ready = (async () => {
-  const inside = await sceneInside();
-  show(inside ?? (session ? null : await sceneBeside()));
-  return inside !== null;
-})();
+const viewer = (async () => (shown = show((await sceneInside()) ?? (session ? null : await sceneBeside()))))();
+/** Resolves when the first picture is drawn; rejects when the scene cannot be shown. */
+const ready = viewer.then(() => {});
 /** Resolves when the planner is there, to null in a page without one. */
-const planner = ready.then((shown) => session && connect(session, present(), shown));
-for (const step of [ready, planner]) step.catch(showError);
+const planner = viewer.then((it) => session && connect(session, it));
+planner.catch(showError);
+ready.catch(() => {});
+
+/** @returns {Viewer} */
+function present() {
+  if (!shown) throw new Error("No scene is shown.");
+  return shown;
+}
 
 Object.assign(window, {
   mpView: {
     ready,
     planner,
     /** @param {number} part of the path: 0 is the start, 1 the end */
-    setTime: (part) => {
-      const { timeline } = present();
-      timeline.scrub(part * timeline.last);
-    },
+    setTime: (part) => present().timeline.scrub(part * present().timeline.last),
     /** @param {Animation | Mode} mode */
     setMode: (mode) => present().setMode(mode),
     draw: () => present().draw(),

@@ -43,6 +43,7 @@ export class Panels {
     this.bodies = section("Bodies", true, []);
     this.facts = el("div", {});
     byId("about").replaceChildren(this.picked, section("Picture", true, this.pictureControls()), this.shown, this.paths, this.configuration, this.bodies, this.facts);
+    this.showPaths();
     this.buildHelp();
     this.buildPanelButton();
   }

@@ -169,11 +169,11 @@ export class PictureMaker {
   }
   /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
   points(s, colors) {
-    const roots = this.trees.flatMap(({ name, roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }] : []));
+    const marks = this.trees.flatMap(({ name, roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }] : []));
     const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null, over: false }] : [];
     this.marker.clear();
     if (s.marked) this.marker.append(new Float32Array(s.marked), () => [1, 1, 1, 1]);
-    return [...roadmap, ...roots, { set: this.marker, count: this.marker.count, color: colors.picked, over: true }];
+    return [...roadmap, ...marks, { set: this.marker, count: this.marker.count, color: colors.picked, over: true }];
   }
   /** The section plane: what lies on its positive side is cut away. @param {Settings} s @returns {Picture["plane"]} */
   plane(s) {

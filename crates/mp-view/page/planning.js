@@ -8,7 +8,7 @@ import { readPath } from "mp/scene.js";
 /** @import { Message } from "mp/message.js" */
 /** @import { Run } from "mp/runs.js" */
 /** @import { Workbench } from "mp/workbench.js" */
-/** @typedef {{name: string, default: string, summary: string}} Parameter */
+/** @typedef {{name: string, range: string, default: string, summary: string}} Parameter */
 /** @typedef {{name: string, aliases: string[], summary: string, family: "tree" | "roadmap",
  *  citation: string, parameters: Parameter[]}} PlannerInfo */
 /** @typedef {{prefix: string, summary: string, around: string[] | null, parameters: Parameter[]}} MetaInfo */
@@ -26,6 +26,12 @@ const numberField = (value, more = {}) => el("input", { type: "number", min: 0, 
 
 /** The number in a field, or null when it is empty. @param {HTMLInputElement} field */
 const numberIn = (field) => (field.value.trim() === "" ? null : field.valueAsNumber);
+
+/** What a planner is, its paper and its other names. @param {PlannerInfo} info */
+function summaryOf({ summary, citation, aliases }) {
+  const sentence = summary.charAt(0).toUpperCase() + summary.slice(1);
+  return `${sentence}${citation ? ` (${citation})` : ""}.${aliases.length ? ` Also called ${aliases.join(", ")}.` : ""}`;
+}
 
 /** Whether a box is checked, and can be. @param {HTMLElement | undefined} box */
 function isOn(box) {
@@ -45,6 +51,7 @@ export class PlanningPanel {
     this.showState();
     workbench.onevent.push((event) => this.event(event));
     workbench.onopened.push(() => this.opened());
+    workbench.onleft.push(() => this.opened());
     workbench.onlost.push(() => this.lost());
     this.viewer.keys.push((e) => this.key(e));
     this.viewer.panels?.addHelp(HELP);
@@ -112,8 +119,7 @@ export class PlanningPanel {
   showPlanner() {
     const name = this.planner?.value ?? "";
     const info = this.planners?.find((p) => p.name === name);
-    const words = info ? [info.summary, info.citation ? `(${info.citation})` : "", info.aliases.length ? `Also called ${info.aliases.join(", ")}.` : ""] : [];
-    if (this.summary) this.summary.textContent = words.filter((word) => word).join(" ");
+    if (this.summary) this.summary.textContent = info ? summaryOf(info) : "";
     for (const { meta, box } of this.metas ?? []) {
       const input = box.querySelector("input");
       if (input) input.disabled = meta.around !== null && !meta.around.includes(name);
@@ -121,7 +127,7 @@ export class PlanningPanel {
     const known = new Map([...(this.parameters?.querySelectorAll("input") ?? [])].map((field) => [field.name, field.value]));
     const fields = [...(info?.parameters ?? []), ...this.around().flatMap((meta) => meta.parameters)].map((p) => {
       const field = el("input", { type: "text", placeholder: p.default, name: p.name, value: known.get(p.name) ?? "" });
-      return el("div", {}, labelled(p.name, field), el("small", {}, p.summary));
+      return el("div", {}, labelled(p.name, field), el("small", {}, p.range ? `${p.summary}; ${p.range}` : p.summary));
     });
     this.parameters?.replaceChildren(...(fields.length ? fields : ["This planner has no settings."]));
   }
@@ -204,7 +210,7 @@ export class PlanningPanel {
     run.state = "done";
     run.report = report;
     if (path) {
-      run.path = this.viewer.addPath({ ...readPath(path, scene.columns.length, scene.robot), name: `run ${run.id}: ${run.planner}`, ofRun: true });
+      run.path = this.viewer.addPath({ ...readPath(path, scene.columns.length, scene.robot), name: `run ${run.id}: ${run.planner}`, ofRun: true, written: report.path ?? null });
       if (this.runs.chosen === run) this.runs.choose(run);
     }
     const seed = this.seed;
@@ -231,7 +237,7 @@ export class PlanningPanel {
     if (this.run && this.going) this.fail(this.run, "the planner is gone", null);
     this.showState();
   }
-  /** After another scene was opened, or this one was changed. */
+  /** After another scene was opened or shown, or this one was changed. */
   opened() {
     this.cancel();
     this.run = null;

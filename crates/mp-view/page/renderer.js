@@ -146,7 +146,8 @@ export class Renderer {
     if (!count) return;
     gl.uniform1f(this.surfaceAt.shaded, 1);
     gl.enable(gl.POLYGON_OFFSET_FILL);
-    gl.polygonOffset(1, 10 - 2 * batch.item.layer);
+    // Bodies at the same place differ in their last digits only; the layers are farther apart.
+    gl.polygonOffset(1, 400 - 80 * batch.item.layer);
     // Of a transparent closed body only the outside is drawn, so that each of its faces counts once.
     if (batch.item.mode === "transparent" && buffers.shape.closed && !batch.item.cut) gl.enable(gl.CULL_FACE);
     gl.bindVertexArray(vao);

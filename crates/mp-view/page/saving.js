@@ -34,8 +34,8 @@ export function deliver(reply, folder) {
   return `Saved: ${files.map((/** @type {{name: string}} */ f) => f.name).join(", ")}.`;
 }
 
-/** A path's configurations, each as a list of numbers. @param {Path} path @param {number} columns */
-const rowsOf = (path, columns) => Array.from({ length: path.count }, (_, i) => [...path.rows.subarray(i * columns, (i + 1) * columns)]);
+/** A path's configurations, each as a list of numbers. @param {Path} path @param {number} columns @returns {number[][]} */
+const rowsOf = (path, columns) => path.written ?? Array.from({ length: path.count }, (_, i) => [...path.rows.subarray(i * columns, (i + 1) * columns)]);
 
 /** A file name made of a scene's name. @param {string} name */
 const fileName = (name) => name.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.-]+|[.-]+$/g, "") || "scene";

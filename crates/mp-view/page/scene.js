@@ -13,8 +13,9 @@ import { decode } from "mp/message.js";
  *  `mesh` and `area` are -1 where the body has none. `stretch` is 1, 1, 1 but while handles scale the body. */
 /** @typedef {{row: number[], poses: number[], refused?: boolean}} Configuration  `refused`: the planner said that it is not free */
 /** @typedef {{name: string, count: number, rows: Float64Array, poses: Float32Array, trace: Float32Array,
- *  clearance: Float32Array | null, verified: boolean, length: number, ofRun: boolean}} Path
- *  `ofRun`: made by a run of this page */
+ *  clearance: Float32Array | null, verified: boolean, length: number, ofRun: boolean,
+ *  written: number[][] | null}} Path  `ofRun`: made by a run of this page; `written`: the path's own configurations, where they are
+ *  known: `rows` are more, for the animation */
 /** @typedef {{name: string, nodes: Float32Array, parents: Int32Array}} Tree */
 /** @typedef {{nodes: Float32Array, edges: Uint32Array, component: Uint32Array, kind: Uint8Array}} Roadmap */
 /** @typedef {{name: string, space: string, planar: boolean, columns: Column[], limits: ([number, number] | null)[],
@@ -142,7 +143,7 @@ export function readPath(entry, columns, robot) {
   const equal = rows.length === count * columns && poses.length === count * robot * 7 && (!clearance || clearance.length === count);
   check(equal, `In the scene file, the arrays of the path “${name}” do not have the same number of configurations.`);
   const length = typeof path.length === "number" ? path.length : NaN;
-  return { name, count, rows, poses, trace, clearance, verified: path.verified === true, length, ofRun: false };
+  return { name, count, rows, poses, trace, clearance, verified: path.verified === true, length, ofRun: false, written: null };
 }
 
 /** @param {unknown} entry @returns {Tree} */

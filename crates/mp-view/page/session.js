@@ -27,6 +27,12 @@ export class SessionError extends Error {
 const gone = (/** @type {string} */ why) =>
   new SessionError(`The planner's server does not answer: ${why}.`, "What is shown stays. Press “Reconnect”; if the server was ended, start “mp view” again and open its new address.");
 
+/** What the server says when it refuses. @param {Response} answer */
+async function refusal(answer) {
+  const why = (await answer.text().catch(() => "")).trim();
+  return new SessionError(why || `The planner's server refused a request (${answer.status}).`);
+}
+
 /** The messages of a stream: each a length and its bytes. @param {ReadableStreamDefaultReader<Uint8Array>} reader */
 async function* framesOf(reader) {
   let rest = new Uint8Array(0);
@@ -66,19 +72,20 @@ class ServerLink {
   connect() {
     const stream = (this.stream = new AbortController());
     return new Promise((resolve, reject) => {
-      const lost = (/** @type {string} */ why) => {
+      const lost = (/** @type {unknown} */ error) => {
         if (stream.signal.aborted) return;
         stream.abort();
-        reject(gone(why));
-        this.owner.onlost(gone(why));
+        const why = error instanceof SessionError ? error : gone(error instanceof Error ? error.message : String(error));
+        reject(why);
+        this.owner.onlost(why);
       };
-      this.listen(stream.signal, resolve).then(() => lost("the connection was closed"), (error) => lost(error instanceof Error ? error.message : String(error)));
+      this.listen(stream.signal, resolve).then(() => lost("the connection was closed"), lost);
     });
   }
   /** @param {AbortSignal} signal @param {(session: string) => void} named */
   async listen(signal, named) {
     const answer = await fetch("events", { signal, cache: "no-store" });
-    if (!answer.ok || !answer.body) throw new Error(`it refused this page (${answer.status})`);
+    if (!answer.ok || !answer.body) throw await refusal(answer);
     for await (const bytes of framesOf(answer.body.getReader())) {
       const event = decode(bytes, "message");
       if (event.event === "hello") named(String(event.session));
@@ -93,7 +100,7 @@ class ServerLink {
     const answer = await fetch(`message/${encodeURIComponent(session)}`, { method: "POST", body: bytes, signal }).catch((error) => {
       throw gone(error instanceof Error ? error.message : String(error));
     });
-    if (!answer.ok) throw new SessionError((await answer.text().catch(() => "")).trim() || `The planner's server refused a request (${answer.status}).`);
+    if (!answer.ok) throw await refusal(answer);
     return new Uint8Array(await answer.arrayBuffer());
   }
   async reconnect() {

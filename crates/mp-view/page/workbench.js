@@ -1,6 +1,6 @@
 // What is open: the session's scene, its document, start and goals. Panels of other modules ask it to open and to edit.
 
-import { button, showError } from "mp/dom.js";
+import { button, showError, showNote } from "mp/dom.js";
 import { Ends } from "mp/ends.js";
 import { readScene } from "mp/scene.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
@@ -49,7 +49,7 @@ export class Workbench {
     this.document = reply.document ?? null;
     this.viewer.show(scene, { keepCamera: how === "edit" });
     this.ends.show(scene);
-    showError(reply.notes?.length ? reply.notes.join(" ") : "");
+    showNote((reply.notes ?? []).join(". "));
     for (const listener of this.onopened) listener(reply, how);
   }
   /** The page shows something else than the scene of the session: there is nothing to edit or to plan. */

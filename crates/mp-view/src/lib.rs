@@ -32,7 +32,7 @@ pub use error::ViewError;
 pub use model::{
     Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
 };
-pub use page::{Planner, page};
+pub use page::{Planner, page, page_with_files};
 #[cfg(not(target_family = "wasm"))]
 pub use session::Session;
 pub use session::{Opening, Worker};

@@ -1,9 +1,11 @@
 //! The page for the browser, as one file.
 
 use crate::SceneFile;
+use crate::message::Message;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, write::GzEncoder};
+use serde_json::json;
 use std::io::Write as _;
 
 /// The modules of the page, by their names in imports.
@@ -93,6 +95,18 @@ pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
         .replace("<!--PLANNER-->", &planner)
 }
 
+/// As [`page`] with the WebAssembly module `planner` inside, which opens the scene from `files`: names and contents, the scene's own
+/// first. So the page can plan in a scene that the module does not have.
+#[must_use]
+pub fn page_with_files(scene: &SceneFile, planner: &[u8], files: &[(String, Vec<u8>)]) -> String {
+    let mut open = Message::default().with("do", "open");
+    let list: Vec<_> = files.iter().map(|(name, bytes)| json!({"name": name, "bytes": open.array(bytes)})).collect();
+    open.set("main", files.first().map(|(name, _)| name.as_str()));
+    open.set("files", list);
+    let html = page(Some(scene), Planner::Inside(planner));
+    html.replacen("<script id=\"planner\"", &format!("{}\n<script id=\"planner\"", data("open", &open.to_bytes())), 1)
+}
+
 /// Bytes as a part of the page.
 fn data(id: &str, bytes: &[u8]) -> String {
     let text = STANDARD.encode(packed(bytes));
@@ -167,6 +181,22 @@ mod tests {
             served.contains("<meta name=\"mp-session\" content=\"server\">")
                 && !served.contains("id=\"planner\"")
         );
+    }
+
+    /// A session that gets the request inside the page has the scene open.
+    #[test]
+    fn the_files_of_a_scene_are_in_the_page() {
+        let file = SceneFile::of(&mp_plan::Scene::find("easy").unwrap()).unwrap();
+        let cube = b"OFF 4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+        let html = page_with_files(&file, b"module", &[("a.off".to_owned(), cube.to_vec())]);
+        let (_, rest) = html.split_once("<script id=\"open\" type=\"application/octet-stream\">").unwrap();
+        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
+        let mut unpacked = Vec::new();
+        std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&*bytes), &mut unpacked).unwrap();
+        let open = Message::parse(&unpacked).unwrap();
+        assert_eq!((&open.head["do"], &open.head["main"]), (&json!("open"), &json!("a.off")));
+        assert_eq!(open.bytes(&open.head["files"][0]["bytes"], "bytes").unwrap(), cube);
+        assert!(html.find("id=\"open\"") < html.find("id=\"planner\""));
     }
 
     #[test]
