@@ -1,4 +1,4 @@
-//! The planner that is put inside a page: a module of `mp-wasm`, and what opens the scene in it.
+//! The planner that is put inside a page: a module of `mp-wasm`, and the files of the scene.
 
 use mp_plan::{Error, Scene};
 use std::path::PathBuf;
@@ -11,8 +11,8 @@ const VARIABLE: &str = "MP_PLANNERS";
 pub(crate) struct PagePlanner {
     /// The WebAssembly module.
     pub(crate) module: Vec<u8>,
-    /// The request that opens the scene in it.
-    pub(crate) open: Vec<u8>,
+    /// The files of the scene, which the page opens in it.
+    pub(crate) files: Vec<(String, Vec<u8>)>,
 }
 
 impl PagePlanner {
@@ -22,7 +22,8 @@ impl PagePlanner {
     /// When there is no such module, or the files of the scene cannot be read any more.
     pub(crate) fn of(scene: &Scene) -> Result<Self, Error> {
         let name = format!("{}.wasm", mp_view::planner_module(scene));
-        let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join("planners")));
+        let beside =
+            std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join("planners")));
         let folders: Vec<PathBuf> =
             std::env::var_os(VARIABLE).map(PathBuf::from).into_iter().chain(beside).collect();
         let places: Vec<PathBuf> = folders.iter().map(|folder| folder.join(&name)).collect();
@@ -33,12 +34,12 @@ impl PagePlanner {
                  or set {VARIABLE} to the folder that holds {name}"
             )));
         };
-        let module = std::fs::read(place)
-            .map_err(|e| Error::new(format!("cannot read {}: {e}", place.display())))?;
+        let module =
+            std::fs::read(place).map_err(|e| Error::new(format!("cannot read {}: {e}", place.display())))?;
         if !module.starts_with(b"\0asm") {
             return Err(Error::new(format!("{} is no WebAssembly module", place.display()))
                 .help("build it again: `cargo xtask wasm`"));
         }
-        Ok(Self { module, open: mp_view::open_request(scene)? })
+        Ok(Self { module, files: scene.input_files()? })
     }
 }

@@ -141,7 +141,7 @@ impl Picture {
         Ok(Some(match self {
             Self::Page(None) => file.to_html().into_bytes(),
             Self::Page(Some(planner)) => {
-                mp_view::page_that_opens(&file, &planner.module, &planner.open).into_bytes()
+                mp_view::page_with_files(&file, &planner.module, &planner.files).into_bytes()
             }
             Self::Meshes(seconds) => file.to_glb(*seconds),
             _ => file.to_bytes(),

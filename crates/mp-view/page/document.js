@@ -40,6 +40,16 @@ export function sizesOf(shape) {
   return Object.entries(sizes).map(([size, value]) => ({ name: named(size), value, set: (v) => /** @type {Figure} */ ({ [kind]: { ...sizes, [size]: v } }) }));
 }
 
+/** The distance of the figure's farthest point from its origin, metres. @param {Figure} figure */
+export function reachOf(figure) {
+  if ("sphere" in figure) return figure.sphere.radius;
+  if ("cube" in figure) return Math.hypot(...figure.cube.size) / 2;
+  if ("torus" in figure) return figure.torus.ring + figure.torus.tube;
+  if ("tetrahedron" in figure) return (figure.tetrahedron.edge * Math.sqrt(6)) / 4;
+  const { radius, height } = "cone" in figure ? figure.cone : figure.cylinder;
+  return Math.hypot(radius, height / 2);
+}
+
 /** @type {Record<string, string>} */
 const SIZE_NAMES = { ring: "radius of the ring", tube: "radius of the tube" };
 

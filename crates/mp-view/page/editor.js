@@ -290,20 +290,26 @@ export class Editor {
       setUnsaved(false);
     });
   }
-  /** Adds a figure or a mesh, where the camera looks, and selects it. @param {string} name @param {DocumentShape} shape @param {"obstacle" | "robot"} as */
-  add(name, shape, as) {
+  /** Adds a figure or a mesh, near to where the camera looks, and selects it. @param {string} name @param {DocumentShape} shape
+   * @param {"obstacle" | "robot"} as @param {number} reach of the shape around its origin, metres */
+  add(name, shape, as, reach) {
     if (as === "robot") return this.run(`make ${name} the robot`, (d) => doc.replaceRobot(d, name, shape)).then(() => this.select({ end: "start" }));
     const count = this.document?.obstacles.length ?? 0;
-    return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, this.freePlace(d))).then(() => this.selectNew(count));
+    return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, this.freePlace(d, reach))).then(() => this.selectNew(count));
   }
-  /** A place near the middle of the picture where no body has its origin. @param {Document} d @returns {Six} */
-  freePlace(d) {
-    const step = niceStep(this.viewer.camera.pixel(), 60);
-    const [x, y, z] = this.viewer.camera.target.map((c) => tidy(Math.round(c / step) * step));
-    const taken = [d.start, d.goal, ...d.obstacles.map((o) => o.pose)];
+  /** A place near the middle of the picture that is clear of all bodies. @param {Document} d @param {number} reach @returns {Six} */
+  freePlace(d, reach) {
+    const { shapes, ofBody, scene, camera } = this.viewer;
+    const step = niceStep(Math.max(reach, camera.pixel()), 0.5);
+    const [x, y, z] = camera.target.map((c) => tidy(Math.round(c / step) * step));
     const height = d.space === "SE2" ? 0 : z;
+    const taken = [d.start, d.goal, ...d.obstacles.map((o) => o.pose)].map((pose, i) => {
+      const { low, high } = shapes[ofBody[Math.max(0, i - 2 + scene.robot)]];
+      return { pose, reach: Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k]))) };
+    });
+    const clear = (/** @type {number} */ at) => taken.every((o) => Math.hypot(o.pose[0] - at, o.pose[1] - y, o.pose[2] - height) > o.reach + reach);
     let right = x;
-    while (taken.some((p) => Math.hypot(p[0] - right, p[1] - y, p[2] - height) < step / 2)) right = tidy(right + step);
+    for (let tries = 0; tries < 1000 && !clear(right); tries++) right = tidy(right + step);
     return [right, y, height, 0, 0, 0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */

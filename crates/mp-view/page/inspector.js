@@ -40,7 +40,7 @@ export class Inspector {
     /** @type {[string, string][]} */ const figures = Object.keys(doc.FIGURES).map((name) => [name, name]);
     const figure = select(figures, "cube", () => {}, { "aria-label": "Figure" });
     const as = select([["obstacle", "as obstacle"], ["robot", "as robot"]], "obstacle", () => {}, { "aria-label": "As obstacle or as robot" });
-    const add = () => editor.add(figure.value, doc.FIGURES[figure.value], /** @type {"obstacle" | "robot"} */ (as.value));
+    const add = () => editor.add(figure.value, doc.FIGURES[figure.value], /** @type {"obstacle" | "robot"} */ (as.value), doc.reachOf(doc.FIGURES[figure.value]));
     return el("div", { class: "buttons", role: "group", "aria-label": "Add a body" }, figure, as, button("Add", add), button("Mesh…", openMesh, { title: "Add a mesh from a file" }));
   }
   /** Shows what the editor has. What has the focus keeps it. */
