@@ -51,6 +51,13 @@ pub enum Event<'a, S> {
         /// Which tree.
         tree: usize,
     },
+    /// The motion from a node of a tree or roadmap toward a state was not free.
+    Blocked {
+        /// The state of the node.
+        from: &'a S,
+        /// The state toward which the motion led. The motion may have been shorter: see the planner's step.
+        toward: &'a S,
+    },
     /// A candidate path failed independent verification; the edge that failed is pruned.
     Rejected,
     /// Nodes of `tree` were removed and the others renumbered, in unchanged order.
@@ -123,7 +130,11 @@ pub struct EventCounts {
 impl<S> Observer<S> for EventCounts {
     fn on(&mut self, event: Event<'_, S>) {
         match event {
-            Event::Iteration(_) | Event::Rewired { .. } | Event::Linked { .. } | Event::Pruned { .. } => {}
+            Event::Iteration(_)
+            | Event::Rewired { .. }
+            | Event::Linked { .. }
+            | Event::Blocked { .. }
+            | Event::Pruned { .. } => {}
             Event::Sampled(_) => self.sampled += 1,
             Event::Rooted { .. } | Event::Added { .. } => self.added += 1,
             Event::Trapped { .. } => self.trapped += 1,

@@ -1,7 +1,8 @@
 //! Stops: when a planner ends without a solution.
 
-use std::sync::Arc;
+use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// What a planner has done so far.
@@ -116,15 +117,52 @@ impl Stop for Motions {
     }
 }
 
-/// Stops at a time of the wall clock. The clock changes when a run ends, not what is computed before: for
+/// Where the time is read: by default from the monotonic clock of the system.
+///
+/// WebAssembly has no such clock, and reading it panics there. A host of that kind passes its own.
+#[derive(Clone, Copy)]
+pub struct Clock(fn() -> Duration);
+
+impl Clock {
+    /// A clock that `now` reads: the time since some fixed moment. It must never go back.
+    #[must_use]
+    pub fn new(now: fn() -> Duration) -> Self {
+        Self(now)
+    }
+
+    /// The time since a fixed moment.
+    #[must_use]
+    pub fn now(self) -> Duration {
+        (self.0)()
+    }
+}
+
+impl Default for Clock {
+    fn default() -> Self {
+        Self(|| {
+            // A fixed moment, from which all times of this program are counted.
+            static ORIGIN: OnceLock<Instant> = OnceLock::new();
+            ORIGIN.get_or_init(Instant::now).elapsed()
+        })
+    }
+}
+
+impl fmt::Debug for Clock {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Clock")
+    }
+}
+
+/// Stops at a time of the clock. The clock changes when a run ends, not what is computed before: for
 /// reproducible runs use the counting stops.
 ///
 /// While iterations are short the clock is not read at each, but at least at every 64th; after two readings
 /// more than a millisecond apart, at the next.
 #[derive(Clone, Copy, Debug)]
 pub struct Deadline {
-    at: Option<Instant>,
-    last_read: Instant,
+    clock: Clock,
+    at: Option<Duration>,
+    last_read: Duration,
     /// Checks without reading the clock: between two readings, and still to go.
     skips: u32,
     skips_left: u32,
@@ -134,14 +172,20 @@ impl Deadline {
     /// Stops at the instant `at`.
     #[must_use]
     pub fn at(at: Instant) -> Self {
-        Self { at: Some(at), last_read: Instant::now(), skips: 0, skips_left: 0 }
+        Self::after(at.saturating_duration_since(Instant::now()))
     }
 
     /// Stops when `time` has passed from now.
     #[must_use]
     pub fn after(time: Duration) -> Self {
-        let now = Instant::now();
-        Self { at: now.checked_add(time), last_read: now, skips: 0, skips_left: 0 }
+        Self::by(Clock::default(), time)
+    }
+
+    /// Stops when `time` has passed from now on this clock.
+    #[must_use]
+    pub fn by(clock: Clock, time: Duration) -> Self {
+        let now = clock.now();
+        Self { clock, at: now.checked_add(time), last_read: now, skips: 0, skips_left: 0 }
     }
 }
 
@@ -152,8 +196,8 @@ impl Stop for Deadline {
             self.skips_left -= 1;
             return None;
         }
-        let now = Instant::now();
-        let slow = now.duration_since(self.last_read) > Duration::from_millis(1);
+        let now = self.clock.now();
+        let slow = now.saturating_sub(self.last_read) > Duration::from_millis(1);
         self.skips = if slow { 0 } else { (2 * self.skips + 1).min(63) };
         (self.last_read, self.skips_left) = (now, self.skips);
         (now >= at).then_some(StopReason::Deadline)
@@ -219,5 +263,11 @@ mod tests {
         }
         let mut soon = Deadline::after(Duration::from_millis(5));
         while soon.check(&Progress::default()).is_none() {}
+        // A clock of one's own.
+        static TIME: std::sync::atomic::AtomicU64 = std::sync::atomic::AtomicU64::new(0);
+        let clock = Clock::new(|| Duration::from_secs(TIME.fetch_add(1, Ordering::Relaxed)));
+        let mut third = Deadline::by(clock, Duration::from_secs(2));
+        assert_eq!(third.check(&Progress::default()), None);
+        assert_eq!(third.check(&Progress::default()), Some(StopReason::Deadline));
     }
 }

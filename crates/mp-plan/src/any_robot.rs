@@ -4,6 +4,7 @@ use crate::check::check;
 use crate::explain::{check_ends, explain, lint};
 use crate::path::state;
 use crate::plan::plan;
+use crate::run::AnyPrepared;
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
@@ -13,9 +14,8 @@ use crate::{
 };
 use mp_cspace::{Rng, Space, Validity};
 use mp_geom::Aabb;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3};
 use std::path::{Path, PathBuf};
-#[cfg(feature = "roadmaps")]
 use std::sync::Arc;
 
 /// A [`RobotKind`] behind a pointer.
@@ -29,7 +29,10 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn path_format(&self) -> PathFormat;
     fn start(&self) -> Vec<f64>;
     fn goals(&self) -> Vec<Vec<f64>>;
+    fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Arc<dyn AnyRobot>, Error>;
+    fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error>;
     fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error>;
+    fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error>;
     #[cfg(feature = "roadmaps")]
     fn roadmap(
         self: Arc<Self>,
@@ -79,8 +82,21 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     fn goals(&self) -> Vec<Vec<f64>> {
         RobotKind::goals(self).iter().map(|goal| self.row(goal)).collect()
     }
+    fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Arc<dyn AnyRobot>, Error> {
+        if goals.is_empty() {
+            return Err(Error::new("there is no goal").help("give at least one configuration as a goal"));
+        }
+        let goals = goals.iter().map(|goal| state(self, goal)).collect::<Result<_, _>>()?;
+        Ok(Arc::new(RobotKind::with_ends(self, state(self, start)?, goals)?))
+    }
+    fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error> {
+        Ok(RobotKind::traced(self, &state(self, row)?))
+    }
     fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
         plan(self, request, control)
+    }
+    fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
+        crate::run::prepare(self, request)
     }
     #[cfg(feature = "roadmaps")]
     fn roadmap(

@@ -36,6 +36,8 @@
 //! | load a scene, or make one in code | [`Scene::find`], [`Scene::load`], [`Scene::parse`], [`Scene::from_problem`], [`Scene::from_world`], [`ArmScene`], [`Scene::new`] |
 //! | say how to plan | [`Request`]: planner, settings, metric, motion check, budgets, seed, what is done to the path found |
 //! | plan | [`Scene::plan`]; with progress reports and a stop: [`Scene::plan_with`], [`Control`], [`Watch`] |
+//! | plan in pieces, between the events of a program | [`Scene::prepare`], [`Run`] |
+//! | move start and goal | [`Scene::with_ends`] |
 //! | build a roadmap once for many queries | [`Scene::roadmap`], [`SceneRoadmap`] |
 //! | read the result | [`Report`], with a documented JSON form |
 //! | prove a path free | [`Scene::check`], [`Verdict`] |
@@ -73,6 +75,7 @@ mod report;
 mod request;
 mod roadmaps;
 mod robot;
+mod run;
 mod runs;
 mod scene;
 #[cfg(feature = "roadmaps")]
@@ -101,6 +104,7 @@ pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
     PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, Touch,
 };
+pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};
 pub use scene::Scene;
 #[cfg(feature = "roadmaps")]

@@ -4,7 +4,6 @@ use crate::finish::finish;
 use crate::search::{Search, search};
 use crate::{Control, Error, REPORT_VERSION, Report, Request, RobotKind, StoppedBy};
 use mp_cspace::Outcome;
-use std::time::Instant;
 
 /// Plans, finishes the path, and makes the report.
 pub(crate) fn plan<K: RobotKind>(
@@ -69,9 +68,9 @@ pub(crate) fn reported<K: RobotKind>(
         Outcome::Solved(path) => path,
     };
     report.path_length_found = Some(path.length(kind.space()));
-    let began = Instant::now();
+    let began = control.clock.now();
     let finished = finish(kind, &path, request, control)?;
-    report.finish_s = began.elapsed().as_secs_f64();
+    report.finish_s = control.clock.now().saturating_sub(began).as_secs_f64();
     let Some(finished) = finished else {
         let by = StoppedBy::Verification;
         (report.stopped_by, report.why) = (Some(by), Some(by.to_string()));

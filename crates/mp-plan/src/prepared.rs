@@ -6,18 +6,18 @@ use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Cancel, Certified, Deadline, Discrete, Goals, Iterations, Nodes, ParameterError,
+    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Goals, Iterations, Nodes, ParameterError,
     Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
 };
 use mp_tree::TreeState;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// What the problems and planners of one request are made from.
 pub(crate) struct Prepared<'k, K: RobotKind> {
-    kind: &'k K,
-    request: &'k Request,
+    pub(crate) kind: &'k K,
+    pub(crate) request: &'k Request,
     /// The space under the metric of the request.
     pub(crate) space: AnySpace<'k, K::State>,
     /// An empty index of it.
@@ -80,29 +80,29 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         RoadmapPlanner::new(info, parts, file)
     }
 
-    /// Calls `run` with the stop and the observer of a run that began at `began`. It is stopped by the budget of the
-    /// request and by `control`, and reported to the watch of `control`.
+    /// Calls `run` with the stop and the observer of a run that has taken the time `spent`. It is stopped by the budget of
+    /// the request and by the flag of `control`, and reported to the watch of `control`.
     pub(crate) fn watched<T>(
         &self,
         control: &mut Control<'_>,
-        began: Instant,
+        spent: Duration,
         run: impl FnOnce(&mut dyn Stop, &mut Events<'_, '_, '_, K::State>) -> T,
     ) -> T {
         let wanted = control.watch.as_ref().is_some_and(|watch| watch.wants_events());
-        let adapter = WatchAdapter::new(control.watch.as_deref_mut());
-        let stop = self.stop(began, control.cancel.clone());
+        let adapter = WatchAdapter::new(control.watch.as_deref_mut(), control.clock);
+        let stop = self.stop(spent, control.clock, control.cancel.clone());
         let mut stop = stop.or(control.stop.as_deref_mut()).or(&adapter);
         run(&mut stop, &mut Events { row: &|q| self.kind.row(q), adapter: &adapter, wanted })
     }
 
-    /// When a run that began at `began` stops: by `cancel`, or by the budget of the request.
-    fn stop(&self, began: Instant, cancel: Cancel) -> impl Stop {
+    /// When a run that has taken the time `spent` stops: by `cancel`, or by the budget of the request.
+    fn stop(&self, spent: Duration, clock: Clock, cancel: Cancel) -> impl Stop {
         let budget = &self.request.budget;
-        let deadline = budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
+        let time = budget.time_s.and_then(|s| Duration::try_from_secs_f64(s).ok());
         cancel
             .or(budget.iterations.map(Iterations))
             .or(budget.nodes.map(Nodes))
-            .or(deadline.and_then(|time| began.checked_add(time)).map(Deadline::at))
+            .or(time.map(|time| Deadline::by(clock, time.saturating_sub(spent))))
             .or(budget.queries.map(|most| QueryBudget { queries: &self.queries, most }))
     }
 }

@@ -195,6 +195,19 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// The goal configurations, at least one.
     fn goals(&self) -> &[Self::State];
 
+    /// The same robot among the same obstacles, with another start and other goals, of which there is at least one. By
+    /// default an error: override it for front ends in which ends are moved.
+    ///
+    /// # Errors
+    /// When such robots cannot be given other ends.
+    fn with_ends(&self, _start: Self::State, _goals: Vec<Self::State>) -> Result<Self, Error>
+    where
+        Self: Sized,
+    {
+        Err(Error::new(format!("{} cannot be given another start or goal", self.name()))
+            .help("make the scene again with other ends"))
+    }
+
     /// The checker. Clone it to use it.
     fn checker(&self) -> &Self::Checker;
     /// A verifier.

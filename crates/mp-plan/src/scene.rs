@@ -5,13 +5,13 @@ use crate::robot::{PlanarScene, RigidScene};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Sweep,
+    Body, Column, Control, Error, Explanation, PathFormat, PathRows, PreparedRun, Report, Request, RobotKind, Sweep,
     Track, Verdict,
 };
 use mp_geom::Aabb;
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -137,6 +137,16 @@ impl Scene {
         self.robot.goals()
     }
 
+    /// The same scene with another start and other goals, as rows. They need not be free: planning and
+    /// [`check_ends`](Self::check_ends) refuse them then.
+    ///
+    /// # Errors
+    /// When there is no goal, a row does not have as many numbers as the robot's configurations, or the kind of robot is your
+    /// own and does not support it.
+    pub fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Self, Error> {
+        Ok(Self { robot: self.robot.with_ends(start, goals)?, ..self.clone() })
+    }
+
     /// Plans a path: searches for it, shortens it, and verifies it as it will be written. The same scene and request give
     /// the same report except for its times, on any number of threads.
     ///
@@ -156,6 +166,16 @@ impl Scene {
         let mut report = self.robot.plan(request, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
+    }
+
+    /// Prepares a run that is advanced in pieces.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn prepare<'s>(&'s self, request: &'s Request) -> Result<PreparedRun<'s>, Error> {
+        self.check_ends()?;
+        let file = self.file.as_ref().map(|file| file.display().to_string());
+        Ok(PreparedRun { prepared: self.robot.prepare(request)?, file })
     }
 
     /// Builds a roadmap for many queries, with the planner of the request, which must build roadmaps, until its budget is
@@ -233,6 +253,14 @@ impl Scene {
     /// When the row does not have as many numbers as the robot's configurations.
     pub fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error> {
         self.robot.poses(row)
+    }
+
+    /// The point (m) whose curve pictures show, at a configuration.
+    ///
+    /// # Errors
+    /// When the row does not have as many numbers as the robot's configurations.
+    pub fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error> {
+        self.robot.traced(row)
     }
 
     /// Poses of the robot along a path; without a path, at start and goal only.

@@ -15,7 +15,7 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
+use std::time::Duration;
 
 /// A start or goal is connected to at most this many nearest nodes.
 const NEIGHBOURS: usize = 20;
@@ -160,7 +160,6 @@ fn grown<K: RobotKind>(
     let file = RoadmapFile::of_request(kind, request)?;
     let prepared = Prepared::new(kind, request)?;
     control.stage(Stage::Planning);
-    let began = Instant::now();
     let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
     if let Some(map) = map {
         made.resume(map)?;
@@ -170,7 +169,7 @@ fn grown<K: RobotKind>(
         0 => Rng::seed(request.seed),
         nodes => Rng::stream(request.seed, nodes as u64),
     };
-    let reason = prepared.watched(control, began, |stop, events| made.build(&mut rng, stop, events));
+    let reason = prepared.watched(control, Duration::ZERO, |stop, events| made.build(&mut rng, stop, events));
     let ([edges, components], map) = made.keep(file.as_ref(), true)?;
     drop(made);
     let map = map.unwrap_or_default();
@@ -190,10 +189,10 @@ impl<K: RobotKind> AnySceneRoadmap for RobotRoadmap<K> {
         }
         let prepared = Prepared::new(kind, request)?;
         control.stage(Stage::Planning);
-        let began = Instant::now();
+        let began = control.clock.now();
         let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
         let answer = K::State::answer(&mut self.roadmap, &mut checker, &start, &goal);
-        let time = began.elapsed();
+        let time = control.clock.now().saturating_sub(began);
         let mut progress = mp_cspace::Progress::new(0, self.roadmap.map().len(), checker.motions());
         progress.rejected = checker.rejected();
         // Checkers report their last queries when they are dropped.

@@ -1,7 +1,7 @@
 //! Progress reports of a run, and how to stop it.
 
-use mp_cspace::{Cancel, Event, NodeId, Observer, Progress, Stop, StopReason};
-use std::time::{Duration, Instant};
+use mp_cspace::{Cancel, Clock, Event, NodeId, Observer, Progress, Stop, StopReason};
+use std::time::Duration;
 
 /// The stages of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -79,6 +79,13 @@ pub enum SearchEvent<'a> {
         /// Its configuration.
         row: Vec<f64>,
     },
+    /// The motion from a node toward a configuration was not free.
+    Blocked {
+        /// The configuration of the node.
+        from: Vec<f64>,
+        /// The configuration toward which the motion led; the motion may have been shorter.
+        toward: Vec<f64>,
+    },
     /// A candidate path failed verification.
     Rejected,
     /// Nodes were removed and the others renumbered, in unchanged order.
@@ -103,6 +110,8 @@ pub struct Control<'a> {
     pub stop: Option<&'a mut dyn Stop>,
     /// Whether [`search`](crate::search) returns the roadmap.
     pub keep_roadmap: bool,
+    /// The clock of time budgets, of the times in reports and of progress reports: by default that of the system.
+    pub clock: Clock,
 }
 
 impl std::fmt::Debug for Control<'_> {
@@ -133,22 +142,24 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 /// never uses both at the same time.
 pub(crate) struct WatchAdapter<'w, 'a> {
     pub(crate) watch: std::cell::RefCell<Option<&'w mut (dyn Watch + 'a)>>,
-    last_report: std::cell::Cell<Instant>,
+    clock: Clock,
+    last_report: std::cell::Cell<Duration>,
 }
 
 impl<'w, 'a> WatchAdapter<'w, 'a> {
-    pub(crate) fn new(watch: Option<&'w mut (dyn Watch + 'a)>) -> Self {
-        Self { watch: watch.into(), last_report: Instant::now().into() }
+    pub(crate) fn new(watch: Option<&'w mut (dyn Watch + 'a)>, clock: Clock) -> Self {
+        Self { watch: watch.into(), clock, last_report: clock.now().into() }
     }
 }
 
 impl Stop for &WatchAdapter<'_, '_> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
         if progress.iterations.is_multiple_of(ITERATIONS_PER_LOOK)
-            && self.last_report.get().elapsed() > REPORT_INTERVAL
+            && let now = self.clock.now()
+            && now.saturating_sub(self.last_report.get()) > REPORT_INTERVAL
             && let Some(watch) = &mut *self.watch.borrow_mut()
         {
-            self.last_report.set(Instant::now());
+            self.last_report.set(now);
             watch.progress(progress);
         }
         None
@@ -176,6 +187,7 @@ impl<S> Observer<S> for Events<'_, '_, '_, S> {
             }
             Event::Rewired { tree, id, parent } => SearchEvent::Rewired { tree, id, parent },
             Event::Linked { from, to } => SearchEvent::Linked { from, to },
+            Event::Blocked { from, toward } => SearchEvent::Blocked { from: row(from), toward: row(toward) },
             Event::Rejected => SearchEvent::Rejected,
             Event::Pruned { tree, survivors } => SearchEvent::Pruned { tree, survivors },
             _ => return,

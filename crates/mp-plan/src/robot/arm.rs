@@ -199,6 +199,10 @@ impl RobotKind for ArmScene {
     fn goals(&self) -> &[Configuration] {
         &self.goals
     }
+    fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
+        // The lines of the file say nothing about these ends.
+        Ok(Self { start, goals, source: None, ..self.clone() })
+    }
 
     fn checker(&self) -> &Arm {
         &self.arm

@@ -247,6 +247,14 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         &self.goals
     }
 
+    fn with_ends(&self, start: B::State, goals: Vec<B::State>) -> Result<Self, Error> {
+        let mut scene = self.clone();
+        scene.problem.file.start = B::row(&start);
+        scene.problem.file.goals = goals.iter().map(B::row).collect();
+        (scene.start, scene.goals) = (start, goals);
+        Ok(scene)
+    }
+
     fn checker(&self) -> &B {
         &self.robot
     }

@@ -108,7 +108,7 @@ pub struct RigidScene<M: RigidSpace> {
     space: M::Space,
     robot: RigidBody<M>,
     start: M::State,
-    goals: [M::State; 1],
+    goals: Vec<M::State>,
     radius: f64,
 }
 
@@ -123,7 +123,7 @@ impl<M: RigidSpace> RigidScene<M> {
         let robot = RigidBody::<M>::among(&problem.robot.mesh, obstacles)?;
         let (start, goal) = (M::configuration(&problem.start), M::configuration(&problem.goal));
         let radius = if robot.radius() > 0.0 { robot.radius() } else { 1e-3 * space.extent() };
-        Ok(Self { problem, space, robot, start, goals: [goal], radius })
+        Ok(Self { problem, space, robot, start, goals: vec![goal], radius })
     }
 
     /// The problem that it was made from.
@@ -171,6 +171,14 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
     }
     fn goals(&self) -> &[M::State] {
         &self.goals
+    }
+
+    fn with_ends(&self, start: M::State, goals: Vec<M::State>) -> Result<Self, Error> {
+        let mut problem = self.problem.clone();
+        problem.start = M::pose(&start);
+        problem.goal = goals.first().map_or(problem.goal, M::pose);
+        let space = M::space(&problem.position_bounds())?;
+        Ok(Self { problem, space, robot: self.robot.clone(), start, goals, radius: self.radius })
     }
 
     fn checker(&self) -> &RigidBody<M> {

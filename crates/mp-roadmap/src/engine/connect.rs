@@ -50,6 +50,9 @@ where
     /// The motion from a node to `q`, if the local planner has one. Counts as an attempt of the node.
     pub fn reach(&mut self, from: NodeId, q: &C::State) -> Option<Motion<C::State, L::Edge>> {
         let motion = self.ask(from, q);
+        if motion.is_none() {
+            self.observer.on(Event::Blocked { from: self.map.state(from), toward: q });
+        }
         self.map.tried(from, motion.is_none());
         motion
     }
@@ -96,8 +99,9 @@ where
         let failed = motion.is_none();
         self.map.tried(from, failed);
         self.map.tried(to, failed);
-        if let Some(motion) = motion {
-            self.link(from, to, motion);
+        match motion {
+            Some(motion) => self.link(from, to, motion),
+            None => self.observer.on(Event::Blocked { from: self.map.state(from), toward: &q }),
         }
         !failed
     }

@@ -78,6 +78,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
             if grew {
                 return grown;
             }
+            observer.on(Event::Blocked { from: self.tree.state(id), toward: target });
         }
         observer.on(Event::Trapped { tree: self.index });
         Grown::Trapped
@@ -105,6 +106,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
         let grown =
             extender.extend(from, &mut self.growing(target, Purpose::Explore, checker, rng, observer));
         if grown == Grown::Trapped {
+            observer.on(Event::Blocked { from: self.tree.state(from), toward: target });
             observer.on(Event::Trapped { tree: self.index });
         }
         grown

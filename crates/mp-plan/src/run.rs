@@ -1,0 +1,310 @@
+//! A run in pieces: for programs with an event loop, which plan a little between two events.
+
+use crate::planners::PlannerKind;
+use crate::plan::reported;
+use crate::prepared::Prepared;
+use crate::relax::relax_if_requested;
+use crate::roadmaps::{RoadmapFile, RoadmapPlanner, RoadmapState};
+use crate::search::Search;
+use crate::watch::Events;
+use crate::{Control, Error, Report, Request, RobotKind, Stage, StoppedBy};
+use mp_cspace::erased::AnySpace;
+use mp_cspace::{Outcome, Path, Planner, Progress, Rng, Stop, StopReason, Workers};
+use mp_tree::{TreeState, improve};
+use std::fmt;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+/// A request prepared for a scene: the data that a [`Run`] borrows. [`Scene::prepare`](crate::Scene::prepare) makes it.
+pub struct PreparedRun<'s> {
+    pub(crate) prepared: Box<dyn AnyPrepared + 's>,
+    /// The file of the scene.
+    pub(crate) file: Option<String>,
+}
+
+impl PreparedRun<'_> {
+    /// Makes the planner, which then has done nothing yet.
+    ///
+    /// # Errors
+    /// When the request is not valid for the robot, or a roadmap cannot be read.
+    pub fn begin(&self, control: &mut Control<'_>) -> Result<Run<'_>, Error> {
+        Ok(Run { run: self.prepared.begin(control)?, file: self.file.clone() })
+    }
+}
+
+impl fmt::Debug for PreparedRun<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PreparedRun").field("file", &self.file).finish_non_exhaustive()
+    }
+}
+
+/// A run of a planner that is advanced in pieces. The pieces do not change its result: the same request gives the same report,
+/// except for its times, as [`Scene::plan`](crate::Scene::plan).
+///
+/// ```
+/// use mp_plan::{Control, Request, Scene};
+/// use mp_cspace::Iterations;
+///
+/// let (scene, request) = (Scene::find("easy")?, Request::new("rrt").seed(3));
+/// let prepared = scene.prepare(&request)?;
+/// let mut control = Control::default();
+/// let mut run = prepared.begin(&mut control)?;
+/// let mut pieces = 1;
+/// while !run.advance(&mut Iterations(50 * pieces), &mut control) {
+///     pieces += 1; // Here a program answers its events.
+/// }
+/// let report = run.finish(&mut control)?;
+/// assert_eq!(report.fingerprint, scene.plan(&request)?.fingerprint);
+/// # Ok::<(), mp_plan::Error>(())
+/// ```
+pub struct Run<'p> {
+    run: Box<dyn AnyRun + 'p>,
+    file: Option<String>,
+}
+
+impl Run<'_> {
+    /// Plans on until `pause` stops it, or the run is over: it has a path and does not improve it, its budget is used up, or
+    /// `control` ends it. Returns whether it is over. Time between two calls does not count.
+    pub fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
+        self.run.advance(pause, control)
+    }
+
+    /// The counts so far.
+    #[must_use]
+    pub fn progress(&mut self) -> Progress {
+        self.run.progress()
+    }
+
+    /// Finishes the path found, as the request says, verifies it, and makes the report. A run that is not over counts as
+    /// cancelled; the best path that it found is kept.
+    ///
+    /// # Errors
+    /// When a roadmap cannot be written, or the robot refuses to relax its path.
+    pub fn finish(self, control: &mut Control<'_>) -> Result<Report, Error> {
+        let mut report = self.run.finish(control)?;
+        report.scene_file = self.file;
+        Ok(report)
+    }
+}
+
+impl fmt::Debug for Run<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Run").field("file", &self.file).finish_non_exhaustive()
+    }
+}
+
+/// A prepared request for a robot of some kind.
+pub(crate) trait AnyPrepared {
+    fn begin(&self, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error>;
+}
+
+/// A run for a robot of some kind.
+pub(crate) trait AnyRun {
+    fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool;
+    fn progress(&mut self) -> Progress;
+    fn finish(self: Box<Self>, control: &mut Control<'_>) -> Result<Report, Error>;
+}
+
+/// The request, prepared for a robot.
+pub(crate) fn prepare<'s, K: RobotKind>(
+    kind: &'s K,
+    request: &'s Request,
+) -> Result<Box<dyn AnyPrepared + 's>, Error> {
+    request.check()?;
+    PlannerKind::new(&request.planner)?;
+    Ok(Box::new(Prepared::new(kind, request)?))
+}
+
+impl<K: RobotKind> AnyPrepared for Prepared<'_, K> {
+    fn begin(&self, control: &mut Control<'_>) -> Result<Box<dyn AnyRun + '_>, Error> {
+        Ok(Box::new(RobotRun::new(self, control)?))
+    }
+}
+
+/// A planner made by name.
+enum NamedPlanner<'p, S> {
+    Tree(mp_tree::AnyPlanner<'p, S, ()>),
+    Roadmap(RoadmapPlanner<'p, S>),
+}
+
+impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> NamedPlanner<'p, S> {
+    fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
+        match self {
+            Self::Tree(planner) => &mut **planner,
+            Self::Roadmap(made) => made.planner(),
+        }
+    }
+}
+
+/// A run for one kind of robot.
+pub(crate) struct RobotRun<'p, 'k, K: RobotKind> {
+    prepared: &'p Prepared<'k, K>,
+    made: NamedPlanner<'p, K::State>,
+    rng: Rng,
+    file: Option<RoadmapFile<'k>>,
+    /// The time taken so far.
+    time: Duration,
+    found: Found<K::State>,
+}
+
+/// What a run has found.
+struct Found<S> {
+    /// The last path.
+    best: Option<Path<S>>,
+    /// The first path of an anytime planner: when it was found, and its length in the metric.
+    first: Option<(Duration, f64, Path<S>)>,
+    /// Whether the run is over, and why it stopped; no reason when it has a path that it does not improve.
+    over: Option<Option<StopReason>>,
+}
+
+impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
+    /// Makes the planner of the request.
+    pub(crate) fn new(prepared: &'p Prepared<'k, K>, control: &mut Control<'_>) -> Result<Self, Error> {
+        let (kind, request) = (prepared.kind, prepared.request);
+        let planner = PlannerKind::new(&request.planner)?;
+        let workers = Workers::new(request.threads)?;
+        let file = RoadmapFile::of_request(kind, request)?;
+        let began = control.clock.now();
+        control.stage(Stage::Planning);
+        let made = match &planner {
+            PlannerKind::Tree(spec) => {
+                NamedPlanner::Tree(prepared.tree_planner(&spec.to_string(), &workers)?)
+            }
+            PlannerKind::Roadmap(info) => {
+                NamedPlanner::Roadmap(prepared.roadmap_planner(info, workers, file.as_ref())?)
+            }
+        };
+        let time = control.clock.now().saturating_sub(began);
+        let found = Found { best: None, first: None, over: None };
+        Ok(Self { prepared, made, rng: Rng::seed(request.seed), file, time, found })
+    }
+
+    /// Plans on until `pause` stops it or the run is over. Returns whether it is over.
+    pub(crate) fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
+        if self.found.over.is_none() {
+            let (clock, spent) = (control.clock, self.time);
+            let began = clock.now();
+            let (made, rng, found) = (&mut self.made, &mut self.rng, &mut self.found);
+            let (prepared, first_only) = (self.prepared, self.prepared.request.first_only);
+            prepared.watched(control, spent, |stop, events| {
+                let mut stop = Pausing { stop, pause, paused: false };
+                let time = || spent + clock.now().saturating_sub(began);
+                search_on(made.planner(), found, first_only, &prepared.space, rng, &mut stop, events, &time);
+                if stop.paused {
+                    found.over = None;
+                }
+            });
+            self.time += clock.now().saturating_sub(began);
+        }
+        self.found.over.is_some()
+    }
+
+    /// Relaxes the path found if the request says so, and says what was done.
+    pub(crate) fn into_search(mut self, control: &mut Control<'_>) -> Result<Search<K::State>, Error> {
+        let (prepared, Found { best, first, over }) = (self.prepared, self.found);
+        let (kind, request) = (prepared.kind, prepared.request);
+        let began = control.clock.now();
+        let outcome = match best {
+            Some(path) => Outcome::Solved(relax_if_requested(kind, request, path, control)?),
+            None => Outcome::Stopped(over.flatten().unwrap_or(StopReason::Cancelled)),
+        };
+        let time = self.time + control.clock.now().saturating_sub(began);
+        let progress = self.made.planner().progress();
+        let (map, roadmap) = match &mut self.made {
+            NamedPlanner::Tree(_) => (None, None),
+            NamedPlanner::Roadmap(made) => {
+                let (map, roadmap) = made.keep(self.file.as_ref(), control.keep_roadmap)?;
+                (Some(map), roadmap)
+            }
+        };
+        // Checkers report their last queries when they are dropped.
+        drop(self.made);
+        let outcome_word = match &outcome {
+            Outcome::Solved(_) => "solved",
+            Outcome::Stopped(reason) => StoppedBy::from(*reason).word(),
+        };
+        tracing::info!(
+            outcome = outcome_word,
+            iterations = progress.iterations,
+            nodes = progress.nodes,
+            "planned"
+        );
+        let queries = prepared.queries.load(Ordering::Relaxed);
+        Ok(Search { outcome, progress, queries, time, first, map, roadmap })
+    }
+}
+
+impl<K: RobotKind> AnyRun for RobotRun<'_, '_, K> {
+    fn advance(&mut self, pause: &mut dyn Stop, control: &mut Control<'_>) -> bool {
+        RobotRun::advance(self, pause, control)
+    }
+    fn progress(&mut self) -> Progress {
+        self.made.planner().progress()
+    }
+    fn finish(self: Box<Self>, control: &mut Control<'_>) -> Result<Report, Error> {
+        let (kind, request) = (self.prepared.kind, self.prepared.request);
+        let found = self.into_search(control)?;
+        reported(kind, request, found, None, control)
+    }
+}
+
+/// A stop, and another that only pauses.
+struct Pausing<'a> {
+    stop: &'a mut dyn Stop,
+    pause: &'a mut dyn Stop,
+    paused: bool,
+}
+
+impl Stop for Pausing<'_> {
+    fn check(&mut self, progress: &Progress) -> Option<StopReason> {
+        let reason = self.stop.check(progress);
+        if reason.is_some() {
+            return reason;
+        }
+        let reason = self.pause.check(progress);
+        self.paused = reason.is_some();
+        reason
+    }
+}
+
+/// Runs the planner until it is stopped or has its last path. Compiled for each kind of state instead of each kind of robot.
+#[expect(clippy::too_many_arguments, reason = "a closure over all of it would be compiled for each kind of robot")]
+fn search_on<S: TreeState>(
+    planner: &mut dyn Planner<S, Edge = ()>,
+    found: &mut Found<S>,
+    first_only: bool,
+    space: &AnySpace<'_, S>,
+    rng: &mut Rng,
+    stop: &mut dyn Stop,
+    events: &mut Events<'_, '_, '_, S>,
+    time: &dyn Fn() -> Duration,
+) {
+    let adapter = events.adapter;
+    let report = |path: &Path<S>| {
+        let length = path.length(space);
+        if let Some(watch) = &mut *adapter.watch.borrow_mut() {
+            watch.found(length);
+        }
+        length
+    };
+    if first_only {
+        found.over = Some(match planner.solve(rng, stop, events) {
+            Outcome::Solved(path) => {
+                report(&path);
+                found.best = Some(path);
+                None
+            }
+            Outcome::Stopped(reason) => Some(reason),
+        });
+        return;
+    }
+    let improves = planner.improves();
+    let (best, reason) = improve(planner, rng, stop, events, |path, _| {
+        let length = report(path);
+        if improves && found.first.is_none() {
+            found.first = Some((time(), length, path.clone()));
+        }
+    });
+    found.best = best.or(found.best.take());
+    found.over = Some(reason);
+}
