@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Info(Info),
     /// Draw a scene, and a path through it, with no display.
     Render(Render),
+    /// Open the viewer in the browser: look at a scene and a path, edit the scene, and plan.
+    View(View),
     /// List the shipped scenes.
     Scenes,
     /// Run benchmarks, with the program `mp-bench`.
@@ -148,6 +150,26 @@ pub(crate) struct Render {
     /// Width and height in pixels.
     #[arg(long, value_name = "W×H", default_value = "1280x960", value_parser = pixels)]
     pub(crate) size: (usize, usize),
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct View {
+    /// A scene file, or the name of a shipped scene; `-` for standard input. Without it, the page lets you choose one.
+    pub(crate) scene: Option<PathBuf>,
+    /// A path: text, `.json` or `.csv`; `-` for standard input.
+    pub(crate) path: Option<PathBuf>,
+    /// Show the shipped scenes, to choose one of them.
+    #[arg(long, conflicts_with = "scene")]
+    pub(crate) gallery: bool,
+    /// Print the address, and do not open a browser.
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// The port to listen on [default: a free one].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1024..))]
+    pub(crate) port: Option<u16>,
+    /// The folder where the page saves files [default: that of the scene, or the current one].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -14,7 +14,7 @@ use std::fmt;
 use std::future::poll_fn;
 use std::net::{Ipv4Addr, TcpListener};
 use std::pin::Pin;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use tokio::io::AsyncWrite;
 use tokio::net::TcpStream;
@@ -61,7 +61,8 @@ impl Server {
         let port = listener.local_addr().map_err(failed)?.port();
         let sessions = Arc::new(Sessions::new(open, limits.sessions));
         let page = Bytes::from(page.into());
-        let service = Service { port, token: Token::random()?, page, limits, sessions };
+        let ticket = Mutex::new(Some(Token::random()?));
+        let service = Service { port, token: Token::random()?, ticket, page, limits, sessions };
         Ok(Self { listener, service, stop: Stop::default() })
     }
 
@@ -69,6 +70,15 @@ impl Server {
     #[must_use]
     pub fn address(&self) -> String {
         format!("http://127.0.0.1:{}/{}/", self.service.port, self.service.token.text())
+    }
+
+    /// An address that leads to the page once, for the program that opens a browser: other users of this machine can read
+    /// the arguments of programs, and must not find the token there.
+    #[must_use]
+    pub fn ticket(&self) -> String {
+        let ticket = self.service.ticket.lock().unwrap_or_else(PoisonError::into_inner);
+        let ticket = ticket.as_ref().map_or("", Token::text);
+        format!("http://127.0.0.1:{}/{ticket}", self.service.port)
     }
 
     /// The port it listens on.

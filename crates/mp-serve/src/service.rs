@@ -7,7 +7,7 @@ use crate::{Limits, body, caller, events};
 use hyper::body::{Bytes, Incoming};
 use hyper::header::{ALLOW, HeaderValue, LOCATION};
 use hyper::{Method, Request, StatusCode};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use tokio::task::spawn_blocking;
 
 /// Bodies above this many bytes are read and handled one after the other in each session, so that memory is bounded. Smaller
@@ -18,6 +18,8 @@ const LARGE: u64 = 1 << 20;
 pub(crate) struct Service {
     pub(crate) port: u16,
     pub(crate) token: Token,
+    /// Leads to the page once.
+    pub(crate) ticket: Mutex<Option<Token>>,
     pub(crate) page: Bytes,
     pub(crate) limits: Limits,
     pub(crate) sessions: Arc<Sessions>,
@@ -34,13 +36,17 @@ impl Service {
         }
         let path = request.uri().path().to_owned();
         let mut parts = path.strip_prefix('/').unwrap_or_default().splitn(2, '/');
-        if !self.token.is(parts.next().unwrap_or_default()) {
+        let token = parts.next().unwrap_or_default();
+        if self.redeem(token) {
+            return self.moved(StatusCode::SEE_OTHER);
+        }
+        if !self.token.is(token) {
             let sentence =
                 "The address has not the token of this server: open the address that `mp view` printed last.";
             return refused(StatusCode::FORBIDDEN, sentence);
         }
         match parts.next() {
-            None => self.moved(),
+            None => self.moved(StatusCode::PERMANENT_REDIRECT),
             Some("") => match request.method() {
                 &Method::GET => answer::page(self.page.clone()),
                 _ => only("GET"),
@@ -60,9 +66,15 @@ impl Service {
         }
     }
 
-    /// To the address of the page, which ends with a slash.
-    fn moved(&self) -> Answer {
-        let mut answer = refused(StatusCode::PERMANENT_REDIRECT, "The address ends with a slash.");
+    /// Whether this is the ticket, which is used up by it.
+    fn redeem(&self, given: &str) -> bool {
+        let mut ticket = self.ticket.lock().unwrap_or_else(PoisonError::into_inner);
+        ticket.take_if(|ticket| ticket.is(given)).is_some()
+    }
+
+    /// To the address of the page.
+    fn moved(&self, status: StatusCode) -> Answer {
+        let mut answer = refused(status, "The page has another address.");
         if let Ok(place) = HeaderValue::from_str(&format!("/{}/", self.token.text())) {
             answer.headers_mut().insert(LOCATION, place);
         }

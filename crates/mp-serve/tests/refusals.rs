@@ -68,6 +68,20 @@ fn only_requests_with_the_token_from_the_page_are_answered() {
 }
 
 #[test]
+fn a_ticket_leads_to_the_page_once() {
+    let server = serve(limits());
+    let (ticket, token, port) = (&server.ticket, &server.token, server.port);
+    assert_ne!(ticket, token);
+    let evil = server.raw(format!("GET /{ticket} HTTP/1.1\r\nHost: evil.example:{port}\r\n\r\n"));
+    assert_eq!(evil.status(), 403, "{evil:?}");
+    let request = format!("GET /{ticket} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n");
+    let first = server.raw(&request);
+    assert_eq!((first.status(), first.header("location")), (303, Some(format!("/{token}/").as_str())));
+    assert_eq!(server.raw(&request).status(), 403);
+    server.goes_on();
+}
+
+#[test]
 fn a_body_above_the_limit_is_refused_before_it_is_read() {
     let server = serve(limits());
     let tab = server.tab();

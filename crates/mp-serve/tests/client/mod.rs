@@ -96,6 +96,7 @@ pub(crate) const PAGE: &str = "<!doctype html><title>The page</title>";
 pub(crate) struct Served {
     pub(crate) port: u16,
     pub(crate) token: String,
+    pub(crate) ticket: String,
     pub(crate) seen: Arc<Seen>,
     stop: Stop,
     thread: Option<JoinHandle<Result<(), ServeError>>>,
@@ -120,8 +121,9 @@ pub(crate) fn serve(limits: Limits) -> Served {
     let address = server.address();
     let token = address.strip_prefix(&format!("http://127.0.0.1:{port}/")).unwrap().trim_end_matches('/');
     let token = token.to_owned();
+    let ticket = server.ticket().rsplit('/').next().unwrap().to_owned();
     let thread = Some(std::thread::spawn(move || server.run()));
-    Served { port, token, seen, stop, thread }
+    Served { port, token, ticket, seen, stop, thread }
 }
 
 impl Served {
@@ -181,7 +183,7 @@ impl Served {
         let hello = tab.event();
         assert_eq!(&hello[..4], b"MPV1");
         let length = u32::from_le_bytes(hello[4..8].try_into().unwrap()) as usize;
-        assert!(length % 8 == 0 && hello.len() == 8 + length, "{hello:?}");
+        assert!(length.is_multiple_of(8) && hello.len() == 8 + length, "{hello:?}");
         let text = std::str::from_utf8(&hello[8..]).unwrap();
         let inner = text.trim_end().strip_prefix("{\"event\":\"hello\",\"session\":\"").unwrap();
         tab.session = inner.strip_suffix("\"}").unwrap().to_owned();
