@@ -153,19 +153,46 @@ impl fmt::Debug for Clock {
     }
 }
 
+/// Reads a clock as seldom as short iterations allow: not at each, but at least at every 64th; after two readings more than
+/// a millisecond apart, at the next.
+#[derive(Clone, Copy, Debug)]
+pub struct SparseClock {
+    clock: Clock,
+    last_read: Duration,
+    /// Iterations without reading the clock: between two readings, and still to go.
+    skips: u32,
+    skips_left: u32,
+}
+
+impl SparseClock {
+    /// Reads `clock`, now and later.
+    #[must_use]
+    pub fn new(clock: Clock) -> Self {
+        Self { clock, last_read: clock.now(), skips: 0, skips_left: 0 }
+    }
+
+    /// The time, if it is read at this iteration.
+    pub fn read(&mut self) -> Option<Duration> {
+        if self.skips_left > 0 {
+            self.skips_left -= 1;
+            return None;
+        }
+        let now = self.clock.now();
+        let slow = now.saturating_sub(self.last_read) > Duration::from_millis(1);
+        self.skips = if slow { 0 } else { (2 * self.skips + 1).min(63) };
+        (self.last_read, self.skips_left) = (now, self.skips);
+        Some(now)
+    }
+}
+
 /// Stops at a time of the clock. The clock changes when a run ends, not what is computed before: for
 /// reproducible runs use the counting stops.
 ///
-/// While iterations are short the clock is not read at each, but at least at every 64th; after two readings
-/// more than a millisecond apart, at the next.
+/// The clock is read by a [`SparseClock`].
 #[derive(Clone, Copy, Debug)]
 pub struct Deadline {
-    clock: Clock,
+    clock: SparseClock,
     at: Option<Duration>,
-    last_read: Duration,
-    /// Checks without reading the clock: between two readings, and still to go.
-    skips: u32,
-    skips_left: u32,
 }
 
 impl Deadline {
@@ -184,23 +211,15 @@ impl Deadline {
     /// Stops when `time` has passed from now on this clock.
     #[must_use]
     pub fn by(clock: Clock, time: Duration) -> Self {
-        let now = clock.now();
-        Self { clock, at: now.checked_add(time), last_read: now, skips: 0, skips_left: 0 }
+        let clock = SparseClock::new(clock);
+        Self { clock, at: clock.last_read.checked_add(time) }
     }
 }
 
 impl Stop for Deadline {
     fn check(&mut self, _: &Progress) -> Option<StopReason> {
         let at = self.at?;
-        if self.skips_left > 0 {
-            self.skips_left -= 1;
-            return None;
-        }
-        let now = self.clock.now();
-        let slow = now.saturating_sub(self.last_read) > Duration::from_millis(1);
-        self.skips = if slow { 0 } else { (2 * self.skips + 1).min(63) };
-        (self.last_read, self.skips_left) = (now, self.skips);
-        (now >= at).then_some(StopReason::Deadline)
+        (self.clock.read()? >= at).then_some(StopReason::Deadline)
     }
 }
 

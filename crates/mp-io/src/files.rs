@@ -40,13 +40,14 @@ impl<F> Debug for InMemory<F> {
     }
 }
 
-impl<F: Fn(&str) -> Option<&'static [u8]> + Send + Sync> Files for InMemory<F> {
+impl<F: Fn(&str) -> Option<B> + Send + Sync, B: AsRef<[u8]>> Files for InMemory<F> {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
         let name = path.to_string_lossy().replace('\\', "/");
         match (self.0)(&name) {
-            Some(bytes) if bytes.len() as u64 <= limit => Ok(bytes.to_vec()),
+            Some(bytes) if bytes.as_ref().len() as u64 <= limit => Ok(bytes.as_ref().to_vec()),
             Some(bytes) => {
-                let message = format!("the file has {} bytes, more than the {limit} accepted", bytes.len());
+                let length = bytes.as_ref().len();
+                let message = format!("the file has {length} bytes, more than the {limit} accepted");
                 Err(Error::new(ErrorKind::TooLarge, name, message)
                     .help("simplify the mesh or split the file"))
             }

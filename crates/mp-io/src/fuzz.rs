@@ -6,7 +6,8 @@
 
 use crate::collada::Scene;
 use crate::{
-    Environment, Error, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile, RobotFile, RosMap,
+    Environment, Error, ErrorKind, GridMap, JointPath, OffDocument, OmplProblem, PathFile, PlanarFile,
+    RobotFile, RosMap, SceneDocument,
 };
 use crate::{csv_text, gempa_mesh_text, parse_csv, parse_gempa_mesh, parse_obj, parse_stl, stl_text};
 use mp_geom::TriMesh;
@@ -16,7 +17,7 @@ use std::fmt::Debug;
 pub type Target = fn(&[u8]) -> bool;
 
 /// The formats: a name, and the function to call.
-pub const TARGETS: [(&str, Target); 16] = [
+pub const TARGETS: [(&str, Target); 17] = [
     ("off", off),
     ("gempa-mesh", gempa_mesh),
     ("gempa-environment", gempa_environment),
@@ -33,6 +34,7 @@ pub const TARGETS: [(&str, Target); 16] = [
     ("planar-world", planar_world),
     ("ros-map", ros_map),
     ("map-image", map_image),
+    ("scene-document", scene_document),
 ];
 
 /// OFF documents.
@@ -123,6 +125,16 @@ pub fn ros_map(bytes: &[u8]) -> bool {
 pub fn map_image(bytes: &[u8]) -> bool {
     let Some(grid) = valid(GridMap::parse("f.png", bytes)) else { return false };
     grid.outline(0.5, [0.0; 2], |brightness| brightness < 128.0).is_ok()
+}
+
+/// Scenes of the editor.
+pub fn scene_document(bytes: &[u8]) -> bool {
+    let Some(document) = valid(SceneDocument::parse("f.mp.json", bytes)) else { return false };
+    let again = valid(SceneDocument::parse("f.mp.json", document.to_text().as_bytes()));
+    assert_eq!(again.as_ref(), Some(&document));
+    let missing = |file: &str| Err(Error::new(ErrorKind::Io, file, "there is no such mesh"));
+    let _ = valid(document.problem("f.mp.json", &missing));
+    true
 }
 
 /// Whether the bytes are valid. Checks that writing the value and reading it again gives the same.

@@ -15,20 +15,24 @@ struct OnlyPath<'a, R> {
     path: &'a [R],
 }
 
-/// The member `path` of an object; at least one row.
-pub(crate) fn parse_rows<R: DeserializeOwned>(file: &str, text: &str, what: &str) -> Result<Vec<R>, Error> {
-    let read: HasPath<R> = serde_json::from_str(text).map_err(|e| {
+/// `text` as JSON: `what` is expected, and `help` says where it is described.
+pub(crate) fn parse<T: DeserializeOwned>(file: &str, text: &str, what: &str, help: &str) -> Result<T, Error> {
+    serde_json::from_str(text).map_err(|e| {
         let at = offset(text, e.line(), e.column());
         let shown = e.to_string();
         let shown = shown.split(" at line ").next().unwrap_or(&shown);
         let message = match shown.split_once(", expected") {
             Some((found, _)) => found.to_owned(),
+            None if e.is_data() => shown.to_owned(),
             None => format!("this is not JSON: {shown}"),
         };
-        Error::at(ErrorKind::Format, file, text, at, 1, message)
-            .expected(what)
-            .help("the format is described in docs/formats/path.md")
-    })?;
+        Error::at(ErrorKind::Format, file, text, at, 1, message).expected(what).help(help)
+    })
+}
+
+/// The member `path` of an object; at least one row.
+pub(crate) fn parse_rows<R: DeserializeOwned>(file: &str, text: &str, what: &str) -> Result<Vec<R>, Error> {
+    let read: HasPath<R> = parse(file, text, what, "the format is described in docs/formats/path.md")?;
     let content = |message: &str| {
         Error::at(ErrorKind::Content, file, text, 0, 1, message.to_owned())
             .expected(what)

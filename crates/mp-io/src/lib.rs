@@ -3,6 +3,7 @@
 //! - [`RigidProblem::load`] reads a problem and its meshes, whatever the format.
 //! - [`RobotProblem::load`] reads a problem for an arm, [`JointPath`] its paths.
 //! - [`PlanarProblem::load`] reads a world in the plane.
+//! - [`SceneDocument`] is a scene as an editor keeps it.
 //! - [`read_mesh`] reads a mesh, whatever the format.
 //! - [`Environment`], [`PathFile`]: GEMPA environment and configuration files.
 //! - [`OffDocument`], [`write_off`], [`parse_gempa_mesh`], [`write_gempa_mesh`]: single mesh formats.
@@ -14,6 +15,7 @@
 
 mod collada;
 mod csv;
+mod document;
 mod error;
 mod files;
 pub mod fuzz;
@@ -34,10 +36,11 @@ mod toml_problem;
 
 pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
+pub use document::{DocumentBody, DocumentShape, SceneDocument};
 pub use error::{Error, ErrorKind};
 pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
-pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh};
+pub use mesh::{MAX_CORNERS, MeshFormat, read_mesh, read_mesh_of};
 pub use obj::parse_obj;
 pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};

@@ -27,7 +27,10 @@ pub fn read_mesh(path: impl AsRef<Path>) -> Result<TriMesh, Error> {
 }
 
 /// As [`read_mesh`], with the file read through `files`.
-pub(crate) fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
+///
+/// # Errors
+/// As [`read_mesh`].
+pub fn read_mesh_of(files: &dyn Files, path: &Path) -> Result<TriMesh, Error> {
     let bytes = files.read(path, MAX_MESH_BYTES)?;
     let file = path.display().to_string();
     match MeshFormat::of(path, &bytes) {

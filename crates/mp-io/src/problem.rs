@@ -1,5 +1,6 @@
 //! Problems for rigid bodies, read from any of their formats.
 
+use crate::document;
 use crate::error::{Error, ErrorKind};
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use crate::gempa::environment::{self, Environment};
@@ -15,12 +16,14 @@ use std::path::{Path, PathBuf};
 pub const MAX_COORDINATE: f64 = 1e9;
 
 /// The space in which the robot moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum SpaceKind {
     /// SE(3): any position and any rotation.
     #[default]
+    #[serde(rename = "SE3")]
     Se3,
     /// SE(2): a position in the plane z = 0 and a rotation about Z.
+    #[serde(rename = "SE2")]
     Se2,
 }
 
@@ -91,7 +94,7 @@ impl ProblemFormat {
         match extension.as_str() {
             "env" | "txt" => Some(Self::Gempa),
             "cfg" => Some(Self::OmplApp),
-            "off" | "stl" | "obj" | "dae" | "json" => None,
+            "off" | "stl" | "obj" | "dae" => None,
             _ if text.lines().any(|l| l.trim() == "[problem]") => Some(Self::OmplApp),
             _ => text.trim_start().get(..5).filter(|w| w.eq_ignore_ascii_case("Robot")).map(|_| Self::Gempa),
         }
@@ -99,8 +102,8 @@ impl ProblemFormat {
 }
 
 impl RigidProblem {
-    /// Reads a problem and its meshes: a GEMPA environment file (`.env`, `.txt`) or an OMPL.app problem
-    /// (`.cfg`). Files of other names are told apart by their content.
+    /// Reads a problem and its meshes: a GEMPA environment file (`.env`, `.txt`), an OMPL.app problem
+    /// (`.cfg`) or a scene of the editor (`.mp.json`, see [`SceneDocument`](crate::SceneDocument)). Files of other names are told apart by their content.
     ///
     /// # Errors
     /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
@@ -113,6 +116,9 @@ impl RigidProblem {
     /// # Errors
     /// As [`load`](Self::load).
     pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+            return document::load(files, path);
+        }
         let (file, bytes) = (path.display().to_string(), files.read(path, MAX_TEXT_BYTES)?);
         let text = decode(&file, &bytes)?;
         match ProblemFormat::of(path, text) {
@@ -123,7 +129,7 @@ impl RigidProblem {
                 ompl::load(files, path, &Text { file: &file, text, guide: ompl::GUIDE })
             }
             None => Err(Error::new(ErrorKind::Unsupported, &file, "this is not a problem that is read here")
-                .expected("a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)")
+                .expected("a GEMPA environment (.env, .txt), an OMPL.app problem (.cfg) or a scene of the editor (.mp.json)")
                 .help(
                     "a mesh or a path is not a problem: give the file that names the robot and the obstacles",
                 )),

@@ -71,6 +71,14 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
             &["{\"solved\": true, \"path\": [[0, 0, 0],\n[1.5, -2e-3, 3]], \"name\": \"\\u00e9\"}"]
         }
         "csv-path" => &["x [m],y [m]\n0.1,-2\n\n0,3.5\n", " 1 , 2e-3\r\n3,4\r\n"],
+        "scene-document" => &[
+            r##"{"version": 1, "name": "a", "space": "SE2", "robot": {"name": "r", "shape": {"cube": {"size": [1, 2, 3]}}},
+                "start": [0, 0, 0, 0, 0, 0], "goal": [4, 0, 0, 1.5, 0, 0], "bounds": [[-9, -9, 0], [9, 9, 0]], "obstacles": [
+                {"name": "b", "color": "#00ff7f", "shape": {"torus": {"ring": 1, "tube": 0.2}}, "scale": [1, 1, 2],
+                 "pose": [2, 0, 0.5, 0.1, 0.2, 0.3]},
+                {"name": "c", "shape": {"mesh": {"file": "c.off", "off": "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"}},
+                 "pose": [0, 0, 0, 0, 0, 0]}]}"##,
+        ],
         other => panic!("no seeds for {other}"),
     };
     let mut all: Vec<Vec<u8>> = texts.iter().map(|t| t.as_bytes().to_vec()).collect();

@@ -14,6 +14,7 @@ use crate::{
 };
 use mp_cspace::{Rng, Space, Validity};
 use mp_geom::Aabb;
+use mp_io::RigidProblem;
 use nalgebra::{Isometry3, Point3};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -48,6 +49,7 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
     fn track(&self, path: &PathRows) -> Result<Track, Error>;
     fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
+    fn rigid_problem(&self) -> Option<&RigidProblem>;
     fn is_planar(&self) -> bool;
     fn picture_bounds(&self) -> Option<Aabb>;
 }
@@ -132,6 +134,9 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
         RobotKind::export(self, folder)
+    }
+    fn rigid_problem(&self) -> Option<&RigidProblem> {
+        RobotKind::rigid_problem(self)
     }
     fn is_planar(&self) -> bool {
         RobotKind::is_planar(self)

@@ -4,7 +4,7 @@ use crate::{Error, Scene};
 use std::path::{Path, PathBuf};
 
 /// Endings of scene files, in the order in which they are tried.
-const ENDINGS: [&str; 4] = ["env", "txt", "cfg", "toml"];
+const ENDINGS: [&str; 5] = ["env", "txt", "cfg", "toml", "mp.json"];
 
 impl Scene {
     /// The scene that `given` names: a file, a file without its ending, or a shipped scene. A file comes first.

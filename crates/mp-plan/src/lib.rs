@@ -96,7 +96,7 @@ pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
 pub use picture::{PICTURE_SIZE, PictureKind};
-pub use planners::{meta_planners, planners};
+pub use planners::{meta_planners, planners, roadmap_planners};
 pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};

@@ -2,13 +2,13 @@
 
 use crate::inputs::Recording;
 use crate::{ArmScene, Error, Scene};
-use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RobotProblem};
+use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RobotProblem, SceneDocument};
 use std::path::Path;
 use std::sync::Mutex;
 
 impl Scene {
     /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem or a world
-    /// in the plane (`.toml`).
+    /// in the plane (`.toml`), a scene of the editor (`.mp.json`).
     ///
     /// # Errors
     /// When a file cannot be read or is not valid: with file, line, column and remedy.
@@ -42,6 +42,11 @@ impl Scene {
                 named.extend(arm.mesh_files().iter().cloned());
                 Self::new(arm)
             }
+            false if ending == "json" => {
+                let folder = file.parent().unwrap_or(Path::new(""));
+                let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
+                Self::from_document(SceneDocument::load_from(files, file)?, &mesh).map_err(of)?
+            }
             false => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
@@ -63,6 +68,7 @@ impl Scene {
         let ending = match first {
             _ if begins("[problem]") => "cfg",
             _ if first.eq_ignore_ascii_case("robot") => "env",
+            _ if first.starts_with('{') => "json",
             _ if first.starts_with(['[', '#']) || first.contains('=') => "toml",
             _ => "env",
         };

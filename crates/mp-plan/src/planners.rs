@@ -10,6 +10,12 @@ pub fn planners() -> impl Iterator<Item = &'static PlannerInfo> {
     mp_tree::planners().iter().chain(roadmaps::planners())
 }
 
+/// The planners by name that build roadmaps.
+#[must_use]
+pub fn roadmap_planners() -> &'static [PlannerInfo] {
+    roadmaps::planners()
+}
+
 /// The meta-planners, whose names are prefixes of the name of a planner.
 #[must_use]
 pub fn meta_planners() -> &'static [mp_tree::MetaPlanner] {

@@ -320,6 +320,10 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     fn is_planar(&self) -> bool {
         false
     }
+    /// The problem, if the robot is a rigid body among meshes: front ends edit such scenes.
+    fn rigid_problem(&self) -> Option<&mp_io::RigidProblem> {
+        None
+    }
     /// A hash of everything that a roadmap depends on: scene, robot and metric. `None` if roadmaps of such robots cannot
     /// be saved.
     fn fingerprint(&self, _metric: MetricName) -> Option<u64> {

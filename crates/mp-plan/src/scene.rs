@@ -8,8 +8,8 @@ use crate::{
     Body, Column, Control, Error, Explanation, PathFormat, PathRows, PreparedRun, Report, Request, RobotKind, Sweep,
     Track, Verdict,
 };
-use mp_geom::Aabb;
-use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SpaceKind};
+use mp_geom::{Aabb, TriMesh, six_from_pose};
+use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SceneDocument, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -32,6 +32,8 @@ pub struct Scene {
     robot: Arc<dyn AnyRobot>,
     file: Option<PathBuf>,
     pub(crate) inputs: Arc<[PathBuf]>,
+    /// What it was made from, if that is a document of an editor. Its meshes are written into it.
+    pub(crate) document: Option<Arc<SceneDocument>>,
 }
 
 impl fmt::Debug for Scene {
@@ -43,7 +45,7 @@ impl fmt::Debug for Scene {
 impl Scene {
     /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`], [`ArmScene`](crate::ArmScene), [`PlanarScene`].
     pub fn new(robot: impl RobotKind + 'static) -> Self {
-        Self { robot: Arc::new(robot), file: None, inputs: Arc::default() }
+        Self { robot: Arc::new(robot), file: None, inputs: Arc::default(), document: None }
     }
 
     /// A scene of a rigid body among meshes.
@@ -68,6 +70,32 @@ impl Scene {
             PlanarShape::Disc(_) => Self::new(PlanarScene::<DiscRobot>::new(problem)?),
             PlanarShape::Polygon(_) => Self::new(PlanarScene::<PolygonRobot>::new(problem)?),
         })
+    }
+
+    /// A scene of the document of an editor. `mesh` gives the meshes that are not written into it, by the names of their
+    /// files.
+    ///
+    /// # Errors
+    /// When the document is not valid, or a mesh is missing.
+    pub fn from_document(
+        document: SceneDocument,
+        mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
+    ) -> Result<Self, Error> {
+        let scene = Self::from_problem(document.problem(&document.name, mesh)?)?;
+        Ok(Self { document: Some(Arc::new(document.with_meshes(mesh)?)), ..scene })
+    }
+
+    /// The scene as an editor keeps it, with all meshes written into it. `None` unless the robot is a rigid body among
+    /// meshes.
+    #[must_use]
+    pub fn document(&self) -> Option<SceneDocument> {
+        let problem = self.robot.rigid_problem()?;
+        let mut document = match &self.document {
+            Some(document) => SceneDocument::clone(document),
+            None => SceneDocument::with_meshes_of(problem),
+        };
+        (document.start, document.goal) = (six_from_pose(&problem.start), six_from_pose(&problem.goal));
+        Some(document)
     }
 
     /// Sets the file that reports name as the source of the scene.

@@ -1,6 +1,6 @@
 //! Progress reports of a run, and how to stop it.
 
-use mp_cspace::{Cancel, Clock, Event, NodeId, Observer, Progress, Stop, StopReason};
+use mp_cspace::{Cancel, Clock, Event, NodeId, Observer, Progress, SparseClock, Stop, StopReason};
 use std::time::Duration;
 
 /// The stages of a run.
@@ -133,8 +133,6 @@ impl<'a> Control<'a> {
     }
 }
 
-/// The number of iterations between two looks at the clock.
-const ITERATIONS_PER_LOOK: u64 = 64;
 /// The least time between two reports of progress.
 const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
@@ -142,24 +140,30 @@ const REPORT_INTERVAL: Duration = Duration::from_millis(100);
 /// never uses both at the same time.
 pub(crate) struct WatchAdapter<'w, 'a> {
     pub(crate) watch: std::cell::RefCell<Option<&'w mut (dyn Watch + 'a)>>,
-    clock: Clock,
-    last_report: std::cell::Cell<Duration>,
+    timer: std::cell::RefCell<Timer>,
+}
+
+/// When progress was reported last.
+struct Timer {
+    clock: SparseClock,
+    last_report: Duration,
 }
 
 impl<'w, 'a> WatchAdapter<'w, 'a> {
     pub(crate) fn new(watch: Option<&'w mut (dyn Watch + 'a)>, clock: Clock) -> Self {
-        Self { watch: watch.into(), clock, last_report: clock.now().into() }
+        let timer = Timer { clock: SparseClock::new(clock), last_report: clock.now() };
+        Self { watch: watch.into(), timer: timer.into() }
     }
 }
 
 impl Stop for &WatchAdapter<'_, '_> {
     fn check(&mut self, progress: &Progress) -> Option<StopReason> {
-        if progress.iterations.is_multiple_of(ITERATIONS_PER_LOOK)
-            && let now = self.clock.now()
-            && now.saturating_sub(self.last_report.get()) > REPORT_INTERVAL
-            && let Some(watch) = &mut *self.watch.borrow_mut()
+        if let Some(watch) = &mut *self.watch.borrow_mut()
+            && let timer = &mut *self.timer.borrow_mut()
+            && let Some(now) = timer.clock.read()
+            && now.saturating_sub(timer.last_report) > REPORT_INTERVAL
         {
-            self.last_report.set(now);
+            timer.last_report = now;
             watch.progress(progress);
         }
         None

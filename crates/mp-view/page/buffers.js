@@ -87,11 +87,22 @@ class ColoredRows {
     this.rows.append(bytes);
     this.bind();
   }
+  /** Gives a row other coordinates. @param {number} row @param {Float32Array} coordinates */
+  replace(row, coordinates) {
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.rows.buffer);
+    this.gl.bufferSubData(this.gl.ARRAY_BUFFER, row * this.stride, coordinates);
+  }
   /** Tells the vertex array where the rows are, as the buffer may be a new one. */
   bind() {}
 
   /** Forgets all rows. */
   clear() { this.rows.size = 0; }
+
+  /** Frees the memory on the graphics card. */
+  free() {
+    this.gl.deleteVertexArray(this.vao);
+    this.gl.deleteBuffer(this.rows.buffer);
+  }
 }
 
 /** Segments: two ends and a colour each. */
@@ -144,6 +155,7 @@ export class ShapeBuffers {
     this.corners = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
     gl.bufferData(gl.ARRAY_BUFFER, shape.positions, gl.STATIC_DRAW);
+    /** @type {(WebGLBuffer | null)[]} */ this.indices = [];
     this.triangles = this.indexed(shape.triangles);
     this.edges = this.indexed(shape.edges);
     /** @type {{vao: WebGLVertexArrayObject | null, count: number} | null} */ this.allEdges = null;
@@ -159,7 +171,8 @@ export class ShapeBuffers {
     gl.bindBuffer(gl.ARRAY_BUFFER, this.corners);
     gl.enableVertexAttribArray(0);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 12, 0);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    this.indices.push(gl.createBuffer());
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.indices[this.indices.length - 1]);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
     for (let at = 1; at <= 4; at++) {
       gl.enableVertexAttribArray(at);
@@ -167,6 +180,13 @@ export class ShapeBuffers {
     }
     gl.bindVertexArray(null);
     return { vao, count: indices.length };
+  }
+  /** Frees the memory on the graphics card. */
+  free() {
+    const gl = this.gl;
+    for (const part of [this.triangles, this.edges, this.allEdges]) gl.deleteVertexArray(part?.vao ?? null);
+    for (const buffer of [this.corners, ...this.indices]) gl.deleteBuffer(buffer);
+    this.lines.free();
   }
   /** Takes the copies from the one with this index on. @param {number} first */
   bindCopies(first) {

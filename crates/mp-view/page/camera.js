@@ -22,12 +22,10 @@ const VIEWS = {
 export class Camera {
   /** @param {[number[], number[]]} bounds of the scene */
   constructor(bounds) {
-    const low = /** @type {Vec3} */ (bounds[0]);
-    const high = /** @type {Vec3} */ (bounds[1]);
-    /** @type {Vec3} */ this.center = scale(add(low, high), 0.5);
-    this.corners = [low, high];
-    const size = sub(high, low);
-    this.radius = Math.max(Math.hypot(...size) / 2, 1e-6);
+    /** @type {Vec3} */ this.center = [0, 0, 0];
+    /** @type {Vec3[]} */ this.corners = [];
+    this.radius = 1;
+    this.setBounds(bounds);
     this.width = 1;
     this.height = 1;
     this.perspective = true;
@@ -36,6 +34,14 @@ export class Camera {
     this.distance = 1;
     /** @type {Vec3} */ this.target = this.center;
     this.look("iso");
+  }
+  /** Takes another scene; the view stays. @param {[number[], number[]]} bounds */
+  setBounds(bounds) {
+    const low = /** @type {Vec3} */ (bounds[0]);
+    const high = /** @type {Vec3} */ (bounds[1]);
+    this.center = scale(add(low, high), 0.5);
+    this.corners = [low, high];
+    this.radius = Math.max(Math.hypot(...sub(high, low)) / 2, 1e-6);
   }
   /** Turns to a standard view; the target stays. @param {ViewName} name */
   look(name) { [this.yaw, this.pitch] = VIEWS[name]; }

@@ -1,7 +1,7 @@
 // The colours of the picture, for a dark and a light background.
 
 /** @typedef {[number, number, number]} Color red, green, blue between 0 and 1 */
-/** @typedef {{background: Color, obstacle: Color, cut: Color, robot: Color, start: Color, goal: Color, path: Color,
+/** @typedef {{background: Color, obstacle: Color, cut: Color, robot: Color, start: Color, goal: Color, path: Color, compared: Color,
  *  fromStart: Color, fromGoal: Color, wire: Color, edge: Color, picked: Color, other: Color}} Palette */
 
 /** @param {string} hex @returns {Color} */
@@ -16,6 +16,7 @@ const COLORS = {
   start: ["#178a4c", "#35c274"],
   goal: ["#cf3535", "#ff6460"],
   path: ["#c75f00", "#ffa033"],
+  compared: ["#0b7d8a", "#3fd0de"],
   fromStart: ["#3a66c4", "#76a9ff"],
   fromGoal: ["#c0453f", "#ff8b84"],
   wire: ["#857763", "#b9b0a2"],

@@ -8,9 +8,10 @@ const FLY_KEYS = new Set(["KeyW", "KeyA", "KeyS", "KeyD", "KeyQ", "KeyE"]);
 export const isTyping = (target) => target instanceof HTMLElement && target.matches("input:not([type=checkbox]), select, textarea, [contenteditable]");
 
 export class Controls {
-  /** @param {HTMLCanvasElement} canvas @param {Camera} camera @param {boolean} planar @param {Listener} listener */
-  constructor(canvas, camera, planar, listener) {
-    this.canvas = canvas; this.camera = camera; this.planar = planar; this.listener = listener;
+  /** @param {HTMLCanvasElement} canvas @param {Camera} camera @param {Listener} listener */
+  constructor(canvas, camera, listener) {
+    this.canvas = canvas; this.camera = camera; this.listener = listener;
+    this.planar = false;
     /** @type {Map<number, {x: number, y: number}>} */ this.pointers = new Map();
     this.moved = 0;
     /** @type {Set<string>} */ this.held = new Set();

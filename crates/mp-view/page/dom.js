@@ -22,6 +22,14 @@ export function byId(id) {
   return element;
 }
 
+/** Shows what went wrong, and what to do, at the top of the page; an empty text removes it. @param {unknown} error */
+export function showError(error) {
+  const box = byId("alert");
+  const help = error instanceof Error && "help" in error && typeof error.help === "string" ? error.help : "";
+  box.replaceChildren(error instanceof Error ? error.message : String(error), ...(help ? [el("small", {}, help)] : []));
+  box.hidden = error === "";
+}
+
 /** @param {string} label @param {() => void} press @param {Properties} [properties] */
 export const button = (label, press, properties = {}) => el("button", { type: "button", ...properties, onclick: press }, label);
 
@@ -51,10 +59,28 @@ export function slider({ low, high, step, value }, change, properties = {}) {
 /** A list of names and values. @param {[string, string][]} facts */
 export const factList = (facts) => el("dl", {}, ...facts.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
 
+/** A part of the panel that can be folded. @param {string} title @param {boolean} open @param {HTMLElement[]} content */
+export const section = (title, open, content) => el("details", { open }, el("summary", {}, title), el("div", { class: "content" }, ...content));
+
 /** A number as a person reads it. @param {number} x @returns {string} */
 export function brief(x) {
   if (!Number.isFinite(x)) return x > 0 ? "∞" : "–";
   if (Number.isInteger(x)) return x.toLocaleString("en").replaceAll(",", "\u202f");
   const size = Math.abs(x);
   return size >= 1e-4 && size < 1e6 ? String(Number(x.toPrecision(4))) : x.toExponential(2);
+}
+
+/** Asks in a dialog; Escape means no. @param {string} question @param {string} yes @param {string} no @returns {Promise<boolean>} */
+export function ask(question, yes, no) {
+  return new Promise((resolve) => {
+    const dialog = el("dialog", { "aria-label": question, role: "alertdialog" });
+    const buttons = [button(no, () => dialog.close("no")), button(yes, () => dialog.close("yes"))];
+    dialog.append(el("p", {}, question), el("div", { class: "buttons" }, ...buttons));
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      resolve(dialog.returnValue === "yes");
+    });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
 }

@@ -1,6 +1,7 @@
 // The panel at the side: what the scene is, how it is drawn, its bodies, its paths, the report, and what was picked.
 
-import { brief, button, byId, checkbox, el, factList, labelled, select, slider } from "mp/dom.js";
+import { brief, button, byId, checkbox, el, factList, labelled, section, select, slider } from "mp/dom.js";
+import { emptyScene } from "mp/scene.js";
 
 /** @import { ViewName } from "mp/camera.js" */
 /** @import { Picked } from "mp/picking.js" */
@@ -29,24 +30,37 @@ const HELP = [
 ];
 
 export class Panels {
-  /** @param {Scene} scene @param {Settings} settings @param {Actions} actions @param {number} triangles */
-  constructor(scene, settings, actions, triangles) {
-    this.scene = scene; this.settings = settings; this.actions = actions; this.triangles = triangles;
-    this.build();
-  }
-  build() {
-    const { scene } = this;
-    document.title = scene.name || "Scene";
-    byId("title").textContent = scene.name || "Scene";
+  /** @param {Settings} settings @param {Actions} actions */
+  constructor(settings, actions) {
+    this.settings = settings; this.actions = actions;
+    this.scene = emptyScene();
+    this.triangles = 0;
     this.picked = el("div", { role: "status", class: "picked" });
     this.row = el("dl", {});
-    const parts = [this.picked, section("Picture", true, this.pictureControls()), section("Shown", true, this.shownControls())];
-    if (scene.paths.length) parts.push(section("Paths", true, this.pathList()), section("Configuration", false, [this.row]));
-    parts.push(section(`Bodies (${scene.bodies.length})`, scene.bodies.length <= 12, this.bodyList()), section("Scene", true, [factList(this.sceneFacts())]));
-    if (scene.report) parts.push(section("Report", true, [factList(reportFacts(scene.report))]));
-    byId("panel").replaceChildren(...parts);
+    this.shown = section("Shown", true, []);
+    this.paths = section("Paths", true, []);
+    this.configuration = section("Configuration", false, [this.row]);
+    this.facts = el("div", {});
+    byId("about").replaceChildren(this.picked, section("Picture", true, this.pictureControls()), this.shown, this.paths, this.configuration, this.facts);
     this.buildHelp();
     this.buildPanelButton();
+  }
+  /** @param {Scene} scene @param {number} triangles */
+  show(scene, triangles) {
+    this.scene = scene; this.triangles = triangles;
+    document.title = scene.name || "Scene";
+    byId("title").textContent = scene.name || "Scene";
+    this.showPicked(null, () => {});
+    this.showPaths();
+    const parts = [section(`Bodies (${scene.bodies.length})`, scene.bodies.length <= 12, this.bodyList()), section("Scene", true, [factList(this.sceneFacts())])];
+    if (scene.report) parts.push(section("Report", true, [factList(reportFacts(scene.report))]));
+    this.facts.replaceChildren(...parts);
+  }
+  /** Shows the list of paths again. */
+  showPaths() {
+    this.shown.lastElementChild?.replaceChildren(...this.shownControls());
+    this.paths.lastElementChild?.replaceChildren(...this.pathList());
+    this.paths.hidden = this.configuration.hidden = !this.scene.paths.length;
   }
   set(/** @type {() => void} */ change) {
     change();
@@ -151,25 +165,29 @@ export class Panels {
   update() {
     const { scene, settings: s } = this;
     const path = scene.paths[s.path];
-    if (!path?.count || !(/** @type {HTMLDetailsElement | null} */ (this.row?.closest("details"))?.open)) return;
+    if (!path?.count || !this.configuration.open) return;
     const i = Math.round(s.time) * scene.columns.length;
     const facts = scene.columns.flatMap((c, k) => [el("dt", {}, c.name), el("dd", {}, `${brief(path.rows[i + k])} ${c.unit}`)]);
-    this.row?.replaceChildren(...facts);
+    this.row.replaceChildren(...facts);
   }
   /** @param {Picked | null} picked @param {() => void} close */
   showPicked(picked, close) {
-    if (!picked) return this.picked?.replaceChildren();
+    if (!picked) return this.picked.replaceChildren();
     const closer = button("×", close, { "aria-label": "Forget what was picked" });
-    this.picked?.replaceChildren(el("div", { class: "card" }, el("header", {}, el("strong", {}, picked.title), closer), factList(picked.facts)));
+    this.picked.replaceChildren(el("div", { class: "card" }, el("header", {}, el("strong", {}, picked.title), closer), factList(picked.facts)));
     byId("hint").textContent = [picked.title, ...picked.facts.slice(0, 2).map(([name, value]) => `${name} ${value}`)].join(" · ");
   }
   buildHelp() {
     const dialog = /** @type {HTMLDialogElement} */ (byId("help"));
     const close = button("Close", () => dialog.close());
-    dialog.replaceChildren(el("h2", { id: "help-title" }, "Mouse, fingers and keys"), factList(HELP), close);
+    this.help = factList(HELP);
+    dialog.replaceChildren(el("h2", { id: "help-title" }, "Mouse, fingers and keys"), this.help, close);
     dialog.setAttribute("aria-labelledby", "help-title");
     byId("help-button").onclick = () => dialog.showModal();
   }
+  /** Adds lines to the help dialog. @param {[string, string][]} lines */
+  addHelp(lines) { this.help?.append(...factList(lines).children); }
+
   buildPanelButton() {
     byId("panel-button").onclick = () => this.togglePanel();
     if (matchMedia("(max-width: 700px)").matches) this.togglePanel();
@@ -179,9 +197,6 @@ export class Panels {
     byId("panel-button").setAttribute("aria-expanded", String(shown));
   }
 }
-
-/** @param {string} title @param {boolean} open @param {HTMLElement[]} content */
-const section = (title, open, content) => el("details", { open }, el("summary", {}, title), el("div", { class: "content" }, ...content));
 
 function pathWords(/** @type {Path} */ path) {
   const words = [`${brief(path.count)} configurations`];

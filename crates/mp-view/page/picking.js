@@ -7,8 +7,9 @@ import { add, cross, dot, place, pointAt, scale, sub, unplace, unrotate } from "
 /** @import { Mat4, Vec3 } from "mp/math.js" */
 /** @import { Settings } from "mp/picture.js" */
 /** @import { Item, Picture } from "mp/renderer.js" */
-/** @import { Scene } from "mp/scene.js" */
+/** @import { Scene, Tree } from "mp/scene.js" */
 /** @import { Shape } from "mp/shapes.js" */
+/** @import { Layer } from "mp/viewer.js" */
 /** @typedef {{title: string, facts: [string, string][], point: Vec3, time: number | null, marked: boolean}} Picked
  *  `time` is set for a configuration of the path. */
 /** @typedef {{points: Float32Array, count: number, describe: (i: number) => Omit<Picked, "point">}} Cloud points to click on */
@@ -65,9 +66,9 @@ function pixelsTo(p, a, b) {
 }
 
 export class Picker {
-  /** @param {Scene} scene @param {Shape[]} shapes @param {Camera} camera */
-  constructor(scene, shapes, camera) {
-    this.scene = scene; this.shapes = shapes; this.camera = camera;
+  /** @param {Scene} scene @param {Shape[]} shapes @param {Camera} camera @param {Layer[]} layers */
+  constructor(scene, shapes, camera, layers) {
+    this.scene = scene; this.shapes = shapes; this.camera = camera; this.layers = layers;
   }
   /** @param {number} x @param {number} y pixels @param {Picture} picture @param {Settings} settings @returns {Picked | null} */
   pick(x, y, picture, settings) {
@@ -131,9 +132,10 @@ export class Picker {
     if (path && s.trace) clouds.push({ points: path.trace, count: path.count, describe: (i) => this.describeConfiguration(s.path, i) });
     trees.forEach((tree, t) => {
       const count = Math.round(s.growth * tree.parents.length);
-      if (s.trees[t]) clouds.push({ points: tree.nodes, count, describe: (i) => this.describeNode(t, i) });
+      if (s.trees[t]) clouds.push({ points: tree.nodes, count, describe: (i) => describeNode(tree, i) });
     });
     if (roadmap && s.roadmap) clouds.push({ points: roadmap.nodes, count: roadmap.kind.length, describe: (i) => this.describeMilestone(i) });
+    for (const layer of this.layers) clouds.push(...(layer.clouds?.(s) ?? []));
     return clouds;
   }
   /** @param {number} p @param {number} i @returns {Omit<Picked, "point">} */
@@ -147,14 +149,6 @@ export class Picker {
   rowFacts(p, i) {
     const { columns, paths } = this.scene;
     return columns.map((c, k) => [c.name, `${brief(paths[p].rows[i * columns.length + k])} ${c.unit}`]);
-  }
-  /** @param {number} t @param {number} i @returns {Omit<Picked, "point">} */
-  describeNode(t, i) {
-    const { name, nodes, parents } = this.scene.trees[t];
-    let depth = 0;
-    for (let k = i; parents[k] >= 0 && depth <= parents.length; k = parents[k]) depth++;
-    const parent = parents[i] < 0 ? "none: this is a root" : `node ${brief(parents[i])}`;
-    return { title: `Node ${brief(i)} of the tree “${name}”`, facts: [placeFact(pointAt(nodes, i)), ["parent", parent], ["steps to the root", brief(depth)]], time: null, marked: true };
   }
   /** @param {number} i @returns {Omit<Picked, "point">} */
   describeMilestone(i) {
@@ -176,6 +170,7 @@ export class Picker {
     facts.push(["size", [0, 1, 2].map((k) => brief(shape.high[k] - shape.low[k])).join(" × ") + " m"]);
     if (shape.triangles.length) facts.push(["triangles", brief(shape.triangles.length / 3)]);
     if (item.role === "copy" || item.role === "robot") facts.push(...this.rowFacts(s.path, item.index));
+    if (item.role === "compared") facts.push(...this.rowFacts(s.other, item.index));
     return { title: body.name, facts, point, time: item.role === "copy" ? item.index : null, marked: false };
   }
 }
@@ -185,9 +180,18 @@ const PARTS = {
   obstacle: () => "the obstacles",
   robot: (i) => `the robot, configuration ${i + 1}`,
   copy: (i) => `the robot, configuration ${i + 1}`,
+  compared: (i) => `the robot on the path compared, configuration ${i + 1}`,
   start: () => "the start",
   goal: (i) => `goal ${i + 1}`,
 };
 
 /** @param {Vec3} p @returns {[string, string]} */
 const placeFact = (p) => ["place", `${p.map(brief).join(", ")} m`];
+
+/** @param {Tree} tree @param {number} i @returns {Omit<Picked, "point">} */
+export function describeNode({ name, nodes, parents }, i) {
+  let depth = 0;
+  for (let k = i; parents[k] >= 0 && depth <= parents.length; k = parents[k]) depth++;
+  const parent = parents[i] < 0 ? "none: this is a root" : `node ${brief(parents[i])}`;
+  return { title: `Node ${brief(i)} of the tree “${name}”`, facts: [placeFact(pointAt(nodes, i)), ["parent", parent], ["steps to the root", brief(depth)]], time: null, marked: true };
+}

@@ -1,25 +1,26 @@
 // Says what is drawn: the bodies, copies, trees and traces that the settings ask for.
 
 import { componentColor, palette } from "mp/colors.js";
+import { GrowingTree } from "mp/growing.js";
 import { lerpPose } from "mp/math.js";
 import { segmentsOf } from "mp/shapes.js";
 
-/** @import { LineSet, PointSet } from "mp/buffers.js" */
 /** @import { Color, Palette } from "mp/colors.js" */
 /** @import { Numbers, Vec3 } from "mp/math.js" */
 /** @import { Item, Mode, Picture, Renderer, Role } from "mp/renderer.js" */
 /** @import { Path, Scene, Tree } from "mp/scene.js" */
+/** @import { Layer } from "mp/viewer.js" */
 /** @typedef {"all" | "step" | "auto"} Animation the three ways to show a path */
 /** @typedef {{mode: Mode, bodies: {visible: boolean, mode: Mode | ""}[], edges: boolean, path: number, animation: Animation,
- *  time: number, copies: number, copyMode: Mode, start: boolean, goals: boolean, trace: boolean, trees: boolean[],
+ *  time: number, other: number, copies: number, copyMode: Mode, start: boolean, goals: boolean, trace: boolean, trees: boolean[],
  *  roadmap: boolean, growth: number, section: {axis: number, at: number, flipped: boolean}, dark: boolean,
  *  marked: Vec3 | null}} Settings
- *  `time` counts configurations of the path; `growth` and the section's `at` are between 0 and 1. */
+ *  `other` is a second path to compare with, or −1; `time` counts configurations of the path; `growth` and the section's `at` are between 0 and 1. */
 
 /** The share of light that transparent things keep. */
 const ALPHA = 0.3;
 /** What is seen where two things are at the same place. @type {Record<Role, number>} */
-const LAYERS = { obstacle: 0, goal: 1, start: 2, copy: 3, robot: 4 };
+const LAYERS = { obstacle: 0, goal: 1, start: 2, copy: 3, compared: 4, robot: 4 };
 
 /** The configurations of a path that are shown as copies: evenly spaced, first and last always.
  * @param {number} count @param {number} copies @returns {number[]} */
@@ -38,48 +39,37 @@ export function posesAt(path, robot, time, out) {
   return out;
 }
 
-/** The colour of a tree: blue when it grows from the start, red from a goal. @param {Tree} tree @param {number} i @param {Palette} p @returns {Color} */
-export function treeColor(tree, i, p) {
-  if (/goal/i.test(tree.name)) return p.fromGoal;
-  if (/start/i.test(tree.name) || i === 0) return p.fromStart;
+/** The colour of a tree: blue when it grows from the start, red from a goal. @param {string} name @param {number} i @param {Palette} p @returns {Color} */
+export function treeColor(name, i, p) {
+  if (/goal/i.test(name)) return p.fromGoal;
+  if (/start/i.test(name) || i === 0) return p.fromStart;
   return i === 1 ? p.fromGoal : p.other;
-}
-
-/** Segments from nodes to their parents, in the order of the nodes. `upTo[i]` is how many the first i nodes have.
- * @param {Tree} tree */
-function treeSegments(tree) {
-  const out = new Float32Array(6 * tree.parents.filter((p) => p >= 0).length);
-  const upTo = new Uint32Array(tree.parents.length + 1);
-  let at = 0;
-  tree.parents.forEach((parent, i) => {
-    if (parent >= 0) {
-      out.set(tree.nodes.subarray(3 * parent, 3 * parent + 3), at);
-      out.set(tree.nodes.subarray(3 * i, 3 * i + 3), at + 3);
-      at += 6;
-    }
-    upTo[i + 1] = at / 6;
-  });
-  return { segments: out, upTo };
 }
 
 /** Makes pictures of a scene with a renderer, which holds its lines and points. */
 export class PictureMaker {
-  /** @param {Scene} scene @param {number[]} ofBody the shape of each body @param {Renderer} renderer */
-  constructor(scene, ofBody, renderer) {
-    this.scene = scene; this.ofBody = ofBody; this.renderer = renderer;
+  /** @param {Scene} scene @param {number[]} ofBody the shape of each body @param {Renderer} renderer @param {Layer[]} layers */
+  constructor(scene, ofBody, renderer, layers) {
+    this.scene = scene; this.ofBody = ofBody; this.renderer = renderer; this.layers = layers;
     this.robotPoses = new Float32Array(7 * scene.robot);
+    this.otherPoses = new Float32Array(7 * scene.robot);
     this.trees = scene.trees.map((tree) => this.treeLines(tree));
     this.traces = scene.paths.map((path) => this.traceLines(path));
     this.roadmap = scene.roadmap ? this.roadmapLines() : null;
     this.marker = renderer.pointSet();
   }
-  treeLines(/** @type {Tree} */ tree) {
-    const { segments, upTo } = treeSegments(tree);
-    const lines = this.renderer.lineSet();
-    lines.append(segments, () => [1, 1, 1, 1]);
-    const roots = this.renderer.pointSet();
-    tree.parents.forEach((parent, i) => parent < 0 && roots.append(tree.nodes.slice(3 * i, 3 * i + 3), () => [1, 1, 1, 0.6]));
-    return { lines, upTo, roots };
+  treeLines(/** @type {Tree} */ { name, nodes, parents }) {
+    const tree = new GrowingTree(this.renderer, name);
+    tree.append(nodes, parents);
+    return tree;
+  }
+  addPath(/** @type {Path} */ path) { this.traces.push(this.traceLines(path)); }
+
+  /** Frees the memory on the graphics card. */
+  free() {
+    for (const set of [...this.trees, ...this.traces, this.marker]) set.free();
+    this.roadmap?.lines.free();
+    this.roadmap?.points.free();
   }
   traceLines(/** @type {Path} */ path) {
     const lines = this.renderer.lineSet();
@@ -100,7 +90,14 @@ export class PictureMaker {
   make(s) {
     const colors = palette(s.dark);
     const items = [...this.obstacles(s, colors), ...this.ends(s, colors), ...this.moving(s, colors)];
-    return { items, lines: this.lines(s, colors), points: this.points(s, colors), plane: this.plane(s), edges: s.edges, flat: this.scene.planar };
+    const lines = this.lines(s, colors);
+    const points = this.points(s, colors);
+    for (const layer of this.layers) {
+      items.push(...(layer.items?.(s, colors) ?? []));
+      lines.push(...(layer.lines?.(s, colors) ?? []));
+      points.push(...(layer.points?.(s, colors) ?? []));
+    }
+    return { items, lines, points, plane: this.plane(s), edges: s.edges, flat: this.scene.planar };
   }
   /** @param {number} body */
   linesOnly(body) { return this.scene.bodies[body].mesh < 0 && this.scene.bodies[body].area < 0; }
@@ -140,6 +137,12 @@ export class PictureMaker {
     const path = this.scene.paths[s.path];
     if (!path?.count) return [];
     const now = this.robot(s, posesAt(path, this.scene.robot, s.time, this.robotPoses), 0, colors.robot, "robot", Math.round(s.time));
+    const other = this.scene.paths[s.other];
+    if (other?.count) {
+      // The second robot is at the same share of its own path.
+      const time = (s.time / Math.max(1, path.count - 1)) * (other.count - 1);
+      now.push(...this.robot(s, posesAt(other, this.scene.robot, time, this.otherPoses), 0, colors.compared, "compared", Math.round(time)));
+    }
     if (s.animation !== "all") return now;
     // Start and goal stand at the ends already.
     const copies = copyIndices(path.count, s.copies).filter((i) => !(i === 0 && s.start) && !(i === path.count - 1 && s.goals));
@@ -148,21 +151,21 @@ export class PictureMaker {
   }
   /** @param {Settings} s @param {Palette} colors @returns {Picture["lines"]} */
   lines(s, colors) {
-    const trees = this.trees.flatMap(({ lines, upTo }, i) => {
-      const count = upTo[Math.round(s.growth * (upTo.length - 1))];
-      return s.trees[i] ? [{ set: lines, count, width: 1, color: treeColor(this.scene.trees[i], i, colors), alpha: 0.6, over: false }] : [];
-    });
+    const trees = this.trees.flatMap(({ name, lines, count }, i) =>
+      s.trees[i] ? [{ set: lines, count: Math.round(s.growth * count), width: 1, color: treeColor(name, i, colors), alpha: 0.6, over: false }] : []);
     const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.lines, count: this.roadmap.lines.count, width: 1, color: null, alpha: 1, over: false }] : [];
     const traces = this.traces.flatMap((set, i) => {
-      if (!s.trace) return [];
-      const shown = i === s.path;
-      return [{ set, count: set.count, width: shown ? 3 : 1, color: shown ? colors.path : colors.other, alpha: 1, over: true }];
+      const chosen = i === s.path || i === s.other;
+      // Of runs only the chosen paths are drawn.
+      if (!s.trace || (this.scene.paths[i].ofRun && !chosen)) return [];
+      const color = i === s.path ? colors.path : i === s.other ? colors.compared : colors.other;
+      return [{ set, count: set.count, width: chosen ? 3 : 1, color, alpha: 1, over: true }];
     });
     return [...roadmap, ...trees, ...traces];
   }
   /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
   points(s, colors) {
-    const roots = this.trees.flatMap(({ roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(this.scene.trees[i], i, colors), over: false }] : []));
+    const roots = this.trees.flatMap(({ name, roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }] : []));
     const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null, over: false }] : [];
     this.marker.clear();
     if (s.marked) this.marker.append(new Float32Array(s.marked), () => [1, 1, 1, 1]);

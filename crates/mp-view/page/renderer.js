@@ -9,7 +9,7 @@ import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGM
 /** @import { Mat4, Numbers, Vec3 } from "mp/math.js" */
 /** @import { Shape } from "mp/shapes.js" */
 /** @typedef {"solid" | "transparent" | "wire"} Mode */
-/** @typedef {"obstacle" | "robot" | "copy" | "start" | "goal"} Role */
+/** @typedef {"obstacle" | "robot" | "copy" | "compared" | "start" | "goal"} Role */
 /** @typedef {{shape: number, pose: Numbers, at: number, color: Color, alpha: number, mode: Mode, cut: boolean, layer: number,
  *  body: number, role: Role, index: number}} Item
  *  A copy of a shape; `index` is the number of the goal or of the configuration. Of surfaces at the same place, the one with the highest layer is seen. */
@@ -23,8 +23,7 @@ import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGM
 const LOST = "This page needs WebGL2, which this browser does not offer or has switched off.";
 
 export class Renderer {
-  /** @param {HTMLCanvasElement} canvas @param {Shape[]} shapes */
-  constructor(canvas, shapes) {
+  constructor(/** @type {HTMLCanvasElement} */ canvas) {
     const gl = canvas.getContext("webgl2", { antialias: true, alpha: false });
     if (!gl) throw new Error(LOST);
     this.gl = gl;
@@ -39,9 +38,14 @@ export class Renderer {
     this.strip = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, this.strip);
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array([0, -1, 1, -1, 0, 1, 1, 1]), gl.STATIC_DRAW);
-    this.shapes = shapes.map((s) => new ShapeBuffers(gl, s, this.copies, this.strip));
+    /** @type {ShapeBuffers[]} */ this.shapes = [];
     this.calls = 0;
     this.triangles = 0;
+  }
+  /** Takes the shapes of another scene, and frees those it had. @param {Shape[]} shapes */
+  setShapes(shapes) {
+    for (const shape of this.shapes) shape.free();
+    this.shapes = shapes.map((s) => new ShapeBuffers(this.gl, s, this.copies, this.strip));
   }
   lineSet() { return new LineSet(this.gl, this.strip); }
 

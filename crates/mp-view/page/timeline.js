@@ -13,18 +13,23 @@ import { ClearancePlot } from "mp/plot.js";
 const ANIMATIONS = [["all", "All at once"], ["step", "Step by step"], ["auto", "Automatic"]];
 
 export class Timeline {
-  /** @param {Scene} scene @param {Settings} settings @param {() => void} changed */
-  constructor(scene, settings, changed) {
-    this.scene = scene; this.settings = settings; this.changed = changed;
+  /** @param {Settings} settings @param {() => void} changed */
+  constructor(settings, changed) {
+    /** @type {Scene | null} */ this.scene = null;
+    this.settings = settings; this.changed = changed;
     this.playing = false;
     this.speed = 1;
     this.direction = 1;
     /** @type {AtEnd} */ this.atEnd = "loop";
     this.lastTime = 0;
     this.build();
+  }
+  show(/** @type {Scene} */ scene) {
+    this.scene = scene;
+    this.playing = false;
     this.showPath();
   }
-  get path() { return this.scene.paths[this.settings.path] ?? null; }
+  get path() { return this.scene?.paths[this.settings.path] ?? null; }
   get last() { return Math.max(0, (this.path?.count ?? 0) - 1); }
 
   build() {

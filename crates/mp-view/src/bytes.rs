@@ -82,7 +82,7 @@ struct ConfigurationHead {
 }
 
 #[derive(Serialize, Deserialize)]
-struct PathHead {
+pub(crate) struct PathHead {
     name: String,
     verified: bool,
     length: Option<f64>,
@@ -107,6 +107,39 @@ struct RoadmapHead {
     kind: ArrayRef,
 }
 
+/// A head, padded, and the arrays behind it.
+pub(crate) fn frame(mut head: Vec<u8>, data: &[u8]) -> Vec<u8> {
+    head.resize(head.len().next_multiple_of(8), b' ');
+    let mut bytes = Vec::with_capacity(8 + head.len() + data.len());
+    bytes.extend(MAGIC);
+    bytes.extend((head.len() as u32).to_le_bytes());
+    bytes.extend(head);
+    bytes.extend(data);
+    bytes
+}
+
+/// The head and the arrays in `bytes`.
+pub(crate) fn unframe(bytes: &[u8]) -> Result<(&[u8], &[u8]), ViewError> {
+    let rest = bytes.strip_prefix(MAGIC).ok_or(ViewError::NotAScene)?;
+    let cut_off = |expected| ViewError::CutOff { expected, found: bytes.len() };
+    let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(|| cut_off(8))?;
+    let length = u32::from_le_bytes(*length) as usize;
+    rest.split_at_checked(length).ok_or_else(|| cut_off(length.saturating_add(8)))
+}
+
+/// The head of a path, whose arrays are appended to `data`.
+pub(crate) fn path_head(path: &PathTrack, data: &mut Vec<u8>) -> PathHead {
+    PathHead {
+        name: path.name.clone(),
+        verified: path.verified,
+        length: path.length,
+        rows: append(data, &path.rows),
+        poses: append(data, &path.poses),
+        trace: append(data, &path.trace),
+        clearance: path.clearance.as_ref().map(|clearance| append(data, clearance)),
+    }
+}
+
 impl SceneFile {
     /// The bytes of the file. The same scene gives the same bytes.
     ///
@@ -116,14 +149,7 @@ impl SceneFile {
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut data = Vec::new();
         let head = self.head(&mut data);
-        let mut json = serde_json::to_vec(&head).unwrap_or_default();
-        json.resize(json.len().next_multiple_of(8), b' ');
-        let mut bytes = Vec::with_capacity(8 + json.len() + data.len());
-        bytes.extend(MAGIC);
-        bytes.extend((json.len() as u32).to_le_bytes());
-        bytes.extend(json);
-        bytes.extend(data);
-        bytes
+        frame(serde_json::to_vec(&head).unwrap_or_default(), &data)
     }
 
     fn head(&self, data: &mut Vec<u8>) -> Head {
@@ -163,17 +189,7 @@ impl SceneFile {
             bodies: self.bodies.iter().map(body).collect(),
             start: configuration(&self.start),
             goals: self.goals.iter().map(configuration).collect(),
-            paths: (self.paths.iter())
-                .map(|path| PathHead {
-                    name: path.name.clone(),
-                    verified: path.verified,
-                    length: path.length,
-                    rows: append(data, &path.rows),
-                    poses: append(data, &path.poses),
-                    trace: append(data, &path.trace),
-                    clearance: path.clearance.as_ref().map(|clearance| append(data, clearance)),
-                })
-                .collect(),
+            paths: self.paths.iter().map(|path| path_head(path, data)).collect(),
             trees: (self.trees.iter())
                 .map(|tree| TreeHead {
                     name: tree.name.clone(),
@@ -196,11 +212,7 @@ impl SceneFile {
     /// # Errors
     /// When the bytes are no scene file of this version, are cut off, or an array or index does not fit.
     pub fn parse(bytes: &[u8]) -> Result<Self, ViewError> {
-        let rest = bytes.strip_prefix(MAGIC).ok_or(ViewError::NotAScene)?;
-        let cut_off = |expected| ViewError::CutOff { expected, found: bytes.len() };
-        let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(|| cut_off(8))?;
-        let length = u32::from_le_bytes(*length) as usize;
-        let (json, data) = rest.split_at_checked(length).ok_or_else(|| cut_off(length.saturating_add(8)))?;
+        let (json, data) = unframe(bytes)?;
         let bad_head = |e: serde_json::Error| ViewError::Head { reason: e.to_string() };
         #[derive(Deserialize)]
         struct Versioned {

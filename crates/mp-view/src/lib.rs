@@ -15,14 +15,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+//!
+//! [`Session`] answers the page when it opens, edits, checks, plans and saves; [`Worker`] is the same without threads.
+
 mod arrays;
 mod bytes;
 mod error;
+mod message;
 mod model;
 mod of_scene;
 mod page;
+mod session;
 
 pub use error::ViewError;
 pub use model::{
     Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
 };
+pub use page::{Planner, page};
+#[cfg(not(target_family = "wasm"))]
+pub use session::Session;
+pub use session::{Opening, Worker};

@@ -1,7 +1,7 @@
 //! Scene files made of scenes, paths and reports of `mp-plan`.
 
 use crate::{Area, Body, Configuration, Mesh, PathTrack, Polyline, Role, SceneFile, Shape};
-use mp_plan::{BodyShape, Error, PathRows, Report, Scene};
+use mp_plan::{BodyShape, Error, PathRows, Report, Scene, Track};
 use nalgebra::{Isometry3, Point3};
 
 impl SceneFile {
@@ -64,15 +64,7 @@ impl SceneFile {
     pub fn add_path(&mut self, scene: &Scene, name: &str, path: &PathRows) -> Result<(), Error> {
         let verdict = scene.check(path)?;
         let track = scene.track(path)?;
-        self.paths.push(PathTrack {
-            name: name.to_owned(),
-            verified: verdict.free,
-            length: Some(verdict.path_length),
-            rows: track.rows.into_iter().flatten().collect(),
-            poses: track.poses.iter().flatten().flat_map(seven).map(|x| x as f32).collect(),
-            trace: track.trace.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect(),
-            clearance: Some(track.clearance.into_iter().map(|c| c as f32).collect()),
-        });
+        self.paths.push(PathTrack::of(name, verdict.free, Some(verdict.path_length), track));
         Ok(())
     }
 
@@ -122,6 +114,22 @@ impl SceneFile {
     }
 }
 
+impl PathTrack {
+    /// The track of a path of this length in the metric of the space.
+    #[must_use]
+    pub fn of(name: &str, verified: bool, length: Option<f64>, track: Track) -> Self {
+        Self {
+            name: name.to_owned(),
+            verified,
+            length,
+            rows: track.rows.into_iter().flatten().collect(),
+            poses: track.poses.iter().flatten().flat_map(seven).map(|x| x as f32).collect(),
+            trace: track.trace.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect(),
+            clearance: Some(track.clearance.into_iter().map(|c| c as f32).collect()),
+        }
+    }
+}
+
 /// A configuration with the poses of the robot's bodies.
 fn configuration(scene: &Scene, row: Vec<f64>) -> Result<Configuration, Error> {
     let poses = scene.poses(&row)?.iter().flat_map(seven).collect();
@@ -129,7 +137,7 @@ fn configuration(scene: &Scene, row: Vec<f64>) -> Result<Configuration, Error> {
 }
 
 /// x y z, and the unit quaternion x y z w.
-fn seven(pose: &Isometry3<f64>) -> [f64; 7] {
+pub(crate) fn seven(pose: &Isometry3<f64>) -> [f64; 7] {
     let (t, q) = (pose.translation.vector, pose.rotation.coords);
     [t.x, t.y, t.z, q.x, q.y, q.z, q.w]
 }

@@ -13,14 +13,17 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 18] = modules!(
+const MODULES: [(&str, &str); 26] = modules!(
     "buffers",
     "camera",
     "colors",
     "controls",
     "dom",
+    "ends",
+    "growing",
     "main",
     "math",
+    "message",
     "packed",
     "panels",
     "picking",
@@ -28,35 +31,66 @@ const MODULES: [(&str, &str); 18] = modules!(
     "plot",
     "renderer",
     "scene",
+    "session",
     "shaders",
     "shapes",
     "timeline",
     "triangulate",
+    "unsaved",
+    "viewer",
+    "workbench",
+    "worker",
 );
 
 const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
+/// Where the planner of a page is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Planner<'a> {
+    /// There is none: the page shows the scene inside.
+    None,
+    /// In the page: the bytes of the WebAssembly module, as docs/formats/session.md describes it.
+    Inside(&'a [u8]),
+    /// Behind the server that the page comes from.
+    Server,
+}
+
+/// The viewer as one HTML file, with a scene and a planner. It opens without a network, and needs a browser with WebGL 2.
+///
+/// Without a scene, a page with a planner lets people choose one; a page without a planner looks for the file `scene.mpv`
+/// beside it. Nothing in a scene is run: names are shown as text.
+#[must_use]
+pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
+    let import = |(name, text): (&str, &str)| {
+        format!("\"{name}\":\"data:text/javascript;base64,{}\"", STANDARD.encode(text))
+    };
+    let imports = MODULES.map(import).join(",");
+    let planner = match planner {
+        Planner::None => String::new(),
+        Planner::Inside(module) => data("planner", module),
+        Planner::Server => "<meta name=\"mp-session\" content=\"server\">".to_owned(),
+    };
+    HTML.replace("<!--STYLE-->", &format!("<style>\n{STYLE}</style>"))
+        .replace(
+            "<!--IMPORTMAP-->",
+            &format!("<script type=\"importmap\">{{\"imports\":{{{imports}}}}}</script>"),
+        )
+        .replace("<!--SCENE-->", &scene.map_or_else(String::new, |scene| data("scene", &scene.to_bytes())))
+        .replace("<!--PLANNER-->", &planner)
+}
+
+/// Bytes as a part of the page.
+fn data(id: &str, bytes: &[u8]) -> String {
+    let text = STANDARD.encode(packed(bytes));
+    format!("<script id=\"{id}\" type=\"application/octet-stream\">{text}</script>")
+}
+
 impl SceneFile {
-    /// The viewer with this scene inside, as one HTML file: it opens without a network, and needs a browser with WebGL 2.
-    ///
-    /// Nothing in a scene is run: names are shown as text.
+    /// The viewer with this scene inside and without a planner: [`page`].
     #[must_use]
     pub fn to_html(&self) -> String {
-        let import = |(name, text): (&str, &str)| {
-            format!("\"{name}\":\"data:text/javascript;base64,{}\"", STANDARD.encode(text))
-        };
-        let imports = MODULES.map(import).join(",");
-        let scene = STANDARD.encode(packed(&self.to_bytes()));
-        HTML.replace("<!--STYLE-->", &format!("<style>\n{STYLE}</style>"))
-            .replace(
-                "<!--IMPORTMAP-->",
-                &format!("<script type=\"importmap\">{{\"imports\":{{{imports}}}}}</script>"),
-            )
-            .replace(
-                "<!--SCENE-->",
-                &format!("<script id=\"scene\" type=\"application/octet-stream\">{scene}</script>"),
-            )
+        page(Some(self), Planner::None)
     }
 }
 
@@ -104,9 +138,27 @@ mod tests {
         assert_eq!(before.matches("<script").count(), after.matches("<script").count());
     }
 
+    /// The planner is unpacked from the page as it was.
+    #[test]
+    fn the_planner_is_in_the_page() {
+        let module = *b"\0asm\x01\0\0\0";
+        let html = page(None, Planner::Inside(&module));
+        let (_, rest) = html.split_once("<script id=\"planner\" type=\"application/octet-stream\">").unwrap();
+        let bytes = STANDARD.decode(rest.split('<').next().unwrap()).unwrap();
+        let mut unpacked = Vec::new();
+        std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(&*bytes), &mut unpacked).unwrap();
+        assert_eq!(unpacked, module);
+        assert!(!html.contains("mp-session") && !html.contains("id=\"scene\""));
+        let served = page(None, Planner::Server);
+        assert!(
+            served.contains("<meta name=\"mp-session\" content=\"server\">")
+                && !served.contains("id=\"planner\"")
+        );
+    }
+
     #[test]
     fn the_page_has_a_place_for_each_part() {
-        for place in ["<!--STYLE-->", "<!--IMPORTMAP-->", "<!--SCENE-->"] {
+        for place in ["<!--STYLE-->", "<!--IMPORTMAP-->", "<!--SCENE-->", "<!--PLANNER-->"] {
             assert_eq!(HTML.matches(place).count(), 1, "{place}");
         }
         // Nothing is loaded from elsewhere.

@@ -302,6 +302,9 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         };
         tuples::six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
     }
+    fn rigid_problem(&self) -> Option<&RigidProblem> {
+        Some(&self.problem)
+    }
     fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {
         Ok(mp_io::export_ompl(&self.problem, folder, &self.problem.name, &mp_io::OmplExport::default())?)
     }

@@ -1,0 +1,69 @@
+// What is open: the session's scene, its document, start and goals. Panels of other modules ask it to open and to edit.
+
+import { showError } from "mp/dom.js";
+import { Ends } from "mp/ends.js";
+import { readScene } from "mp/scene.js";
+import { mayDiscard, setUnsaved } from "mp/unsaved.js";
+
+/** @import { Message } from "mp/message.js" */
+/** @import { Session } from "mp/session.js" */
+/** @import { Viewer } from "mp/viewer.js" */
+/** @typedef {{scene: string} | {files: {name: string, bytes: Uint8Array}[], main?: string}} Source  a shipped scene, or files */
+
+export class Workbench {
+  /** @param {Viewer} viewer @param {Session} session @param {Message} hello the reply of the session to `hello` */
+  constructor(viewer, session, hello) {
+    this.viewer = viewer; this.session = session; this.hello = hello;
+    this.ends = new Ends(session);
+    /** What can be edited, or null. @type {Message | null} */ this.document = null;
+    /** Whether the session has a scene open. */ this.open = false;
+    /** Called after a scene was opened (“open”), or came back changed from the planner (“edit”).
+     * @type {((reply: Message, how: "open" | "edit") => void)[]} */ this.onopened = [];
+    /** Called with events of runs. @type {((event: Message) => void)[]} */ this.onevent = [];
+    session.onevent = (event) => { for (const listener of this.onevent) listener(event); };
+    this.ends.onchange.push(() => viewer.changed());
+  }
+  /** Opens a scene in place of this one; asks first when there are unsaved changes. Errors are shown, and then nothing has changed.
+   * @param {Source} source @returns {Promise<boolean>} */
+  async openScene(source) {
+    if (!(await mayDiscard())) return false;
+    return this.attempt(async () => {
+      this.take(await this.session.request({ do: "open", ...source }), "open");
+      setUnsaved(false);
+    });
+  }
+  /** Sends the changed document, and shows the scene that it gives; the camera stays. @param {Message} document @returns {Promise<boolean>} */
+  edit(document) {
+    return this.attempt(async () => {
+      this.take(await this.session.request({ do: "edit", document }), "edit");
+      setUnsaved(true);
+    });
+  }
+  /** Shows what `open` or `edit` gave. @param {Message} reply @param {"open" | "edit"} how */
+  take(reply, how) {
+    const scene = readScene(reply.scene);
+    this.open = true;
+    this.document = reply.document ?? null;
+    this.viewer.show(scene, { keepCamera: how === "edit" });
+    this.ends.show(scene);
+    showError(reply.notes?.length ? reply.notes.join(" ") : "");
+    for (const listener of this.onopened) listener(reply, how);
+  }
+  /** Takes the session's scene without showing it again: the page shows it already. @param {Message} reply */
+  adopt(reply) {
+    this.open = true;
+    this.document = reply.document ?? null;
+    this.ends.show(this.viewer.scene);
+    for (const listener of this.onopened) listener(reply, "open");
+  }
+  /** Does something that may fail; then says why, and what to do. @param {() => Promise<void>} task @returns {Promise<boolean>} whether it succeeded */
+  async attempt(task) {
+    try {
+      await task();
+      return true;
+    } catch (error) {
+      showError(error);
+      return false;
+    }
+  }
+}

@@ -1,0 +1,58 @@
+//! A session of the viewer: what its page asks for, done by the libraries. docs/formats/session.md describes the messages.
+
+mod desk;
+mod files;
+mod growth;
+mod messages;
+mod run;
+#[cfg(not(target_family = "wasm"))]
+mod threads;
+mod worker;
+
+pub use desk::Opening;
+#[cfg(not(target_family = "wasm"))]
+pub use threads::Session;
+pub use worker::Worker;
+
+pub(crate) use messages::{number_of, refusal, text_of};
+
+use crate::message::Message;
+use mp_plan::{Error, Request};
+use serde_json::Value;
+
+/// What a request about a run asks for.
+pub(crate) enum AboutRun {
+    /// To begin it: with this request, paused or not.
+    Plan { request: Box<Request>, paused: bool },
+    /// To change what it does.
+    Order(run::Order),
+    /// To end it.
+    Cancel,
+}
+
+impl AboutRun {
+    /// The run that a request is about, and what it asks for; `None` when it is about no run.
+    pub(crate) fn of(message: &Message) -> Result<Option<(u64, Self)>, Error> {
+        let head = &message.head;
+        let about = match text_of(head, "do")? {
+            "plan" => {
+                let value = head.get("request").cloned().unwrap_or_default();
+                let request = serde_json::from_value(value)
+                    .map_err(|e| Error::new(format!("this is no request to plan: {e}")))?;
+                let paused = head.get("paused").and_then(Value::as_bool).unwrap_or(false);
+                Self::Plan { request: Box::new(request), paused }
+            }
+            "pause" => Self::Order(run::Order::Pause),
+            "resume" => Self::Order(run::Order::Go),
+            "step" => Self::Order(run::Order::Step(number_of(head, "iterations")?.max(1))),
+            "cancel" => Self::Cancel,
+            _ => return Ok(None),
+        };
+        Ok(Some((number_of(head, "run")?, about)))
+    }
+}
+
+/// The first order of a run.
+pub(crate) fn first_order(paused: bool) -> run::Order {
+    if paused { run::Order::Pause } else { run::Order::Go }
+}

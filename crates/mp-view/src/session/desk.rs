@@ -1,0 +1,365 @@
+//! What a session has open, and the requests about it.
+
+use super::files::{Named, Written, plain_name, written};
+use super::text_of;
+use crate::bytes::path_head;
+use crate::message::{Message, json};
+use crate::{PathTrack, SceneFile};
+use mp_geom::TriMesh;
+use mp_io::{DocumentShape, SceneDocument};
+use mp_plan::{Error, MetricName, PathFileKind, PathRows, Request, Scene};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What a session begins with.
+#[derive(Clone, Debug, Default)]
+pub struct Opening {
+    /// The scene that is open at the beginning.
+    pub scene: Option<Scene>,
+    /// A path through it.
+    pub path: Option<PathRows>,
+    /// The folder in which files are saved; without one, the page gets their content.
+    pub folder: Option<PathBuf>,
+}
+
+/// The scene that is open.
+#[derive(Clone, Debug)]
+pub(crate) struct Open {
+    pub(crate) scene: Scene,
+    /// What can be edited. Its meshes are in `meshes`.
+    document: Option<SceneDocument>,
+    path: Option<PathRows>,
+}
+
+/// What a session has open.
+#[derive(Debug, Default)]
+pub(crate) struct Desk {
+    pub(crate) open: Option<Open>,
+    /// Meshes by the names that documents call them.
+    meshes: BTreeMap<String, TriMesh>,
+    folder: Option<PathBuf>,
+}
+
+type Answer = Result<Message, Error>;
+
+impl Desk {
+    pub(crate) fn new(opening: Opening) -> Self {
+        let mut desk = Self { folder: opening.folder, ..Self::default() };
+        if let Some(scene) = opening.scene {
+            desk.adopt(scene, opening.path);
+        }
+        desk
+    }
+
+    /// The reply to a request.
+    pub(crate) fn answer(&mut self, request: &Message) -> Answer {
+        match text_of(&request.head, "do")? {
+            "hello" => self.hello(),
+            "open" => self.open(request),
+            "edit" => self.edit(request),
+            "mesh" => self.mesh(request),
+            "path" => self.path(request),
+            "check" => self.check(request),
+            "save" => self.save(request),
+            "save_path" => self.save_path(request),
+            "export" => self.export(request),
+            other => Err(Error::new(format!("there is no request `{other}`"))
+                .help("docs/formats/session.md lists them: is the page of another version?")),
+        }
+    }
+
+    pub(crate) fn opened(&self) -> Result<&Open, Error> {
+        self.open.as_ref().ok_or_else(|| Error::new("no scene is open").help("open one, or begin a new one"))
+    }
+
+    fn hello(&self) -> Answer {
+        let parameters = |parameters: &[mp_plan::Parameter]| {
+            let one = |p: &mp_plan::Parameter| json!({"name": p.name, "default": p.default, "summary": p.summary});
+            parameters.iter().map(one).collect::<Vec<_>>()
+        };
+        let roadmaps = mp_plan::roadmap_planners();
+        let planner = |info: &mp_plan::PlannerInfo| {
+            let family = if roadmaps.iter().any(|r| r.name == info.name) { "roadmap" } else { "tree" };
+            json!({
+                "name": info.name, "aliases": info.aliases, "summary": info.summary, "family": family,
+                "citation": info.citation, "parameters": parameters(info.parameters),
+            })
+        };
+        let meta = mp_plan::meta_planners().iter().map(|meta| {
+            json!({
+                "prefix": meta.prefix, "summary": meta.summary, "around": meta.around,
+                "parameters": parameters(meta.parameters),
+            })
+        });
+        let metrics = MetricName::ALL.iter().map(|(_, name, formula)| json!({"name": name, "formula": formula}));
+        let mut reply = Message::default()
+            .with("planners", mp_plan::planners().map(planner).collect::<Vec<_>>())
+            .with("meta_planners", meta.collect::<Vec<_>>())
+            .with("metrics", metrics.collect::<Vec<_>>())
+            .with("request", json(&Request::default()))
+            .with("scenes", Scene::shipped())
+            .with("folder", self.folder.as_ref().map(|folder| folder.display().to_string()));
+        let opened = match &self.open {
+            Some(open) => Value::Object(self.described(open, &mut reply)?),
+            None => Value::Null,
+        };
+        reply.set("opened", opened);
+        Ok(reply)
+    }
+
+    /// Opens the scene with a shipped name, or that of the files of the request.
+    fn open(&mut self, request: &Message) -> Answer {
+        let scene = match request.head.get("scene").and_then(Value::as_str) {
+            Some(name) => match Scene::shipped().contains(&name) {
+                true => Scene::find(name)?,
+                false => return Err(Error::new(format!("no shipped scene is called {name}"))),
+            },
+            None => {
+                let files = Named::of(request)?;
+                let main = match request.head.get("main").and_then(Value::as_str) {
+                    Some(name) => name,
+                    None => files.scene()?,
+                };
+                Scene::load_from(&files, Path::new(main))?
+            }
+        };
+        self.adopt(scene, None);
+        self.reply()
+    }
+
+    /// Takes a scene as the one that is open.
+    fn adopt(&mut self, scene: Scene, path: Option<PathRows>) {
+        let mut document = scene.document();
+        for body in document.iter_mut().flat_map(|d| std::iter::once(&mut d.robot).chain(&mut d.obstacles)) {
+            self.take_mesh(&mut body.shape);
+        }
+        self.open = Some(Open { scene, document, path });
+    }
+
+    /// Takes the mesh that is written into a document, and leaves its name.
+    fn take_mesh(&mut self, shape: &mut DocumentShape) {
+        let DocumentShape::Mesh { file, off } = shape else { return };
+        let Some(mesh) = off.take().and_then(|off| {
+            mp_io::OffDocument::parse(file, off.as_bytes()).and_then(|document| document.to_mesh(file)).ok()
+        }) else {
+            return;
+        };
+        *file = self.name_mesh(file, mesh);
+    }
+
+    /// Keeps a mesh, and returns the name by which documents call it: that of its file, unless another mesh has it.
+    fn name_mesh(&mut self, file: &str, mesh: TriMesh) -> String {
+        let numbered = (2..).map(|number: u64| format!("{number}_{file}"));
+        for name in std::iter::once(file.to_owned()).chain(numbered) {
+            match self.meshes.get(&name) {
+                Some(known) if *known != mesh => {}
+                Some(_) => return name,
+                None => {
+                    self.meshes.insert(name.clone(), mesh);
+                    return name;
+                }
+            }
+        }
+        file.to_owned()
+    }
+
+    /// Makes the scene of an edited document.
+    fn edit(&mut self, request: &Message) -> Answer {
+        let document = self.document(request)?;
+        let meshes = &self.meshes;
+        let scene = Scene::from_document(document.clone(), &|name| known_mesh(meshes, name))?;
+        self.open = Some(Open { scene, document: Some(document), path: None });
+        self.reply()
+    }
+
+    /// The document of a request.
+    fn document(&self, request: &Message) -> Result<SceneDocument, Error> {
+        let document = request.head.get("document").cloned().unwrap_or_default();
+        serde_json::from_value(document).map_err(|e| {
+            Error::new(format!("this is no document: {e}")).help("docs/formats/session.md describes documents")
+        })
+    }
+
+    /// The reply of `open` for what is open.
+    fn reply(&self) -> Answer {
+        let mut reply = Message::default();
+        reply.head = self.described(self.opened()?, &mut reply)?;
+        Ok(reply)
+    }
+
+    /// What is open, with arrays in `message`.
+    fn described(&self, open: &Open, message: &mut Message) -> Result<serde_json::Map<String, Value>, Error> {
+        let mut file = self.scene_file(open)?;
+        if let Some(path) = &open.path {
+            file.add_path(&open.scene, "path", path)?;
+        }
+        let mut members = serde_json::Map::new();
+        members.insert("scene".to_owned(), message.array(&file.to_bytes()));
+        members.insert("document".to_owned(), json(&open.document));
+        members.insert("notes".to_owned(), open.scene.lint().into());
+        Ok(members)
+    }
+
+    /// The scene file of what is open, with the colours of its document.
+    fn scene_file(&self, open: &Open) -> Result<SceneFile, Error> {
+        let mut file = SceneFile::of(&open.scene)?;
+        for (body, drawn) in open.document.iter().flat_map(SceneDocument::bodies).zip(&mut file.bodies) {
+            drawn.color = body.color.as_deref().and_then(rgb);
+        }
+        Ok(file)
+    }
+
+    /// Keeps the meshes of files, for documents.
+    fn mesh(&mut self, request: &Message) -> Answer {
+        let files = Named::of(request)?;
+        let name = files.only("mesh")?.to_owned();
+        let mesh = mp_io::read_mesh_of(&files, Path::new(&name))?;
+        let (vertices, triangles, bounds) = (mesh.vertices().len(), mesh.triangles().len(), mesh.aabb());
+        let file = self.name_mesh(&name, mesh);
+        Ok(Message::default()
+            .with("file", file)
+            .with("vertices", vertices)
+            .with("triangles", triangles)
+            .with("bounds", json(&[<[f64; 3]>::from(bounds.min.coords), bounds.max.coords.into()])))
+    }
+
+    /// Reads a path through the scene.
+    fn path(&mut self, request: &Message) -> Answer {
+        let scene = &self.opened()?.scene;
+        let files = Named::of(request)?;
+        let name = files.only("path")?;
+        let kind = PathFileKind::of(Path::new(name)).unwrap_or(PathFileKind::Text);
+        let rows = PathRows::parse(name, files.content(name), kind, scene.path_format())?;
+        let verdict = scene.check(&rows)?;
+        let track = PathTrack::of(name, verdict.free, Some(verdict.path_length), scene.track(&rows)?);
+        let mut reply = Message::default();
+        let path = json(&path_head(&track, &mut reply.data));
+        Ok(reply.with("path", path).with("faults", verdict.faults))
+    }
+
+    fn check(&self, request: &Message) -> Answer {
+        let scene = &self.opened()?.scene;
+        let row = row_of(&request.head, "row")?;
+        let found = scene.explain(&row)?;
+        let poses: Vec<f64> = scene.poses(&row)?.iter().flat_map(crate::of_scene::seven).collect();
+        let touching: Vec<String> = found.touching.iter().map(ToString::to_string).collect();
+        Ok(Message::default()
+            .with("free", found.free)
+            .with("in_bounds", found.in_bounds)
+            .with("clearance", found.clearance)
+            .with("touching", touching)
+            .with("fault", found.fault)
+            .with("nearest_free", found.nearest_free)
+            .with("poses", poses))
+    }
+
+    fn save(&self, request: &Message) -> Answer {
+        let name = plain_name(request)?;
+        let document = match request.head.get("document") {
+            Some(Value::Object(_)) => self.document(request)?,
+            _ => self.opened()?.document.clone().ok_or_else(|| {
+                Error::new("this kind of scene is not saved").help("only rigid bodies among meshes are")
+            })?,
+        };
+        let mesh = |name: &str| known_mesh(&self.meshes, name);
+        let files = match text_of(&request.head, "format")? {
+            "own" => {
+                let document = SceneDocument { name: name.clone(), ..document };
+                document.problem(&name, &mesh)?;
+                vec![(format!("{name}.mp.json"), document.with_meshes(&mesh)?.to_text())]
+            }
+            "gempa" => document.to_gempa(&name, &mesh)?,
+            other => {
+                return Err(Error::new(format!("there is no format `{other}` for scenes"))
+                    .help("take `own` or `gempa`"));
+            }
+        };
+        self.written(request, files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
+    }
+
+    fn save_path(&self, request: &Message) -> Answer {
+        let scene = &self.opened()?.scene;
+        let (name, format) = (plain_name(request)?, text_of(&request.head, "format")?);
+        let file = format!("{name}.{format}");
+        let rows = rows_of(&request.head, "rows")?;
+        let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+        // The same checks as for a path from a file: of this robot, and finite.
+        scene.track(&path)?;
+        let text = path.to_file(PathFileKind::of(Path::new(&file))?);
+        self.written(request, vec![(file, text.into_bytes())])
+    }
+
+    fn export(&self, request: &Message) -> Answer {
+        let open = self.opened()?;
+        let name = plain_name(request)?;
+        let mut file = self.scene_file(open)?;
+        for path in request.head.get("paths").and_then(Value::as_array).into_iter().flatten() {
+            let members = path.as_object().cloned().unwrap_or_default();
+            let rows = rows_of(&members, "rows")?;
+            let format = open.scene.path_format();
+            let path = PathRows { format, columns: open.scene.columns(), rows };
+            file.add_path(&open.scene, text_of(&members, "name")?, &path)?;
+        }
+        let (ending, bytes) = match text_of(&request.head, "format")? {
+            "html" => ("html", file.to_html().into_bytes()),
+            "mpv" => ("mpv", file.to_bytes()),
+            other => {
+                return Err(Error::new(format!("there is no format `{other}` for exports"))
+                    .help("take `html` or `mpv`"));
+            }
+        };
+        self.written(request, vec![(format!("{name}.{ending}"), bytes)])
+    }
+
+    /// The reply with these files: written into the folder, or their content.
+    fn written(&self, request: &Message, files: Vec<(String, Vec<u8>)>) -> Answer {
+        let mut reply = Message::default();
+        if let Some(folder) = &self.folder {
+            let overwrite = request.head.get("overwrite").and_then(Value::as_bool).unwrap_or(false);
+            let Written(names) = written(folder, &files, overwrite)?;
+            return Ok(reply.with("written", names));
+        }
+        let files: Vec<Value> =
+            files.iter().map(|(name, bytes)| json!({"name": name, "bytes": reply.array(bytes)})).collect();
+        Ok(reply.with("files", files))
+    }
+
+    /// The scene of a request to plan: the one that is open, with the start and goals of the request.
+    pub(crate) fn scene_to_plan(&self, request: &Message) -> Result<Scene, Error> {
+        let scene = &self.opened()?.scene;
+        let given = |name: &str| request.head.get(name).is_some_and(|value| !value.is_null());
+        if !given("start") && !given("goals") {
+            return Ok(scene.clone());
+        }
+        let start = if given("start") { row_of(&request.head, "start")? } else { scene.start() };
+        let goals = if given("goals") { rows_of(&request.head, "goals")? } else { scene.goals() };
+        scene.with_ends(&start, &goals)
+    }
+}
+
+/// The mesh that documents call `name`.
+fn known_mesh(meshes: &BTreeMap<String, TriMesh>, name: &str) -> Result<TriMesh, mp_io::Error> {
+    meshes.get(name).cloned().ok_or_else(|| {
+        mp_io::Error::new(mp_io::ErrorKind::Io, name, "this mesh has not been opened").help("open its file first")
+    })
+}
+
+/// Red, green and blue of a colour `#rrggbb`.
+fn rgb(color: &str) -> Option<[u8; 3]> {
+    let number = u32::from_str_radix(color.strip_prefix('#')?, 16).ok()?;
+    let [_, r, g, b] = number.to_be_bytes();
+    Some([r, g, b])
+}
+
+/// A configuration in a request.
+fn row_of(head: &serde_json::Map<String, Value>, name: &str) -> Result<Vec<f64>, Error> {
+    serde_json::from_value(head.get(name).cloned().unwrap_or_default())
+        .map_err(|_| Error::new(format!("the request has no configuration `{name}`: a list of numbers")))
+}
+
+/// Configurations in a request.
+fn rows_of(head: &serde_json::Map<String, Value>, name: &str) -> Result<Vec<Vec<f64>>, Error> {
+    serde_json::from_value(head.get(name).cloned().unwrap_or_default())
+        .map_err(|_| Error::new(format!("the request has no configurations `{name}`: a list of lists of numbers")))
+}

@@ -1,0 +1,124 @@
+//! Files of a session: those that a page sends, and those that are written for it.
+
+use super::text_of;
+use crate::message::Message;
+use mp_io::{Files, MAX_MESH_BYTES};
+use mp_plan::Error;
+use serde_json::Value;
+use std::fmt;
+use std::path::Path;
+
+/// Endings of scene files, those that are surely scenes first.
+const SCENES: [&str; 5] = [".mp.json", ".env", ".cfg", ".toml", ".txt"];
+
+/// Files by name.
+pub(crate) struct Named(Vec<(String, Vec<u8>)>);
+
+impl Named {
+    /// The files of a request.
+    pub(crate) fn of(request: &Message) -> Result<Self, Error> {
+        let none = || Error::new("the request has no files");
+        let list = request.head.get("files").and_then(Value::as_array).ok_or_else(none)?;
+        let mut files = Vec::new();
+        for file in list {
+            let members = file.as_object().ok_or_else(none)?;
+            let name = text_of(members, "name")?.to_owned();
+            let bytes = members.get("bytes").cloned().unwrap_or_default();
+            files.push((name, request.bytes(&bytes, "bytes").map_err(|e| Error::new(e.to_string()))?));
+        }
+        if files.is_empty() { Err(none()) } else { Ok(Self(files)) }
+    }
+
+    /// The name of the only file; `what` it should be.
+    pub(crate) fn only(&self, what: &str) -> Result<&str, Error> {
+        match self.0.as_slice() {
+            [(name, _)] => Ok(name),
+            files => Err(Error::new(format!("{} files are given for one {what}", files.len()))
+                .help("give one file at a time")),
+        }
+    }
+
+    /// The content of a file; nothing if there is no such file.
+    pub(crate) fn content(&self, name: &str) -> &[u8] {
+        self.find(name).unwrap_or_default()
+    }
+
+    fn find(&self, name: &str) -> Option<&[u8]> {
+        self.0.iter().find(|file| file.0 == name).map(|file| file.1.as_slice())
+    }
+
+    /// The name of the file that is a scene, by its ending.
+    pub(crate) fn scene(&self) -> Result<&str, Error> {
+        let ends = |name: &str, ending: &str| name.to_ascii_lowercase().ends_with(ending);
+        let scene = SCENES.iter().find_map(|ending| self.0.iter().find(|file| ends(&file.0, ending)));
+        // One file of another ending is tried: its error says what it is.
+        match (scene, self.0.as_slice()) {
+            (Some((name, _)), _) | (None, [(name, _)]) => Ok(name),
+            _ => Err(Error::new("none of these files is a scene")
+                .help("add the scene itself: .env, .txt, .cfg, .toml or .mp.json")),
+        }
+    }
+}
+
+impl fmt::Debug for Named {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.0.iter().map(|file| &file.0)).finish()
+    }
+}
+
+/// A file is found by its name, or else by the last part of its name: pages do not know folders.
+impl Files for Named {
+    fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
+        let last = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+        let find = |name: &str| {
+            let found = self.find(name).or_else(|| {
+                self.0.iter().find(|file| last(&file.0) == last(name)).map(|file| file.1.as_slice())
+            });
+            found.map(<[u8]>::to_vec)
+        };
+        let memory = mp_io::InMemory(find);
+        memory.read(path, limit.min(MAX_MESH_BYTES)).map_err(|e| match e.kind() {
+            mp_io::ErrorKind::Io => {
+                let name = path.to_string_lossy().into_owned();
+                mp_io::Error::new(mp_io::ErrorKind::Io, name, "this file was not opened together with the scene")
+                    .help("open it together with the scene: choose or drop all files at once")
+            }
+            _ => e,
+        })
+    }
+}
+
+/// The name of the files to be written, from a request: a plain name without an ending.
+pub(crate) fn plain_name(request: &Message) -> Result<String, Error> {
+    let name = request.head.get("name").and_then(Value::as_str).unwrap_or("scene").trim();
+    let allowed = |c: char| c.is_alphanumeric() || "-_ .()+,@".contains(c);
+    let reserved = ["con", "prn", "aux", "nul"].contains(&name.to_ascii_lowercase().as_str());
+    let good = !name.is_empty() && name.len() <= 200 && !name.starts_with('.') && name.chars().all(allowed);
+    if good && !reserved {
+        return Ok(name.to_owned());
+    }
+    Err(Error::new(format!("`{name}` is no name for a file here"))
+        .help("take letters, digits, blanks, `-` and `_`, and no folders"))
+}
+
+/// The names of files that were written.
+pub(crate) struct Written(pub(crate) Vec<String>);
+
+/// Writes files into a folder: all of them, or, if one would overwrite a file and must not, none.
+pub(crate) fn written(folder: &Path, files: &[(String, Vec<u8>)], overwrite: bool) -> Result<Written, Error> {
+    for (name, _) in files {
+        let path = folder.join(name);
+        // A link could lead out of the folder.
+        if path.is_symlink() {
+            return Err(Error::new(format!("{} is a link", path.display())).help("take another name"));
+        }
+        if !overwrite && path.exists() {
+            return Err(Error::new(format!("{} exists already", path.display()))
+                .help("take another name, or say that it may be overwritten"));
+        }
+    }
+    for (name, bytes) in files {
+        mp_io::write_atomic(&folder.join(name), bytes)?;
+    }
+    Ok(Written(files.iter().map(|file| file.0.clone()).collect()))
+}

@@ -1,0 +1,209 @@
+//! What a run has done since the page was told last: nodes, edges, and motions that were not free.
+
+use crate::message::Message;
+use mp_cspace::NodeId;
+use mp_plan::{Scene, SearchEvent};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+
+/// At most this many motions that were not free are kept until the page takes them; the oldest are dropped first.
+const MAX_REJECTED: usize = 20_000;
+
+/// The trees or the roadmap of a run, and which part of them the page has.
+#[derive(Debug)]
+pub(crate) struct Growth {
+    /// Says where a configuration is drawn.
+    scene: Scene,
+    /// Whether the planner builds a roadmap.
+    roadmap: bool,
+    trees: Vec<GrowingTree>,
+    edges: Vec<u32>,
+    rejected: Vec<f32>,
+}
+
+/// A tree, or the nodes of a roadmap.
+#[derive(Debug, Default)]
+struct GrowingTree {
+    /// x y z of each node.
+    nodes: Vec<f32>,
+    /// The parent of each node, −1 for roots.
+    parents: Vec<i32>,
+    /// How many nodes the page has.
+    sent: usize,
+    /// Nodes that the page has with another parent.
+    rewired: BTreeSet<usize>,
+    /// The former numbers of the nodes that the page has and that remain, if some were removed.
+    survivors: Option<Vec<u32>>,
+}
+
+impl Growth {
+    pub(crate) fn new(scene: Scene, roadmap: bool) -> Self {
+        Self { scene, roadmap, trees: Vec::new(), edges: Vec::new(), rejected: Vec::new() }
+    }
+
+    /// Notes an event.
+    pub(crate) fn note(&mut self, event: &SearchEvent<'_>) {
+        match event {
+            SearchEvent::Rooted { tree, id, row } => self.add(*tree, *id, -1, row),
+            SearchEvent::Added { tree, id, parent, row } => self.add(*tree, *id, number(*parent), row),
+            SearchEvent::Rewired { tree, id, parent } => self.tree(*tree).rewire(*id as usize, number(*parent)),
+            SearchEvent::Pruned { tree, survivors } => self.tree(*tree).prune(survivors),
+            SearchEvent::Linked { from, to } => self.edges.extend([*from, *to]),
+            SearchEvent::Blocked { from, toward } => {
+                if self.rejected.len() >= 6 * MAX_REJECTED {
+                    self.rejected.drain(..3 * MAX_REJECTED);
+                }
+                let ends = [self.place(from), self.place(toward)];
+                self.rejected.extend(ends.iter().flatten());
+            }
+            _ => {}
+        }
+    }
+
+    fn add(&mut self, tree: usize, id: NodeId, parent: i32, row: &[f64]) {
+        let place = self.place(row);
+        let tree = self.tree(tree);
+        // Nodes come in the order of their numbers.
+        debug_assert_eq!(tree.parents.len(), id as usize);
+        tree.nodes.extend(place);
+        tree.parents.push(parent);
+    }
+
+    fn tree(&mut self, tree: usize) -> &mut GrowingTree {
+        if self.trees.len() <= tree {
+            self.trees.resize_with(tree + 1, GrowingTree::default);
+        }
+        &mut self.trees[tree]
+    }
+
+    /// Where a configuration is drawn.
+    fn place(&self, row: &[f64]) -> [f32; 3] {
+        self.scene.traced(row).map_or([0.0; 3], |p| [p.x as f32, p.y as f32, p.z as f32])
+    }
+
+    /// The event `grown` with all that the page does not have, if there is anything; afterwards the page has it.
+    pub(crate) fn take(&mut self, run: u64) -> Option<Message> {
+        let news = self.trees.iter().any(GrowingTree::has_news);
+        if !news && self.edges.is_empty() && self.rejected.is_empty() {
+            return None;
+        }
+        let mut message = Message::event("grown", run);
+        let (mut trees, mut rewired, mut pruned, mut roadmap) = (vec![], vec![], vec![], Value::Null);
+        for (i, tree) in self.trees.iter_mut().enumerate() {
+            if let Some(survivors) = tree.survivors.take() {
+                pruned.push(json!({"tree": i, "survivors": message.array(&survivors)}));
+            }
+            let nodes = message.array(&tree.nodes[3 * tree.sent..]);
+            if self.roadmap {
+                let edges = message.array(&std::mem::take(&mut self.edges));
+                roadmap = json!({"from": tree.sent, "nodes": nodes, "edges": edges});
+            } else if tree.sent < tree.parents.len() {
+                let parents = message.array(&tree.parents[tree.sent..]);
+                let name = if i == 0 { "from the start" } else { "from the goal" };
+                trees.push(json!({"tree": i, "name": name, "from": tree.sent, "nodes": nodes, "parents": parents}));
+            }
+            if !tree.rewired.is_empty() {
+                let ids: Vec<u32> = tree.rewired.iter().map(|&id| id as u32).collect();
+                let parents: Vec<i32> = tree.rewired.iter().map(|&id| tree.parents[id]).collect();
+                tree.rewired.clear();
+                rewired.push(json!({"tree": i, "nodes": message.array(&ids), "parents": message.array(&parents)}));
+            }
+            tree.sent = tree.parents.len();
+        }
+        let rejected = message.array(&std::mem::take(&mut self.rejected));
+        Some(
+            message
+                .with("trees", trees)
+                .with("rewired", rewired)
+                .with("pruned", pruned)
+                .with("roadmap", roadmap)
+                .with("rejected", rejected),
+        )
+    }
+}
+
+impl GrowingTree {
+    fn has_news(&self) -> bool {
+        self.sent < self.parents.len() || !self.rewired.is_empty() || self.survivors.is_some()
+    }
+
+    fn rewire(&mut self, id: usize, parent: i32) {
+        if let Some(old) = self.parents.get_mut(id) {
+            *old = parent;
+            if id < self.sent {
+                self.rewired.insert(id);
+            }
+        }
+    }
+
+    /// Keeps the nodes with these numbers, which rise.
+    fn prune(&mut self, survivors: &[NodeId]) {
+        let mut new = vec![-1; self.parents.len()];
+        for (now, &before) in survivors.iter().enumerate() {
+            new[before as usize] = now as i32;
+        }
+        let renumbered = |parent: i32| usize::try_from(parent).map_or(-1, |parent| new[parent]);
+        let sent: Vec<u32> = survivors.iter().copied().filter(|&id| (id as usize) < self.sent).collect();
+        self.nodes = survivors.iter().flat_map(|&id| self.nodes[3 * id as usize..][..3].to_vec()).collect();
+        self.parents = survivors.iter().map(|&id| renumbered(self.parents[id as usize])).collect();
+        self.rewired = self.rewired.iter().filter_map(|&id| usize::try_from(new[id]).ok()).collect();
+        self.sent = sent.len();
+        self.survivors = Some(match self.survivors.take() {
+            Some(former) => sent.iter().map(|&id| former[id as usize]).collect(),
+            None => sent,
+        });
+    }
+}
+
+/// A node as a parent.
+fn number(id: NodeId) -> i32 {
+    i32::try_from(id).unwrap_or(i32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A page that does what events say has the same tree, whenever it takes them.
+    #[test]
+    fn joined_events_give_the_same_tree() {
+        for period in [1, 2, 3, 7, 100] {
+            let mut tree = GrowingTree::default();
+            let (mut page, mut taken) = (Vec::<i32>::new(), 0);
+            for step in 0..60_usize {
+                match step % 6 {
+                    4 => {
+                        let id = tree.parents.len() / 2;
+                        tree.rewire(id, (id / 2) as i32 - 1);
+                    }
+                    5 => {
+                        // The last node and a leaf in the middle go.
+                        let leaf = |id: &usize| !tree.parents.contains(&(*id as i32));
+                        let gone = (0..tree.parents.len()).rev().filter(leaf).nth(step % 3);
+                        let rest = (0..tree.parents.len()).filter(|id| Some(*id) != gone);
+                        let survivors: Vec<NodeId> = rest.map(|id| id as NodeId).collect();
+                        tree.prune(&survivors);
+                    }
+                    _ => {
+                        tree.nodes.extend([step as f32; 3]);
+                        tree.parents.push(tree.parents.len() as i32 - 1 - (step % 3).min(tree.parents.len()) as i32);
+                    }
+                }
+                if step % period == 0 {
+                    taken += 1;
+                    if let Some(survivors) = tree.survivors.take() {
+                        let new = |parent: i32| survivors.iter().position(|&s| s as i32 == parent).map_or(-1, |p| p as i32);
+                        page = survivors.iter().map(|&s| new(page[s as usize])).collect();
+                    }
+                    page.extend(&tree.parents[tree.sent..]);
+                    for id in std::mem::take(&mut tree.rewired) {
+                        page[id] = tree.parents[id];
+                    }
+                    tree.sent = tree.parents.len();
+                    assert_eq!(page, tree.parents, "period {period}, step {step}");
+                }
+            }
+            assert!(taken > 0);
+        }
+    }
+}

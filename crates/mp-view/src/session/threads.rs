@@ -1,0 +1,217 @@
+//! A session whose runs have threads: behind a server.
+
+use super::desk::{Desk, Opening};
+use super::run::{Driver, Order, Outbox, SharedOutbox, When, locked};
+use super::{AboutRun, first_order, refusal};
+use crate::message::Message;
+use mp_cspace::{Cancel, Clock};
+use mp_plan::{Control, Error, Request, Scene};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+
+/// A session of one page. Requests may come from several threads; runs have threads of their own. When it is dropped, its runs
+/// are cancelled and waited for.
+///
+/// ```
+/// use mp_view::{Opening, Session};
+/// let session = Session::new(Opening::default(), || {});
+/// // Requests and replies are bytes: see docs/formats/session.md.
+/// let reply = session.handle(b"not a message");
+/// assert!(String::from_utf8_lossy(&reply).contains("error"));
+/// assert!(session.take_event().is_none());
+/// ```
+pub struct Session {
+    desk: Mutex<Desk>,
+    runs: Mutex<Runs>,
+    wake: Arc<dyn Fn() + Send + Sync>,
+}
+
+impl fmt::Debug for Session {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Session").finish_non_exhaustive()
+    }
+}
+
+/// The runs of a session by their numbers.
+type Runs = BTreeMap<u64, RunThread>;
+
+struct RunThread {
+    orders: Arc<Orders>,
+    outbox: SharedOutbox,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// The present order of a run.
+struct Orders {
+    order: Mutex<Order>,
+    changed: Condvar,
+    /// Raised when a new order has come.
+    new: AtomicBool,
+    cancel: Cancel,
+}
+
+impl Orders {
+    fn give(&self, order: Order) {
+        *unpoisoned(&self.order) = order;
+        self.new.store(true, Ordering::Relaxed);
+        self.changed.notify_all();
+    }
+
+    fn cancel(&self) {
+        self.cancel.cancel();
+        self.new.store(true, Ordering::Relaxed);
+        // Under the lock, so that a thread that is about to wait does not miss it.
+        drop(unpoisoned(&self.order));
+        self.changed.notify_all();
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancel.0.load(Ordering::Relaxed)
+    }
+
+    /// Waits for an order that is not to pause; returns when cancelled, too.
+    fn next(&self) -> Order {
+        let mut order = unpoisoned(&self.order);
+        while *order == Order::Pause && !self.is_cancelled() {
+            order = self.changed.wait(order).unwrap_or_else(PoisonError::into_inner);
+        }
+        self.new.store(false, Ordering::Relaxed);
+        if self.is_cancelled() { Order::Go } else { *order }
+    }
+
+    /// Says what is left of an order, unless another one has come.
+    fn left(&self, order: Order) {
+        let mut present = unpoisoned(&self.order);
+        if !self.new.load(Ordering::Relaxed) {
+            *present = order;
+        }
+    }
+}
+
+/// A lock, also after a panic: nothing behind these locks is ever half changed.
+fn unpoisoned<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Session {
+    /// A session. `wake` is called from any thread when there are events; it must return at once.
+    pub fn new(opening: Opening, wake: impl Fn() + Send + Sync + 'static) -> Self {
+        Self { desk: Mutex::new(Desk::new(opening)), runs: Mutex::default(), wake: Arc::new(wake) }
+    }
+
+    /// The reply to a request.
+    #[must_use]
+    pub fn handle(&self, request: &[u8]) -> Vec<u8> {
+        let reply = Message::parse(request)
+            .map_err(|e| Error::new(e.to_string()))
+            .and_then(|request| self.reply(&request));
+        reply.unwrap_or_else(|error| refusal(&error)).to_bytes()
+    }
+
+    fn reply(&self, message: &Message) -> Result<Message, Error> {
+        let Some((run, about)) = AboutRun::of(message)? else {
+            return unpoisoned(&self.desk).answer(message);
+        };
+        let scene = match &about {
+            AboutRun::Plan { .. } => Some(unpoisoned(&self.desk).scene_to_plan(message)?),
+            _ => None,
+        };
+        let mut runs = unpoisoned(&self.runs);
+        match (about, scene) {
+            (AboutRun::Plan { request, paused }, Some(scene)) => {
+                if runs.contains_key(&run) {
+                    return Err(Error::new(format!("run {run} goes on already")));
+                }
+                // What is wrong with start, goal and request is the reply, not an event.
+                scene.prepare(&request)?;
+                runs.insert(run, begin(run, scene, *request, paused, Arc::clone(&self.wake)));
+            }
+            // A run that has ended meanwhile needs no order.
+            (AboutRun::Order(order), _) => runs.get(&run).iter().for_each(|run| run.orders.give(order)),
+            (AboutRun::Cancel, _) => runs.get(&run).iter().for_each(|run| run.orders.cancel()),
+            (AboutRun::Plan { .. }, None) => {}
+        }
+        Ok(Message::default())
+    }
+
+    /// The next event, if there is one. Growth and progress are joined until they are taken.
+    #[must_use]
+    pub fn take_event(&self) -> Option<Vec<u8>> {
+        let mut runs = unpoisoned(&self.runs);
+        let mut ended = Vec::new();
+        let mut event = None;
+        for (number, run) in runs.iter() {
+            let over = run.thread.as_ref().is_none_or(JoinHandle::is_finished);
+            event = locked(&run.outbox).take();
+            if event.is_some() {
+                break;
+            }
+            if over {
+                ended.push(*number);
+            }
+        }
+        ended.iter().for_each(|number| drop(runs.remove(number)));
+        event.map(|message| message.to_bytes())
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        let mut runs = unpoisoned(&self.runs);
+        runs.values().for_each(|run| run.orders.cancel());
+        for run in runs.values_mut() {
+            if let Some(thread) = run.thread.take() {
+                // It has told already when it panicked.
+                let _ = thread.join();
+            }
+        }
+    }
+}
+
+/// Begins a run in a thread of its own.
+fn begin(run: u64, scene: Scene, request: Request, paused: bool, wake: Arc<dyn Fn() + Send + Sync>) -> RunThread {
+    let outbox = Outbox::new(run, scene.clone(), &request);
+    let order = Mutex::new(first_order(paused));
+    let orders = Arc::new(Orders {
+        order,
+        changed: Condvar::new(),
+        new: AtomicBool::new(false),
+        cancel: Cancel::new(),
+    });
+    let own = (Arc::clone(&orders), Arc::clone(&outbox));
+    let thread = std::thread::spawn(move || {
+        let (orders, outbox) = own;
+        if let Err(error) = drive(&scene, &request, &orders, &outbox, &*wake) {
+            locked(&outbox).fail(&error);
+        }
+        wake();
+    });
+    RunThread { orders, outbox, thread: Some(thread) }
+}
+
+/// Plans as the orders say, until the run is over.
+fn drive(
+    scene: &Scene,
+    request: &Request,
+    orders: &Orders,
+    outbox: &SharedOutbox,
+    wake: &dyn Fn(),
+) -> Result<(), Error> {
+    let clock = Clock::default();
+    let prepared = scene.prepare(request)?;
+    let run = prepared.begin(&mut Control { clock, ..Control::default() })?;
+    let mut driver = Driver::new(scene, run, Arc::clone(outbox), orders.cancel.clone(), clock);
+    loop {
+        let order = orders.next();
+        let advanced = driver.advance(order, &mut When(|| orders.new.load(Ordering::Relaxed)), wake);
+        if advanced.over {
+            break;
+        }
+        orders.left(advanced.left);
+    }
+    driver.finish(wake);
+    Ok(())
+}

@@ -1,0 +1,110 @@
+//! A session without threads: its runs are advanced by calls, as a worker of a page needs it.
+
+use super::desk::{Desk, Opening};
+use super::run::{Driver, Order, Outbox, SharedOutbox, locked};
+use super::{AboutRun, first_order, refusal};
+use crate::message::Message;
+use mp_cspace::{Cancel, Clock, Deadline};
+use mp_plan::{Control, Error};
+use std::collections::VecDeque;
+use std::fmt;
+use std::time::Duration;
+
+/// A session that plans only while [`advance`](Self::advance) is called, and has at most one run at a time.
+///
+/// The data of a run stays in memory after its end: whoever has many runs takes a worker for each, as the page does.
+pub struct Worker {
+    desk: Desk,
+    run: Option<Planning>,
+    replies: VecDeque<Message>,
+    last: Option<SharedOutbox>,
+    clock: Clock,
+}
+
+struct Planning {
+    number: u64,
+    driver: Driver<'static>,
+    order: Order,
+    cancel: Cancel,
+}
+
+impl fmt::Debug for Worker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Worker").finish_non_exhaustive()
+    }
+}
+
+impl Worker {
+    /// A session with nothing open, which reads the time from `clock`.
+    #[must_use]
+    pub fn new(clock: Clock) -> Self {
+        let desk = Desk::new(Opening::default());
+        Self { desk, run: None, replies: VecDeque::new(), last: None, clock }
+    }
+
+    /// Handles a request. [`take`](Self::take) gives its reply.
+    pub fn send(&mut self, request: &[u8]) {
+        let reply = Message::parse(request)
+            .map_err(|e| Error::new(e.to_string()))
+            .and_then(|request| self.reply(&request));
+        self.replies.push_back(reply.unwrap_or_else(|error| refusal(&error)));
+    }
+
+    fn reply(&mut self, message: &Message) -> Result<Message, Error> {
+        let Some((number, about)) = AboutRun::of(message)? else {
+            return self.desk.answer(message);
+        };
+        let own = self.run.as_mut().filter(|run| run.number == number);
+        match (about, own) {
+            (AboutRun::Plan { request, paused }, _) => {
+                if self.run.is_some() {
+                    return Err(Error::new("a run goes on already").help("one worker has one run"));
+                }
+                if request.threads > 1 {
+                    return Err(Error::new("a page has one thread").help("take `threads` = 1"));
+                }
+                let scene = self.desk.scene_to_plan(message)?;
+                let outbox = Outbox::new(number, scene.clone(), &request);
+                // A run borrows these, and outlives this call.
+                let (scene, request) = (&*Box::leak(Box::new(scene)), &*Box::leak(request));
+                let prepared = &*Box::leak(Box::new(scene.prepare(request)?));
+                let run = prepared.begin(&mut Control { clock: self.clock, ..Control::default() })?;
+                let cancel = Cancel::new();
+                let driver = Driver::new(scene, run, SharedOutbox::clone(&outbox), cancel.clone(), self.clock);
+                self.run = Some(Planning { number, driver, order: first_order(paused), cancel });
+                self.last = Some(outbox);
+            }
+            (AboutRun::Order(order), Some(run)) => run.order = order,
+            (AboutRun::Cancel, Some(run)) => {
+                run.cancel.cancel();
+                run.order = Order::Go;
+            }
+            // A run that has ended meanwhile needs no order.
+            (_, None) => {}
+        }
+        Ok(Message::default())
+    }
+
+    /// Plans for about this long. Returns whether a run goes on that is not paused.
+    pub fn advance(&mut self, time: Duration) -> bool {
+        let Some(run) = &mut self.run else { return false };
+        if run.order == Order::Pause {
+            return false;
+        }
+        let advanced = run.driver.advance(run.order, &mut Deadline::by(self.clock, time), &|| {});
+        run.order = advanced.left;
+        if advanced.over
+            && let Some(run) = self.run.take()
+        {
+            run.driver.finish(&|| {});
+        }
+        self.run.as_ref().is_some_and(|run| run.order != Order::Pause)
+    }
+
+    /// The next message to the page: replies first, in the order of their requests, then events.
+    pub fn take(&mut self) -> Option<Vec<u8>> {
+        let reply = self.replies.pop_front();
+        let message = reply.or_else(|| self.last.as_ref().and_then(|outbox| locked(outbox).take()));
+        message.map(|message| message.to_bytes())
+    }
+}
