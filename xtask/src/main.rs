@@ -13,7 +13,7 @@ use std::process::{Command, ExitCode};
 const HELP: &str = "\
 Builds and starts the programs of the workspace:
 
-  cargo xtask plan | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
+  cargo xtask plan | check | info | render | view | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
@@ -24,7 +24,7 @@ fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
     let command = arguments.first().map(|c| c.to_string_lossy().into_owned()).unwrap_or_default();
     match command.as_str() {
-        "plan" | "check" | "info" | "render" | "scenes" | "completions" | "man" | "--version" => {
+        "plan" | "check" | "info" | "render" | "view" | "scenes" | "completions" | "man" | "--version" => {
             start("mp-motion-cli", "mp", &arguments)
         }
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),

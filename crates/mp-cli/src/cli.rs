@@ -154,11 +154,11 @@ pub(crate) struct Render {
 
 #[derive(Clone, Debug, Args)]
 pub(crate) struct View {
-    /// A scene file, or the name of a shipped scene; `-` for standard input. Without it, the page lets you choose one.
+    /// A scene file, or the name of a shipped scene; `-` for standard input. Without it, the page shows the shipped scenes.
     pub(crate) scene: Option<PathBuf>,
     /// A path: text, `.json` or `.csv`; `-` for standard input.
     pub(crate) path: Option<PathBuf>,
-    /// Show the shipped scenes, to choose one of them.
+    /// Show the shipped scenes, to choose one of them, as without SCENE.
     #[arg(long, conflicts_with = "scene")]
     pub(crate) gallery: bool,
     /// Print the address, and do not open a browser.

@@ -1,7 +1,7 @@
 //! `render`: draws a scene, and a path through it, as a picture or as a page for the browser.
 
 use crate::cli::Render;
-use crate::input::{path, refuse_two_standard_inputs, scene};
+use crate::input::{judged_path, refuse_two_standard_inputs, scene};
 use crate::output::{note, writable, write};
 use crate::picture::Picture;
 use mp_plan::Error;
@@ -17,17 +17,16 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
         let message = format!("{} would overwrite the input {}", args.picture.display(), input.display());
         return Err(Error::new(message).help("name another file"));
     }
-    let path = args.path.as_ref().map(|file| path(&scene, file)).transpose()?;
+    let judged = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let mut caption = String::new();
-    if let Some(path) = &path {
-        let verdict = scene.check(path)?;
+    if let Some((path, free)) = &judged {
         caption = mp_plan::count(path.rows.len(), "configuration");
-        if !verdict.free {
+        if !free {
             caption += ", not verified";
-            note(&format!("warning: this path would not pass `mp check`: {}", verdict.faults.join("; ")));
         }
     }
-    write(&args.picture, &picture.bytes(&scene, path.as_ref(), None, &caption, args.size)?)?;
+    let path = judged.as_ref().map(|(path, _)| path);
+    write(&args.picture, &picture.bytes(&scene, path, None, &caption, args.size)?)?;
     note(&format!("wrote {}", args.picture.display()));
     Ok(true)
 }
