@@ -185,7 +185,8 @@ fn a_scene_is_shown_planned_saved_and_ended() {
 
     // Ctrl-C while it plans.
     let second = view.tab();
-    let long = json!({"do": "plan", "run": 2, "request": {"planner": "rrt-star", "time": 1000}});
+    let long =
+        json!({"do": "plan", "run": 2, "request": {"planner": "rrt-star", "budget": {"time_s": 1000}}});
     let reply = second.request(&long);
     assert_eq!(reply.get("error"), None, "{reply}");
     let begin = Instant::now();
@@ -204,7 +205,7 @@ fn a_run_ends_with_its_tab_and_cancels_at_once() {
     let dir = Dir::new();
     let view = View::start(&dir, &["closed.env"]);
     let mut tab = view.tab();
-    let plan = |run: u64| json!({"do": "plan", "run": run, "request": {"planner": "rrt", "time": 1000}});
+    let plan = |run: u64| json!({"do": "plan", "run": run, "request": {"planner": "rrt", "budget": {"time_s": 1000}}});
     assert_eq!(tab.request(&plan(1)).get("error"), None);
     while tab.event()["event"] != "grown" {}
     let begin = Instant::now();
@@ -240,7 +241,12 @@ fn without_a_display_the_address_is_printed_all_the_same() {
         }
         let variables = [&no_display[..], &[("SSH_CONNECTION", ssh)]].concat();
         let view = View::start_with(&dir, &["--gallery"], &variables);
-        assert!(view.host.starts_with("127.0.0.1:") && view.token.len() == 32, "{} {}", view.host, view.token);
+        assert!(
+            view.host.starts_with("127.0.0.1:") && view.token.len() == 32,
+            "{} {}",
+            view.host,
+            view.token
+        );
         view.interrupt();
         let run = view.wait();
         assert!(run.code == 0 && run.stderr.contains(words), "{run:?}");
