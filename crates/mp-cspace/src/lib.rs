@@ -110,7 +110,9 @@ pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};
 pub use space::{
     Coordinates, Factored, JointRange, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space, TrueMetric,
 };
-pub use stop::{Cancel, Clock, Deadline, Iterations, Motions, Nodes, Or, Progress, SparseClock, Stop, StopReason};
+pub use stop::{
+    Cancel, Clock, Deadline, Iterations, Motions, Nodes, Or, Progress, SparseClock, Stop, StopReason,
+};
 pub use validity::{
     Clearance, IntervalClearance, KnownFree, MotionCheck, MotionClearance, MotionInterval, MotionValidity,
     Validity,

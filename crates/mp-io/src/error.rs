@@ -49,7 +49,8 @@ struct Excerpt {
 }
 
 impl Error {
-    pub(crate) fn new(kind: ErrorKind, file: impl Display, message: impl Into<String>) -> Self {
+    /// An error of this kind about a file: for [`Files`](crate::Files) of your own.
+    pub fn new(kind: ErrorKind, file: impl Display, message: impl Into<String>) -> Self {
         let mut message = message.into();
         if message.contains(char::is_control) {
             message = message.replace(char::is_control, "\u{fffd}");
@@ -100,7 +101,9 @@ impl Error {
         self
     }
 
-    pub(crate) fn help(mut self, what: impl Into<String>) -> Self {
+    /// Adds what to do about it.
+    #[must_use]
+    pub fn help(mut self, what: impl Into<String>) -> Self {
         self.0.help = Some(what.into());
         self
     }

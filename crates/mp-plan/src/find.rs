@@ -15,7 +15,11 @@ impl Scene {
         match locate(given.as_ref())? {
             Location::Disk(file) => Self::load(file),
             #[cfg(feature = "scenes")]
-            Location::Memory(file) => Self::load_from(&shipped_files(), Path::new(file)),
+            Location::Memory(file) => {
+                let mut scene = Self::load_from(&shipped_files(), Path::new(file))?;
+                scene.shipped = true;
+                Ok(scene)
+            }
         }
     }
 
@@ -49,7 +53,7 @@ enum Location {
 }
 
 #[cfg(feature = "scenes")]
-fn shipped_files() -> impl mp_io::Files {
+pub(crate) fn shipped_files() -> impl mp_io::Files {
     mp_io::InMemory(|name: &str| mp_scenes::file(name).map(|file| file.bytes))
 }
 

@@ -30,6 +30,21 @@ impl Scene {
         &self.inputs
     }
 
+    /// The content of the files that the scene was read from, its own first, so that it can be read elsewhere.
+    ///
+    /// # Errors
+    /// When a file cannot be read any more.
+    pub fn input_files(&self) -> Result<Vec<(PathBuf, Vec<u8>)>, crate::Error> {
+        let read = |path: &PathBuf| {
+            #[cfg(feature = "scenes")]
+            if self.shipped {
+                return Ok((path.clone(), crate::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES)?));
+            }
+            Ok((path.clone(), mp_io::Disk.read(path, mp_io::MAX_MESH_BYTES)?))
+        };
+        self.inputs.iter().map(read).collect()
+    }
+
     /// The input file that writing `output` would overwrite, if any.
     #[must_use]
     pub fn input_at(&self, output: &Path) -> Option<&Path> {

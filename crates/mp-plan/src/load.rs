@@ -1,7 +1,7 @@
 //! Reading scenes from files of any kind.
 
 use crate::inputs::Recording;
-use crate::{ArmScene, Error, Scene};
+use crate::{Error, Scene};
 use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RobotProblem, SceneDocument};
 use std::path::Path;
 use std::sync::Mutex;
@@ -34,14 +34,8 @@ impl Scene {
         let files: &dyn Files = &recording;
         let mut named = Vec::new();
         let scene = match RobotProblem::is_named(file) {
-            true if PlanarProblem::is_planar_world_in(files, file) => {
-                Self::from_world(PlanarProblem::load_from(files, file)?).map_err(of)?
-            }
-            true => {
-                let arm = ArmScene::from_problem(RobotProblem::load_from(files, file)?)?;
-                named.extend(arm.mesh_files().iter().cloned());
-                Self::new(arm)
-            }
+            true if PlanarProblem::is_planar_world_in(files, file) => planar(files, file).map_err(of)?,
+            true => arm(files, file, &mut named)?,
             false if ending == "json" => {
                 let folder = file.parent().unwrap_or(Path::new(""));
                 let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
@@ -75,6 +69,37 @@ impl Scene {
         let file = folder.join(format!("{name}.{ending}"));
         Self::load_from(&OneText { file: &file, text }, &file)
     }
+}
+
+/// The scene of a world in the plane.
+#[cfg(feature = "planar")]
+fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
+    Scene::from_world(PlanarProblem::load_from(files, file)?)
+}
+
+/// The scene of an arm. The files of its meshes are added to `named`.
+#[cfg(feature = "urdf")]
+fn arm(files: &dyn Files, file: &Path, named: &mut Vec<std::path::PathBuf>) -> Result<Scene, Error> {
+    let arm = crate::ArmScene::from_problem(mp_io::RobotProblem::load_from(files, file)?)?;
+    named.extend(arm.mesh_files().iter().cloned());
+    Ok(Scene::new(arm))
+}
+
+#[cfg(not(feature = "planar"))]
+fn planar(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
+    Err(left_out("worlds of the plane", "planar"))
+}
+
+#[cfg(not(feature = "urdf"))]
+fn arm(_: &dyn Files, _: &Path, _: &mut Vec<std::path::PathBuf>) -> Result<Scene, Error> {
+    Err(left_out("arms", "urdf"))
+}
+
+/// An error for scenes that are left out of this program.
+#[cfg(not(all(feature = "planar", feature = "urdf")))]
+fn left_out(what: &str, feature: &str) -> Error {
+    Error::new(format!("this program is made without {what}"))
+        .help(format!("take a program made with the feature `{feature}` of mp-plan"))
 }
 
 /// A text in place of one file, among the files of the disk.

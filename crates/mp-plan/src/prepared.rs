@@ -6,8 +6,8 @@ use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Goals, Iterations, Nodes, ParameterError,
-    Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
+    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Goals, Iterations, Nodes,
+    ParameterError, Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
 };
 use mp_tree::TreeState;
 use std::sync::Arc;

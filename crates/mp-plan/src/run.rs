@@ -1,7 +1,7 @@
 //! A run in pieces: for programs with an event loop, which plan a little between two events.
 
-use crate::planners::PlannerKind;
 use crate::plan::reported;
+use crate::planners::PlannerKind;
 use crate::prepared::Prepared;
 use crate::relax::relax_if_requested;
 use crate::roadmaps::{RoadmapFile, RoadmapPlanner, RoadmapState};
@@ -268,7 +268,10 @@ impl Stop for Pausing<'_> {
 }
 
 /// Runs the planner until it is stopped or has its last path. Compiled for each kind of state instead of each kind of robot.
-#[expect(clippy::too_many_arguments, reason = "a closure over all of it would be compiled for each kind of robot")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "a closure over all of it would be compiled for each kind of robot"
+)]
 fn search_on<S: TreeState>(
     planner: &mut dyn Planner<S, Edge = ()>,
     found: &mut Found<S>,

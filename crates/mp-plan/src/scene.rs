@@ -5,8 +5,8 @@ use crate::robot::{PlanarScene, RigidScene};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Column, Control, Error, Explanation, PathFormat, PathRows, PreparedRun, Report, Request, RobotKind, Sweep,
-    Track, Verdict,
+    Body, Column, Control, Error, Explanation, PathFormat, PathRows, PreparedRun, Report, Request, RobotKind,
+    Sweep, Track, Verdict,
 };
 use mp_geom::{Aabb, TriMesh, six_from_pose};
 use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SceneDocument, SpaceKind};
@@ -32,6 +32,9 @@ pub struct Scene {
     robot: Arc<dyn AnyRobot>,
     file: Option<PathBuf>,
     pub(crate) inputs: Arc<[PathBuf]>,
+    /// Whether its files are those that come with the program.
+    #[cfg_attr(not(feature = "scenes"), expect(dead_code, reason = "there are none"))]
+    pub(crate) shipped: bool,
     /// What it was made from, if that is a document of an editor. Its meshes are written into it.
     pub(crate) document: Option<Arc<SceneDocument>>,
 }
@@ -45,7 +48,7 @@ impl fmt::Debug for Scene {
 impl Scene {
     /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`], [`ArmScene`](crate::ArmScene), [`PlanarScene`].
     pub fn new(robot: impl RobotKind + 'static) -> Self {
-        Self { robot: Arc::new(robot), file: None, inputs: Arc::default(), document: None }
+        Self { robot: Arc::new(robot), file: None, inputs: Arc::default(), shipped: false, document: None }
     }
 
     /// A scene of a rigid body among meshes.

@@ -58,6 +58,8 @@ struct BodyHead {
     shape: ShapeHead,
     #[serde(skip_serializing_if = "Option::is_none")]
     pose: Option<[f64; 7]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    color: Option<String>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -167,6 +169,7 @@ impl SceneFile {
                 Shape::Lines(lines) => ShapeHead::Lines(lines.clone()),
             },
             pose: body.pose,
+            color: body.color.map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}")),
         };
         Head {
             version: VERSION,
@@ -291,18 +294,21 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
         extract(data, array, what)
     }
     let configuration = |q: ConfigurationHead| Configuration { row: q.row, poses: q.poses };
-    let body = |body: BodyHead| Body {
-        name: body.name,
-        role: match body.role {
-            RoleHead::Robot => Role::Robot,
-            RoleHead::Obstacle => Role::Obstacle,
-        },
-        shape: match body.shape {
-            ShapeHead::Mesh(mesh) => Shape::Mesh(mesh),
-            ShapeHead::Area(area) => Shape::Area(area),
-            ShapeHead::Lines(lines) => Shape::Lines(lines),
-        },
-        pose: body.pose,
+    let body = |body: BodyHead| {
+        Ok(Body {
+            name: body.name,
+            role: match body.role {
+                RoleHead::Robot => Role::Robot,
+                RoleHead::Obstacle => Role::Obstacle,
+            },
+            shape: match body.shape {
+                ShapeHead::Mesh(mesh) => Shape::Mesh(mesh),
+                ShapeHead::Area(area) => Shape::Area(area),
+                ShapeHead::Lines(lines) => Shape::Lines(lines),
+            },
+            pose: body.pose,
+            color: body.color.map(|text| color(&text)).transpose()?,
+        })
     };
     let mesh = |mesh: &MeshHead| {
         Ok(Mesh {
@@ -350,7 +356,7 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
         meshes: head.meshes.iter().map(mesh).collect::<Result<_, ViewError>>()?,
         areas: head.areas.iter().map(area).collect::<Result<_, ViewError>>()?,
         lines: head.lines.iter().map(line).collect::<Result<_, ViewError>>()?,
-        bodies: head.bodies.into_iter().map(body).collect(),
+        bodies: head.bodies.into_iter().map(body).collect::<Result<_, ViewError>>()?,
         start: configuration(head.start),
         goals: head.goals.into_iter().map(configuration).collect(),
         paths: head.paths.into_iter().map(path).collect::<Result<_, ViewError>>()?,
@@ -358,4 +364,14 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
         roadmap: head.roadmap.map(roadmap).transpose()?,
         report: head.report,
     })
+}
+
+/// Red, green and blue of `#rrggbb`.
+fn color(text: &str) -> Result<[u8; 3], ViewError> {
+    let problem = "has a colour that is not #rrggbb";
+    let digits = text.strip_prefix('#').filter(|d| d.len() == 6 && d.bytes().all(|b| b.is_ascii_hexdigit()));
+    let number = digits.and_then(|digits| u32::from_str_radix(digits, 16).ok());
+    let [_, r, g, b] =
+        number.ok_or_else(|| ViewError::Array { what: "bodies".to_owned(), problem })?.to_be_bytes();
+    Ok([r, g, b])
 }

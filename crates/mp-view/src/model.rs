@@ -94,6 +94,8 @@ pub struct Body {
     /// Where an obstacle is: x y z (m), and the unit quaternion x y z w. `None` for the bodies of the robot, whose poses
     /// come with each configuration.
     pub pose: Option<[f64; 7]>,
+    /// Its own colour: red, green and blue. `None` for the colour of its role. Start and goals keep theirs.
+    pub color: Option<[u8; 3]>,
 }
 
 /// A configuration, with the poses of the robot's bodies.

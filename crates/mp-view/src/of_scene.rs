@@ -51,7 +51,7 @@ impl SceneFile {
             let (name, pose) = (body.name, body.pose.as_ref().map(seven));
             let role = if pose.is_some() { Role::Obstacle } else { Role::Robot };
             let shape = file.add_shape(&body.shape);
-            file.bodies.push(Body { name, role, shape, pose });
+            file.bodies.push(Body { name, role, shape, pose, color: None });
         }
         file.bounds = bounds.get();
         Ok(file)

@@ -13,13 +13,15 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 26] = modules!(
+const MODULES: [(&str, &str); 28] = modules!(
     "buffers",
     "camera",
     "colors",
     "controls",
+    "document",
     "dom",
     "ends",
+    "gizmo",
     "growing",
     "main",
     "math",

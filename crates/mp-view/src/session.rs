@@ -5,6 +5,8 @@ mod files;
 mod growth;
 mod messages;
 mod run;
+#[cfg(all(test, not(target_family = "wasm")))]
+mod tests;
 #[cfg(not(target_family = "wasm"))]
 mod threads;
 mod worker;

@@ -25,6 +25,7 @@ fn full() -> &'static SceneFile {
             nodes: vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
             parents: vec![-1, 0],
         });
+        file.bodies[1].color = Some([0, 127, 255]);
         file.roadmap = Some(Roadmap {
             nodes: vec![0.0; 9],
             edges: vec![0, 2],
@@ -98,6 +99,9 @@ fn files_that_do_not_fit_are_refused_with_a_reason() {
     );
     assert!(matches!(refused(&text("\"name\"", "\"nome\"")), ViewError::Head { .. }));
     assert!(matches!(refused(&text("\"mesh\":0", "\"mesh\":999")), ViewError::Array { .. }));
+    for color in ["", "#007ff", "007fff", "#007fff0", "#+07fff", "#00é7f"] {
+        assert!(matches!(refused(&text("#007fff", color)), ViewError::Array { .. }), "{color}");
+    }
     assert!(matches!(refused(&text("\"type\":\"f32\"", "\"type\":\"u8\"")), ViewError::Array { .. }));
     // Members of later versions are ignored.
     assert_eq!(&SceneFile::parse(&text("{\"version\":1,", "{\"version\":1,\"later\":[1],")).unwrap(), full());

@@ -75,7 +75,7 @@ impl Desk {
 
     fn hello(&self) -> Answer {
         let parameters = |parameters: &[mp_plan::Parameter]| {
-            let one = |p: &mp_plan::Parameter| json!({"name": p.name, "default": p.default, "summary": p.summary});
+            let one = |p: &mp_plan::Parameter| json!({"name": p.name, "default": p.default, "range": p.range, "summary": p.doc});
             parameters.iter().map(one).collect::<Vec<_>>()
         };
         let roadmaps = mp_plan::roadmap_planners();
@@ -92,7 +92,8 @@ impl Desk {
                 "parameters": parameters(meta.parameters),
             })
         });
-        let metrics = MetricName::ALL.iter().map(|(_, name, formula)| json!({"name": name, "formula": formula}));
+        let metrics =
+            MetricName::ALL.iter().map(|(_, name, formula)| json!({"name": name, "formula": formula}));
         let mut reply = Message::default()
             .with("planners", mp_plan::planners().map(planner).collect::<Vec<_>>())
             .with("meta_planners", meta.collect::<Vec<_>>())
@@ -177,7 +178,8 @@ impl Desk {
     fn document(&self, request: &Message) -> Result<SceneDocument, Error> {
         let document = request.head.get("document").cloned().unwrap_or_default();
         serde_json::from_value(document).map_err(|e| {
-            Error::new(format!("this is no document: {e}")).help("docs/formats/session.md describes documents")
+            Error::new(format!("this is no document: {e}"))
+                .help("docs/formats/session.md describes documents")
         })
     }
 
@@ -341,7 +343,8 @@ impl Desk {
 /// The mesh that documents call `name`.
 fn known_mesh(meshes: &BTreeMap<String, TriMesh>, name: &str) -> Result<TriMesh, mp_io::Error> {
     meshes.get(name).cloned().ok_or_else(|| {
-        mp_io::Error::new(mp_io::ErrorKind::Io, name, "this mesh has not been opened").help("open its file first")
+        mp_io::Error::new(mp_io::ErrorKind::Io, name, "this mesh has not been opened")
+            .help("open its file first")
     })
 }
 
@@ -360,6 +363,7 @@ fn row_of(head: &serde_json::Map<String, Value>, name: &str) -> Result<Vec<f64>,
 
 /// Configurations in a request.
 fn rows_of(head: &serde_json::Map<String, Value>, name: &str) -> Result<Vec<Vec<f64>>, Error> {
-    serde_json::from_value(head.get(name).cloned().unwrap_or_default())
-        .map_err(|_| Error::new(format!("the request has no configurations `{name}`: a list of lists of numbers")))
+    serde_json::from_value(head.get(name).cloned().unwrap_or_default()).map_err(|_| {
+        Error::new(format!("the request has no configurations `{name}`: a list of lists of numbers"))
+    })
 }

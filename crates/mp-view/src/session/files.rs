@@ -80,8 +80,12 @@ impl Files for Named {
         memory.read(path, limit.min(MAX_MESH_BYTES)).map_err(|e| match e.kind() {
             mp_io::ErrorKind::Io => {
                 let name = path.to_string_lossy().into_owned();
-                mp_io::Error::new(mp_io::ErrorKind::Io, name, "this file was not opened together with the scene")
-                    .help("open it together with the scene: choose or drop all files at once")
+                mp_io::Error::new(
+                    mp_io::ErrorKind::Io,
+                    name,
+                    "this file was not opened together with the scene",
+                )
+                .help("open it together with the scene: choose or drop all files at once")
             }
             _ => e,
         })

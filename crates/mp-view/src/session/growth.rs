@@ -46,7 +46,9 @@ impl Growth {
         match event {
             SearchEvent::Rooted { tree, id, row } => self.add(*tree, *id, -1, row),
             SearchEvent::Added { tree, id, parent, row } => self.add(*tree, *id, number(*parent), row),
-            SearchEvent::Rewired { tree, id, parent } => self.tree(*tree).rewire(*id as usize, number(*parent)),
+            SearchEvent::Rewired { tree, id, parent } => {
+                self.tree(*tree).rewire(*id as usize, number(*parent))
+            }
             SearchEvent::Pruned { tree, survivors } => self.tree(*tree).prune(survivors),
             SearchEvent::Linked { from, to } => self.edges.extend([*from, *to]),
             SearchEvent::Blocked { from, toward } => {
@@ -100,13 +102,17 @@ impl Growth {
             } else if tree.sent < tree.parents.len() {
                 let parents = message.array(&tree.parents[tree.sent..]);
                 let name = if i == 0 { "from the start" } else { "from the goal" };
-                trees.push(json!({"tree": i, "name": name, "from": tree.sent, "nodes": nodes, "parents": parents}));
+                trees.push(
+                    json!({"tree": i, "name": name, "from": tree.sent, "nodes": nodes, "parents": parents}),
+                );
             }
             if !tree.rewired.is_empty() {
                 let ids: Vec<u32> = tree.rewired.iter().map(|&id| id as u32).collect();
                 let parents: Vec<i32> = tree.rewired.iter().map(|&id| tree.parents[id]).collect();
                 tree.rewired.clear();
-                rewired.push(json!({"tree": i, "nodes": message.array(&ids), "parents": message.array(&parents)}));
+                rewired.push(
+                    json!({"tree": i, "nodes": message.array(&ids), "parents": message.array(&parents)}),
+                );
             }
             tree.sent = tree.parents.len();
         }
@@ -186,13 +192,16 @@ mod tests {
                     }
                     _ => {
                         tree.nodes.extend([step as f32; 3]);
-                        tree.parents.push(tree.parents.len() as i32 - 1 - (step % 3).min(tree.parents.len()) as i32);
+                        tree.parents
+                            .push(tree.parents.len() as i32 - 1 - (step % 3).min(tree.parents.len()) as i32);
                     }
                 }
                 if step % period == 0 {
                     taken += 1;
                     if let Some(survivors) = tree.survivors.take() {
-                        let new = |parent: i32| survivors.iter().position(|&s| s as i32 == parent).map_or(-1, |p| p as i32);
+                        let new = |parent: i32| {
+                            survivors.iter().position(|&s| s as i32 == parent).map_or(-1, |p| p as i32)
+                        };
                         page = survivors.iter().map(|&s| new(page[s as usize])).collect();
                     }
                     page.extend(&tree.parents[tree.sent..]);

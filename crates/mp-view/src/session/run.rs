@@ -5,7 +5,7 @@ use super::messages::failure;
 use crate::PathTrack;
 use crate::bytes::path_head;
 use crate::message::{Message, json};
-use mp_cspace::{Cancel, Clock, Iterations, Progress, Stop, StopReason};
+use mp_cspace::{Cancel, Clock, Iterations, Progress, Stop};
 use mp_plan::{Control, Error, PathRows, Report, Request, Run, Scene, SearchEvent, Stage, Watch};
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -66,11 +66,8 @@ impl Outbox {
     fn end(&mut self, scene: &Scene, report: &Report) {
         let mut message = Message::event("done", self.run).with("report", json(report));
         let path = report.path.as_ref().and_then(|rows| {
-            let rows = PathRows {
-                format: scene.path_format(),
-                columns: report.columns.clone(),
-                rows: rows.clone(),
-            };
+            let rows =
+                PathRows { format: scene.path_format(), columns: report.columns.clone(), rows: rows.clone() };
             let track = scene.track(&rows).ok()?;
             Some(PathTrack::of(&report.planner, report.verified, report.path_length, track))
         });
@@ -155,7 +152,13 @@ pub(crate) struct Driver<'p> {
 }
 
 impl<'p> Driver<'p> {
-    pub(crate) fn new(scene: &'p Scene, run: Run<'p>, outbox: SharedOutbox, cancel: Cancel, clock: Clock) -> Self {
+    pub(crate) fn new(
+        scene: &'p Scene,
+        run: Run<'p>,
+        outbox: SharedOutbox,
+        cancel: Cancel,
+        clock: Clock,
+    ) -> Self {
         Self { scene, run, outbox, cancel, clock, spent: 0.0 }
     }
 
@@ -195,7 +198,8 @@ impl<'p> Driver<'p> {
     pub(crate) fn finish(self, wake: &dyn Fn()) {
         let began = self.clock.now().as_secs_f64() - self.spent;
         let outbox = Arc::clone(&self.outbox);
-        let mut recorder = Recorder { outbox: &outbox, wake, clock: self.clock, began, stage: Stage::Planning };
+        let mut recorder =
+            Recorder { outbox: &outbox, wake, clock: self.clock, began, stage: Stage::Planning };
         let mut control = Control::new(self.cancel, &mut recorder);
         control.clock = self.clock;
         match self.run.finish(&mut control) {
@@ -212,13 +216,4 @@ pub(crate) struct Advanced {
     pub(crate) over: bool,
     /// What is left of the order.
     pub(crate) left: Order,
-}
-
-/// Stops when a function says so.
-pub(crate) struct When<F>(pub(crate) F);
-
-impl<F: FnMut() -> bool> Stop for When<F> {
-    fn check(&mut self, _: &Progress) -> Option<StopReason> {
-        (self.0)().then_some(StopReason::Cancelled)
-    }
 }

@@ -1,10 +1,10 @@
 //! A session whose runs have threads: behind a server.
 
 use super::desk::{Desk, Opening};
-use super::run::{Driver, Order, Outbox, SharedOutbox, When, locked};
+use super::run::{Driver, Order, Outbox, SharedOutbox, locked};
 use super::{AboutRun, first_order, refusal};
 use crate::message::Message;
-use mp_cspace::{Cancel, Clock};
+use mp_cspace::{Cancel, Clock, Progress, Stop, StopReason};
 use mp_plan::{Control, Error, Request, Scene};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -172,7 +172,13 @@ impl Drop for Session {
 }
 
 /// Begins a run in a thread of its own.
-fn begin(run: u64, scene: Scene, request: Request, paused: bool, wake: Arc<dyn Fn() + Send + Sync>) -> RunThread {
+fn begin(
+    run: u64,
+    scene: Scene,
+    request: Request,
+    paused: bool,
+    wake: Arc<dyn Fn() + Send + Sync>,
+) -> RunThread {
     let outbox = Outbox::new(run, scene.clone(), &request);
     let order = Mutex::new(first_order(paused));
     let orders = Arc::new(Orders {
@@ -214,4 +220,13 @@ fn drive(
     }
     driver.finish(wake);
     Ok(())
+}
+
+/// Stops when a function says so.
+struct When<F>(F);
+
+impl<F: FnMut() -> bool> Stop for When<F> {
+    fn check(&mut self, _: &Progress) -> Option<StopReason> {
+        (self.0)().then_some(StopReason::Cancelled)
+    }
 }

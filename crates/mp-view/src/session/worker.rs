@@ -70,7 +70,8 @@ impl Worker {
                 let prepared = &*Box::leak(Box::new(scene.prepare(request)?));
                 let run = prepared.begin(&mut Control { clock: self.clock, ..Control::default() })?;
                 let cancel = Cancel::new();
-                let driver = Driver::new(scene, run, SharedOutbox::clone(&outbox), cancel.clone(), self.clock);
+                let driver =
+                    Driver::new(scene, run, SharedOutbox::clone(&outbox), cancel.clone(), self.clock);
                 self.run = Some(Planning { number, driver, order: first_order(paused), cancel });
                 self.last = Some(outbox);
             }

@@ -1,0 +1,357 @@
+use super::*;
+use crate::SceneFile;
+use mp_cspace::Clock;
+use mp_plan::Scene;
+use serde_json::{Value, json};
+use std::sync::mpsc;
+use std::time::Duration;
+
+/// A page: sends requests, reads replies, waits for events.
+struct Page {
+    session: Session,
+    woken: mpsc::Receiver<()>,
+}
+
+impl Page {
+    fn new(opening: Opening) -> Self {
+        let (wake, woken) = mpsc::channel();
+        Self { session: Session::new(opening, move || drop(wake.send(()))), woken }
+    }
+
+    fn reply(&self, request: Message) -> Message {
+        Message::parse(&self.session.handle(&request.to_bytes())).unwrap()
+    }
+
+    fn ask(&self, request: Value) -> Message {
+        let reply = self.reply(message(request));
+        assert!(!reply.head.contains_key("error"), "{:?}", reply.head);
+        reply
+    }
+
+    fn refused(&self, request: Value) -> String {
+        self.reply(message(request)).head["error"]["message"].as_str().unwrap().to_owned()
+    }
+
+    /// The next event.
+    fn event(&self) -> Message {
+        loop {
+            if let Some(event) = self.session.take_event() {
+                return Message::parse(&event).unwrap();
+            }
+            self.woken.recv_timeout(Duration::from_secs(60)).expect("an event comes");
+        }
+    }
+
+    /// Events until one of this kind.
+    fn until(&self, kind: &str) -> Vec<Message> {
+        let mut events = Vec::new();
+        while events.last().is_none_or(|event: &Message| event.head["event"] != kind) {
+            events.push(self.event());
+        }
+        events
+    }
+}
+
+fn message(head: Value) -> Message {
+    let Value::Object(head) = head else { panic!("a head is an object") };
+    Message { head, data: Vec::new() }
+}
+
+/// A request with files.
+fn with_files(mut request: Value, files: &[(&str, &[u8])]) -> Message {
+    let mut message = Message::default();
+    let list: Vec<_> =
+        files.iter().map(|(name, bytes)| json!({"name": name, "bytes": message.array(*bytes)})).collect();
+    request["files"] = list.into();
+    let Value::Object(head) = request else { panic!("a head is an object") };
+    message.head = head;
+    message
+}
+
+/// The scene file of a reply.
+fn scene_of(reply: &Message) -> SceneFile {
+    SceneFile::parse(&reply.bytes(&reply.head["scene"], "scene").unwrap()).unwrap()
+}
+
+/// The files of a reply.
+fn files_of(reply: &Message) -> Vec<(String, Vec<u8>)> {
+    let list = reply.head["files"].as_array().unwrap();
+    let file =
+        |f: &Value| (f["name"].as_str().unwrap().to_owned(), reply.bytes(&f["bytes"], "bytes").unwrap());
+    list.iter().map(file).collect()
+}
+
+fn opened(name: &str) -> Page {
+    Page::new(Opening { scene: Some(Scene::find(name).unwrap()), ..Opening::default() })
+}
+
+#[test]
+fn says_what_there_is() {
+    let reply = opened("easy").ask(json!({"do": "hello"}));
+    let planners = reply.head["planners"].as_array().unwrap();
+    assert_eq!(planners.len(), mp_plan::planners().count());
+    assert!(planners.iter().any(|p| p["name"] == "prm" && p["family"] == "roadmap"));
+    assert!(planners.iter().any(|p| p["name"] == "rsrt" && p["family"] == "tree"));
+    assert!(reply.head["scenes"].as_array().unwrap().iter().any(|s| s == "cubicles"));
+    let scene = reply.bytes(&reply.head["opened"]["scene"], "scene").unwrap();
+    assert_eq!(SceneFile::parse(&scene).unwrap().name, "easy");
+}
+
+#[test]
+fn explains_configurations() {
+    let page = Page::new(Opening::default());
+    assert!(page.refused(json!({"do": "check", "row": [0.0]})).contains("no scene is open"));
+    let opened = page.ask(json!({"do": "open", "scene": "easy"}));
+    let file = scene_of(&opened);
+    let free = page.ask(json!({"do": "check", "row": file.start.row}));
+    assert_eq!(free.head["free"], true);
+    assert_eq!(free.head["poses"].as_array().unwrap().len(), file.start.poses.len());
+    let robots = file.bodies.iter().filter(|b| b.pose.is_none()).count();
+    let inside = &file.bodies[robots].pose.unwrap();
+    let mut row = file.start.row.clone();
+    row[..3].copy_from_slice(&inside[..3]);
+    let touching = page.ask(json!({"do": "check", "row": row}));
+    assert_eq!(touching.head["free"], false);
+    assert!(!touching.head["touching"].as_array().unwrap().is_empty() || touching.head["in_bounds"] == false);
+    assert!(page.refused(json!({"do": "check", "row": [1, 2]})).contains("finite numbers"));
+}
+
+/// The events of a run give the tree of its report, and the result is that of planning without a session.
+#[test]
+fn plans_as_the_library_does() {
+    for (scene, planner) in [("easy", "rrt-connect"), ("rrs-low", "prm"), ("arm", "rrt-connect")] {
+        let page = opened(scene);
+        let request = mp_plan::Request::new(planner).seed(4).iterations(20_000);
+        let asked = json!({"do": "plan", "run": 7, "request": request});
+        page.ask(asked);
+        let events = page.until("done");
+        let done = events.last().unwrap();
+        assert_eq!(done.head["run"], 7);
+        let mut alone = Scene::find(scene).unwrap().plan(&request).unwrap();
+        let report: mp_plan::Report = serde_json::from_value(done.head["report"].clone()).unwrap();
+        (alone.time_s, alone.finish_s, alone.first_s) = (report.time_s, report.finish_s, report.first_s);
+        assert_eq!(report, alone);
+        assert!(report.solved && done.head["path"]["verified"] == true);
+        let grown = events.iter().filter(|e| e.head["event"] == "grown");
+        let count = |value: &Value| value["count"].as_u64().unwrap() as usize / 3;
+        let nodes: usize = grown
+            .map(|e| {
+                let trees: usize =
+                    e.head["trees"].as_array().unwrap().iter().map(|t| count(&t["nodes"])).sum();
+                trees + e.head["roadmap"].as_object().map_or(0, |map| count(&map["nodes"]))
+            })
+            .sum();
+        assert_eq!(nodes, report.nodes, "{scene} {planner}");
+    }
+}
+
+/// A run waits, does as many iterations as it is told, goes on, and gives the same result.
+#[test]
+fn runs_are_paused_stepped_and_resumed() {
+    let page = opened("cubicles");
+    let request = mp_plan::Request::new("rrt-connect").seed(3).iterations(100_000);
+    page.ask(json!({"do": "plan", "run": 1, "request": request, "paused": true}));
+    for step in 1..=3 {
+        page.ask(json!({"do": "step", "run": 1, "iterations": 5}));
+        let paused = loop {
+            let event = page.event();
+            if event.head["event"] == "progress" && event.head["state"] == "paused" {
+                break event;
+            }
+        };
+        assert_eq!(paused.head["iterations"], 5 * step);
+    }
+    assert!(page.refused(json!({"do": "plan", "run": 1, "request": request})).contains("already"));
+    page.ask(json!({"do": "resume", "run": 1}));
+    let report = page.until("done").pop().unwrap().head["report"].clone();
+    let alone = Scene::find("cubicles").unwrap().plan(&request).unwrap();
+    assert_eq!(report["fingerprint"], json!(alone.fingerprint));
+    // Orders to a run that has ended do nothing.
+    page.ask(json!({"do": "cancel", "run": 1}));
+}
+
+#[test]
+fn runs_are_cancelled() {
+    let page = opened("cubicles");
+    // It would go on for a minute.
+    let request = json!({"planner": "rrt-star", "seed": 1, "budget": {"time_s": 60.0}});
+    page.ask(json!({"do": "plan", "run": 1, "request": request}));
+    page.until("progress");
+    page.ask(json!({"do": "cancel", "run": 1}));
+    let done = page.until("done").pop().unwrap();
+    let report = &done.head["report"];
+    assert!(report["solved"] == true || report["stopped_by"] == "interrupted", "{report}");
+    // A session that is dropped ends its runs: this test would not end otherwise.
+    page.ask(json!({"do": "plan", "run": 2, "request": request}));
+    page.ask(json!({"do": "plan", "run": 3, "request": request, "paused": true}));
+}
+
+#[test]
+fn start_and_goal_of_a_request_are_taken() {
+    let page = opened("easy");
+    let scene = Scene::find("easy").unwrap();
+    let (start, goal) = (scene.start(), scene.goals().remove(0));
+    let request = mp_plan::Request::new("rrt-connect");
+    page.ask(json!({"do": "plan", "run": 1, "request": request, "start": goal, "goals": [start]}));
+    let done = page.until("done").pop().unwrap();
+    let path = done.head["report"]["path"].as_array().unwrap().clone();
+    let first: Vec<f64> = serde_json::from_value(path[0].clone()).unwrap();
+    assert!(first.iter().zip(&goal).all(|(a, b)| (a - b).abs() < 1e-9));
+    let refused =
+        page.refused(json!({"do": "plan", "run": 2, "request": request, "start": [1e6, 0, 0, 0, 0, 0]}));
+    assert!(refused.contains("the start is out of bounds"), "{refused}");
+    assert!(
+        page.refused(json!({"do": "plan", "run": 2, "request": request, "goals": []})).contains("no goal")
+    );
+    let refused = page.refused(json!({"do": "plan", "run": 2, "request": {"planner": "rrtt"}}));
+    assert!(refused.contains("no planner"), "{refused}");
+}
+
+fn document() -> Value {
+    json!({
+        "version": 1, "name": "built", "space": "SE3", "bounds": [[-4, -4, -4], [4, 4, 4]],
+        "robot": {"name": "stick", "shape": {"cube": {"size": [0.5, 0.1, 0.1]}}},
+        "start": [-3, 0, 0, 0, 0, 0], "goal": [3, 0, 0, 0.5, 0, 0],
+        "obstacles": [
+            {"name": "ball", "color": "#ff8000", "shape": {"sphere": {"radius": 0.7}}, "pose": [0, 0, 0, 0, 0, 0]},
+            {"name": "ring", "shape": {"torus": {"ring": 1, "tube": 0.2}}, "scale": [1, 1, 3], "pose": [1, 0, 0, 0, 0.3, 0]},
+        ],
+    })
+}
+
+/// A scene that is built, saved in both formats and opened again is the same.
+#[test]
+fn documents_are_edited_and_saved() {
+    let page = Page::new(Opening::default());
+    let edited = page.ask(json!({"do": "edit", "document": document()}));
+    let file = scene_of(&edited);
+    assert_eq!(file.bodies[1].color, Some([0xff, 0x80, 0]));
+    let tetrahedron = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let mesh = page.reply(with_files(json!({"do": "mesh"}), &[("four.off", tetrahedron)]));
+    assert_eq!((&mesh.head["file"], &mesh.head["triangles"]), (&json!("four.off"), &json!(4)));
+    let mut changed = document();
+    let four = json!({"name": "four", "shape": {"mesh": {"file": "four.off"}}, "pose": [0, 3, 0, 0, 0, 0]});
+    changed["obstacles"].as_array_mut().unwrap().push(four);
+    let before = page.ask(json!({"do": "edit", "document": changed}));
+    let own = page.ask(json!({"do": "save", "document": null, "format": "own", "name": "built"}));
+    let gempa = page.ask(json!({"do": "save", "document": null, "format": "gempa", "name": "built"}));
+    for (saved, same) in [(own, true), (gempa, false)] {
+        let files = files_of(&saved);
+        let given: Vec<(&str, &[u8])> = files.iter().map(|f| (f.0.as_str(), f.1.as_slice())).collect();
+        let again = Page::new(Opening::default()).reply(with_files(json!({"do": "open"}), &given));
+        let (file, known) = (scene_of(&again), scene_of(&before));
+        let corners = |file: &SceneFile| -> Vec<_> {
+            let mesh = |m: &crate::Mesh| -> Vec<f32> {
+                m.triangles.iter().flat_map(|&v| m.positions[3 * v as usize..][..3].to_vec()).collect()
+            };
+            file.meshes.iter().map(mesh).collect()
+        };
+        assert_eq!(corners(&file), corners(&known));
+        let poses = |file: &SceneFile| file.bodies.iter().map(|b| b.pose).collect::<Vec<_>>();
+        assert_eq!(poses(&file), poses(&known));
+        assert_eq!((&file.start, &file.goals, &file.limits), (&known.start, &known.goals, &known.limits));
+        if same {
+            assert_eq!(file, known);
+            assert_eq!(again.head["document"], before.head["document"]);
+        }
+    }
+    let refused = page.refused(json!({"do": "edit", "document": {"version": 1}}));
+    assert!(refused.contains("missing field"), "{refused}");
+    changed["obstacles"][2]["shape"]["mesh"]["file"] = "other.off".into();
+    assert!(page.refused(json!({"do": "edit", "document": changed})).contains("not been opened"));
+    // What was open stays.
+    page.ask(json!({"do": "check", "row": [0, 2, 0, 0, 0, 0]}));
+}
+
+#[test]
+fn files_go_into_the_folder_and_nowhere_else() {
+    let dir = tempfile::tempdir().unwrap();
+    let page = Page::new(Opening { folder: Some(dir.path().into()), ..Opening::default() });
+    page.ask(json!({"do": "edit", "document": document()}));
+    let save = |name: &str, overwrite: bool| {
+        message(json!({"do": "save", "format": "own", "name": name, "overwrite": overwrite}))
+    };
+    assert_eq!(page.reply(save("a", false)).head["written"], json!(["a.mp.json"]));
+    let refused =
+        |request: Message| page.reply(request).head["error"]["message"].as_str().unwrap().to_owned();
+    assert!(refused(save("a", false)).contains("exists already"));
+    page.reply(save("a", true));
+    for name in ["../a", "/a", "", ".a", "a/b", "a\\b", "a\0", "CON", &"x".repeat(300)] {
+        assert!(refused(save(name, true)).contains("no name"), "{name}");
+    }
+    #[cfg(unix)]
+    {
+        let outside = tempfile::tempdir().unwrap();
+        std::os::unix::fs::symlink(outside.path().join("f"), dir.path().join("link.mp.json")).unwrap();
+        assert!(refused(save("link", true)).contains("is a link"));
+    }
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), if cfg!(unix) { 2 } else { 1 });
+}
+
+#[test]
+fn paths_are_read_saved_and_exported() {
+    let page = opened("easy");
+    let report = Scene::find("easy").unwrap().plan(&mp_plan::Request::new("rrt-connect")).unwrap();
+    let rows = report.path.unwrap();
+    for format in ["txt", "json", "csv"] {
+        let saved = page.ask(json!({"do": "save_path", "rows": rows, "format": format, "name": "p"}));
+        let [(name, bytes)] = &files_of(&saved)[..] else { panic!("one file") };
+        let read = page.reply(with_files(json!({"do": "path"}), &[(name, bytes)]));
+        assert_eq!(read.head["path"]["verified"], true, "{format}: {:?}", read.head);
+    }
+    let paths = json!([{"name": "one", "rows": rows}]);
+    let exported = page.ask(json!({"do": "export", "format": "mpv", "name": "p", "paths": paths}));
+    assert_eq!(SceneFile::parse(&files_of(&exported)[0].1).unwrap().paths[0].name, "one");
+    assert!(page.refused(json!({"do": "save_path", "rows": [[1]], "format": "txt"})).contains("1 number"));
+}
+
+#[test]
+fn files_that_are_missing_or_none_are_said() {
+    let page = Page::new(Opening::default());
+    let refused = |request: Message| page.reply(request).head["error"].clone();
+    let env = b"Robot\nr.off\n0 0 0 0 0 0\n1 0 0 0 0 0\nEnd\n";
+    let error = refused(with_files(json!({"do": "open"}), &[("a.env", env)]));
+    assert!(error["message"].as_str().unwrap().contains("not opened together"), "{error}");
+    assert!(error["help"].as_str().unwrap().contains("at once"), "{error}");
+    let error = refused(with_files(json!({"do": "open"}), &[("a.off", b"OFF"), ("b.off", b"OFF")]));
+    assert!(error["message"].as_str().unwrap().contains("none of these files is a scene"));
+    assert!(refused(with_files(json!({"do": "open"}), &[("a.env", b"")])).is_object());
+    assert!(refused(message(json!({"do": "open", "files": []}))).is_object());
+    assert!(refused(message(json!({"do": "open", "scene": "../../etc/passwd"}))).is_object());
+    let cut =
+        json!({"do": "open", "files": [{"name": "a.env", "bytes": {"type": "u8", "offset": 0, "count": 9}}]});
+    assert!(refused(message(cut)).is_object());
+    assert!(refused(message(json!({"do": "dance"}))).is_object());
+    assert!(refused(message(json!({"did": 1}))).is_object());
+    for bytes in [&b""[..], b"MPV1", b"MPV1\xff\xff\xff\xff{}", b"MPV1\x02\0\0\0[]", b"hello"] {
+        let reply = Message::parse(&page.session.handle(bytes)).unwrap();
+        assert!(reply.head["error"]["message"].is_string());
+    }
+}
+
+/// A worker without threads gives the same result, in pieces.
+#[test]
+fn workers_plan_the_same() {
+    let mut worker = Worker::new(Clock::default());
+    let mut reply = |worker: &mut Worker, request: Value| {
+        worker.send(&message(request).to_bytes());
+        Message::parse(&worker.take().unwrap()).unwrap()
+    };
+    reply(&mut worker, json!({"do": "open", "scene": "cubicles"}));
+    let request = mp_plan::Request::new("rrt-connect").seed(5).iterations(100_000);
+    let begun = reply(&mut worker, json!({"do": "plan", "run": 1, "request": request, "paused": true}));
+    assert!(begun.head.is_empty());
+    assert!(!worker.advance(Duration::from_millis(1)));
+    reply(&mut worker, json!({"do": "step", "run": 1, "iterations": 3}));
+    assert!(!worker.advance(Duration::from_secs(10)));
+    reply(&mut worker, json!({"do": "resume", "run": 1}));
+    while worker.advance(Duration::from_micros(200)) {}
+    let mut events = Vec::new();
+    while let Some(event) = worker.take() {
+        events.push(Message::parse(&event).unwrap());
+    }
+    let done = events.pop().unwrap();
+    let alone = Scene::find("cubicles").unwrap().plan(&request).unwrap();
+    assert_eq!(done.head["report"]["fingerprint"], json!(alone.fingerprint));
+    assert_eq!(done.head["report"]["iterations"], json!(alone.iterations));
+}
