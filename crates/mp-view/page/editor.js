@@ -27,6 +27,9 @@ export const HELP = [
   ["Ctrl + O, Ctrl + S", "open files; save"],
 ];
 
+/** Places of a grid in which a new body may lie, nearest first. */
+const NEARBY = Array.from({ length: 41 * 41 }, (_, i) => [(i % 41) - 20, Math.floor(i / 41) - 20]).sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
+
 /** The kinds of ends that handles can move: six numbers, or x y and maybe an angle. @param {Scene} scene @returns {"rigid" | "planar" | null} */
 function endKind({ columns, planar }) {
   const names = columns.map((c) => c.name).join(" ");
@@ -307,10 +310,9 @@ export class Editor {
       const { low, high } = shapes[ofBody[Math.max(0, i - 2 + scene.robot)]];
       return { pose, reach: Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k]))) };
     });
-    const clear = (/** @type {number} */ at) => taken.every((o) => Math.hypot(o.pose[0] - at, o.pose[1] - y, o.pose[2] - height) > o.reach + reach);
-    let right = x;
-    for (let tries = 0; tries < 1000 && !clear(right); tries++) right = tidy(right + step);
-    return [right, y, height, 0, 0, 0];
+    const clear = (/** @type {Six} */ place) => taken.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
+    const places = NEARBY.map(([i, j]) => /** @type {Six} */ ([tidy(x + i * step), tidy(y + j * step), height, 0, 0, 0]));
+    return places.find(clear) ?? places[0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */
   selectNew(count) {
