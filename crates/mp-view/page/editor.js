@@ -4,7 +4,6 @@ import { ask, brief } from "mp/dom.js";
 import * as doc from "mp/document.js";
 import { changedPose, changedSix, fromAngles, niceStep, poseOfSix, tidy } from "mp/gizmo.js";
 import { Handles } from "mp/handles.js";
-import { isTyping } from "mp/controls.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Document, DocumentShape, Part, Six, Three } from "mp/document.js" */
@@ -156,11 +155,12 @@ export class Editor {
       this.moveEnds(next);
       return true;
     }
-    const { bodies: before } = this.viewer.scene;
-    const shown = new Map(before.map((body, b) => [body.name, this.viewer.settings.bodies[b]]));
+    const { bodies, planar } = this.viewer.scene;
+    const shown = new Map(bodies.map((body, b) => [body.name, this.viewer.settings.bodies[b]]));
     if (!(await this.workbench.edit(next))) return false;
     this.viewer.scene.bodies.forEach((body, b) => Object.assign(this.viewer.settings.bodies[b], shown.get(body.name)));
     this.viewer.panels?.showBodies();
+    if (this.viewer.scene.planar !== planar) this.viewer.lookAsUsual();
     this.sent = next;
     return true;
   }
@@ -354,7 +354,8 @@ export class Editor {
   shortcut(e) {
     if (!(e.ctrlKey || e.metaKey) || e.altKey || document.querySelector("dialog[open]") || !this.history) return;
     const key = e.key.toLowerCase();
-    if (isTyping(e.target) && !(e.target instanceof HTMLSelectElement) && !(e.target instanceof HTMLInputElement && e.target.type === "range")) return;
+    // In a field that is being typed in, the keys are the field's.
+    if (e.target instanceof HTMLInputElement && /^(text|number|search)$/.test(e.target.type) && e.target.value !== e.target.defaultValue) return;
     if (key === "z" && !e.shiftKey) this.undo();
     else if (key === "y" || key === "z") this.redo();
     else if (key === "d") this.duplicate();
