@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, MetricName, Mode, MotionValidator, PlannerInfo, Request, View, positive_number};
+use mp_plan::{Length, MetricName, Mode, MotionValidator, PlannerInfo, Request, positive_number};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -27,6 +27,8 @@ pub(crate) enum Command {
     Info(Info),
     /// Draw a scene, and a path through it, as a picture, film, page or meshes, with no display.
     Render(Render),
+    /// Open the viewer in the browser: look at a scene and a path, edit the scene, and plan.
+    View(View),
     /// List the shipped scenes.
     Scenes,
     /// Run benchmarks, with the program `mp-bench`.
@@ -164,7 +166,7 @@ pub(crate) struct Drawing {
     /// `eye=x,y,z target=x,y,z fov=degrees` (of the height); with `ortho` after it in parallel projection
     /// [default: where the path is seen best].
     #[arg(long, value_name = "VIEW", value_parser = view)]
-    pub(crate) camera: Option<View>,
+    pub(crate) camera: Option<mp_plan::View>,
     /// All configurations of the path at once, or one at a time, with start and goal translucent [default: all; films step].
     #[arg(long, value_name = "HOW")]
     pub(crate) animation: Option<Animation>,
@@ -172,6 +174,9 @@ pub(crate) struct Drawing {
     /// `--animation step`].
     #[arg(long, value_name = "T", value_parser = fraction)]
     pub(crate) at: Option<f64>,
+    /// In a page (`.html`), put the planner inside too, so that whoever opens it can plan in it, without a network.
+    #[arg(long)]
+    pub(crate) with_planner: bool,
     /// In a film, turn the camera once around the scene.
     #[arg(long)]
     pub(crate) turntable: bool,
@@ -196,6 +201,26 @@ pub(crate) enum Animation {
     All,
     /// One configuration.
     Step,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct View {
+    /// A scene file, or the name of a shipped scene; `-` for standard input. Without it, the page shows the shipped scenes.
+    pub(crate) scene: Option<PathBuf>,
+    /// A path: text, `.json` or `.csv`; `-` for standard input.
+    pub(crate) path: Option<PathBuf>,
+    /// Show the shipped scenes, to choose one of them, as without SCENE.
+    #[arg(long, conflicts_with = "scene")]
+    pub(crate) gallery: bool,
+    /// Print the address, and do not open a browser.
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// The port to listen on [default: a free one].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1024..))]
+    pub(crate) port: Option<u16>,
+    /// The folder where the page saves files [default: that of the scene, or the current one].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, Args)]
@@ -252,8 +277,8 @@ fn parsed<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
 }
 
 /// The text of `--camera`.
-fn view(text: &str) -> Result<View, String> {
-    View::from_str(text).map_err(|e| e.to_string())
+fn view(text: &str) -> Result<mp_plan::View, String> {
+    mp_plan::View::from_str(text).map_err(|e| e.to_string())
 }
 
 /// A number from 0 to 1.

@@ -1,7 +1,7 @@
 //! `render`: draws a scene, and a path through it, as a picture, a film, a page for the browser, or meshes.
 
 use crate::cli::Render;
-use crate::input::{path, refuse_two_standard_inputs, scene};
+use crate::input::{judged_path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
 use crate::output::{note, writable, write};
 use crate::picture::{Picture, Shown};
@@ -19,17 +19,16 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
         let message = format!("{} would overwrite the input {}", args.picture.display(), input.display());
         return Err(Error::new(message).help("name another file"));
     }
-    let path = args.path.as_ref().map(|file| path(&scene, file)).transpose()?;
+    let judged = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let mut caption = String::new();
-    if let Some(path) = &path {
-        let verdict = scene.check(path)?;
+    if let Some((path, free)) = &judged {
         caption = mp_plan::count(path.rows.len(), "configuration");
-        if !verdict.free {
+        if !free {
             caption += ", not verified";
-            note(&format!("warning: this path would not pass `mp check`: {}", verdict.faults.join("; ")));
         }
     }
-    let shown = Shown { scene: &scene, path: path.as_ref(), report: None, caption: &caption };
+    let path = judged.as_ref().map(|(path, _)| path);
+    let shown = Shown { scene: &scene, path, report: None, caption: &caption };
     let cancel = if picture.takes_long() { interrupt::flag() } else { Cancel::new() };
     let line = Line::new(scene.name(), None, true);
     let Some(bytes) = picture.bytes(&shown, &cancel, &line)? else {

@@ -100,11 +100,16 @@ pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
 #[must_use]
 pub fn page_with_files(scene: &SceneFile, planner: &[u8], files: &[(String, Vec<u8>)]) -> String {
     let mut open = Message::default().with("do", "open");
-    let list: Vec<_> = files.iter().map(|(name, bytes)| json!({"name": name, "bytes": open.array(bytes)})).collect();
+    let list: Vec<_> =
+        files.iter().map(|(name, bytes)| json!({"name": name, "bytes": open.array(bytes)})).collect();
     open.set("main", files.first().map(|(name, _)| name.as_str()));
     open.set("files", list);
     let html = page(Some(scene), Planner::Inside(planner));
-    html.replacen("<script id=\"planner\"", &format!("{}\n<script id=\"planner\"", data("open", &open.to_bytes())), 1)
+    html.replacen(
+        "<script id=\"planner\"",
+        &format!("{}\n<script id=\"planner\"", data("open", &open.to_bytes())),
+        1,
+    )
 }
 
 /// Bytes as a part of the page.
