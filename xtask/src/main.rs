@@ -4,6 +4,7 @@
 //! It has no dependencies and does no work itself, so that it compiles in a second.
 
 mod ci;
+mod wasm;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -13,8 +14,9 @@ use std::process::{Command, ExitCode};
 const HELP: &str = "\
 Builds and starts the programs of the workspace:
 
-  cargo xtask plan | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
+  cargo xtask plan | view | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
+  cargo xtask wasm              builds the planner inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
 
@@ -24,10 +26,11 @@ fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
     let command = arguments.first().map(|c| c.to_string_lossy().into_owned()).unwrap_or_default();
     match command.as_str() {
-        "plan" | "check" | "info" | "render" | "scenes" | "completions" | "man" | "--version" => {
+        "plan" | "view" | "check" | "info" | "render" | "scenes" | "completions" | "man" | "--version" => {
             start("mp-motion-cli", "mp", &arguments)
         }
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
+        "wasm" => wasm::run(),
         "assets" => start("mp-bench", "mp-bench", &arguments),
         "ci" => match arguments[1..].iter().map(|a| a.to_string_lossy()).collect::<Vec<_>>().as_slice() {
             [] => ci::run(true),
@@ -72,6 +75,10 @@ fn start(package: &str, program: &str, arguments: &[OsString]) -> ExitCode {
     let mut command = cargo();
     command.args(["run", "--release", "--package", package, "--bin", program, "--manifest-path"]);
     command.arg(manifest).arg("--").args(arguments);
+    match wasm::environment(arguments) {
+        Ok(variable) => command.envs(variable),
+        Err(message) => return bad(&message),
+    };
     match command.status() {
         Ok(status) => ExitCode::from(status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(130)),
         Err(e) => bad(&format!("cannot run cargo: {e}")),

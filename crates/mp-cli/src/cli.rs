@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, MetricName, MotionValidator, PlannerInfo, Request, positive_number};
+use mp_plan::{Length, MetricName, Mode, MotionValidator, PlannerInfo, Request, positive_number};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -25,8 +25,10 @@ pub(crate) enum Command {
     Check(Check),
     /// Describe a mesh, scene or path file.
     Info(Info),
-    /// Draw a scene, and a path through it, with no display.
+    /// Draw a scene, and a path through it, as a picture, film, page or meshes, with no display.
     Render(Render),
+    /// Open the viewer in the browser: look at a scene and a path, edit the scene, and plan.
+    View(View),
     /// List the shipped scenes.
     Scenes,
     /// Run benchmarks, with the program `mp-bench`.
@@ -92,9 +94,9 @@ pub(crate) struct Plan {
     /// output. `{scene}` and `{seed}` are replaced by scene and seed.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
-    /// The file for the picture (`.png`; for worlds in the plane also `.svg`), or for the page of the viewer (`.html`),
-    /// which opens in a browser without a network. `{scene}` and `{seed}` are replaced by
-    /// scene and seed.
+    /// The file for the picture (`.png`; for worlds in the plane also `.svg`), a film (`.gif`, `.mp4`), the page of the
+    /// viewer (`.html`), which opens in a browser without a network, or meshes with the motion (`.glb`). `{scene}` and
+    /// `{seed}` are replaced by scene and seed. `mp render` has more choices.
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
     /// Print one JSON object on standard output, and write only the files asked for.
@@ -141,13 +143,81 @@ pub(crate) struct Render {
     pub(crate) scene: PathBuf,
     /// A path: text, `.json` or `.csv`; `-` for standard input.
     pub(crate) path: Option<PathBuf>,
-    /// The file for the picture (`.png`; for worlds in the plane also `.svg`), for the page of the viewer (`.html`), which
-    /// opens in a browser without a network, or for the scene that the page shows (`.mpv`).
+    /// The file, in the format of its ending: a picture (`.png`; for worlds in the plane also `.svg`), a film (`.gif`, or
+    /// `.mp4` by an installed ffmpeg), the page of the viewer (`.html`), which opens in a browser without a network, the scene
+    /// that the page shows (`.mpv`), or meshes with the motion for other programs (`.glb`).
     #[arg(long, visible_alias = "out", value_name = "FILE")]
     pub(crate) picture: PathBuf,
-    /// Width and height in pixels.
-    #[arg(long, value_name = "W×H", default_value = "1280x960", value_parser = pixels)]
-    pub(crate) size: (usize, usize),
+    #[command(flatten)]
+    pub(crate) drawing: Drawing,
+}
+
+/// How pictures and films are drawn.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct Drawing {
+    /// Width and height in pixels [default: 1280x960; films 640x480].
+    #[arg(long, value_name = "W×H", value_parser = pixels)]
+    pub(crate) size: Option<(usize, usize)>,
+    /// How bodies are drawn [default: solid].
+    #[arg(long, value_name = "MODE", value_parser =
+          PossibleValuesParser::new(Mode::ALL.map(|(_, name)| name)).map(|name| name.parse().unwrap_or(Mode::Solid)))]
+    pub(crate) mode: Option<Mode>,
+    /// From where a scene in space is seen: `front`, `back`, `left`, `right`, `top`, `bottom`, `iso`, or
+    /// `eye=x,y,z target=x,y,z fov=degrees` (of the height); with `ortho` after it in parallel projection
+    /// [default: where the path is seen best].
+    #[arg(long, value_name = "VIEW", value_parser = view)]
+    pub(crate) camera: Option<mp_plan::View>,
+    /// All configurations of the path at once, or one at a time, with start and goal translucent [default: all; films step].
+    #[arg(long, value_name = "HOW")]
+    pub(crate) animation: Option<Animation>,
+    /// The moment of the path that a picture shows, as a fraction of its length, 0 to 1 [default: 0.5 with
+    /// `--animation step`].
+    #[arg(long, value_name = "T", value_parser = fraction)]
+    pub(crate) at: Option<f64>,
+    /// In a film, turn the camera once around the scene.
+    #[arg(long)]
+    pub(crate) turntable: bool,
+    /// In a film, keep the robot in the middle.
+    #[arg(long)]
+    pub(crate) follow: bool,
+    /// How long a film or the motion in a `.glb` takes, seconds [default: 8].
+    #[arg(long, value_name = "S", value_parser = positive_number)]
+    pub(crate) seconds: Option<f64>,
+    /// How many frames per second a film has [default: 20].
+    #[arg(long, value_name = "N", value_parser = positive_number)]
+    pub(crate) fps: Option<f64>,
+    /// How many frames of a film are drawn at once [default: one for each core]. The film does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+}
+
+/// What is shown of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Animation {
+    /// All configurations at once.
+    All,
+    /// One configuration.
+    Step,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct View {
+    /// A scene file, or the name of a shipped scene; `-` for standard input. Without it, the page shows the shipped scenes.
+    pub(crate) scene: Option<PathBuf>,
+    /// A path: text, `.json` or `.csv`; `-` for standard input.
+    pub(crate) path: Option<PathBuf>,
+    /// Show the shipped scenes, to choose one of them, as without SCENE.
+    #[arg(long, conflicts_with = "scene")]
+    pub(crate) gallery: bool,
+    /// Print the address, and do not open a browser.
+    #[arg(long)]
+    pub(crate) no_browser: bool,
+    /// The port to listen on [default: a free one].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1024..))]
+    pub(crate) port: Option<u16>,
+    /// The folder where the page saves files [default: that of the scene, or the current one].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, Args)]
@@ -201,6 +271,17 @@ fn metric(name: &str) -> MetricName {
 
 fn parsed<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
     text.parse().map_err(|e: mp_plan::Error| e.to_string())
+}
+
+/// The text of `--camera`.
+fn view(text: &str) -> Result<mp_plan::View, String> {
+    mp_plan::View::from_str(text).map_err(|e| e.to_string())
+}
+
+/// A number from 0 to 1.
+fn fraction(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|t| (0.0..=1.0).contains(t));
+    number.ok_or_else(|| "expected a fraction of the length of the path, from 0 to 1".into())
 }
 
 /// `WxH`, both from 64 to 8192.

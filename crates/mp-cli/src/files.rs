@@ -1,5 +1,6 @@
 //! The output files of `plan`.
 
+use crate::cli::Drawing;
 use crate::input::is_standard;
 use crate::output;
 use crate::picture::Picture;
@@ -90,7 +91,8 @@ impl Files {
         if let Some(out) = out.as_ref().filter(|out| !is_standard(out)) {
             PathFileKind::of(out)?;
         }
-        picture.map_or(Ok(()), |picture| Picture::of(scene, &picture).map(|_| ()))
+        let drawing = Drawing::default();
+        picture.map_or(Ok(()), |picture| Picture::of(scene, &picture, &drawing, true).map(|_| ()))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Scenes and paths from files and from standard input.
 
+use crate::output::note;
 use mp_plan::{Error, PathFileKind, PathRows, Scene};
 use std::io::Read;
 use std::path::Path;
@@ -49,4 +50,14 @@ pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
         _ => PathFileKind::Text,
     };
     PathRows::parse("standard input", text.as_bytes(), kind, scene.path_format())
+}
+
+/// The path that an argument names, and whether it is free. If it is not, this is said to the person watching.
+pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, bool), Error> {
+    let path = path(scene, given)?;
+    let verdict = scene.check(&path)?;
+    if !verdict.free {
+        note(&format!("warning: this path would not pass `mp check`: {}", verdict.faults.join("; ")));
+    }
+    Ok((path, verdict.free))
 }

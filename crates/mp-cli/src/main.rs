@@ -1,8 +1,9 @@
-//! The program `mp`: plan, check, info, render on the command line.
+//! The program `mp`: plan, check, info, render, view on the command line.
 //!
 //! Exit code: 0 solved or true, 1 not solved within the budget or false, 2 bad input.
 
 mod bench;
+mod browser;
 mod check;
 mod cli;
 mod files;
@@ -17,6 +18,7 @@ mod progress;
 mod render;
 mod request;
 mod text;
+mod view;
 
 use clap::{CommandFactory, Parser};
 use cli::{Cli, Command};
@@ -31,6 +33,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::Info(args) => info::run(args),
         Command::Render(args) => render::run(args),
+        Command::View(args) => view::run(args),
         Command::Scenes => scenes(),
         Command::Bench(args) => bench::run(args),
         Command::Completions { shell } => completions(*shell),

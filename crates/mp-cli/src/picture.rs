@@ -1,45 +1,131 @@
 //! What goes into the file of a picture, by the ending of its name.
 
-use mp_plan::{Error, PathRows, PictureKind, Report, Scene};
+use crate::cli::{Animation, Drawing};
+use crate::progress::Line;
+use mp_plan::{Cancel, Error, Film, FilmKind, Look, PICTURE_SIZE, PathRows, PictureKind, Report, Scene};
 use mp_view::SceneFile;
 use std::path::Path;
 
 /// What goes into the file of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Picture {
     /// A picture, `.png` or `.svg`.
-    Drawn(PictureKind),
+    Drawn(PictureKind, Look),
+    /// A film, `.gif` or `.mp4`.
+    Film(Film),
     /// `.html`: the viewer with the scene inside, for a browser.
     Page,
     /// `.mpv`: the scene as the viewer reads it.
     Scene,
+    /// `.glb`: meshes that move for so many seconds.
+    Meshes(f64),
 }
 
+/// What a picture is of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shown<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) path: Option<&'a PathRows>,
+    pub(crate) report: Option<&'a Report>,
+    pub(crate) caption: &'a str,
+}
+
+/// How long a film takes, seconds.
+const SECONDS: f64 = 8.0;
+
 impl Picture {
-    /// By the ending of the name of `file`.
+    /// By the ending of the name of `file`. `path` says whether there is a path.
     ///
     /// # Errors
-    /// When this scene cannot be written as such a file.
-    pub(crate) fn of(scene: &Scene, file: &Path) -> Result<Self, Error> {
+    /// When this scene cannot be written as such a file, or an option has no meaning for it.
+    pub(crate) fn of(scene: &Scene, file: &Path, drawing: &Drawing, path: bool) -> Result<Self, Error> {
         let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        match ending.as_str() {
-            "html" | "htm" => Ok(Self::Page),
-            "mpv" => Ok(Self::Scene),
-            _ => Ok(Self::Drawn(scene.picture_kind(file)?)),
+        let seconds = drawing.seconds.unwrap_or(SECONDS);
+        let look = |size, at| Look {
+            size: drawing.size.unwrap_or(size),
+            mode: drawing.mode.unwrap_or_default(),
+            view: drawing.camera.unwrap_or_default(),
+            at,
+        };
+        let picture = match (ending.as_str(), FilmKind::of(file)) {
+            ("html" | "htm", _) => Self::Page,
+            ("mpv", _) => Self::Scene,
+            ("glb", _) => Self::Meshes(seconds),
+            (_, Some(kind)) => {
+                let mut film = Film::new(kind);
+                film.look = look(film.look.size, None);
+                film.step = drawing.animation != Some(Animation::All);
+                (film.turntable, film.follow) = (drawing.turntable, drawing.follow);
+                (film.seconds, film.rate) = (seconds, drawing.fps.unwrap_or(film.rate));
+                let cores = std::thread::available_parallelism().map_or(1, usize::from);
+                film.threads = drawing.threads.map_or(cores, usize::from);
+                scene.check_film(&film, path)?;
+                Self::Film(film)
+            }
+            _ => {
+                let kind = scene.picture_kind(file)?;
+                let step = (drawing.animation == Some(Animation::Step)).then_some(0.5);
+                if drawing.animation == Some(Animation::All) && drawing.at.is_some() {
+                    return Err(
+                        Error::new("--animation all has no moment --at").help("leave one of them out")
+                    );
+                }
+                let look = look(PICTURE_SIZE, drawing.at.or(step));
+                scene.check_look(&look, path)?;
+                Self::Drawn(kind, look)
+            }
+        };
+        picture.refuse_useless(drawing, &ending)?;
+        Ok(picture)
+    }
+
+    /// Refuses options that have no meaning for this kind of file.
+    fn refuse_useless(&self, drawing: &Drawing, ending: &str) -> Result<(), Error> {
+        let film = matches!(self, Self::Film(_));
+        let still = matches!(self, Self::Drawn(..));
+        let meshes = matches!(self, Self::Meshes(_));
+        let options = [
+            ("--size", drawing.size.is_some(), film || still, "pictures and films"),
+            ("--mode", drawing.mode.is_some(), film || still, "pictures and films"),
+            ("--camera", drawing.camera.is_some(), film || still, "pictures and films"),
+            ("--animation", drawing.animation.is_some(), film || still, "pictures and films"),
+            ("--at", drawing.at.is_some(), still, "pictures (.png, .svg)"),
+            ("--turntable", drawing.turntable, film, "films (.gif, .mp4)"),
+            ("--follow", drawing.follow, film, "films (.gif, .mp4)"),
+            ("--seconds", drawing.seconds.is_some(), film || meshes, "films (.gif, .mp4) and .glb"),
+            ("--fps", drawing.fps.is_some(), film, "films (.gif, .mp4)"),
+        ];
+        match options.into_iter().find(|(_, given, used, _)| *given && !used) {
+            None => Ok(()),
+            Some((name, _, _, of)) => {
+                let what = format!("{name} has no meaning for a .{ending} file: it is for {of}");
+                Err(Error::new(what).help("leave it out, or end the name of the file otherwise"))
+            }
         }
     }
 
-    /// The bytes of the file. A page shows the report too, if there is one.
+    /// Whether it is worth stopping.
+    pub(crate) fn takes_long(&self) -> bool {
+        matches!(self, Self::Film(_))
+    }
+
+    /// The bytes of the file; `None` when `cancel` was raised before they were complete. A page shows the report too, if there
+    /// is one.
     pub(crate) fn bytes(
-        self,
-        scene: &Scene,
-        path: Option<&PathRows>,
-        report: Option<&Report>,
-        caption: &str,
-        size: (usize, usize),
-    ) -> Result<Vec<u8>, Error> {
-        if let Self::Drawn(kind) = self {
-            return scene.picture(path, caption, kind, size);
+        &self,
+        shown: &Shown<'_>,
+        cancel: &Cancel,
+        line: &Line,
+    ) -> Result<Option<Vec<u8>>, Error> {
+        let Shown { scene, path, report, caption } = *shown;
+        match self {
+            Self::Drawn(kind, look) => return scene.picture(path, caption, *kind, look).map(Some),
+            Self::Film(film) => {
+                let frames = film.frames();
+                let mut say = |done: usize| line.say(&format!("drawing the film, {done} of {frames} frames"));
+                return scene.film(path, caption, film, cancel, &mut say);
+            }
+            _ => {}
         }
         let mut file = SceneFile::of(scene)?;
         match (report, path) {
@@ -47,6 +133,10 @@ impl Picture {
             (None, Some(path)) => file.add_path(scene, "path", path)?,
             (None, None) => {}
         }
-        Ok(if self == Self::Page { file.to_html().into_bytes() } else { file.to_bytes() })
+        Ok(Some(match self {
+            Self::Page => file.to_html().into_bytes(),
+            Self::Meshes(seconds) => file.to_glb(*seconds),
+            _ => file.to_bytes(),
+        }))
     }
 }

@@ -1,17 +1,16 @@
 //! `plan`: plans on scenes with seeds, and writes reports and files.
 
-use crate::cli::Plan;
+use crate::cli::{Drawing, Plan};
 use crate::files::Files;
 use crate::input::{is_standard, scene};
 use crate::interrupt;
 use crate::output::{note, print, print_json, write};
-use crate::picture::Picture;
+use crate::picture::{Picture, Shown};
 use crate::progress::Line;
 use crate::request::request;
 use crate::text::{caption, summary, table};
 use mp_plan::{
-    Cancel, Control, Error, PICTURE_SIZE, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel,
-    make_folder,
+    Cancel, Control, Error, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel, make_folder,
 };
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -55,7 +54,9 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
 
     let cancel = interrupt::flag();
     let single = jobs.len() == 1;
-    let job = |(i, seed): (usize, u64)| one(&scenes[i], &request, seed, &cancel, &files, single);
+    // Runs have a thread each when there are several.
+    let threads = if single { args.threads } else { 1 };
+    let job = |(i, seed): (usize, u64)| one(&scenes[i], &request, seed, &cancel, &files, single, threads);
     let reports = match jobs.as_slice() {
         [only] => vec![job(*only)?],
         _ => {
@@ -102,6 +103,7 @@ fn one(
     cancel: &Cancel,
     files: &Files,
     watched: bool,
+    threads: u16,
 ) -> Result<Report, Error> {
     let request = Request { seed, ..request.clone() };
     let mut line = Line::new(scene.name(), request.budget.time_s, watched);
@@ -117,9 +119,16 @@ fn one(
     }
     if let Some(file) = picture {
         line.say("drawing the picture");
-        let picture = Picture::of(scene, &file)?;
-        write(&file, &picture.bytes(scene, Some(&path), Some(&report), &caption(&report), PICTURE_SIZE)?)?;
-        report.picture_file = Some(file.display().to_string());
+        let drawing = Drawing { threads: Some(threads), ..Drawing::default() };
+        let picture = Picture::of(scene, &file, &drawing, true)?;
+        let shown = Shown { scene, path: Some(&path), report: Some(&report), caption: &caption(&report) };
+        match picture.bytes(&shown, cancel, &line)? {
+            Some(bytes) => {
+                write(&file, &bytes)?;
+                report.picture_file = Some(file.display().to_string());
+            }
+            None => note(&format!("interrupted: {} was not written", file.display())),
+        }
     }
     Ok(report)
 }

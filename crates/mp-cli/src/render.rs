@@ -1,33 +1,43 @@
-//! `render`: draws a scene, and a path through it, as a picture or as a page for the browser.
+//! `render`: draws a scene, and a path through it, as a picture, a film, a page for the browser, or meshes.
 
 use crate::cli::Render;
-use crate::input::{path, refuse_two_standard_inputs, scene};
+use crate::input::{judged_path, refuse_two_standard_inputs, scene};
+use crate::interrupt;
 use crate::output::{note, writable, write};
-use crate::picture::Picture;
-use mp_plan::Error;
+use crate::picture::{Picture, Shown};
+use crate::progress::Line;
+use mp_plan::{Cancel, Error};
 
 /// Draws a scene, and a path through it. A path that does not pass verification is drawn as well, with a
 /// warning.
 pub(crate) fn run(args: &Render) -> Result<bool, Error> {
     refuse_two_standard_inputs(&args.scene, args.path.as_deref())?;
     let scene = scene(&args.scene)?;
-    let picture = Picture::of(&scene, &args.picture)?;
+    let picture = Picture::of(&scene, &args.picture, &args.drawing, args.path.is_some())?;
     writable(&args.picture)?;
     if let Some(input) = scene.input_at(&args.picture) {
         let message = format!("{} would overwrite the input {}", args.picture.display(), input.display());
         return Err(Error::new(message).help("name another file"));
     }
-    let path = args.path.as_ref().map(|file| path(&scene, file)).transpose()?;
+    let judged = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let mut caption = String::new();
-    if let Some(path) = &path {
-        let verdict = scene.check(path)?;
+    if let Some((path, free)) = &judged {
         caption = mp_plan::count(path.rows.len(), "configuration");
-        if !verdict.free {
+        if !free {
             caption += ", not verified";
-            note(&format!("warning: this path would not pass `mp check`: {}", verdict.faults.join("; ")));
         }
     }
-    write(&args.picture, &picture.bytes(&scene, path.as_ref(), None, &caption, args.size)?)?;
+    let path = judged.as_ref().map(|(path, _)| path);
+    let shown = Shown { scene: &scene, path, report: None, caption: &caption };
+    let cancel = if picture.takes_long() { interrupt::flag() } else { Cancel::new() };
+    let line = Line::new(scene.name(), None, true);
+    let Some(bytes) = picture.bytes(&shown, &cancel, &line)? else {
+        drop(line);
+        note(&format!("interrupted: {} was not written", args.picture.display()));
+        return Ok(false);
+    };
+    drop(line);
+    write(&args.picture, &bytes)?;
     note(&format!("wrote {}", args.picture.display()));
     Ok(true)
 }

@@ -34,7 +34,7 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
     (&["plan", "window.env", "--set", "goal-bias=2"], &["goal-bias", "2", "[0, 1]"]),
     (&["plan", "window.env", "--set", "patience=-1"], &["patience"]),
     (&["plan", "window.env", "--picture", "p.svg"], &["p.svg", ".png"]),
-    (&["plan", "window.env", "--picture", "p.gif"], &["p.gif", ".png"]),
+    (&["plan", "window.env", "--picture", "p.jpg"], &["p.jpg", ".png"]),
     (&["plan", "window.env", "--picture", "p"], &[".png"]),
     (&["plan", "window.env", "--out", "robot.off/p.txt"], &["robot.off", "not a folder"]),
     (&["plan", "window.env", "--out", "."], &["folder"]),
@@ -61,6 +61,33 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
     (&["render", "window.env", "--picture", "p.bmp"], &["p.bmp", ".png"]),
     (&["render", "window.env", "--picture", "p.png", "--size", "10x10"], &["64"]),
     (&["render", "window.env", "--picture", "p.png", "--size", "big"], &["WIDTHxHEIGHT"]),
+    (&["render", "window.env", "--out", "p.png", "--mode", "solids"], &["solid", "wire", "transparent"]),
+    (
+        &["render", "window.env", "--out", "p.png", "--camera", "fronte"],
+        &["`fronte`", "front, back", "eye=x,y,z"],
+    ),
+    (&["render", "window.env", "--out", "p.png", "--camera", "eye=1,2,3"], &["a target too"]),
+    (&["render", "window.env", "--out", "p.png", "--camera", "eye=1,2,3 target=1,2,3"], &["that differ"]),
+    (&["render", "window.env", "--out", "p.png", "--at", "0.5"], &["no path", "name a path"]),
+    (&["render", "window.env", "--out", "p.png", "--at", "1.5"], &["from 0 to 1"]),
+    (&["render", "window.env", "--out", "p.png", "--turntable"], &["--turntable", ".png", ".gif"]),
+    (&["render", "window.env", "--out", "p.png", "--fps", "10"], &["--fps", "films"]),
+    (
+        &["render", "window.env", "--out", "p.html", "--mode", "wire"],
+        &["--mode", ".html", "pictures and films"],
+    ),
+    (&["render", "window.env", "--out", "p.glb", "--camera", "top"], &["--camera", ".glb"]),
+    (&["render", "window.env", "--out", "p.gif"], &["nothing moves", "--turntable"]),
+    (&["render", "window.env", "--out", "p.gif", "--follow"], &["no path", "follow"]),
+    (
+        &["render", "window.env", "--out", "p.gif", "--turntable", "--fps", "60"],
+        &["60 frames per second", "50"],
+    ),
+    (&["render", "window.env", "--out", "p.gif", "--turntable", "--seconds", "1e9"], &["100000 frames"]),
+    (&["render", "window.env", "--out", "p.gif", "--turntable", "--seconds", "0"], &["above zero"]),
+    (&["render", "window.env", "--out", "p.mp4", "--turntable", "--size", "101x100"], &["101x100", "even"]),
+    (&["render", "rrs-low", "--out", "p.png", "--camera", "left"], &["rrs-low", "plane", "camera"]),
+    (&["render", "rrs-low", "--out", "p.gif", "--turntable"], &["rrs-low", "plane"]),
 ];
 
 #[test]

@@ -72,6 +72,56 @@ pub(crate) fn triangulate_ccw(corners: &[Point2<f64>]) -> Vec<[usize; 3]> {
     triangles
 }
 
+/// A ring with holes as one ring that goes around all: each hole is joined to it by a bridge to a corner that it sees. `outer` goes
+/// counter-clockwise and the holes clockwise, inside it and apart from each other; a hole that sees no corner is left out.
+pub(crate) fn bridged(outer: Vec<Point2<f64>>, mut holes: Vec<Vec<Point2<f64>>>) -> Vec<Point2<f64>> {
+    let lexical = |p: &Point2<f64>, q: &Point2<f64>| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y));
+    // Each hole begins at its rightmost corner, and the rightmost hole comes first: then no later hole is in the way.
+    for hole in &mut holes {
+        let first = (0..hole.len()).max_by(|&i, &j| lexical(&hole[i], &hole[j])).unwrap_or(0);
+        hole.rotate_left(first);
+    }
+    holes.retain(|hole| hole.len() > 2);
+    holes.sort_by(|a, b| lexical(&b[0], &a[0]));
+    let mut ring = outer;
+    for (n, hole) in holes.iter().enumerate() {
+        let from = hole[0];
+        let mut seen: Vec<usize> = (0..ring.len()).filter(|&i| lexical(&ring[i], &from).is_gt()).collect();
+        seen.sort_by(|&i, &j| (ring[i] - from).norm_squared().total_cmp(&(ring[j] - from).norm_squared()));
+        let free = |i: usize| {
+            let borders = std::iter::once(&ring).chain(&holes[n..]);
+            begins_inside(&ring, i, from)
+                && borders.flat_map(|b| sides(b)).all(|s| !cross((ring[i], from), s))
+        };
+        if let Some(corner) = seen.into_iter().find(|&i| free(i)) {
+            let bridge = hole.iter().copied().chain([from, ring[corner]]);
+            ring.splice(corner + 1..corner + 1, bridge);
+        }
+    }
+    ring
+}
+
+/// The sides of a closed ring.
+fn sides(ring: &[Point2<f64>]) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> + '_ {
+    (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()]))
+}
+
+/// Whether the way from corner `i` of a counter-clockwise ring to `to` begins inside the ring.
+fn begins_inside(ring: &[Point2<f64>], i: usize, to: Point2<f64>) -> bool {
+    let [before, at, after] = [ring[(i + ring.len() - 1) % ring.len()], ring[i], ring[(i + 1) % ring.len()]];
+    let (left_of_first, left_of_second) = (turn([before, at, to]) > 0.0, turn([at, after, to]) > 0.0);
+    match turn([before, at, after]) >= 0.0 {
+        true => left_of_first && left_of_second,
+        false => left_of_first || left_of_second,
+    }
+}
+
+/// Whether two segments cross at one inner point of both.
+fn cross((a, b): (Point2<f64>, Point2<f64>), (c, d): (Point2<f64>, Point2<f64>)) -> bool {
+    let apart = |p: f64, q: f64| (p > 0.0 && q < 0.0) || (p < 0.0 && q > 0.0);
+    apart(turn([a, b, c]), turn([a, b, d])) && apart(turn([c, d, a]), turn([c, d, b]))
+}
+
 /// A corner that can be cut, given its neighbours, and how well shaped its triangle is: area over the
 /// longest side squared.
 #[derive(PartialEq)]

@@ -44,7 +44,7 @@
 //! | find out why a configuration is not free | [`Scene::explain`] |
 //! | find out what is odd about a scene | [`Scene::lint`] |
 //! | find out what is in a file | [`info::Info`] |
-//! | draw | `Scene::picture` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
+//! | draw | `Scene::picture`, `Scene::film` (feature `pictures`), [`Scene::bodies`], [`Scene::poses`], [`Scene::sweep`] |
 //! | add your own kind of robot | [`RobotKind`] |
 //! | work with states instead of rows of numbers | [`search`], [`shorten`] with a [`RobotKind`] |
 //!
@@ -56,11 +56,15 @@ mod check;
 mod counted;
 mod error;
 mod explain;
+#[cfg(feature = "pictures")]
+mod film;
 mod find;
 mod finish;
 pub mod info;
 mod inputs;
 mod load;
+#[cfg(feature = "pictures")]
+mod mp4;
 mod numbers;
 mod output;
 mod parallel;
@@ -87,6 +91,8 @@ mod watch;
 pub use check::Verdict;
 pub use error::Error;
 pub use explain::Explanation;
+#[cfg(feature = "pictures")]
+pub use film::{Film, FilmKind};
 pub use find::find_problem;
 pub use finish::shorten;
 pub use inputs::is_same_file;
@@ -95,7 +101,7 @@ pub use output::{folder_of, make_folder, write_file};
 pub use parallel::in_parallel;
 pub use path::{PathFileKind, PathRows};
 #[cfg(feature = "pictures")]
-pub use picture::{PICTURE_SIZE, PictureKind};
+pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners, roadmap_planners};
 pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
@@ -112,6 +118,9 @@ pub use scene_roadmap::SceneRoadmap;
 pub use search::{Search, search};
 pub use sweep::{Sweep, Track};
 pub use watch::{Control, SearchEvent, Stage, Watch};
+
+#[cfg(feature = "pictures")]
+pub use mp_render::{Mode, View};
 
 pub use mp_cspace::{
     Cancel, Progress,

@@ -1,9 +1,9 @@
 //! Pictures of scenes and paths, made with `mp-render`.
 
-use crate::{BodyShape, Error, PathRows, Scene};
+use crate::{BodyShape, Error, PathRows, Scene, Sweep};
 use mp_geom::TriMesh;
 use mp_render::palette::{GOAL, INK, MIDDLE, OBSTACLE, PATH, START};
-use mp_render::{Drawing, Item};
+use mp_render::{Animation, Drawing, Item, Mode, Moment, View};
 use nalgebra::{Isometry3, Point2, Point3};
 use std::path::Path;
 
@@ -17,6 +17,26 @@ pub enum PictureKind {
     Png,
     /// An SVG: lines and areas. Only for worlds in the plane.
     Svg,
+}
+
+/// How a picture or a film is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Look {
+    /// Width and height, pixels.
+    pub size: (usize, usize),
+    /// How bodies are drawn.
+    pub mode: Mode,
+    /// From where a scene in space is seen.
+    pub view: View,
+    /// The moment of the path that a picture shows, as a fraction of its length, 0 to 1; `None` shows all configurations at
+    /// once. Films do not use it.
+    pub at: Option<f64>,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self { size: PICTURE_SIZE, mode: Mode::default(), view: View::default(), at: None }
+    }
 }
 
 impl Scene {
@@ -45,24 +65,81 @@ impl Scene {
     /// The bytes of a picture of the scene, with the path if one is given, and `caption` below the name of the scene.
     ///
     /// # Errors
-    /// When the path is of another robot, or the size is not possible.
+    /// When the path is of another robot, or the look does not suit this scene or is not possible.
     pub fn picture(
         &self,
         path: Option<&PathRows>,
         caption: &str,
         kind: PictureKind,
-        size: (usize, usize),
+        look: &Look,
     ) -> Result<Vec<u8>, Error> {
-        let failed = |e: mp_render::RenderError| Error::new(e.to_string());
-        Ok(match (self.is_planar_world(), kind) {
-            (true, PictureKind::Svg) => self.drawing(path, caption)?.svg(size).map_err(failed)?.into_bytes(),
-            (true, PictureKind::Png) => self.drawing(path, caption)?.pixels(size).map_err(failed)?.to_png(),
-            (false, _) => self.solid(path, caption)?.draw(size).map_err(failed)?.to_png(),
-        })
+        self.check_look(look, path.is_some())?;
+        let now = match (path, look.at) {
+            (Some(path), Some(at)) => self.track(path)?.at(at).map(|place| (place, at)),
+            _ => None,
+        };
+        if self.is_planar_world() {
+            let now = now.as_ref().map(|((poses, _), _)| poses.as_slice());
+            let drawing = self.world(path, caption, look)?.drawing(now, None);
+            return Ok(match kind {
+                PictureKind::Svg => drawing.svg(look.size).map_err(failed)?.into_bytes(),
+                PictureKind::Png => drawing.pixels(look.size).map_err(failed)?.to_png(),
+            });
+        }
+        let scene = self.solid(path, caption, look)?;
+        let Some(((poses, _), progress)) = now else {
+            return Ok(scene.draw(look.size).map_err(failed)?.to_png());
+        };
+        let shot = scene.shot(look.size, Animation { step: true, ..Animation::default() }).map_err(failed)?;
+        let moment =
+            Moment { robot: placed_bodies(&self.robot_bodies(), &poses), progress, ..Moment::default() };
+        Ok(shot.picture(&moment).map_err(failed)?.to_png())
+    }
+
+    /// Refuses a look that does not suit this scene, before any work is done. `path` says whether there is a path.
+    ///
+    /// # Errors
+    /// When a moment of a path is asked for without a path, or a view in space of a world in the plane.
+    pub fn check_look(&self, look: &Look, path: bool) -> Result<(), Error> {
+        if let Some(at) = look.at {
+            if !path {
+                return Err(
+                    Error::new("there is no path, of which a moment could be drawn").help("name a path")
+                );
+            }
+            if !(0.0..=1.0).contains(&at) {
+                return Err(Error::new(format!("{at} is not a moment of the path"))
+                    .help("give a fraction of its length, from 0 to 1"));
+            }
+        }
+        let from_above = "top".parse().ok();
+        if self.is_planar_world() && look.view != View::Best && Some(look.view) != from_above {
+            return Err(Error::new(format!(
+                "{} is a world in the plane, which is seen from above",
+                self.name()
+            ))
+            .help("leave out the camera"));
+        }
+        Ok(())
+    }
+
+    /// The bodies of a robot in space, in their own frames.
+    pub(crate) fn robot_bodies(&self) -> Vec<mp_render::Body> {
+        let robot = self.bodies().into_iter().filter(|body| body.pose.is_none());
+        let drawn = |body: crate::Body| match &body.shape {
+            BodyShape::Mesh(mesh) => Some(mp_render::Body::new(mesh, Isometry3::identity())),
+            _ => None,
+        };
+        robot.filter_map(drawn).collect()
     }
 
     /// The picture of a scene in space.
-    fn solid(&self, path: Option<&PathRows>, caption: &str) -> Result<mp_render::Scene, Error> {
+    pub(crate) fn solid(
+        &self,
+        path: Option<&PathRows>,
+        caption: &str,
+        look: &Look,
+    ) -> Result<mp_render::Scene, Error> {
         let bodies = self.bodies();
         let mesh = |body: &crate::Body| match &body.shape {
             BodyShape::Mesh(mesh) => Some(mesh.clone()),
@@ -97,11 +174,13 @@ impl Scene {
             copies: sweep.between.iter().map(shown).collect(),
             trace: sweep.trace,
             bounds: self.picture_bounds(),
+            mode: look.mode,
+            view: look.view,
         })
     }
 
-    /// The picture of a world in the plane.
-    fn drawing(&self, path: Option<&PathRows>, caption: &str) -> Result<Drawing, Error> {
+    /// What the pictures of a world in the plane have in common.
+    pub(crate) fn world(&self, path: Option<&PathRows>, caption: &str, look: &Look) -> Result<World, Error> {
         let sweep = self.sweep(path)?;
         let (mut low, mut high) = match self.picture_bounds() {
             Some(bounds) => (bounds.min.xy(), bounds.max.xy()),
@@ -112,7 +191,7 @@ impl Scene {
             match (body.shape, body.pose) {
                 (BodyShape::Area(rings), None) => robot.push(rings),
                 (BodyShape::Area(rings), Some(pose)) => {
-                    items.push(Item::area(placed(&rings, &pose), OBSTACLE))
+                    items.push(area(placed(&rings, &pose), OBSTACLE, look.mode));
                 }
                 (BodyShape::Lines(lines), Some(pose)) => {
                     walls = true;
@@ -129,15 +208,75 @@ impl Scene {
             let frame = vec![low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y), low];
             items.push(Item::lines(vec![frame], OBSTACLE, 1.0));
         }
-        let at = |poses: &Vec<Isometry3<f64>>, colour: u32| {
-            let rings = robot.iter().zip(poses).flat_map(|(rings, pose)| placed(rings, pose)).collect();
-            Item::area(rings, colour)
-        };
-        items.extend(sweep.between.iter().map(|poses| at(poses, MIDDLE).faint(0.3)));
-        items.push(Item::lines(vec![sweep.trace.iter().map(Point3::xy).collect()], PATH, 2.5));
-        items.extend([at(&sweep.start, START), at(&sweep.goal, GOAL)]);
-        Ok(Drawing { title: self.name().to_owned(), subtitle: caption.to_owned(), low, high, items })
+        let (title, subtitle) = (self.name().to_owned(), caption.to_owned());
+        Ok(World { title, subtitle, low, high, items, robot, sweep, mode: look.mode })
     }
+}
+
+/// A world in the plane, ready to be drawn at many moments.
+pub(crate) struct World {
+    title: String,
+    subtitle: String,
+    low: Point2<f64>,
+    high: Point2<f64>,
+    /// Obstacles and walls.
+    items: Vec<Item>,
+    robot: Vec<Vec<Vec<Point2<f64>>>>,
+    sweep: Sweep,
+    mode: Mode,
+}
+
+impl World {
+    /// The drawing with all configurations at once, or with the robot at `now`. With `centre`, it shows the surroundings of
+    /// that point.
+    pub(crate) fn drawing(&self, now: Option<&[Isometry3<f64>]>, centre: Option<Point2<f64>>) -> Drawing {
+        let at = |poses: &[Isometry3<f64>], colour: u32| {
+            let rings = self.robot.iter().zip(poses).flat_map(|(rings, pose)| placed(rings, pose)).collect();
+            area(rings, colour, self.mode)
+        };
+        let sweep = &self.sweep;
+        let mut items = self.items.clone();
+        if now.is_none() {
+            items.extend(sweep.between.iter().map(|poses| at(poses, MIDDLE).faint(0.3)));
+        }
+        items.push(Item::lines(vec![sweep.trace.iter().map(Point3::xy).collect()], PATH, 2.5));
+        let ends = [at(&sweep.start, START), at(&sweep.goal, GOAL)];
+        match now {
+            None => items.extend(ends),
+            Some(poses) => {
+                items.extend(ends.map(|item| item.faint(0.4)));
+                items.push(at(poses, MIDDLE));
+            }
+        }
+        let (mut low, mut high) = (self.low, self.high);
+        if let Some(centre) = centre {
+            let half = (high - low).scale(1.0 / 6.0);
+            (low, high) = (centre - half, centre + half);
+        }
+        Drawing { title: self.title.clone(), subtitle: self.subtitle.clone(), low, high, items }
+    }
+}
+
+/// An area, filled, seen through or as its outline.
+fn area(mut rings: Vec<Vec<Point2<f64>>>, colour: u32, mode: Mode) -> Item {
+    match mode {
+        Mode::Solid => Item::area(rings, colour),
+        Mode::Transparent => Item::area(rings, colour).faint(0.4),
+        Mode::Wire => {
+            rings.iter_mut().for_each(|ring| ring.extend(ring.first().copied()));
+            Item::lines(rings, colour, 1.5)
+        }
+    }
+}
+
+/// The bodies of a robot at poses.
+pub(crate) fn placed_bodies(bodies: &[mp_render::Body], poses: &[Isometry3<f64>]) -> Vec<mp_render::Body> {
+    bodies.iter().zip(poses).map(|(body, pose)| body.at(*pose)).collect()
+}
+
+/// An error of drawing.
+pub(crate) fn failed(error: mp_render::RenderError) -> Error {
+    Error::new(error.to_string())
 }
 
 /// Rings or lines of the plane at a pose.

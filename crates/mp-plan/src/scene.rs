@@ -33,6 +33,7 @@ pub struct Scene {
     file: Option<PathBuf>,
     pub(crate) inputs: Arc<[PathBuf]>,
     /// Whether its files are those that come with the program.
+    #[cfg_attr(not(feature = "scenes"), expect(dead_code, reason = "there are none"))]
     pub(crate) shipped: bool,
     /// What it was made from, if that is a document of an editor. Its meshes are written into it.
     pub(crate) document: Option<Arc<SceneDocument>>,

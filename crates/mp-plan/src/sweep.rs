@@ -48,6 +48,26 @@ pub struct Track {
     pub trace: Vec<Point3<f64>>,
     /// A lower bound (m) on the clearance at each; zero in collision.
     pub clearance: Vec<f64>,
+    /// How far (m) the robot has moved from the start to each: an upper bound for its points.
+    pub travel: Vec<f64>,
+}
+
+impl Track {
+    /// The poses of the robot's bodies and the drawn point at a fraction of the way, 0 to 1, at even speed. `None` without
+    /// configurations.
+    #[must_use]
+    pub fn at(&self, fraction: f64) -> Option<(Vec<Isometry3<f64>>, Point3<f64>)> {
+        let way = fraction.clamp(0.0, 1.0) * self.travel.last()?;
+        let next = self.travel.partition_point(|s| *s < way).min(self.travel.len() - 1);
+        let before = next.saturating_sub(1);
+        let part = self.travel[next] - self.travel[before];
+        let t = if part > 0.0 { ((way - self.travel[before]) / part).clamp(0.0, 1.0) } else { 1.0 };
+        let pose = |(a, b): (&Isometry3<f64>, &Isometry3<f64>)| {
+            a.try_lerp_slerp(b, t, 1e-12).unwrap_or(if t < 0.5 { *a } else { *b })
+        };
+        let poses = self.poses[before].iter().zip(&self.poses[next]).map(pose).collect();
+        Some((poses, self.trace[before] + (self.trace[next] - self.trace[before]) * t))
+    }
 }
 
 /// No more configurations than this are put between those of a path.
@@ -61,21 +81,54 @@ pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Er
     let total: f64 = lengths.iter().sum();
     let spacing = (0.1 * kind.picture_spacing()).max(total / MAX_BETWEEN);
     let mut track = Track::default();
-    let mut add = |q: &K::State| {
+    let mut add = |q: &K::State, travel: f64| {
         track.rows.push(kind.row(q));
         track.poses.push(kind.poses(q));
         track.trace.push(kind.traced(q));
         track.clearance.push(checker.clearance(q, f64::INFINITY).max(0.0));
+        track.travel.push(travel);
     };
+    let mut way = 0.0;
     for (edge, length) in lengths.iter().enumerate() {
         let parts = (length / spacing).ceil().clamp(1.0, MAX_BETWEEN) as u32;
         for k in 0..parts {
             let t = f64::from(k) / f64::from(parts);
-            add(&kind.space().interpolate(&states[edge], &states[edge + 1], t));
+            add(&kind.space().interpolate(&states[edge], &states[edge + 1], t), way + length * t);
         }
+        way += length;
     }
     if let Some(last) = states.last() {
-        add(last);
+        add(last, way);
     }
     Ok(track)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The robot is where the way says, whatever the spacing of the configurations.
+    #[test]
+    fn tracks_are_followed_at_even_speed() {
+        let places = [0.0, 1.0, 1.0, 1.5, 8.0];
+        let track = Track {
+            rows: Vec::new(),
+            poses: places.iter().map(|x| vec![Isometry3::translation(*x, 0.0, 0.0)]).collect(),
+            trace: places.iter().map(|x| Point3::new(*x, 1.0, 0.0)).collect(),
+            clearance: Vec::new(),
+            travel: places.to_vec(),
+        };
+        for (fraction, x) in
+            [(0.0, 0.0), (0.0625, 0.5), (0.125, 1.0), (0.5, 4.0), (1.0, 8.0), (-1.0, 0.0), (2.0, 8.0)]
+        {
+            let (poses, point) = track.at(fraction).unwrap();
+            assert!(
+                (poses[0].translation.x - x).abs() < 1e-12 && (point.x - x).abs() < 1e-12,
+                "{fraction}: {point}"
+            );
+        }
+        let still = Track { travel: vec![0.0; 5], ..track };
+        assert_eq!(still.at(0.7).unwrap().1.x, 0.0);
+        assert!(Track::default().at(0.5).is_none());
+    }
 }

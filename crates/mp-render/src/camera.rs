@@ -43,6 +43,16 @@ fn basis(forward: &Vector3<f64>, up: &Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rows))
 }
 
+/// The rotation (camera from world) of a camera that sees the scene from `azimuth` and `elevation`, radians, with z upwards; from
+/// above and from below too.
+pub(crate) fn seen_from(azimuth: f64, elevation: f64) -> UnitQuaternion<f64> {
+    let ((sa, ca), (se, ce)) = (azimuth.sin_cos(), elevation.sin_cos());
+    let (toward_eye, right) = (Vector3::new(ca * ce, sa * ce, se), Vector3::new(-sa, ca, 0.0));
+    let down = right.cross(&toward_eye);
+    let rows = Matrix3::from_rows(&[right.transpose(), down.transpose(), -toward_eye.transpose()]);
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rows))
+}
+
 impl Camera {
     /// A perspective camera `elevation` above the horizon at `azimuth`, as near as possible with
     /// all `points` inside `margin` (a fraction of the picture on each side).
@@ -55,7 +65,16 @@ impl Camera {
     ) -> Self {
         let toward_eye =
             Vector3::new(azimuth.cos() * elevation.cos(), azimuth.sin() * elevation.cos(), elevation.sin());
-        let rotation = basis(&-toward_eye, &Vector3::z());
+        Self::perspective(basis(&-toward_eye, &Vector3::z()), points, (width, height), margin)
+    }
+
+    /// A perspective camera turned by `rotation` (camera from world), as near as possible with all `points` inside `margin`.
+    pub(crate) fn perspective(
+        rotation: UnitQuaternion<f64>,
+        points: &[Point3<f64>],
+        (width, height): (usize, usize),
+        margin: [f64; 4],
+    ) -> Self {
         let (w, h) = (width as f64, height as f64);
         let focal = w.max(h) / 2.0 / (FIELD_OF_VIEW / 2.0).tan();
         let [left, top, right, bottom] = margin;
@@ -88,7 +107,16 @@ impl Camera {
 
     /// A parallel camera that looks down at `points`, x to the right and y up.
     pub(crate) fn top(points: &[Point3<f64>], (width, height): (usize, usize), margin: [f64; 4]) -> Self {
-        let rotation = basis(&-Vector3::z(), &Vector3::y());
+        Self::parallel(basis(&-Vector3::z(), &Vector3::y()), points, (width, height), margin)
+    }
+
+    /// A parallel camera turned by `rotation` (camera from world) that shows all `points` inside `margin`, as large as possible.
+    pub(crate) fn parallel(
+        rotation: UnitQuaternion<f64>,
+        points: &[Point3<f64>],
+        (width, height): (usize, usize),
+        margin: [f64; 4],
+    ) -> Self {
         let (mut lo, mut hi) = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
         for p in points {
             let p = rotation * p.coords;
@@ -105,6 +133,42 @@ impl Camera {
         let shift = Translation3::new(ox - centre.x, oy - centre.y, 1.0 + size.z - lo.z);
         let pose_cw = Isometry3::from_parts(shift, rotation);
         Self { pose_cw, width, height, scale, perspective: false, nearest: 1.0, near: 0.0 }
+    }
+
+    /// A camera at `eye` that looks at `target`, which is in the middle of the picture. `field_of_view` (radians) is that of the
+    /// height at the target, for parallel cameras too. `points` are what the picture is of.
+    pub(crate) fn placed(
+        [eye, target]: [Point3<f64>; 2],
+        field_of_view: f64,
+        parallel: bool,
+        points: &[Point3<f64>],
+        (width, height): (usize, usize),
+    ) -> Self {
+        let forward = target - eye;
+        let distance = forward.norm();
+        let upright = forward.xy().norm() > 1e-9 * distance;
+        let rotation = basis(&forward, &if upright { Vector3::z() } else { Vector3::y() });
+        let pose_cw = Isometry3::from_parts(Translation3::from(-(rotation * eye.coords)), rotation);
+        let focal = height as f64 / 2.0 / (field_of_view / 2.0).tan();
+        let first = points.iter().map(|p| (pose_cw * p).z).fold(f64::INFINITY, f64::min);
+        let nearest = first.clamp(1e-2 * distance, distance);
+        Self {
+            pose_cw,
+            width,
+            height,
+            scale: if parallel { focal / distance } else { focal },
+            perspective: !parallel,
+            nearest: nearest as f32,
+            near: if parallel { 0.0 } else { 0.1 * nearest },
+        }
+    }
+
+    /// The camera moved so that it sees at `centre` what it saw at `from`, and turned around the vertical axis there by `angle`
+    /// radians, counter-clockwise seen from above.
+    pub(crate) fn moved(&self, from: &Point3<f64>, centre: &Point3<f64>, angle: f64) -> Self {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -angle);
+        let turned = Isometry3::from_parts(Translation3::from(from.coords), turn);
+        Self { pose_cw: self.pose_cw * turned * Translation3::from(-centre.coords), ..self.clone() }
     }
 
     /// The position on the picture of a point of the camera frame, whose z must be at least `near`.
@@ -165,6 +229,42 @@ mod tests {
             let (y0, y1) = on.iter().fold((f32::MAX, f32::MIN), |(a, b), p| (a.min(p.y), b.max(p.y)));
             assert!(x0 > 39.9 && x1 < 360.1 && y0 > 29.9 && y1 < 270.1, "{x0} {x1} {y0} {y1}");
             assert!((x1 - x0 - 320.0).abs() < 0.1 || (y1 - y0 - 240.0).abs() < 0.1);
+        }
+    }
+
+    /// The target is in the middle, what is higher is higher on the picture, and the field of view is that of the height.
+    #[test]
+    fn placed_cameras_look_at_their_target() {
+        for (eye, parallel) in [([3.0, -4.0, 2.0], false), ([3.0, -4.0, 2.0], true), ([0.5, 0.5, 9.0], false)]
+        {
+            let (eye, target) = (Point3::from(eye), Point3::new(0.5, 0.5, 0.5));
+            let camera = Camera::placed([eye, target], 0.6, parallel, &cube(), (400, 300));
+            let at = |p: Point3<f64>| camera.project(&(camera.pose_cw * p));
+            let middle = at(target);
+            assert!((middle.x - 200.0).abs() < 1e-3 && (middle.y - 150.0).abs() < 1e-3);
+            let up = camera.pose_cw.inverse_transform_vector(&-Vector3::y());
+            let top = at(target + up * (eye - target).norm() * 0.3f64.tan());
+            assert!(top.y.abs() < 1e-3, "{top:?}");
+            let moved = camera.moved(&target, &Point3::new(7.0, 8.0, 9.0), 1.0);
+            let middle = moved.project(&(moved.pose_cw * Point3::new(7.0, 8.0, 9.0)));
+            assert!((middle.x - 200.0).abs() < 1e-3 && (middle.y - 150.0).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn directions_have_x_y_or_z_upwards() {
+        let upwards = |azimuth: f64, elevation: f64| {
+            let rotation = seen_from(azimuth.to_radians(), elevation.to_radians());
+            (rotation.inverse() * -Vector3::y(), rotation.inverse() * -Vector3::z())
+        };
+        for (azimuth, elevation, up, back) in [
+            (-90.0, 0.0, Vector3::z(), -Vector3::y()),
+            (0.0, 0.0, Vector3::z(), Vector3::x()),
+            (-90.0, 90.0, Vector3::y(), Vector3::z()),
+            (-90.0, -90.0, -Vector3::y(), -Vector3::z()),
+        ] {
+            let (u, b) = upwards(azimuth, elevation);
+            assert!((u - up).norm() < 1e-12 && (b - back).norm() < 1e-12, "{azimuth} {elevation}: {u} {b}");
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::camera::Camera;
-use crate::canvas::{Layer, Veil, mix, scaled, srgb};
+use crate::canvas::{Colour, Layer, Veil, mix, scaled, srgb};
 use crate::palette::{GOAL, INK, OBSTACLES, START, gradient};
 use crate::raster::line;
 use crate::scene::{Scene, corners};
@@ -33,7 +33,28 @@ pub(crate) fn outline(layer: &mut Layer, camera: &Camera, body: &Body, strength:
     });
 }
 
-/// Draws the edges of obstacles: dark where they are opaque, faint where they are translucent.
+/// Draws all edges of a body without its faces. `seen` and `hidden` are the strengths before and behind the surfaces of the
+/// layer; edges between faces that meet nearly flat are fainter.
+pub(crate) fn wires(
+    layer: &mut Layer,
+    camera: &Camera,
+    body: &Body,
+    colour: Colour,
+    [seen, hidden]: [f32; 2],
+) {
+    // Lines of fine meshes would cover everything: they are fainter.
+    let model = &body.model;
+    let fineness = |edges: usize| (4000.0 / edges.max(1) as f32).clamp(0.25, 1.0);
+    let (sharp, flat) = (fineness(model.edge_count()), 0.3 * fineness(model.inner_edge_count()));
+    let mut draw = |share: f32, i: usize, key: f32, coverage: f32| {
+        let strength = if nearer(key, layer.key[i]) { seen } else { hidden };
+        layer.colour[i] = mix(layer.colour[i], colour, share * strength * coverage);
+    };
+    model.inner_edges(camera, &body.pose_wb, 0.6, |i, key, coverage| draw(flat, i, key, coverage));
+    model.edges(camera, &body.pose_wb, 0.8, |i, key, coverage| draw(sharp, i, key, coverage));
+}
+
+/// Draws the edges of obstacles: dark where they are opaque, faint where they are translucent, which is before `cut`.
 pub(crate) fn outlines(
     layer: &mut Layer,
     ghosts: &mut Veil,
@@ -47,9 +68,9 @@ pub(crate) fn outlines(
         let strength = 0.5 * (4000.0 / o.model.edge_count().max(1) as f32).clamp(0.25, 1.0);
         let faint = scaled(srgb(OBSTACLES[n % OBSTACLES.len()]), 0.4);
         o.model.edges(camera, &o.pose_wb, 0.6, |i, key, coverage| {
-            if key < cut[i] {
+            if key < cut[i] && (cut[i].is_finite() || nearer(key, layer.key[i])) {
                 ghosts.add(i, faint, 0.9 * strength * coverage, 3.0);
-            } else if nearer(key, layer.key[i]) {
+            } else if cut[i] < f32::INFINITY && nearer(key, layer.key[i]) {
                 layer.colour[i] = mix(layer.colour[i], ink, strength * coverage);
             }
         });

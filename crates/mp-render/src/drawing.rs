@@ -13,6 +13,8 @@ use std::fmt::Write as _;
 const SUPERSAMPLING: usize = 3;
 /// The margins on the left, top, right and bottom, pixels.
 const MARGINS: [f64; 4] = [24.0, 72.0, 24.0, 24.0];
+/// Pictures with a side shorter than this have smaller margins, pixels.
+const SMALL: f64 = 192.0;
 
 /// An area or lines, drawn over earlier items.
 #[derive(Clone, Debug)]
@@ -110,7 +112,9 @@ impl Drawing {
     }
 
     fn world_to_pixels(&self, (width, height): (usize, usize)) -> WorldToPixels {
-        let [left, top, right, bottom] = MARGINS;
+        // Small pictures have smaller margins.
+        let share = (width.min(height) as f64 / SMALL).min(1.0);
+        let [left, top, right, bottom] = MARGINS.map(|margin| margin * share);
         let (w, h) = (width as f64 - left - right, height as f64 - top - bottom);
         let extent = self.high - self.low;
         let scale = (w / extent.x).min(h / extent.y);
@@ -307,6 +311,20 @@ mod tests {
             assert!(flat.svg(size).is_ok() && flat.pixels(size).is_ok());
         }
         assert!(flat.pixels((0, 1)).is_err() && flat.svg((9000, 1)).is_err());
+    }
+
+    /// Up is up, however small the picture.
+    #[test]
+    fn small_drawings_have_room_for_the_world() {
+        let p = |x: f64, y: f64| Point2::new(x, y);
+        let (title, subtitle) = (String::new(), String::new());
+        let drawing = Drawing { title, subtitle, low: p(0.0, 0.0), high: p(1.0, 1.0), items: Vec::new() };
+        for size in [(1, 1), (64, 64), (96, 64), (128, 96), (192, 192), (640, 480)] {
+            let to_pixels = drawing.world_to_pixels(size);
+            let ([x0, y0], [x1, y1]) = (to_pixels.map(&drawing.low), to_pixels.map(&drawing.high));
+            assert!(0.0 <= x0 && x0 < x1 && x1 <= size.0 as f64, "{size:?}: {x0} {x1}");
+            assert!(0.0 <= y1 && y1 < y0 && y0 <= size.1 as f64, "{size:?}: {y1} {y0}");
+        }
     }
 
     #[test]

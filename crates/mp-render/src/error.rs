@@ -38,6 +38,22 @@ pub enum RenderError {
         /// The upper right one, metres.
         high: Point2<f64>,
     },
+    /// A text does not name what it should.
+    #[error("`{text}`: expected {expected}")]
+    Text {
+        /// The text.
+        text: String,
+        /// What it should name.
+        expected: &'static str,
+    },
+    /// The frames of a film cannot be shown so fast.
+    #[error("cannot show {rate} frames per second: expected a rate above 0 and up to {most}")]
+    Rate {
+        /// Frames per second.
+        rate: f64,
+        /// The most that is possible.
+        most: f64,
+    },
     /// A point of a curve is not on the axes.
     #[error(
         "cannot draw ({x}, {y}) of the curve `{name}`: expected finite numbers, x above 0 and y not below 0"

@@ -4,6 +4,7 @@
 //! - [`Drawing`]: areas and lines in the plane, as SVG or as a [`Picture`].
 //! - [`plot()`]: curves over a logarithmic axis.
 //! - [`palette`]: the colours, for drawings in the same style.
+//! - [`Shot`]: a scene drawn at many moments, as the frames of a film; [`Gif`] puts frames into one file.
 //!
 //! Nothing here writes files: a [`Picture`] becomes the bytes of a PNG file by [`Picture::to_png`]. Lengths are
 //! metres, colours `0xRRGGBB` in sRGB.
@@ -39,21 +40,28 @@ mod cutaway;
 mod decorate;
 mod drawing;
 mod error;
+mod gif;
 mod lights;
 mod model;
 pub mod palette;
 mod path;
 mod picture;
 mod plot;
+mod quantize;
 mod raster;
 mod scene;
+mod shot;
 mod text;
+mod view;
 mod viewpoint;
 
 pub use body::Body;
 pub use drawing::{Drawing, Item};
 pub use error::{MAX_SIDE, RenderError};
+pub use gif::Gif;
 pub use mp_geom::evenly;
 pub use picture::Picture;
 pub use plot::{Series, plot};
 pub use scene::Scene;
+pub use shot::{Animation, Moment, Shot};
+pub use view::{Mode, View};

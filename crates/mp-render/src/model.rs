@@ -19,6 +19,8 @@ pub(crate) struct Model {
     normals: Vec<[Vector3<f64>; 3]>,
     /// Edges of one face, and edges where faces meet at an angle.
     edges: Vec<[u32; 2]>,
+    /// The edges between faces that meet nearly flat.
+    inner: Vec<[u32; 2]>,
     /// Distance of the farthest point from the origin, metres.
     pub(crate) radius: f64,
 }
@@ -48,9 +50,9 @@ impl Model {
             })
             .collect();
         let normals = smooth_normals(points.len(), &triangles, &faces);
-        let edges = feature_edges(&triangles, &faces);
+        let (edges, inner) = feature_edges(&triangles, &faces);
         let radius = points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
-        Self { points, triangles, normals, edges, radius }
+        Self { points, triangles, normals, edges, inner, radius }
     }
 
     /// The model of a point, which is invisible.
@@ -66,6 +68,11 @@ impl Model {
     /// The number of edges that [`edges`](Model::edges) draws.
     pub(crate) fn edge_count(&self) -> usize {
         self.edges.len()
+    }
+
+    /// The number of edges that [`inner_edges`](Model::inner_edges) draws.
+    pub(crate) fn inner_edge_count(&self) -> usize {
+        self.inner.len()
     }
 
     /// Calls `fragment(sample, key, light)` for its triangles at `pose` (in the world).
@@ -99,10 +106,32 @@ impl Model {
         camera: &Camera,
         pose: &Isometry3<f64>,
         half: f32,
+        fragment: impl FnMut(usize, f32, f32),
+    ) {
+        self.lines(&self.edges, camera, pose, half, fragment);
+    }
+
+    /// As [`edges`](Model::edges), for the other edges of its triangles.
+    pub(crate) fn inner_edges(
+        &self,
+        camera: &Camera,
+        pose: &Isometry3<f64>,
+        half: f32,
+        fragment: impl FnMut(usize, f32, f32),
+    ) {
+        self.lines(&self.inner, camera, pose, half, fragment);
+    }
+
+    fn lines(
+        &self,
+        edges: &[[u32; 2]],
+        camera: &Camera,
+        pose: &Isometry3<f64>,
+        half: f32,
         mut fragment: impl FnMut(usize, f32, f32),
     ) {
         let pose_cm = camera.pose_cw * pose;
-        for e in &self.edges {
+        for e in edges {
             let [a, b] = e.map(|v| pose_cm * self.points[v as usize]);
             line(camera, &a, &b, half, &mut fragment);
         }
@@ -133,8 +162,8 @@ fn smooth_normals(points: usize, triangles: &[[u32; 3]], faces: &[Vector3<f64>])
         .collect()
 }
 
-/// The edges that do not join two faces at less than 35°.
-fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[u32; 2]> {
+/// The edges that do not join two faces at less than 35°, and those that do.
+fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> (Vec<[u32; 2]>, Vec<[u32; 2]>) {
     let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(triangles.len() * 3);
     for (f, t) in triangles.iter().enumerate() {
         for i in 0..3 {
@@ -143,7 +172,7 @@ fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[u32; 2]
         }
     }
     sides.sort_unstable();
-    let mut edges = Vec::new();
+    let (mut edges, mut inner) = (Vec::new(), Vec::new());
     for group in sides.chunk_by(|a, b| a.0 == b.0) {
         let [a, b] = group[0].0;
         let sharp = match group {
@@ -154,11 +183,11 @@ fn feature_edges(triangles: &[[u32; 3]], faces: &[Vector3<f64>]) -> Vec<[u32; 2]
             }
             _ => true,
         };
-        if sharp && a != b {
-            edges.push([a, b]);
+        if a != b {
+            if sharp { &mut edges } else { &mut inner }.push([a, b]);
         }
     }
-    edges
+    (edges, inner)
 }
 
 #[cfg(test)]
@@ -174,7 +203,7 @@ mod tests {
             quads.iter().flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]]).map(corner).collect();
         let triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         let model = Model::new(&TriMesh::new(soup, triangles).unwrap());
-        assert_eq!((model.points.len(), model.edges.len()), (8, 12));
+        assert_eq!((model.points.len(), model.edges.len(), model.inner.len()), (8, 12, 6));
         assert!(model.normals.iter().flatten().all(|n| (n.amax() - 1.0).abs() < 1e-12));
     }
 }

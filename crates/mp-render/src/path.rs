@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::camera::Camera;
-use crate::canvas::{Layer, Veil, mix, scaled, srgb};
+use crate::canvas::{Colour, Layer, Veil, mix, scaled, srgb};
 use crate::decorate::nearer;
 use crate::lights::Lights;
 use crate::model::Model;
@@ -35,15 +35,20 @@ impl Body {
     }
 }
 
+/// The copies of the robot along the path, with their colours.
+pub(crate) fn coloured(copies: &[Body]) -> Vec<(&Body, Colour)> {
+    let colour = |n: usize| gradient((n + 1) as f32 / (copies.len() + 1) as f32);
+    copies.iter().enumerate().map(|(n, body)| (body, colour(n))).collect()
+}
+
 /// Draws translucent copies over `layer`.
-pub(crate) fn draw_copies(layer: &mut Layer, camera: &Camera, lights: &Lights, copies: &[Body]) {
+pub(crate) fn draw_copies(layer: &mut Layer, camera: &Camera, lights: &Lights, copies: &[(&Body, Colour)]) {
     let samples = layer.key.len();
     let mut veil = Veil::new(samples);
     // One copy at a time, so that only the visible surface of each counts.
     let mut one = Layer::new(samples);
     let mut touched: Vec<u32> = Vec::new();
-    for (n, Body { model: robot, pose_wb }) in copies.iter().enumerate() {
-        let colour = gradient((n + 1) as f32 / (copies.len() + 1) as f32);
+    for &(Body { model: robot, pose_wb }, colour) in copies {
         robot.faces(camera, pose_wb, lights, |i, key, light| {
             if one.key[i] == f32::INFINITY {
                 touched.push(i as u32);

@@ -1,23 +1,15 @@
 //! Scenes in space, and their drawing.
 
 use crate::body::Body;
-use crate::camera::Camera;
-use crate::canvas::{self, Layer, Veil, scaled, srgb};
 use crate::error::{RenderError, check_range, check_size};
-use crate::lights::Lights;
-use crate::palette::{GOAL, OBSTACLES, START};
 use crate::picture::Picture;
-use crate::{ambient_occlusion, cutaway, decorate, path, viewpoint};
+use crate::shot::{Animation, Moment, Shot};
+use crate::view::{Mode, View};
 use mp_geom::Aabb;
 use nalgebra::Point3;
 
 /// Samples per pixel in each direction.
 pub(crate) const SUPERSAMPLING: usize = 2;
-/// The margins on the left, top, right and bottom, as fractions of the picture.
-const MARGINS: [f64; 4] = [0.04, 0.1, 0.04, 0.09];
-/// The opacity of an obstacle where it hides the path.
-const GHOST: f32 = 0.09;
-
 /// A scene in space: obstacles, and a robot that moves among them. z is up.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
@@ -25,7 +17,7 @@ pub struct Scene {
     pub title: String,
     /// The subtitle, in small letters below the title.
     pub subtitle: String,
-    /// Whether the view is from above, as a map; otherwise it is from where the path is seen best, through obstacles.
+    /// Whether the best view is from above, as a map; otherwise it is from where the path is seen best, through obstacles.
     pub planar: bool,
     /// The obstacles.
     pub obstacles: Vec<Body>,
@@ -39,17 +31,35 @@ pub struct Scene {
     pub trace: Vec<Point3<f64>>,
     /// Bounds of the robot's position, if there are any.
     pub bounds: Option<Aabb>,
+    /// How bodies are drawn.
+    pub mode: Mode,
+    /// From where the scene is seen.
+    pub view: View,
 }
 
 impl Scene {
-    /// The picture, `width` × `height` pixels.
+    /// The picture, `width` × `height` pixels, with all configurations of the path at once.
     ///
     /// # Errors
-    /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, or a coordinate is not finite or beyond 10⁶⁰ m.
+    /// When a side is not from 1 to [`MAX_SIDE`](crate::MAX_SIDE) pixels, the view makes no picture, or a coordinate is not
+    /// finite or beyond 10⁶⁰ m.
     pub fn draw(&self, (width, height): (usize, usize)) -> Result<Picture, RenderError> {
+        self.shot((width, height), Animation::default())?.picture(&Moment::default())
+    }
+
+    /// The scene made ready to be drawn at many moments, as the frames of a film, `width` × `height` pixels.
+    ///
+    /// # Errors
+    /// As [`draw`](Self::draw).
+    pub fn shot(
+        &self,
+        (width, height): (usize, usize),
+        animation: Animation,
+    ) -> Result<Shot<'_>, RenderError> {
         check_size((width, height))?;
+        self.view.check()?;
         self.check()?;
-        Ok(self.drawn((width, height)))
+        Ok(Shot::new(self, (width * SUPERSAMPLING, height * SUPERSAMPLING), animation))
     }
 
     /// Refuses coordinates out of range.
@@ -70,76 +80,12 @@ impl Scene {
     }
 
     /// The robot at its start, its goal, and along the path.
-    fn robots(&self) -> impl Iterator<Item = &Body> {
+    pub(crate) fn robots(&self) -> impl Iterator<Item = &Body> {
         self.start.iter().chain(&self.goal).chain(&self.copies)
     }
 
-    fn drawn(&self, (width, height): (usize, usize)) -> Picture {
-        let size = (width * SUPERSAMPLING, height * SUPERSAMPLING);
-        let shown: Vec<&Body> = self.robots().collect();
-        let frame = self.frame();
-        let (camera, half_angle) = if self.planar {
-            (Camera::top(&frame, size, MARGINS), 0.4)
-        } else {
-            let viewpoint = viewpoint::choose(&frame, &self.obstacles, &shown);
-            // The less of the path is visible, the wider the opening, but a level floor stays opaque.
-            let half_angle = (viewpoint.elevation - 0.1) * (1.0 - 0.7 * viewpoint.visible);
-            (Camera::three_quarter(&frame, viewpoint.azimuth, viewpoint.elevation, size, MARGINS), half_angle)
-        };
-        let lights = Lights::of(&camera);
-        let samples = size.0 * size.1;
-
-        // The depth of the path at each sample, and the depth before which obstacles become translucent.
-        let mut nearest = vec![f32::INFINITY; samples];
-        for robot in &shown {
-            robot.model.faces(&camera, &robot.pose_wb, &lights, |i, key, _| nearest[i] = nearest[i].min(key));
-        }
-        let slack = 0.02 * self.robots().next().map_or(0.0, Body::radius) as f32;
-        let cut = match self.planar {
-            true => vec![f32::NEG_INFINITY; samples],
-            false => cutaway::thresholds(&camera, &nearest, 1.0 / half_angle.tan() as f32, slack),
-        };
-        drop(nearest);
-
-        let mut layer = Layer::new(samples);
-        decorate::background(&mut layer, size);
-        let mut ghosts = Veil::new(samples);
-        for (n, o) in self.obstacles.iter().enumerate() {
-            let colour = srgb(OBSTACLES[n % OBSTACLES.len()]);
-            // From above only the tops are visible, all equally bright.
-            let colour = if self.planar { scaled(colour, 0.6) } else { colour };
-            o.model.faces(&camera, &o.pose_wb, &lights, |i, key, light| {
-                if key < cut[i] {
-                    ghosts.add(i, scaled(colour, light), GHOST, 1.0);
-                } else {
-                    layer.put(i, key, scaled(colour, light));
-                }
-            });
-        }
-        for (robot, colour) in [(&self.start, srgb(START)), (&self.goal, srgb(GOAL))] {
-            let Some(robot) = robot else { continue };
-            let put = |i, key, light| layer.put(i, key, scaled(colour, light));
-            robot.model.faces(&camera, &robot.pose_wb, &lights, put);
-        }
-        ambient_occlusion::darken_creases(&mut layer, &camera, extent(&frame));
-        decorate::outlines(&mut layer, &mut ghosts, &camera, &self.obstacles, &cut);
-        for robot in self.start.iter().chain(&self.goal) {
-            decorate::outline(&mut layer, &camera, robot, 0.55);
-        }
-        if !self.planar {
-            decorate::floor(&mut layer, &camera, &frame);
-        } else if let Some(bounds) = &self.bounds {
-            decorate::border(&mut layer, &camera, bounds);
-        }
-        path::draw_copies(&mut layer, &camera, &lights, &self.copies);
-        path::draw_trace(&mut layer, &camera, &self.trace);
-        ghosts.over(&mut layer.colour, 0.5);
-        decorate::labels(&mut layer, size, self);
-        canvas::resolve(&layer.colour, size, SUPERSAMPLING)
-    }
-
     /// The points that the picture must show.
-    fn frame(&self) -> Vec<Point3<f64>> {
+    pub(crate) fn frame(&self) -> Vec<Point3<f64>> {
         let placed = |body: &Body| body.model.points().iter().map(|p| body.pose_wb * p).collect::<Vec<_>>();
         let mut points: Vec<Point3<f64>> = self.robots().flat_map(placed).collect();
         let of_robot = points.len();
@@ -171,7 +117,7 @@ pub(crate) fn corners(points: &[Point3<f64>]) -> (Point3<f64>, Point3<f64>) {
 }
 
 /// The diagonal of the box around `points`, metres.
-fn extent(points: &[Point3<f64>]) -> f64 {
+pub(crate) fn extent(points: &[Point3<f64>]) -> f64 {
     let (lo, hi) = corners(points);
     (hi - lo).norm()
 }

@@ -6,7 +6,7 @@ use crate::lights::Lights;
 use nalgebra::Point3;
 
 /// The size of the coarse pictures by which viewpoints are judged.
-const COARSE: (usize, usize) = (160, 120);
+pub(crate) const COARSE: (usize, usize) = (160, 120);
 
 /// A viewpoint, and how much of the path is visible from it, 0 to 1.
 pub(crate) struct Viewpoint {
@@ -18,13 +18,7 @@ pub(crate) struct Viewpoint {
 /// Tries viewpoints all around and takes the one from which most of `path` is visible and spread widest on the picture;
 /// the usual one, from the front right, is taken unless another is clearly better.
 pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) -> Viewpoint {
-    let marks: Vec<Point3<f64>> = path
-        .iter()
-        .flat_map(|robot| {
-            let points = robot.model.points();
-            points.iter().step_by(points.len().div_ceil(12).max(1)).map(|p| robot.pose_wb * p)
-        })
-        .collect();
+    let marks = marks(path);
     let mut best: Option<(f64, Viewpoint)> = None;
     // Not along an axis, where walls would be seen edge on.
     let azimuths = [-60.0f64, -30.0, 30.0, 60.0, 120.0, 150.0, 210.0, 240.0];
@@ -40,6 +34,21 @@ pub(crate) fn choose(frame: &[Point3<f64>], obstacles: &[Body], path: &[&Body]) 
         }
     }
     best.map_or(Viewpoint { azimuth: -1.0, elevation: 0.55, visible: 1.0 }, |(_, view)| view)
+}
+
+/// How much of `path` a coarse camera sees, 0 to 1.
+pub(crate) fn visible(camera: &Camera, obstacles: &[Body], path: &[&Body]) -> f64 {
+    judge(camera, obstacles, &marks(path)).0
+}
+
+/// Some points of each body.
+fn marks(path: &[&Body]) -> Vec<Point3<f64>> {
+    let of_body = |robot: &&Body| {
+        let points = robot.model.points();
+        let pose = robot.pose_wb;
+        points.iter().step_by(points.len().div_ceil(12).max(1)).map(|p| pose * p).collect::<Vec<_>>()
+    };
+    path.iter().flat_map(of_body).collect()
 }
 
 /// The fraction of `marks` that is visible, and how far they spread on the picture, as a fraction of its width.

@@ -1,7 +1,8 @@
 //! A scene, its paths, trees and roadmap as one binary file, and as a page for the browser.
 //!
 //! [`SceneFile`] is the model: bodies with their meshes, start and goals, paths sampled finely enough to be animated,
-//! trees, a roadmap, and the report of the run. It is written and read as bytes, in the format of docs/formats/viewer.md.
+//! trees, a roadmap, and the report of the run. It is written and read as bytes, in the format of docs/formats/viewer.md,
+//! and written as glTF for other programs ([`SceneFile::to_glb`]).
 //!
 //! ```
 //! use mp_plan::{Request, Scene};
@@ -20,6 +21,7 @@
 mod arrays;
 mod bytes;
 mod error;
+mod glb;
 mod message;
 mod model;
 mod of_scene;

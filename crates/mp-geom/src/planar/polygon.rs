@@ -1,5 +1,6 @@
 //! Polygons with holes.
 
+use crate::triangulate::{bridged, triangulate_ccw};
 use nalgebra::{Isometry2, Point2, distance};
 use robust::{Coord, orient2d};
 use thiserror::Error;
@@ -157,6 +158,36 @@ impl Polygon {
         self.rings.iter().enumerate().map(|(i, ring)| sign(i) * area(ring)).sum()
     }
 
+    /// Triangles that cover it, counter-clockwise, without overlaps; right for rings that cross neither themselves nor each other.
+    #[must_use]
+    pub fn triangles(&self) -> Vec<[Point2<f64>; 3]> {
+        let around = |i: usize| {
+            let inside = |j: &usize| *j != i && odd(closed(&self.rings[*j]), &self.rings[i][0]);
+            (0..self.rings.len()).filter(inside).collect::<Vec<_>>()
+        };
+        let containers: Vec<Vec<usize>> = (0..self.rings.len()).map(around).collect();
+        let ring = |i: usize, left: bool| {
+            let mut ring = self.rings[i].clone();
+            ring.dedup();
+            let area: f64 = closed(&ring).map(|[a, b]| (a - ring[0]).perp(&(b - ring[0]))).sum();
+            if (area > 0.0) != left {
+                ring.reverse();
+            }
+            ring
+        };
+        let mut triangles = Vec::new();
+        for outer in (0..self.rings.len()).filter(|i| containers[*i].len().is_multiple_of(2)) {
+            // Its holes are the rings directly inside.
+            let within = |i: &usize| {
+                containers[*i].len() == containers[outer].len() + 1 && containers[*i].contains(&outer)
+            };
+            let holes = (0..self.rings.len()).filter(within).map(|i| ring(i, false)).collect();
+            let joined = bridged(ring(outer, true), holes);
+            triangles.extend(triangulate_ccw(&joined).into_iter().map(|t| t.map(|i| joined[i])));
+        }
+        triangles
+    }
+
     /// Whether `p` is inside, by exact predicates; on the boundary the answer may be either.
     #[must_use]
     pub fn contains(&self, p: &Point2<f64>) -> bool {
@@ -219,6 +250,47 @@ mod tests {
         assert_eq!(frame.bounds(), [Point2::new(-2.0, -2.0), Point2::new(2.0, 2.0)]);
         let moved = frame.transformed(&Isometry2::translation(5.0, 0.0));
         assert!(moved.contains(&Point2::new(6.5, 0.0)) && !moved.contains(&Point2::new(5.0, 0.0)));
+    }
+
+    /// Triangles have the area of the polygon and lie in it: nested rings, several outer ones, and holes side by side.
+    #[test]
+    fn triangles_cover_what_is_inside() {
+        let square = |x: f64, y: f64, r: f64| {
+            [[-r, -r], [r, -r], [r, r], [-r, r]].map(|[a, b]| Point2::new(x + a, y + b)).to_vec()
+        };
+        let grid = |n: usize, r: f64| {
+            (0..n * n).map(move |i| square((i % n) as f64 * 2.0 + 2.0, (i / n) as f64 * 2.0 + 2.0, r))
+        };
+        let round = |x: f64, y: f64, r: f64, n: u32| -> Vec<Point2<f64>> {
+            let corner = |k: u32| (std::f64::consts::TAU * f64::from(k) / f64::from(n)).sin_cos();
+            (0..n).map(corner).map(|(s, c)| Point2::new(x + r * c, y + r * s)).collect()
+        };
+        let mut sieve = vec![square(5.0, 5.0, 5.0)];
+        sieve.extend(grid(4, 0.5));
+        let mut clockwise = sieve.clone();
+        clockwise.iter_mut().step_by(2).for_each(|ring| ring.reverse());
+        let bull =
+            vec![square(0.0, 0.0, 4.0), square(0.0, 0.0, 3.0), square(0.0, 0.0, 2.0), square(0.0, 0.0, 1.0)];
+        let apart = vec![square(0.0, 0.0, 1.0), square(5.0, 1.0, 2.0), square(5.0, 1.0, 1.0)];
+        let rounds = vec![
+            round(0.0, 0.0, 9.0, 40),
+            round(-3.0, 1.0, 2.0, 17),
+            round(4.0, 0.0, 3.0, 30),
+            round(0.0, -6.0, 1.5, 9),
+        ];
+        for rings in [sieve, clockwise, bull, apart, rounds] {
+            let polygon = Polygon::new(rings).unwrap();
+            let triangles = polygon.triangles();
+            let area = |t: &[Point2<f64>; 3]| (t[1] - t[0]).perp(&(t[2] - t[0])) * 0.5;
+            let total: f64 = triangles.iter().map(area).sum();
+            assert!((total - polygon.area()).abs() < 1e-9 * total, "{total} {}", polygon.area());
+            for t in triangles.iter().filter(|t| area(t) > 1e-9) {
+                assert!(
+                    polygon.contains(&Point2::from((t[0].coords + t[1].coords + t[2].coords) / 3.0)),
+                    "{t:?}"
+                );
+            }
+        }
     }
 
     #[test]

@@ -1,0 +1,90 @@
+//! `view`: the viewer in the browser, with the planner behind it.
+
+use crate::browser::{self, Screen};
+use crate::cli::View;
+use crate::input::{is_standard, judged_path, refuse_two_standard_inputs, scene};
+use crate::interrupt;
+use crate::output::{note, print};
+use mp_plan::{Error, folder_of};
+use mp_serve::{Limits, Server, Wake};
+use mp_view::{Opening, Planner, Session};
+use std::path::{Path, PathBuf};
+
+/// A request may hold the largest mesh file, and what is said about it.
+const BODY_BYTES: u64 = mp_io::MAX_MESH_BYTES + (1 << 20);
+
+/// A session of the viewer behind the server.
+struct Served(Session);
+
+impl mp_serve::Session for Served {
+    fn handle(&self, request: &[u8]) -> Vec<u8> {
+        self.0.handle(request)
+    }
+    fn take_event(&self) -> Option<Vec<u8>> {
+        self.0.take_event()
+    }
+}
+
+/// Serves the page until Ctrl-C.
+pub(crate) fn run(args: &View) -> Result<bool, Error> {
+    let opening = opening(args)?;
+    let page = mp_view::page(None, Planner::Server);
+    let limits = Limits { body_bytes: BODY_BYTES, ..Limits::default() };
+    let open = move |wake: Wake| -> Box<dyn mp_serve::Session> {
+        Box::new(Served(Session::new(opening.clone(), move || wake.wake())))
+    };
+    let server = Server::bind(args.port.unwrap_or(0), page, limits, open);
+    let server = server.map_err(|e| Error::new(e.to_string()).help("name another port by --port"))?;
+    let stop = server.stop();
+    interrupt::on_first(move || stop.stop());
+    print(&server.address())?;
+    if !args.no_browser {
+        show(&server);
+    }
+    note("Ctrl-C ends it");
+    server.run().map_err(|e| Error::new(e.to_string()))?;
+    Ok(true)
+}
+
+/// Opens the browser, or says where the address can be opened.
+fn show(server: &Server) {
+    let port = server.port();
+    match Screen::find() {
+        Screen::Here => {
+            if let Err(e) = browser::open(&server.ticket()) {
+                note(&format!("{e}; open the address above"));
+            }
+        }
+        Screen::OverSsh => note(&format!(
+            "this is an ssh session: on your own machine run `ssh -N -L {port}:127.0.0.1:{port} HOST`, where HOST is this \
+             machine, and open the address there"
+        )),
+        Screen::None => note("there is no display: open the address in a browser of this machine"),
+    }
+}
+
+/// What each tab begins with.
+fn opening(args: &View) -> Result<Opening, Error> {
+    let folder = folder(args)?;
+    let Some(given) = &args.scene else {
+        return Ok(Opening { folder: Some(folder), ..Opening::default() });
+    };
+    refuse_two_standard_inputs(given, args.path.as_deref())?;
+    let scene = scene(given)?;
+    let path = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
+    Ok(Opening { scene: Some(scene), path: path.map(|(path, _)| path), folder: Some(folder) })
+}
+
+/// The folder for files: the one asked for, that of the scene when it is a file, or the current one.
+fn folder(args: &View) -> Result<PathBuf, Error> {
+    let scene = args.scene.as_ref().filter(|scene| !is_standard(scene) && scene.is_file());
+    let folder = match (&args.folder, scene) {
+        (Some(folder), _) => folder.as_path(),
+        (None, Some(scene)) => folder_of(scene),
+        (None, None) => Path::new("."),
+    };
+    if !folder.is_dir() {
+        return Err(Error::new(format!("{} is not a folder", folder.display())).help("name one that exists"));
+    }
+    folder.canonicalize().map_err(|e| Error::new(format!("cannot find the folder {}: {e}", folder.display())))
+}
