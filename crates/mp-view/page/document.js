@@ -6,7 +6,7 @@
 /** @typedef {{sphere: {radius: number}} | {cube: {size: Three}} | {cone: {radius: number, height: number}}
  *  | {cylinder: {radius: number, height: number}} | {torus: {ring: number, tube: number}} | {tetrahedron: {edge: number}}} Figure */
 /** @typedef {Figure | {mesh: {file: string, off?: string}}} DocumentShape */
-/** @typedef {{name: string, color: string | null, shape: DocumentShape, scale?: Three}} DocumentBody */
+/** @typedef {{name: string, color?: string | null, shape: DocumentShape, scale?: Three}} DocumentBody */
 /** @typedef {DocumentBody & {pose: Six}} Obstacle */
 /** @typedef {{version: 1, name: string, space: "SE3" | "SE2", bounds: [Three, Three] | null, robot: DocumentBody, start: Six,
  *  goal: Six, obstacles: Obstacle[]}} Document */

@@ -4,7 +4,6 @@ import { ask, brief } from "mp/dom.js";
 import * as doc from "mp/document.js";
 import { changedPose, changedSix, fromAngles, niceStep, poseOfSix, tidy } from "mp/gizmo.js";
 import { Handles } from "mp/handles.js";
-import { isTyping } from "mp/controls.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Document, DocumentShape, Part, Six, Three } from "mp/document.js" */
@@ -26,6 +25,9 @@ export const HELP = [
   ["Ctrl + D", "duplicate what is selected"], ["Ctrl + Z", "undo"], ["Ctrl + Shift + Z, Ctrl + Y", "redo"],
   ["Ctrl + O, Ctrl + S", "open files; save"],
 ];
+
+/** Places of a grid in which a new body may lie, nearest first. */
+const NEARBY = Array.from({ length: 41 * 41 }, (_, i) => [(i % 41) - 20, Math.floor(i / 41) - 20]).sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
 /** The kinds of ends that handles can move: six numbers, or x y and maybe an angle. @param {Scene} scene @returns {"rigid" | "planar" | null} */
 function endKind({ columns, planar }) {
@@ -153,11 +155,12 @@ export class Editor {
       this.moveEnds(next);
       return true;
     }
-    const { bodies: before } = this.viewer.scene;
-    const shown = new Map(before.map((body, b) => [body.name, this.viewer.settings.bodies[b]]));
+    const { bodies, planar } = this.viewer.scene;
+    const shown = new Map(bodies.map((body, b) => [body.name, this.viewer.settings.bodies[b]]));
     if (!(await this.workbench.edit(next))) return false;
     this.viewer.scene.bodies.forEach((body, b) => Object.assign(this.viewer.settings.bodies[b], shown.get(body.name)));
     this.viewer.panels?.showBodies();
+    if (this.viewer.scene.planar !== planar) this.viewer.lookAsUsual();
     this.sent = next;
     return true;
   }
@@ -307,10 +310,9 @@ export class Editor {
       const { low, high } = shapes[ofBody[Math.max(0, i - 2 + scene.robot)]];
       return { pose, reach: Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k]))) };
     });
-    const clear = (/** @type {number} */ at) => taken.every((o) => Math.hypot(o.pose[0] - at, o.pose[1] - y, o.pose[2] - height) > o.reach + reach);
-    let right = x;
-    for (let tries = 0; tries < 1000 && !clear(right); tries++) right = tidy(right + step);
-    return [right, y, height, 0, 0, 0];
+    const clear = (/** @type {Six} */ place) => taken.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
+    const places = NEARBY.map(([i, j]) => /** @type {Six} */ ([tidy(x + i * step), tidy(y + j * step), height, 0, 0, 0]));
+    return places.find(clear) ?? places[0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */
   selectNew(count) {
@@ -352,7 +354,8 @@ export class Editor {
   shortcut(e) {
     if (!(e.ctrlKey || e.metaKey) || e.altKey || document.querySelector("dialog[open]") || !this.history) return;
     const key = e.key.toLowerCase();
-    if (isTyping(e.target) && !(e.target instanceof HTMLSelectElement) && !(e.target instanceof HTMLInputElement && e.target.type === "range")) return;
+    // In a field that is being typed in, the keys are the field's.
+    if (e.target instanceof HTMLInputElement && /^(text|number|search)$/.test(e.target.type) && e.target.value !== e.target.defaultValue) return;
     if (key === "z" && !e.shiftKey) this.undo();
     else if (key === "y" || key === "z") this.redo();
     else if (key === "d") this.duplicate();

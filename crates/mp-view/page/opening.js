@@ -87,8 +87,8 @@ export class Opening {
   }
   /** A scene file of the viewer is shown without the session: there is nothing to plan in it. @param {NamedFile} file */
   async showOnly({ bytes }) {
-    if (!(await mayDiscard())) return;
     const scene = readScene(bytes);
+    if (!(await mayDiscard())) return;
     this.workbench.leave();
     this.viewer.show(scene);
     setUnsaved(false);
