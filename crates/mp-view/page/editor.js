@@ -58,7 +58,8 @@ export class Editor {
     /** The document as the session has it. @type {Document | null} */ this.sent = null;
     /** @type {Selection | null} */ this.selection = null;
     /** Called after anything changed here. @type {(() => void)[]} */ this.onchange = [];
-    /** Commands wait for the ones before. */ this.queue = Promise.resolve();
+    /** Commands wait for the ones before; how many there are. */ this.queue = Promise.resolve();
+    this.waiting = 0;
     /** Whether the document moves the ends, and whether handles do. */ this.applying = this.byHandles = false;
     this.handles = new Handles(this.viewer.canvas, this.viewer.camera, () => this.viewer.changed());
     this.viewer.ondraw.push(() => this.handles.draw());
@@ -145,7 +146,12 @@ export class Editor {
 
   /** @param {() => Promise<void>} task */
   later(task) {
-    this.queue = this.queue.then(() => this.workbench.attempt(task)).then(() => this.restore());
+    const busy = (/** @type {number} */ more) => this.viewer.canvas.parentElement?.setAttribute("aria-busy", String((this.waiting += more) > 0));
+    busy(1);
+    this.queue = this.queue.then(() => this.workbench.attempt(task)).then(() => {
+      busy(-1);
+      this.restore();
+    });
     return this.queue;
   }
   /** Makes the session and the page have this document. @param {Document} next @returns {Promise<boolean>} */

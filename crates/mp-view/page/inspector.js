@@ -88,7 +88,7 @@ export class Inspector {
     if (typeof part === "number") copies.push(button("Delete", () => editor.remove(), { title: "Delete" }));
     return [
       labelled("Name", rename),
-      this.colorField(body, (color) => change("colour", { color })),
+      this.colorField(body, typeof part === "number" ? "own colour" : "own colour on paths", (color) => change("colour", { color })),
       this.shapeField(body, (shape) => change("shape of", { shape })),
       ...(sizes.length ? [group("Sizes, m", sizes)] : []),
       group(typeof part === "number" ? "Place, m; angles, rad" : `${part === "start" ? "Start" : "Goal"}: place, m; angles, rad`, place),
@@ -102,10 +102,10 @@ export class Inspector {
     if (i >= 3) field.append(el("output", { class: "degrees" }, degrees(value)));
     return field;
   }
-  /** @param {DocumentBody} body @param {(color: string | null) => void} change */
-  colorField({ color }, change) {
+  /** @param {DocumentBody} body @param {string} label @param {(color: string | null) => void} change */
+  colorField({ color }, label, change) {
     const input = el("input", { type: "color", value: color ?? "#808080", "aria-label": "Colour", disabled: !color, onchange: () => change(input.value) });
-    const own = checkbox("own colour", Boolean(color), (on) => change(on ? input.value : null));
+    const own = checkbox(label, Boolean(color), (on) => change(on ? input.value : null));
     return el("div", { class: "row" }, own, input);
   }
   /** @param {DocumentBody} body @param {(shape: doc.DocumentShape) => void} change */

@@ -85,7 +85,7 @@ export class SaveDialog {
   /** Saves, and says where the files are. @param {Saving} request @param {string} format @param {string} name
    * @param {boolean} overwrite whether files that are there already are replaced @returns {Promise<string>} */
   async save(request, format, name, overwrite) {
-    const { viewer, session, hello } = this.workbench;
+    const { viewer, session, hello, ends } = this.workbench;
     const { scene, settings } = viewer;
     const columns = scene.columns.length;
     const path = scene.paths[settings.path];
@@ -93,7 +93,7 @@ export class SaveDialog {
     const what = {
       save: { document: edited },
       save_path: { rows: path ? rowsOf(path, columns) : [] },
-      export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })) },
+      export: { paths: scene.paths.map((p) => ({ name: p.name, rows: rowsOf(p, columns) })), ...ends.request() },
     }[request];
     const reply = await session.request({ do: request, format, name, ...what, ...(overwrite ? { overwrite } : {}) });
     if (edited) this.onsaved(edited);

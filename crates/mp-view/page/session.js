@@ -11,7 +11,7 @@ import { PlannerWorker } from "mp/worker.js";
  *  reconnect: () => Promise<void>}} Link  messages to the planner and back */
 
 /** How long a worker may take to answer a cancel before it is ended, milliseconds: a cancel has an effect within 100. */
-const PATIENCE = 80;
+const PATIENCE = 90;
 /** Requests about one run. */
 const OF_RUN = ["pause", "resume", "step", "cancel"];
 

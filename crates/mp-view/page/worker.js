@@ -6,15 +6,11 @@
 /** @typedef {{kind: "reply" | "event", bytes: Uint8Array<ArrayBuffer>}} FromPlanner */
 /** @typedef {FromPlanner | {kind: "fault", text: string}} FromWorker */
 
-/** How long the planner works before the worker reads its messages, milliseconds. */
-const SLICE = 15;
-/** How long events of the planner are joined before the page gets them, milliseconds. */
-const PERIOD = 50;
+/** How long the planner works before the worker reads its messages and passes events on, milliseconds. */
+const SLICE = 50;
 
-/** The program of the worker. It becomes the text of the worker, so it uses nothing from outside.
- * @param {number} slice @param {number} period */
-function work(slice, period) {
-  let told = 0;
+/** The program of the worker. It becomes the text of the worker, so it uses nothing from outside. @param {number} slice */
+function work(slice) {
   /** @type {Promise<Planner> | null} */ let ready = null;
   let runs = false;
   const post = (/** @type {FromWorker} */ message, /** @type {Transferable[]} */ moved = []) => self.postMessage(message, { transfer: moved });
@@ -31,10 +27,7 @@ function work(slice, period) {
   const turn = new MessageChannel();
   turn.port1.onmessage = () => ready?.then((planner) => {
     runs = planner.advance(slice) === 1;
-    if (!runs || performance.now() - told > period) {
-      while (pass(planner, "event"));
-      told = performance.now();
-    }
+    while (pass(planner, "event"));
     if (runs) turn.port2.postMessage(null);
   }).catch(fault);
   self.onmessage = ({ data }) => {
@@ -59,7 +52,7 @@ function work(slice, period) {
 export class PlannerWorker {
   /** @param {WebAssembly.Module} module @param {(bytes: Uint8Array) => void} onevent @param {(text: string) => void} onfault */
   constructor(module, onevent, onfault) {
-    const address = URL.createObjectURL(new Blob([`(${work})(${SLICE}, ${PERIOD})`], { type: "text/javascript" }));
+    const address = URL.createObjectURL(new Blob([`(${work})(${SLICE})`], { type: "text/javascript" }));
     this.worker = new Worker(address);
     /** @type {{resolve: (bytes: Uint8Array) => void, reject: (error: Error) => void}[]} */ this.waiting = [];
     const fail = (/** @type {string} */ text) => {

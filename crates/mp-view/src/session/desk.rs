@@ -293,7 +293,7 @@ impl Desk {
     }
 
     fn export(&self, request: &Message) -> Answer {
-        let open = self.opened()?;
+        let open = &Open { scene: self.scene_to_plan(request)?, ..self.opened()?.clone() };
         let name = plain_name(request)?;
         let mut file = self.scene_file(open)?;
         for path in request.head.get("paths").and_then(Value::as_array).into_iter().flatten() {

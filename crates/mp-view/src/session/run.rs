@@ -194,6 +194,18 @@ impl<'p> Driver<'p> {
         Advanced { over, left }
     }
 
+    /// Tells that the search is over and the path will be finished.
+    pub(crate) fn tell_finishing(&self) {
+        let mut recorder = Recorder {
+            outbox: &self.outbox,
+            wake: &|| {},
+            clock: self.clock,
+            began: 0.0,
+            stage: Stage::Finishing,
+        };
+        recorder.tell(word(Stage::Finishing), None);
+    }
+
     /// Finishes the path and tells the result.
     pub(crate) fn finish(self, wake: &dyn Fn()) {
         let began = self.clock.now().as_secs_f64() - self.spent;

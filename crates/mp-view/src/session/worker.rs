@@ -26,6 +26,8 @@ struct Planning {
     driver: Driver<'static>,
     order: Order,
     cancel: Cancel,
+    /// Whether the search is over, and only the path is to be finished.
+    over: bool,
 }
 
 impl fmt::Debug for Worker {
@@ -72,7 +74,7 @@ impl Worker {
                 let cancel = Cancel::new();
                 let driver =
                     Driver::new(scene, run, SharedOutbox::clone(&outbox), cancel.clone(), self.clock);
-                self.run = Some(Planning { number, driver, order: first_order(paused), cancel });
+                self.run = Some(Planning { number, driver, order: first_order(paused), cancel, over: false });
                 self.last = Some(outbox);
             }
             (AboutRun::Order(order), Some(run)) => run.order = order,
@@ -86,20 +88,27 @@ impl Worker {
         Ok(Message::default())
     }
 
-    /// Plans for about this long. Returns whether a run goes on that is not paused.
+    /// Plans for about this long, or finishes a path that was found. Returns whether a run goes on that is not paused.
     pub fn advance(&mut self, time: Duration) -> bool {
         let Some(run) = &mut self.run else { return false };
         if run.order == Order::Pause {
             return false;
         }
+        if run.over {
+            if let Some(run) = self.run.take() {
+                run.driver.finish(&|| {});
+            }
+            return false;
+        }
         let advanced = run.driver.advance(run.order, &mut Deadline::by(self.clock, time), &|| {});
         run.order = advanced.left;
-        if advanced.over
-            && let Some(run) = self.run.take()
-        {
-            run.driver.finish(&|| {});
+        if advanced.over {
+            // To finish the path takes one call, maybe a long one: the page is told before.
+            run.driver.tell_finishing();
+            run.over = true;
+            run.order = Order::Go;
         }
-        self.run.as_ref().is_some_and(|run| run.order != Order::Pause)
+        run.order != Order::Pause
     }
 
     /// The next message to the page: replies first, in the order of their requests, then events.
