@@ -174,6 +174,9 @@ pub(crate) struct Drawing {
     /// `--animation step`].
     #[arg(long, value_name = "T", value_parser = fraction)]
     pub(crate) at: Option<f64>,
+    /// In a page (`.html`), put the planner inside too, so that whoever opens it can plan in it, without a network.
+    #[arg(long)]
+    pub(crate) with_planner: bool,
     /// In a film, turn the camera once around the scene.
     #[arg(long)]
     pub(crate) turntable: bool,

@@ -12,6 +12,7 @@ mod input;
 mod interrupt;
 mod log;
 mod output;
+mod page_planner;
 mod picture;
 mod plan;
 mod progress;

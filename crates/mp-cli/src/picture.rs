@@ -1,6 +1,7 @@
 //! What goes into the file of a picture, by the ending of its name.
 
 use crate::cli::{Animation, Drawing};
+use crate::page_planner::PagePlanner;
 use crate::progress::Line;
 use mp_plan::{Cancel, Error, Film, FilmKind, Look, PICTURE_SIZE, PathRows, PictureKind, Report, Scene};
 use mp_view::SceneFile;
@@ -13,8 +14,8 @@ pub(crate) enum Picture {
     Drawn(PictureKind, Look),
     /// A film, `.gif` or `.mp4`.
     Film(Film),
-    /// `.html`: the viewer with the scene inside, for a browser.
-    Page,
+    /// `.html`: the viewer with the scene inside, for a browser; with a planner inside when there is one.
+    Page(Option<PagePlanner>),
     /// `.mpv`: the scene as the viewer reads it.
     Scene,
     /// `.glb`: meshes that move for so many seconds.
@@ -48,7 +49,9 @@ impl Picture {
             at,
         };
         let picture = match (ending.as_str(), FilmKind::of(file)) {
-            ("html" | "htm", _) => Self::Page,
+            ("html" | "htm", _) => {
+                Self::Page(drawing.with_planner.then(|| PagePlanner::of(scene)).transpose()?)
+            }
             ("mpv", _) => Self::Scene,
             ("glb", _) => Self::Meshes(seconds),
             (_, Some(kind)) => {
@@ -84,7 +87,9 @@ impl Picture {
         let film = matches!(self, Self::Film(_));
         let still = matches!(self, Self::Drawn(..));
         let meshes = matches!(self, Self::Meshes(_));
+        let page = matches!(self, Self::Page(_));
         let options = [
+            ("--with-planner", drawing.with_planner, page, "pages (.html)"),
             ("--size", drawing.size.is_some(), film || still, "pictures and films"),
             ("--mode", drawing.mode.is_some(), film || still, "pictures and films"),
             ("--camera", drawing.camera.is_some(), film || still, "pictures and films"),
@@ -134,7 +139,10 @@ impl Picture {
             (None, None) => {}
         }
         Ok(Some(match self {
-            Self::Page => file.to_html().into_bytes(),
+            Self::Page(None) => file.to_html().into_bytes(),
+            Self::Page(Some(planner)) => {
+                mp_view::page_with_files(&file, &planner.module, &planner.files).into_bytes()
+            }
             Self::Meshes(seconds) => file.to_glb(*seconds),
             _ => file.to_bytes(),
         }))

@@ -253,6 +253,40 @@ fn without_a_display_the_address_is_printed_all_the_same() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn the_browser_gets_an_address_that_works_once() {
+    use std::os::unix::fs::PermissionsExt;
+    let dir = Dir::empty();
+    // In place of the program that opens browsers.
+    dir.write("xdg-open", "#!/bin/sh\necho \"$@\" > opened.new && mv opened.new opened\n");
+    std::fs::set_permissions(dir.path("xdg-open"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let search = format!("{}:{}", dir.path("").display(), std::env::var("PATH").unwrap());
+    let variables = [("PATH", search.as_str()), ("DISPLAY", ":0"), ("SSH_CONNECTION", ""), ("SSH_TTY", "")];
+    let view = View::start_with(&dir, &["easy"], &variables);
+    let begin = Instant::now();
+    while !dir.exists("opened") {
+        assert!(begin.elapsed() < Duration::from_secs(20), "no browser was opened");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let opened = dir.read("opened");
+    let ticket = opened.trim().strip_prefix(&format!("http://{}/", view.host)).unwrap().to_owned();
+    assert!(ticket.len() == 32 && ticket != view.token, "{opened}");
+    let first = |ticket: &str| {
+        let mut stream = TcpStream::connect(&view.host).unwrap();
+        write!(stream, "GET /{ticket} HTTP/1.1\r\nHost: {}\r\n\r\n", view.host).unwrap();
+        head(&mut BufReader::new(stream))
+    };
+    let answer = first(&ticket);
+    assert!(
+        answer[0].contains("303") && answer.contains(&format!("location: /{}/", view.token)),
+        "{answer:?}"
+    );
+    assert!(first(&ticket)[0].contains("403"));
+    view.interrupt();
+    assert_eq!(view.wait().code, 0);
+}
+
 #[test]
 fn what_cannot_be_shown_is_an_error() {
     let dir = Dir::new();

@@ -303,7 +303,7 @@ impl SceneDocument {
             return wrong(format!("{} has no pose", body.name), "give x y z α β γ");
         }
         let mut numbers = self.bounds.iter().flatten().flatten().chain(&self.start).chain(&self.goal);
-        let too_large = |v: &f64| !(v.abs() <= MAX_COORDINATE);
+        let too_large = |v: &f64| v.is_nan() || v.abs() > MAX_COORDINATE;
         let placed = self.obstacles.iter().filter_map(|o| o.pose.as_ref()).flatten().any(too_large);
         if placed || numbers.any(too_large) {
             let what = format!("a pose, an end or the bounds have a number beyond {MAX_COORDINATE:e}");

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind};
 use std::fmt::{self, Debug};
 use std::fs::File;
 use std::io::{Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The largest mesh file that is read, bytes (512 MiB).
 pub const MAX_MESH_BYTES: u64 = 512 << 20;
@@ -18,6 +18,19 @@ pub trait Files: Debug + Send + Sync {
     /// # Errors
     /// [`Error`] of kind [`ErrorKind::Io`] when there is no such file, of kind [`ErrorKind::TooLarge`] when it is larger.
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error>;
+
+    /// Whether there is a file at `path`.
+    fn holds(&self, path: &Path) -> bool {
+        self.read(path, MAX_MESH_BYTES).is_ok()
+    }
+
+    /// A folder by its absolute name, as far as that is known: meshes of packages are sought in all folders above it.
+    ///
+    /// # Errors
+    /// When the place knows absolute names, and there is no such folder.
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        Ok(folder.to_owned())
+    }
 }
 
 /// The file system.
@@ -27,6 +40,13 @@ pub struct Disk;
 impl Files for Disk {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
         read_file(path, limit)
+    }
+    fn holds(&self, path: &Path) -> bool {
+        path.is_file()
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        // A bare file name has the empty folder, which is the current one.
+        std::fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
     }
 }
 

@@ -21,6 +21,12 @@ impl Files for Recording<'_> {
         }
         self.files.read(path, limit)
     }
+    fn holds(&self, path: &Path) -> bool {
+        self.files.holds(path)
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        self.files.absolute(folder)
+    }
 }
 
 impl Scene {
@@ -30,19 +36,28 @@ impl Scene {
         &self.inputs
     }
 
-    /// The content of the files that the scene was read from, its own first, so that it can be read elsewhere.
+    /// The files that the scene was read from, its own first, with their content, so that it can be read elsewhere. Their
+    /// names are relative to the innermost folder that holds all of them, with `/` between folders.
     ///
     /// # Errors
-    /// When a file cannot be read any more.
-    pub fn input_files(&self) -> Result<Vec<(PathBuf, Vec<u8>)>, crate::Error> {
-        let read = |path: &PathBuf| {
+    /// When the scene is not from a file, or a file cannot be read any more.
+    pub fn input_files(&self) -> Result<Vec<(String, Vec<u8>)>, crate::Error> {
+        if self.inputs.is_empty() {
+            return Err(crate::Error::new(format!("{} was not read from a file", self.name())));
+        }
+        let folder = common_folder(self.inputs.iter().map(PathBuf::as_path));
+        let content = |path: &Path| {
             #[cfg(feature = "scenes")]
             if self.shipped {
-                return Ok((path.clone(), crate::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES)?));
+                return crate::find::shipped_files().read(path, mp_io::MAX_MESH_BYTES);
             }
-            Ok((path.clone(), mp_io::Disk.read(path, mp_io::MAX_MESH_BYTES)?))
+            mp_io::Disk.read(path, mp_io::MAX_MESH_BYTES)
         };
-        self.inputs.iter().map(read).collect()
+        let file = |path: &PathBuf| {
+            let inside = path.strip_prefix(&folder).unwrap_or(path);
+            Ok((inside.to_string_lossy().replace('\\', "/"), content(path)?))
+        };
+        self.inputs.iter().map(file).collect()
     }
 
     /// The input file that writing `output` would overwrite, if any.
@@ -62,4 +77,12 @@ pub fn is_same_file(a: &Path, b: &Path) -> bool {
         std::fs::canonicalize(path).ok().or_else(|| Some(std::fs::canonicalize(folder).ok()?.join(name)))
     };
     a == b || place(a).zip(place(b)).is_some_and(|(a, b)| a == b)
+}
+
+/// The innermost folder that holds all files.
+fn common_folder<'p>(mut files: impl Iterator<Item = &'p Path>) -> PathBuf {
+    let first = files.next().and_then(Path::parent).unwrap_or(Path::new(""));
+    files.fold(first.to_owned(), |folder, file| {
+        folder.ancestors().find(|above| file.starts_with(above)).unwrap_or(Path::new("")).to_owned()
+    })
 }

@@ -32,10 +32,9 @@ impl Scene {
         };
         let recording = Recording { files, read: Mutex::default() };
         let files: &dyn Files = &recording;
-        let mut named = Vec::new();
         let scene = match RobotProblem::is_named(file) {
             true if PlanarProblem::is_planar_world_in(files, file) => planar(files, file).map_err(of)?,
-            true => arm(files, file, &mut named)?,
+            true => arm(files, file)?,
             false if ending == "json" => {
                 let folder = file.parent().unwrap_or(Path::new(""));
                 let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
@@ -44,8 +43,7 @@ impl Scene {
             false => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
-        let mut inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        inputs.extend(named);
+        let inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
         let mut scene = scene.with_file(file);
         scene.inputs = inputs.into();
         Ok(scene)
@@ -77,12 +75,10 @@ fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     Scene::from_world(PlanarProblem::load_from(files, file)?)
 }
 
-/// The scene of an arm. The files of its meshes are added to `named`.
+/// The scene of an arm.
 #[cfg(feature = "urdf")]
-fn arm(files: &dyn Files, file: &Path, named: &mut Vec<std::path::PathBuf>) -> Result<Scene, Error> {
-    let arm = crate::ArmScene::from_problem(mp_io::RobotProblem::load_from(files, file)?)?;
-    named.extend(arm.mesh_files().iter().cloned());
-    Ok(Scene::new(arm))
+fn arm(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
+    Ok(Scene::new(crate::ArmScene::from_problem_in(files, mp_io::RobotProblem::load_from(files, file)?)?))
 }
 
 #[cfg(not(feature = "planar"))]
@@ -91,7 +87,7 @@ fn planar(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
 }
 
 #[cfg(not(feature = "urdf"))]
-fn arm(_: &dyn Files, _: &Path, _: &mut Vec<std::path::PathBuf>) -> Result<Scene, Error> {
+fn arm(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
     Err(left_out("arms", "urdf"))
 }
 

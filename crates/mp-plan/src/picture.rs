@@ -40,12 +40,6 @@ impl Default for Look {
 }
 
 impl Scene {
-    /// Whether the scene is a world of areas in the plane, which can be drawn as SVG.
-    #[must_use]
-    pub fn is_planar_world(&self) -> bool {
-        self.bodies().iter().any(|body| matches!(body.shape, BodyShape::Area(_)))
-    }
-
     /// The kind of picture for a file, by the ending of its name.
     ///
     /// # Errors

@@ -318,6 +318,12 @@ impl Scene {
         self.robot.export(folder)
     }
 
+    /// Whether the scene is a world of areas in the plane, which can be drawn as SVG.
+    #[must_use]
+    pub fn is_planar_world(&self) -> bool {
+        self.bodies().iter().any(|body| matches!(body.shape, crate::BodyShape::Area(_)))
+    }
+
     /// Whether the scene is best seen from above.
     #[must_use]
     pub fn is_planar(&self) -> bool {

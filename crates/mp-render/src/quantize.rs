@@ -45,8 +45,8 @@ impl Palette {
             (0..3).for_each(|k| sum[k] += f64::from(p[k]));
             *count += 1.0;
         }
-        // By the root of their count: small things in colours of their own keep them.
-        let mean = |(sum, count): ([f64; 3], f64)| (sum.map(|s| s / count), count.sqrt());
+        // By less than their count: small things in colours of their own keep them.
+        let mean = |(sum, count): ([f64; 3], f64)| (sum.map(|s| s / count), count.powf(0.75));
         let all = Colours(cells.into_values().map(mean).collect());
         let spread = all.spread();
         let mut boxes = vec![(all, spread)];

@@ -6,7 +6,7 @@
 /** @typedef {{sphere: {radius: number}} | {cube: {size: Three}} | {cone: {radius: number, height: number}}
  *  | {cylinder: {radius: number, height: number}} | {torus: {ring: number, tube: number}} | {tetrahedron: {edge: number}}} Figure */
 /** @typedef {Figure | {mesh: {file: string, off?: string}}} DocumentShape */
-/** @typedef {{name: string, color: string | null, shape: DocumentShape, scale?: Three}} DocumentBody */
+/** @typedef {{name: string, color?: string | null, shape: DocumentShape, scale?: Three}} DocumentBody */
 /** @typedef {DocumentBody & {pose: Six}} Obstacle */
 /** @typedef {{version: 1, name: string, space: "SE3" | "SE2", bounds: [Three, Three] | null, robot: DocumentBody, start: Six,
  *  goal: Six, obstacles: Obstacle[]}} Document */
@@ -38,6 +38,16 @@ export function sizesOf(shape) {
   const [[kind, sizes]] = Object.entries(/** @type {Record<string, Record<string, number>>} */ (shape));
   const named = (/** @type {string} */ size) => SIZE_NAMES[size] ?? size;
   return Object.entries(sizes).map(([size, value]) => ({ name: named(size), value, set: (v) => /** @type {Figure} */ ({ [kind]: { ...sizes, [size]: v } }) }));
+}
+
+/** The distance of the figure's farthest point from its origin, metres. @param {Figure} figure */
+export function reachOf(figure) {
+  if ("sphere" in figure) return figure.sphere.radius;
+  if ("cube" in figure) return Math.hypot(...figure.cube.size) / 2;
+  if ("torus" in figure) return figure.torus.ring + figure.torus.tube;
+  if ("tetrahedron" in figure) return (figure.tetrahedron.edge * Math.sqrt(6)) / 4;
+  const { radius, height } = "cone" in figure ? figure.cone : figure.cylinder;
+  return Math.hypot(radius, height / 2);
 }
 
 /** @type {Record<string, string>} */

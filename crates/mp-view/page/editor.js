@@ -4,7 +4,6 @@ import { ask, brief } from "mp/dom.js";
 import * as doc from "mp/document.js";
 import { changedPose, changedSix, fromAngles, niceStep, poseOfSix, tidy } from "mp/gizmo.js";
 import { Handles } from "mp/handles.js";
-import { isTyping } from "mp/controls.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Document, DocumentShape, Part, Six, Three } from "mp/document.js" */
@@ -26,6 +25,9 @@ export const HELP = [
   ["Ctrl + D", "duplicate what is selected"], ["Ctrl + Z", "undo"], ["Ctrl + Shift + Z, Ctrl + Y", "redo"],
   ["Ctrl + O, Ctrl + S", "open files; save"],
 ];
+
+/** Places of a grid in which a new body may lie, nearest first. */
+const NEARBY = Array.from({ length: 41 * 41 }, (_, i) => [(i % 41) - 20, Math.floor(i / 41) - 20]).sort((a, b) => Math.hypot(...a) - Math.hypot(...b));
 
 /** The kinds of ends that handles can move: six numbers, or x y and maybe an angle. @param {Scene} scene @returns {"rigid" | "planar" | null} */
 function endKind({ columns, planar }) {
@@ -153,11 +155,12 @@ export class Editor {
       this.moveEnds(next);
       return true;
     }
-    const { bodies: before } = this.viewer.scene;
-    const shown = new Map(before.map((body, b) => [body.name, this.viewer.settings.bodies[b]]));
+    const { bodies, planar } = this.viewer.scene;
+    const shown = new Map(bodies.map((body, b) => [body.name, this.viewer.settings.bodies[b]]));
     if (!(await this.workbench.edit(next))) return false;
     this.viewer.scene.bodies.forEach((body, b) => Object.assign(this.viewer.settings.bodies[b], shown.get(body.name)));
     this.viewer.panels?.showBodies();
+    if (this.viewer.scene.planar !== planar) this.viewer.lookAsUsual();
     this.sent = next;
     return true;
   }
@@ -290,21 +293,26 @@ export class Editor {
       setUnsaved(false);
     });
   }
-  /** Adds a figure or a mesh, where the camera looks, and selects it. @param {string} name @param {DocumentShape} shape @param {"obstacle" | "robot"} as */
-  add(name, shape, as) {
+  /** Adds a figure or a mesh, near to where the camera looks, and selects it. @param {string} name @param {DocumentShape} shape
+   * @param {"obstacle" | "robot"} as @param {number} reach of the shape around its origin, metres */
+  add(name, shape, as, reach) {
     if (as === "robot") return this.run(`make ${name} the robot`, (d) => doc.replaceRobot(d, name, shape)).then(() => this.select({ end: "start" }));
     const count = this.document?.obstacles.length ?? 0;
-    return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, this.freePlace(d))).then(() => this.selectNew(count));
+    return this.run(`add ${name}`, (d) => doc.addObstacle(d, name, shape, this.freePlace(d, reach))).then(() => this.selectNew(count));
   }
-  /** A place near the middle of the picture where no body has its origin. @param {Document} d @returns {Six} */
-  freePlace(d) {
-    const step = niceStep(this.viewer.camera.pixel(), 60);
-    const [x, y, z] = this.viewer.camera.target.map((c) => tidy(Math.round(c / step) * step));
-    const taken = [d.start, d.goal, ...d.obstacles.map((o) => o.pose)];
+  /** A place near the middle of the picture that is clear of all bodies. @param {Document} d @param {number} reach @returns {Six} */
+  freePlace(d, reach) {
+    const { shapes, ofBody, scene, camera } = this.viewer;
+    const step = niceStep(Math.max(reach, camera.pixel()), 0.5);
+    const [x, y, z] = camera.target.map((c) => tidy(Math.round(c / step) * step));
     const height = d.space === "SE2" ? 0 : z;
-    let right = x;
-    while (taken.some((p) => Math.hypot(p[0] - right, p[1] - y, p[2] - height) < step / 2)) right = tidy(right + step);
-    return [right, y, height, 0, 0, 0];
+    const taken = [d.start, d.goal, ...d.obstacles.map((o) => o.pose)].map((pose, i) => {
+      const { low, high } = shapes[ofBody[Math.max(0, i - 2 + scene.robot)]];
+      return { pose, reach: Math.hypot(...[0, 1, 2].map((k) => Math.max(-low[k], high[k]))) };
+    });
+    const clear = (/** @type {Six} */ place) => taken.every((o) => Math.hypot(...[0, 1, 2].map((k) => o.pose[k] - place[k])) > o.reach + reach);
+    const places = NEARBY.map(([i, j]) => /** @type {Six} */ ([tidy(x + i * step), tidy(y + j * step), height, 0, 0, 0]));
+    return places.find(clear) ?? places[0];
   }
   /** Selects the obstacle that was added. @param {number} count how many there were */
   selectNew(count) {
@@ -346,7 +354,8 @@ export class Editor {
   shortcut(e) {
     if (!(e.ctrlKey || e.metaKey) || e.altKey || document.querySelector("dialog[open]") || !this.history) return;
     const key = e.key.toLowerCase();
-    if (isTyping(e.target) && !(e.target instanceof HTMLSelectElement) && !(e.target instanceof HTMLInputElement && e.target.type === "range")) return;
+    // In a field that is being typed in, the keys are the field's.
+    if (e.target instanceof HTMLInputElement && /^(text|number|search)$/.test(e.target.type) && e.target.value !== e.target.defaultValue) return;
     if (key === "z" && !e.shiftKey) this.undo();
     else if (key === "y" || key === "z") this.redo();
     else if (key === "d") this.duplicate();

@@ -40,7 +40,7 @@ export class Inspector {
     /** @type {[string, string][]} */ const figures = Object.keys(doc.FIGURES).map((name) => [name, name]);
     const figure = select(figures, "cube", () => {}, { "aria-label": "Figure" });
     const as = select([["obstacle", "as obstacle"], ["robot", "as robot"]], "obstacle", () => {}, { "aria-label": "As obstacle or as robot" });
-    const add = () => editor.add(figure.value, doc.FIGURES[figure.value], /** @type {"obstacle" | "robot"} */ (as.value));
+    const add = () => editor.add(figure.value, doc.FIGURES[figure.value], /** @type {"obstacle" | "robot"} */ (as.value), doc.reachOf(doc.FIGURES[figure.value]));
     return el("div", { class: "buttons", role: "group", "aria-label": "Add a body" }, figure, as, button("Add", add), button("Mesh…", openMesh, { title: "Add a mesh from a file" }));
   }
   /** Shows what the editor has. What has the focus keeps it. */
@@ -62,7 +62,7 @@ export class Inspector {
     }
     const shape = d && part !== null ? doc.bodyOf(d, part).shape : null;
     renew(this.body, d && part !== null ? this.bodyFields(d, part) : [], JSON.stringify([part, d?.space, shape && doc.shapeKind(shape)]));
-    renew(this.room, d ? this.roomFields(d) : [], JSON.stringify([d?.space, d?.bounds === null]));
+    renew(this.room, d ? this.roomFields(d) : [], JSON.stringify([d?.space, !d?.bounds]));
   }
   /** @param {Document} d @param {Part} part @returns {HTMLElement[]} */
   bodyFields(d, part) {
@@ -104,8 +104,8 @@ export class Inspector {
   }
   /** @param {DocumentBody} body @param {(color: string | null) => void} change */
   colorField({ color }, change) {
-    const input = el("input", { type: "color", value: color ?? "#808080", "aria-label": "Colour", disabled: color === null, onchange: () => change(input.value) });
-    const own = checkbox("own colour", color !== null, (on) => change(on ? input.value : null));
+    const input = el("input", { type: "color", value: color ?? "#808080", "aria-label": "Colour", disabled: !color, onchange: () => change(input.value) });
+    const own = checkbox("own colour", Boolean(color), (on) => change(on ? input.value : null));
     return el("div", { class: "row" }, own, input);
   }
   /** @param {DocumentBody} body @param {(shape: doc.DocumentShape) => void} change */
@@ -120,7 +120,7 @@ export class Inspector {
     const { editor } = this;
     const name = el("input", { type: "text", "aria-label": "Name of the environment", value: d.name, onchange: () => name.value.trim() && editor.run("rename the environment", (now) => ({ ...now, name: name.value.trim() })) });
     const space = select([["SE3", "in space"], ["SE2", "in the plane z = 0"]], d.space, (v) => editor.run("change the space", (now) => doc.setSpace(now, /** @type {"SE3" | "SE2"} */ (v))), { "aria-label": "The robot moves" });
-    const own = checkbox("own bounds of the robot's origin", d.bounds !== null, (on) => editor.run("change the bounds", (now) => doc.setBounds(now, on ? this.presentBounds() : null)));
+    const own = checkbox("own bounds of the robot's origin", Boolean(d.bounds), (on) => editor.run("change the bounds", (now) => doc.setBounds(now, on ? this.presentBounds() : null)));
     const fields = [labelled("Name", name), labelled("The robot moves", space), own];
     const { bounds } = d;
     if (!bounds) return fields;

@@ -87,8 +87,8 @@ export class Opening {
   }
   /** A scene file of the viewer is shown without the session: there is nothing to plan in it. @param {NamedFile} file */
   async showOnly({ bytes }) {
-    if (!(await mayDiscard())) return;
     const scene = readScene(bytes);
+    if (!(await mayDiscard())) return;
     this.workbench.leave();
     this.viewer.show(scene);
     setUnsaved(false);
@@ -100,9 +100,10 @@ export class Opening {
     if (!this.editor.history) await this.editor.create();
     if (!this.editor.history) return;
     for (const file of files) {
-      const { file: name } = await this.session.request({ do: "mesh", files: [file] });
+      const { file: name, bounds } = await this.session.request({ do: "mesh", files: [file] });
+      const reach = Math.hypot(...[0, 1, 2].map((k) => Math.max(-bounds[0][k], bounds[1][k])));
       const stem = file.name.replace(/\.[^.]*$/, "") || file.name;
-      await this.editor.add(stem, { mesh: { file: name } }, await askRole(file.name));
+      await this.editor.add(stem, { mesh: { file: name } }, await askRole(file.name), reach);
     }
   }
   /** @param {NamedFile[]} files */

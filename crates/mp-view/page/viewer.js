@@ -87,12 +87,14 @@ export class Viewer {
     this.prepare();
     this.panels?.show(scene, this.ofBody.reduce((sum, s) => sum + this.shapes[s].triangles.length / 3, 0));
     this.timeline?.show(scene);
-    if (!keepCamera) {
-      this.setPerspective(!scene.planar);
-      this.look(scene.planar ? "top" : "iso");
-    }
+    if (!keepCamera) this.lookAsUsual();
     for (const listener of this.onshow) listener(scene);
     this.changed();
+  }
+  /** Looks at the scene as such scenes are first seen: those of the plane from above. */
+  lookAsUsual() {
+    this.setPerspective(!this.scene.planar);
+    this.look(this.scene.planar ? "top" : "iso");
   }
   /** Adds a panel at the side; it stays when another scene is shown. @param {HTMLElement} panel */
   addPanel(panel) { byId("tools").append(panel); }

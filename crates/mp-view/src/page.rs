@@ -6,6 +6,7 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, write::GzEncoder};
 use serde_json::json;
+use std::collections::BTreeMap;
 use std::io::Write as _;
 
 /// The modules of the page, by their names in imports.
@@ -77,20 +78,15 @@ pub enum Planner<'a> {
 /// beside it. Nothing in a scene is run: names are shown as text.
 #[must_use]
 pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
-    let import = |(name, text): (&str, &str)| {
-        format!("\"{name}\":\"data:text/javascript;base64,{}\"", STANDARD.encode(text))
-    };
-    let imports = MODULES.map(import).join(",");
+    let modules: BTreeMap<&str, &str> = MODULES.into_iter().collect();
+    let modules = serde_json::to_vec(&modules).unwrap_or_default();
     let planner = match planner {
         Planner::None => String::new(),
         Planner::Inside(module) => data("planner", module),
         Planner::Server => "<meta name=\"mp-session\" content=\"server\">".to_owned(),
     };
     HTML.replace("<!--STYLE-->", &format!("<style>\n{STYLE}</style>"))
-        .replace(
-            "<!--IMPORTMAP-->",
-            &format!("<script type=\"importmap\">{{\"imports\":{{{imports}}}}}</script>"),
-        )
+        .replace("<!--MODULES-->", &data("modules", &modules))
         .replace("<!--SCENE-->", &scene.map_or_else(String::new, |scene| data("scene", &scene.to_bytes())))
         .replace("<!--PLANNER-->", &planner)
 }
@@ -206,7 +202,7 @@ mod tests {
 
     #[test]
     fn the_page_has_a_place_for_each_part() {
-        for place in ["<!--STYLE-->", "<!--IMPORTMAP-->", "<!--SCENE-->", "<!--PLANNER-->"] {
+        for place in ["<!--STYLE-->", "<!--MODULES-->", "<!--SCENE-->", "<!--PLANNER-->"] {
             assert_eq!(HTML.matches(place).count(), 1, "{place}");
         }
         // Nothing is loaded from elsewhere.

@@ -4,6 +4,7 @@ mod desk;
 mod files;
 mod growth;
 mod messages;
+mod module;
 mod run;
 #[cfg(all(test, not(target_family = "wasm")))]
 mod tests;
@@ -12,6 +13,7 @@ mod threads;
 mod worker;
 
 pub use desk::Opening;
+pub use module::planner_module;
 #[cfg(not(target_family = "wasm"))]
 pub use threads::Session;
 pub use worker::Worker;

@@ -1,4 +1,4 @@
-//! The planner inside pages of the viewer: a [`Worker`] behind plain exports, without a bindings generator. The exports are
+//! The planner inside pages of the viewer: `mp_view::Worker` behind plain exports, without a bindings generator. The exports are
 //! described in docs/formats/session.md, "In a worker".
 //!
 //! There is no unsafe block: a page writes into a buffer of this module, and reads from another one, by their addresses.

@@ -53,7 +53,8 @@ impl RobotProblem {
         Self::load_from(&Disk, path.as_ref())
     }
 
-    /// As [`load`](Self::load), with the files read through `files`. Meshes of the robot itself are read from the disk.
+    /// As [`load`](Self::load), with the files read through `files`. The meshes of the robot itself are read later: by
+    /// [`mesh_from`](Self::mesh_from).
     ///
     /// # Errors
     /// As [`load`](Self::load).

@@ -1,7 +1,8 @@
 //! Finding the meshes that a URDF names: files relative to it, and files of packages.
 
 use super::RobotProblem;
-use crate::mesh::read_mesh;
+use crate::files::{Disk, Files};
+use crate::mesh::read_mesh_of;
 use crate::problem::{MAX_COORDINATE, vertex_beyond};
 use mp_geom::TriMesh;
 use std::path::{Path, PathBuf};
@@ -15,8 +16,16 @@ impl RobotProblem {
     /// # Errors
     /// A message that says which file was searched, and where.
     pub fn mesh(&self, name: &str) -> Result<TriMesh, String> {
-        let place = self.place_of(name)?;
-        let mesh = read_mesh(&place).map_err(|e| match e.remedy() {
+        self.mesh_from(&Disk, name)
+    }
+
+    /// As [`mesh`](Self::mesh), with the file read through `files`.
+    ///
+    /// # Errors
+    /// As [`mesh`](Self::mesh).
+    pub fn mesh_from(&self, files: &dyn Files, name: &str) -> Result<TriMesh, String> {
+        let place = self.place_of(files, name)?;
+        let mesh = read_mesh_of(files, &place).map_err(|e| match e.remedy() {
             Some(remedy) => format!("{e} ({remedy})"),
             None => e.to_string(),
         })?;
@@ -29,10 +38,10 @@ impl RobotProblem {
     /// The file of a mesh that the URDF names, as [`mesh`](Self::mesh) finds it; `None` when it is not there.
     #[must_use]
     pub fn mesh_file(&self, name: &str) -> Option<PathBuf> {
-        self.place_of(name).ok()
+        self.place_of(&Disk, name).ok()
     }
 
-    fn place_of(&self, name: &str) -> Result<PathBuf, String> {
+    fn place_of(&self, files: &dyn Files, name: &str) -> Result<PathBuf, String> {
         let folder = self.urdf_file.parent().unwrap_or(Path::new(""));
         let Some(inside) = name.strip_prefix("package://") else {
             return Ok(folder.join(name.strip_prefix("file://").unwrap_or(name)));
@@ -44,15 +53,13 @@ impl RobotProblem {
             return Err(format!("{name} names no file: write package://PACKAGE/FILE"));
         }
         let start = self.packages.as_deref().unwrap_or(folder);
-        // A bare file name has the empty folder, which is the current one.
-        let start = if start.as_os_str().is_empty() { Path::new(".") } else { start };
-        let absolute = std::fs::canonicalize(start).map_err(|e| {
+        let absolute = files.absolute(start).map_err(|e| {
             let whose = if self.packages.is_some() { "`packages` of the problem" } else { "of the URDF" };
             format!("{name} cannot be sought in the folder {whose}, {}: {e}", start.display())
         })?;
         let above = if self.packages.is_some() { 1 } else { usize::MAX };
         for folder in absolute.ancestors().take(above) {
-            if let Some(found) = in_folder(folder, package, rest) {
+            if let Some(found) = in_folder(files, folder, package, rest) {
                 return Ok(found);
             }
         }
@@ -75,7 +82,7 @@ impl RobotProblem {
 }
 
 /// The file `rest` of a package in or below `folder`, if it is there.
-fn in_folder(folder: &Path, package: &str, rest: &str) -> Option<PathBuf> {
+fn in_folder(files: &dyn Files, folder: &Path, package: &str, rest: &str) -> Option<PathBuf> {
     let in_package = |folder: PathBuf| folder.join(package).join(rest);
     let own = package.is_empty() || folder.file_name().is_some_and(|name| name == package);
     let places = [
@@ -83,5 +90,5 @@ fn in_folder(folder: &Path, package: &str, rest: &str) -> Option<PathBuf> {
         Some(in_package(folder.join("share"))),
         own.then(|| folder.join(rest)),
     ];
-    places.into_iter().flatten().find(|place| place.is_file())
+    places.into_iter().flatten().find(|place| files.holds(place))
 }

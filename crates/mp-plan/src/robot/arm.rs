@@ -6,10 +6,9 @@ use super::{
 use crate::{Error, MetricName, brief};
 use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
 use mp_geom::TriMesh;
-use mp_io::{PlacedBody, RobotPart, RobotProblem};
+use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};
 use nalgebra::{DVector, Isometry3};
-use std::path::PathBuf;
 
 /// Between two copies of the arm in a picture no point moves farther than this fraction of its reach.
 const PICTURE_SPACING: f64 = 0.12;
@@ -28,7 +27,6 @@ pub struct ArmScene {
     goals: Vec<Configuration>,
     /// The problem that it was made from, to locate errors in its file.
     source: Option<Box<RobotProblem>>,
-    mesh_files: Vec<PathBuf>,
 }
 
 impl ArmScene {
@@ -75,7 +73,7 @@ impl ArmScene {
             return Err(Error::new("there is no goal"));
         }
         let (start, goals) = (state(start), goals.iter().map(|goal| state(goal)).collect());
-        Ok(Self { name, arm, obstacles, space, start, goals, source: None, mesh_files: Vec::new() })
+        Ok(Self { name, arm, obstacles, space, start, goals, source: None })
     }
 
     /// The scene of the problem of a file.
@@ -84,13 +82,17 @@ impl ArmScene {
     /// When the URDF, the SRDF or the limits are not valid, or the length of a configuration does not fit the robot: with the
     /// line of the file.
     pub fn from_problem(problem: RobotProblem) -> Result<Self, Error> {
+        Self::from_problem_in(&Disk, problem)
+    }
+
+    /// As [`from_problem`](Self::from_problem), with the meshes of the robot read through `files`.
+    ///
+    /// # Errors
+    /// As [`from_problem`](Self::from_problem).
+    pub fn from_problem_in(files: &dyn Files, problem: RobotProblem) -> Result<Self, Error> {
         let what = format!("cannot make a robot of {}", problem.urdf_file.display());
         let of = &|e: Error| e.context(what.clone());
-        let mut mesh_files = Vec::new();
-        let mut mesh = |name: &str| {
-            mesh_files.extend(problem.mesh_file(name));
-            problem.mesh(name)
-        };
+        let mut mesh = |name: &str| problem.mesh_from(files, name);
         let mut model = from_urdf(&problem.urdf, &mut mesh).map_err(of)?;
         for note in &model.notes {
             tracing::info!("{}: {note}", problem.urdf_file.display());
@@ -117,7 +119,7 @@ impl ArmScene {
         }
         let (start, goals) = (problem.file.start.clone(), problem.file.goals.clone());
         let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, &goals);
-        Ok(Self { source: Some(Box::new(problem)), mesh_files, ..scene.map_err(of)? })
+        Ok(Self { source: Some(Box::new(problem)), ..scene.map_err(of)? })
     }
 
     /// The arm among its obstacles.
@@ -130,12 +132,6 @@ impl ArmScene {
     #[must_use]
     pub fn obstacle_bodies(&self) -> &[PlacedBody] {
         &self.obstacles
-    }
-
-    /// The files of the meshes of its links.
-    #[must_use]
-    pub fn mesh_files(&self) -> &[PathBuf] {
-        &self.mesh_files
     }
 
     /// The problem that it was made from, if it was made from a file.

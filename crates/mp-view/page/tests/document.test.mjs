@@ -51,6 +51,11 @@ test("every figure has sizes that can be set", () => {
   assert.deepEqual(d.sizesOf({ mesh: { file: "bench.txt" } }), []);
 });
 
+test("the reach of a figure is that of its farthest point", () => {
+  const reaches = Object.values(d.FIGURES).map((figure) => d.reachOf(figure).toFixed(3));
+  assert.deepEqual(reaches, ["1.000", "1.414", "1.732", "1.414", "1.300", "1.225"]);
+});
+
 test("in the plane, start and goal have no z, β and γ", () => {
   const tilted = { ...room, start: [1, 2, 3, 0.4, 0.5, 0.6], bounds: [[-5, -6, -7], [5, 6, 7]] };
   const flat = d.setSpace(tilted, "SE2");

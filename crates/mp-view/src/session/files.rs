@@ -2,7 +2,7 @@
 
 use super::text_of;
 use crate::message::Message;
-use mp_io::{Files, MAX_MESH_BYTES};
+use mp_io::Files;
 use mp_plan::Error;
 use serde_json::Value;
 use std::fmt;
@@ -66,18 +66,11 @@ impl fmt::Debug for Named {
     }
 }
 
-/// A file is found by its name, or else by the last part of its name: pages do not know folders.
+/// A file is found by its name, or else by the last parts of its name, as many as possible: pages do not know folders.
 impl Files for Named {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
-        let last = |name: &str| name.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
-        let find = |name: &str| {
-            let found = self.find(name).or_else(|| {
-                self.0.iter().find(|file| last(&file.0) == last(name)).map(|file| file.1.as_slice())
-            });
-            found.map(<[u8]>::to_vec)
-        };
-        let memory = mp_io::InMemory(find);
-        memory.read(path, limit.min(MAX_MESH_BYTES)).map_err(|e| match e.kind() {
+        let memory = mp_io::InMemory(|name: &str| self.nearest(name));
+        memory.read(path, limit).map_err(|e| match e.kind() {
             mp_io::ErrorKind::Io => {
                 let name = path.to_string_lossy().into_owned();
                 mp_io::Error::new(
@@ -89,6 +82,24 @@ impl Files for Named {
             }
             _ => e,
         })
+    }
+    fn holds(&self, path: &Path) -> bool {
+        self.nearest(&path.to_string_lossy()).is_some()
+    }
+}
+
+impl Named {
+    /// The file of this name, or else the one whose name ends most like it.
+    fn nearest(&self, name: &str) -> Option<&[u8]> {
+        let parts = |name: &str| -> Vec<String> {
+            let parts = name.split(['/', '\\']).filter(|part| !part.is_empty() && *part != ".");
+            parts.rev().map(str::to_owned).collect()
+        };
+        let wanted = parts(name);
+        let alike =
+            |file: &(String, Vec<u8>)| parts(&file.0).iter().zip(&wanted).take_while(|(a, b)| a == b).count();
+        let best = self.0.iter().max_by_key(|file| alike(file)).filter(|file| alike(file) > 0);
+        self.find(name).or_else(|| best.map(|file| file.1.as_slice()))
     }
 }
 

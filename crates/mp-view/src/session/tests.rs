@@ -15,7 +15,7 @@ struct Page {
 impl Page {
     fn new(opening: Opening) -> Self {
         let (wake, woken) = mpsc::channel();
-        Self { session: Session::new(opening, move || drop(wake.send(()))), woken }
+        Self { session: Session::new(opening, move || wake.send(()).unwrap_or(())), woken }
     }
 
     fn reply(&self, request: Message) -> Message {
@@ -333,7 +333,7 @@ fn files_that_are_missing_or_none_are_said() {
 #[test]
 fn workers_plan_the_same() {
     let mut worker = Worker::new(Clock::default());
-    let mut reply = |worker: &mut Worker, request: Value| {
+    let reply = |worker: &mut Worker, request: Value| {
         worker.send(&message(request).to_bytes());
         Message::parse(&worker.take().unwrap()).unwrap()
     };

@@ -12,7 +12,7 @@ const CHROMIUM = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-
 
 /** Why these tests cannot run here, or false. */
 export const missing = !CHROMIUM ? "no Chromium: install it, or name it in the variable CHROMIUM"
-  : !existsSync(PROGRAM) ? `no program ${PROGRAM}: build it by “cargo build -p mp-cli”, or name it in the variable MP` : false;
+  : !existsSync(PROGRAM) ? `no program ${PROGRAM}: build it by “cargo build -p mp-motion-cli”, or name it in the variable MP` : false;
 
 /** The address that `mp view` prints. */
 function addressOf(program) {

@@ -107,3 +107,133 @@ test("a scene is built, changed, saved and opened again", { skip: missing, timeo
   await untilObstacles(driver, 6);
   (await shown()).forEach((pose, i) => pose.forEach((x, k) => assert.ok(Math.abs(x - poses[i][k]) < 1e-9, `${pose} ${poses[i]}`)));
 }));
+
+/** A pixel on a handle: `at` in the body's directions, as a part of the handles' length. */
+const onHandle = async (driver, origin, at) => {
+  const length = await driver.page.evaluate(async (point) => {
+    const { viewer } = await window.mpView.planner;
+    const { camera } = viewer;
+    const eye = camera.eye();
+    const back = camera.axes().back;
+    const depth = back.reduce((sum, b, k) => sum + b * (eye[k] - point[k]), 0);
+    return camera.perspective ? (92 * camera.pixel() * depth) / camera.distance : 92 * camera.pixel();
+  }, origin);
+  return driver.pixelOf(origin.map((x, k) => x + at[k] * length));
+};
+/** Counts the requests of the page by their names. */
+const counted = (driver) => driver.page.evaluate(async () => {
+  const { session } = await window.mpView.planner;
+  const counts = (window.counts ??= {});
+  if (!window.counting) {
+    window.counting = true;
+    const request = session.request.bind(session);
+    session.request = (message) => {
+      counts[message.do] = (counts[message.do] ?? 0) + 1;
+      return request(message);
+    };
+  }
+  return { ...counts };
+});
+
+test("handles turn, scale and give up; start and goal are dragged with their clearance", { skip: missing, timeout: 240_000 }, () => withPage("easy", async (driver) => {
+  await driver.press("New");
+  await driver.until(async () => (await window.mpView.planner).document?.obstacles.length === 0);
+  await driver.press("Add");
+  await untilObstacles(driver, 1);
+  const at = (await documentOf(driver)).obstacles[0].pose.slice(0, 3);
+  await counted(driver);
+
+  // A ring: a quarter turn about z, in steps by Shift. One message, at the end.
+  await driver.press("Turn");
+  await driver.page.keyboard.down("Shift");
+  await driver.drag(await onHandle(driver, at, [Math.SQRT1_2, -Math.SQRT1_2, 0]), await onHandle(driver, at, [Math.SQRT1_2, Math.SQRT1_2, 0]));
+  await driver.page.keyboard.up("Shift");
+  await untilPose(driver, 0, 3, Math.PI / 2);
+  assert.deepEqual(await counted(driver), { edit: 1 });
+
+  // A cube: the body is turned, so its own x axis is y of the world.
+  await driver.press("Scale");
+  await driver.page.keyboard.down("Shift");
+  await driver.drag(await onHandle(driver, at, [0, 1, 0]), await onHandle(driver, at, [0, 1.5, 0]));
+  await driver.page.keyboard.up("Shift");
+  await driver.until(async () => (await window.mpView.planner).document.obstacles[0].scale?.[0] === 1.5);
+  assert.deepEqual((await documentOf(driver)).obstacles[0].scale, [1.5, 1, 1]);
+
+  // Escape gives a drag up.
+  await driver.press("Move");
+  const [from, to] = [await onHandle(driver, at, [0.8, 0, 0]), await onHandle(driver, at, [2, 0, 0])];
+  await driver.page.mouse.move(...from);
+  await driver.page.mouse.down();
+  await driver.page.mouse.move(...to, { steps: 4 });
+  await driver.until(async (x) => (await window.mpView.planner).viewer.scene.bodies[1].pose[0] > x, at[0] + 0.2);
+  await driver.page.keyboard.press("Escape");
+  await driver.page.mouse.up();
+  await driver.until(async (x) => Math.abs((await window.mpView.planner).viewer.scene.bodies[1].pose[0] - x) < 1e-9, at[0]);
+  assert.deepEqual(await counted(driver), { edit: 2 });
+
+  // The goal into the box: checked while it is dragged, and no message but checks. Undo brings it back.
+  await driver.choose("Selected", "robot at the goal");
+  const { goal } = await documentOf(driver);
+  await driver.drag(await onHandle(driver, goal.slice(0, 3), [0, 0, 0]), await driver.pixelOf(at));
+  await driver.until(async () => (await window.mpView.planner).ends.verdicts.get(0)?.touching.length > 0);
+  const counts = await counted(driver);
+  assert.ok(counts.check >= 1 && counts.edit === 2, JSON.stringify(counts));
+  await driver.press("Undo");
+  await driver.until(async (x) => (await window.mpView.planner).viewer.scene.goals[0].row[0] === x, goal[0]);
+}));
+
+test("in the plane bodies keep z; a world that is no document lets start and goal be dragged", { skip: missing, timeout: 240_000 }, () => withPage("rrs-low", async (driver) => {
+  assert.equal((await driver.options("Selected")).length, 3);
+  await driver.choose("Selected", "robot at the start");
+  const row = () => driver.page.evaluate(async () => (await window.mpView.planner).viewer.scene.start.row);
+  const before = await row();
+  await driver.drag(await onHandle(driver, [...before, 0], [0.8, 0, 0]), await onHandle(driver, [...before, 0], [1.2, 0, 0]));
+  await driver.until(async (x) => (await window.mpView.planner).viewer.scene.start.row[0] > x, before[0]);
+  assert.equal((await row())[1], before[1]);
+  // Nothing of it can be edited.
+  assert.equal(await driver.page.$eval("[aria-label='Add a body']", (element) => element.checkVisibility()), false);
+
+  await driver.press("New");
+  await driver.until(async () => (await window.mpView.planner).document?.obstacles.length === 0);
+  await driver.press("Add");
+  await untilObstacles(driver, 1);
+  await driver.page.evaluate(() => [...document.querySelectorAll("summary")].find((e) => e.textContent === "Room").click());
+  await driver.choose("The robot moves", "SE2");
+  await driver.until(async () => (await window.mpView.planner).viewer.scene.planar);
+  await driver.choose("Selected", "cube");
+  const at = (await documentOf(driver)).obstacles[0].pose;
+  await driver.drag(await onHandle(driver, at.slice(0, 3), [0, 0.8, 0]), await onHandle(driver, at.slice(0, 3), [0, 1.4, 0]));
+  await driver.until(async (y) => (await window.mpView.planner).document.obstacles[0].pose[1] > y + 0.1, at[1]);
+  const moved = (await documentOf(driver)).obstacles[0].pose;
+  assert.deepEqual([moved[0], ...moved.slice(2)], [at[0], ...at.slice(2)]);
+}));
+
+test("unsaved changes are asked about; meshes and files of other kinds", { skip: missing, timeout: 240_000 }, () => withPage("easy", async (driver) => {
+  const drop = (name, text) => driver.page.evaluate((file, content) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([content], file));
+    window.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
+  }, name, text);
+  const count = (await documentOf(driver)).obstacles.length;
+  const tetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  await drop("spike.off", tetrahedron);
+  await driver.press("An obstacle");
+  await untilObstacles(driver, count + 1);
+  const spike = (await documentOf(driver)).obstacles[count];
+  assert.deepEqual([spike.name, spike.shape], ["spike", { mesh: { file: "spike.off" } }]);
+  await drop("spike.off", tetrahedron);
+  await driver.press("The robot");
+  await driver.until(async () => (await window.mpView.planner).document.robot.name === "spike 2");
+
+  // Asked, and kept.
+  await driver.press("New");
+  await driver.press("Keep them");
+  await driver.page.waitForFunction(() => !document.querySelector("dialog[open]"));
+  assert.equal((await documentOf(driver)).obstacles.length, count + 1);
+
+  for (const [name, text, words] of [["broken.off", "OFF\n4 4", /broken\.off/], ["notes.md", "hello", /notes\.md/], ["a.mpv", "x", /scene file|MPV/], ["p.txt", "2\n0 0 0 0 0\n", /p\.txt/]]) {
+    await drop(name, text);
+    await driver.until((source) => new RegExp(source).test(document.querySelector("[role=alert]").textContent), words.source);
+    assert.equal((await documentOf(driver)).obstacles.length, count + 1, name);
+  }
+}));
