@@ -194,16 +194,11 @@ impl<'p> Driver<'p> {
         Advanced { over, left }
     }
 
-    /// Tells that the search is over and the path will be finished.
-    pub(crate) fn tell_finishing(&self) {
-        let mut recorder = Recorder {
-            outbox: &self.outbox,
-            wake: &|| {},
-            clock: self.clock,
-            began: 0.0,
-            stage: Stage::Finishing,
-        };
-        recorder.tell(word(Stage::Finishing), None);
+    /// Tells what the run does between two advances: `paused` or `finishing`.
+    pub(crate) fn tell(&self, state: &str, wake: &dyn Fn()) {
+        let mut recorder =
+            Recorder { outbox: &self.outbox, wake, clock: self.clock, began: 0.0, stage: Stage::Planning };
+        recorder.tell(state, None);
     }
 
     /// Finishes the path and tells the result.

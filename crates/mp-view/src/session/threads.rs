@@ -72,6 +72,11 @@ impl Orders {
         self.cancel.0.load(Ordering::Relaxed)
     }
 
+    /// Whether the next order is to pause.
+    fn is_pause(&self) -> bool {
+        *unpoisoned(&self.order) == Order::Pause && !self.is_cancelled()
+    }
+
     /// Waits for an order that is not to pause; returns when cancelled, too.
     fn next(&self) -> Order {
         let mut order = unpoisoned(&self.order);
@@ -211,6 +216,9 @@ fn drive(
     let run = prepared.begin(&mut Control { clock, ..Control::default() })?;
     let mut driver = Driver::new(scene, run, Arc::clone(outbox), orders.cancel.clone(), clock);
     loop {
+        if orders.is_pause() {
+            driver.tell("paused", wake);
+        }
         let order = orders.next();
         let advanced = driver.advance(order, &mut When(|| orders.new.load(Ordering::Relaxed)), wake);
         if advanced.over {

@@ -77,7 +77,12 @@ impl Worker {
                 self.run = Some(Planning { number, driver, order: first_order(paused), cancel, over: false });
                 self.last = Some(outbox);
             }
-            (AboutRun::Order(order), Some(run)) => run.order = order,
+            (AboutRun::Order(order), Some(run)) => {
+                run.order = order;
+                if order == Order::Pause {
+                    run.driver.tell("paused", &|| {});
+                }
+            }
             (AboutRun::Cancel, Some(run)) => {
                 run.cancel.cancel();
                 run.order = Order::Go;
@@ -104,7 +109,7 @@ impl Worker {
         run.order = advanced.left;
         if advanced.over {
             // To finish the path takes one call, maybe a long one: the page is told before.
-            run.driver.tell_finishing();
+            run.driver.tell("finishing", &|| {});
             run.over = true;
             run.order = Order::Go;
         }
