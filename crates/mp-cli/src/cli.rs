@@ -205,7 +205,8 @@ pub(crate) enum Animation {
 
 #[derive(Clone, Debug, Args)]
 pub(crate) struct View {
-    /// A scene file, or the name of a shipped scene; `-` for standard input. Without it, the page shows the shipped scenes.
+    /// A scene file, or the name of a shipped scene; `-` for standard input. Also a mesh, which becomes a robot to build a scene
+    /// around, or a file of the viewer (`.mpv`). Without it, the page shows the shipped scenes.
     pub(crate) scene: Option<PathBuf>,
     /// A path: text, `.json` or `.csv`; `-` for standard input.
     pub(crate) path: Option<PathBuf>,

@@ -5,9 +5,10 @@ use crate::cli::View;
 use crate::input::{is_standard, judged_path, refuse_two_standard_inputs, scene};
 use crate::interrupt;
 use crate::output::{note, print};
+use mp_io::Files as _;
 use mp_plan::{Error, folder_of};
 use mp_serve::{Limits, Server, Wake};
-use mp_view::{Opening, Planner, Session};
+use mp_view::{Opening, Planner, SceneFile, Session};
 use std::path::{Path, PathBuf};
 
 /// A request may hold the largest mesh file, and what is said about it.
@@ -70,9 +71,37 @@ fn opening(args: &View) -> Result<Opening, Error> {
         return Ok(Opening { folder: Some(folder), ..Opening::default() });
     };
     refuse_two_standard_inputs(given, args.path.as_deref())?;
-    let scene = scene(given)?;
+    if let Some(shown) = scene_file(given)? {
+        return match args.path {
+            None => Ok(Opening { shown: Some(shown), folder: Some(folder), ..Opening::default() }),
+            Some(_) => Err(Error::new(format!("{} shows its own paths", given.display()))
+                .help("leave the path out, or name the scene that the file was made from")),
+        };
+    }
+    let scene =
+        if is_mesh_file(given) { mp_view::scene_of_mesh(&mp_io::Disk, given)? } else { scene(given)? };
     let path = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
-    Ok(Opening { scene: Some(scene), path: path.map(|(path, _)| path), folder: Some(folder) })
+    let path = path.map(|(path, _)| path);
+    Ok(Opening { scene: Some(scene), path, folder: Some(folder), ..Opening::default() })
+}
+
+/// The scene file of the viewer at `given`, if it is one.
+fn scene_file(given: &Path) -> Result<Option<SceneFile>, Error> {
+    if !given.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("mpv")) {
+        return Ok(None);
+    }
+    let bytes = mp_io::Disk.read(given, mp_io::MAX_MESH_BYTES)?;
+    let file = SceneFile::parse(&bytes);
+    file.map(Some).map_err(|e| {
+        Error::new(format!("{}: {e}", given.display())).help("write it again: `mp render SCENE --out x.mpv`")
+    })
+}
+
+/// Whether there is a mesh at `given`.
+fn is_mesh_file(given: &Path) -> bool {
+    // Errors come when it is read as a scene.
+    !is_standard(given)
+        && mp_io::Disk.read(given, mp_io::MAX_MESH_BYTES).is_ok_and(|bytes| mp_view::is_mesh(given, &bytes))
 }
 
 /// The folder for files: the one asked for, that of the scene when it is a file, or the current one.

@@ -3,6 +3,7 @@
 mod desk;
 mod files;
 mod growth;
+mod mesh;
 mod messages;
 mod module;
 mod run;
@@ -13,6 +14,7 @@ mod threads;
 mod worker;
 
 pub use desk::Opening;
+pub use mesh::{is_mesh, scene_of_mesh};
 pub use module::planner_module;
 #[cfg(not(target_family = "wasm"))]
 pub use threads::Session;

@@ -1,6 +1,7 @@
 //! What a session has open, and the requests about it.
 
 use super::files::{Named, Written, plain_name, written};
+use super::mesh::{is_mesh, scene_of_mesh};
 use super::text_of;
 use crate::bytes::path_head;
 use crate::message::{Message, json};
@@ -19,6 +20,8 @@ pub struct Opening {
     pub scene: Option<Scene>,
     /// A path through it.
     pub path: Option<PathRows>,
+    /// A scene file that is shown at the beginning when no scene is open. The session cannot plan in it.
+    pub shown: Option<SceneFile>,
     /// The folder in which files are saved; without one, the page gets their content.
     pub folder: Option<PathBuf>,
 }
@@ -39,13 +42,15 @@ pub(crate) struct Desk {
     /// Meshes by the names that documents call them.
     meshes: BTreeMap<String, TriMesh>,
     folder: Option<PathBuf>,
+    /// What is shown when nothing is open.
+    shown: Option<SceneFile>,
 }
 
 type Answer = Result<Message, Error>;
 
 impl Desk {
     pub(crate) fn new(opening: Opening) -> Self {
-        let mut desk = Self { folder: opening.folder, ..Self::default() };
+        let mut desk = Self { folder: opening.folder, shown: opening.shown, ..Self::default() };
         if let Some(scene) = opening.scene {
             desk.adopt(scene, opening.path);
         }
@@ -101,9 +106,13 @@ impl Desk {
             .with("request", json(&Request::default()))
             .with("scenes", Scene::shipped())
             .with("folder", self.folder.as_ref().map(|folder| folder.display().to_string()));
-        let opened = match &self.open {
-            Some(open) => Value::Object(self.described(open, &mut reply)?),
-            None => Value::Null,
+        let opened = match (&self.open, &self.shown) {
+            (Some(open), _) => Value::Object(self.described(open, &mut reply)?),
+            (None, Some(file)) => {
+                let note = "this file only shows: to plan, open the scene that it was made from";
+                json!({"scene": reply.array(&file.to_bytes()), "document": null, "notes": [note]})
+            }
+            (None, None) => Value::Null,
         };
         reply.set("opened", opened);
         Ok(reply)
@@ -122,7 +131,11 @@ impl Desk {
                     Some(name) => name,
                     None => files.scene()?,
                 };
-                Scene::load_from(&files, Path::new(main))?
+                let main = Path::new(main);
+                match is_mesh(main, files.content(&main.to_string_lossy())) {
+                    true => scene_of_mesh(&files, main)?,
+                    false => Scene::load_from(&files, main)?,
+                }
             }
         };
         self.adopt(scene, None);

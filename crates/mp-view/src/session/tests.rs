@@ -264,6 +264,21 @@ fn documents_are_edited_and_saved() {
 }
 
 #[test]
+fn meshes_and_scene_files_are_opened() {
+    let page = Page::new(Opening::default());
+    let mesh = b"OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let opened = page.reply(with_files(json!({"do": "open"}), &[("four.off", mesh)]));
+    let file = scene_of(&opened);
+    assert_eq!((file.name.as_str(), file.bodies.len(), file.meshes[0].triangles.len()), ("four", 1, 12));
+    assert_eq!(opened.head["document"]["robot"]["shape"]["mesh"]["file"], "four.off");
+    let page = Page::new(Opening { shown: Some(file.clone()), ..Opening::default() });
+    let hello = page.ask(json!({"do": "hello"}));
+    let shown = hello.bytes(&hello.head["opened"]["scene"], "scene").unwrap();
+    assert_eq!(SceneFile::parse(&shown).unwrap(), file);
+    assert!(page.refused(json!({"do": "plan", "run": 1, "request": {}})).contains("no scene is open"));
+}
+
+#[test]
 fn files_go_into_the_folder_and_nowhere_else() {
     let dir = tempfile::tempdir().unwrap();
     let page = Page::new(Opening { folder: Some(dir.path().into()), ..Opening::default() });
