@@ -45,7 +45,7 @@ fn environments() {
             .with("w.off", TRIANGLE),
         case(Scene, "s.env", b"Robot\nr\xf6bot.off\n", "s.env:2:2: byte 0xf6 is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
         case(Scene, "s.env", b"R\0o\0b\0o\0t\0", "s.env:1:2: a zero byte: this is not UTF-8 text; expected a text file", "save the file as UTF-8; a binary or UTF-16 file cannot be read here"),
-        case(Scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
-        case(Scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected a GEMPA environment (.env, .txt) or an OMPL.app problem (.cfg)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
+        case(Scene, "scene.xml", "<scene/>", "scene.xml: this is not a problem that is read here; expected a GEMPA environment (.env, .txt), an OMPL.app problem (.cfg) or a scene of the editor (.mp.json)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
+        case(Scene, "s.off", TRIANGLE, "s.off: this is not a problem that is read here; expected a GEMPA environment (.env, .txt), an OMPL.app problem (.cfg) or a scene of the editor (.mp.json)", "a mesh or a path is not a problem: give the file that names the robot and the obstacles"),
     ]);
 }
