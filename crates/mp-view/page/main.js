@@ -66,14 +66,16 @@ async function connect(session, viewer) {
  * @param {Workbench} workbench */
 async function openInside(workbench) {
   const { session, viewer, hello } = workbench;
-  const { name, columns, bodies } = viewer.scene;
+  const { name, columns, bodies, meshes } = viewer.scene;
   const packed = document.getElementById("open")?.textContent;
   const request = packed ? decode(await unpack(packed), "message") : hello.scenes.includes(name) ? { do: "open", scene: name } : null;
   if (!request) return;
   const reply = await session.request(request);
   const scene = readScene(reply.scene);
+  // Large meshes are not in the page twice: they come from the files of the scene.
+  if (meshes.length && meshes.every((mesh) => !mesh.triangles.length)) workbench.take(reply, "open", viewer.scene);
   // Another scene may have the same name.
-  if (scene.columns.length === columns.length && scene.bodies.length === bodies.length) workbench.adopt(reply);
+  else if (scene.columns.length === columns.length && scene.bodies.length === bodies.length) workbench.adopt(reply);
 }
 
 /** @type {Viewer | null} */

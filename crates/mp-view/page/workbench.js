@@ -6,6 +6,7 @@ import { readScene } from "mp/scene.js";
 import { mayDiscard, setUnsaved } from "mp/unsaved.js";
 
 /** @import { Message } from "mp/message.js" */
+/** @import { Path, Scene } from "mp/scene.js" */
 /** @import { Session, SessionError } from "mp/session.js" */
 /** @import { Viewer } from "mp/viewer.js" */
 /** @typedef {{scene: string} | {files: {name: string, bytes: Uint8Array}[], main?: string}} Source  a shipped scene, or files */
@@ -42,9 +43,12 @@ export class Workbench {
       setUnsaved(true);
     });
   }
-  /** Shows what `open` or `edit` gave. @param {Message} reply @param {"open" | "edit"} how */
-  take(reply, how) {
+  /** Shows what `open` or `edit` gave. @param {Message} reply @param {"open" | "edit"} how
+   * @param {{paths: Path[], report: Scene["report"]}} [known] what is shown with it */
+  take(reply, how, known = { paths: [], report: null }) {
     const scene = readScene(reply.scene);
+    scene.paths.push(...known.paths);
+    scene.report ??= known.report;
     this.open = true;
     this.document = reply.document ?? null;
     this.viewer.show(scene, { keepCamera: how === "edit" });

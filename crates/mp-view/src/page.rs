@@ -1,7 +1,7 @@
 //! The page for the browser, as one file.
 
-use crate::SceneFile;
 use crate::message::Message;
+use crate::{Mesh, SceneFile};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, write::GzEncoder};
@@ -91,6 +91,10 @@ pub fn page(scene: Option<&SceneFile>, planner: Planner<'_>) -> String {
         .replace("<!--PLANNER-->", &planner)
 }
 
+/// With more vertices the meshes of a scene are in a page once, in the files of the scene, and the page shows them when its
+/// planner has read those.
+const MANY_VERTICES: usize = 5_000;
+
 /// As [`page`] with the WebAssembly module `planner` inside, which opens the scene from `files`: names and contents, the scene's own
 /// first. So the page can plan in a scene that the module does not have.
 #[must_use]
@@ -100,6 +104,9 @@ pub fn page_with_files(scene: &SceneFile, planner: &[u8], files: &[(String, Vec<
         files.iter().map(|(name, bytes)| json!({"name": name, "bytes": open.array(bytes)})).collect();
     open.set("main", files.first().map(|(name, _)| name.as_str()));
     open.set("files", list);
+    let light = SceneFile { meshes: vec![Mesh::default(); scene.meshes.len()], ..scene.clone() };
+    let vertices: usize = scene.meshes.iter().map(|mesh| mesh.positions.len() / 3).sum();
+    let scene = if vertices > MANY_VERTICES { &light } else { scene };
     let html = page(Some(scene), Planner::Inside(planner));
     html.replacen(
         "<script id=\"planner\"",
