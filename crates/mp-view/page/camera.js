@@ -16,7 +16,7 @@ const VIEWS = {
   right: [0, 0],
   top: [-Math.PI / 2, Math.PI / 2],
   bottom: [-Math.PI / 2, -Math.PI / 2],
-  iso: [-Math.PI / 3, Math.PI / 6],
+  iso: [-Math.PI / 3, Math.PI / 4],
 };
 
 export class Camera {

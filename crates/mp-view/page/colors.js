@@ -31,6 +31,11 @@ const [LIGHT, DARK] = [0, 1].map((i) => /** @type {Palette} */ (Object.fromEntri
 /** @param {boolean} dark @returns {Palette} */
 export const palette = (dark) => (dark ? DARK : LIGHT);
 
+/** The colours of successive obstacles in space, as the rasteriser of mp-render has them. */
+const OBSTACLES = ["#b4bdc9", "#c9bda9", "#acbfb3", "#c2b2bd", "#a9bcc4", "#cdc7ae"].map(hexColor);
+/** @param {number} obstacle its number @returns {Color} */
+export const obstacleColor = (obstacle) => OBSTACLES[obstacle % OBSTACLES.length];
+
 /** A colour for a component of a roadmap; neighbouring numbers differ clearly. @param {number} component @returns {Color} */
 export function componentColor(component) {
   const hue = (0.58 + component * 0.381966) % 1;

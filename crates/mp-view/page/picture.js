@@ -1,6 +1,6 @@
 // Says what is drawn: the bodies, copies, trees and traces that the settings ask for.
 
-import { componentColor, palette } from "mp/colors.js";
+import { componentColor, obstacleColor, palette } from "mp/colors.js";
 import { GrowingTree } from "mp/growing.js";
 import { lerpPose } from "mp/math.js";
 import { segmentsOf } from "mp/shapes.js";
@@ -111,7 +111,8 @@ export class PictureMaker {
       const mode = this.modeOf(s, b);
       const alpha = mode === "transparent" ? ALPHA : 1;
       const { pose, stretch, color: own } = this.scene.bodies[b];
-      const color = own ?? (mode === "wire" || this.linesOnly(b) ? colors.wire : colors.obstacle);
+      const usual = this.scene.planar ? colors.obstacle : obstacleColor(b - this.scene.robot);
+      const color = own ?? (mode === "wire" || this.linesOnly(b) ? colors.wire : usual);
       items.push({ shape: this.ofBody[b], pose, at: 0, color, alpha, mode, cut: s.section.axis >= 0, layer: 0, stretch, body: b, role: "obstacle", index: 0 });
     }
     return items.sort((a, b) => a.shape - b.shape);
