@@ -1,5 +1,6 @@
 // A browser for tests: headless Chromium with the page of `mp view`, driven through labels as a person or a screen reader has them.
 
+import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -96,8 +97,9 @@ export const withPage = (scene, use, { expected, ...size } = {}) => withFolder(a
   const { page, context, faults } = await newPage(size);
   try {
     await page.goto(server.address);
-    await page.evaluate(() => window.mpView.ready.then(() => window.mpView.planner));
-    await use(new Driver(page), folder, server);
+    const driver = new Driver(page);
+    await driver.untilReady();
+    await use(driver, folder, server);
     const surprising = faults.filter((fault) => !expected?.test(fault));
     if (surprising.length) throw new Error(`The page reports errors: ${surprising.join("; ")}`);
   } finally {
@@ -138,6 +140,14 @@ export class Driver {
   }
   async press(name) {
     await this.click("button", name);
+  }
+  /** Waits until the page has its scene and its planner, if it is one with a planner. */
+  async untilReady() {
+    await this.page.evaluate(() => {
+      const done = (state) => (window.stateForTests = state);
+      window.mpView.planner.then(() => done("ready"), (error) => done(`failed: ${error.message}`));
+    });
+    assert.equal(await this.until(() => window.stateForTests), "ready");
   }
   /** Presses a key, with the focus on the picture. */
   async key(name) {
