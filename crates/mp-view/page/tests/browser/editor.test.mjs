@@ -3,8 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { join } from "node:path";
-import { test } from "node:test";
-import { missing, withPage } from "./browser.mjs";
+import { browserTest, withPage } from "./browser.mjs";
 
 /** The document as the page has it. */
 const documentOf = (driver) => driver.page.evaluate(async () => (await window.mpView.planner).document);
@@ -15,7 +14,7 @@ const untilObstacles = (driver, count) => driver.until(async (n) => (await windo
 const untilPose = (driver, index, k, value) =>
   driver.until(async (i, at, wanted) => Math.abs((await window.mpView.planner).document.obstacles[i].pose[at] - wanted) < 1e-9, index, k, value);
 
-test("a scene is built, changed, saved and opened again", { skip: missing, timeout: 240_000 }, () => withPage("easy", async (driver, folder) => {
+browserTest("a scene is built, changed, saved and opened again", () => withPage("easy", async (driver, folder) => {
   await driver.press("New");
   await driver.until(async () => (await window.mpView.planner).document?.obstacles.length === 0);
 
@@ -84,11 +83,7 @@ test("a scene is built, changed, saved and opened again", { skip: missing, timeo
   assert.ok(files.some((f) => f.name === "room-own.mp.json") && files.some((f) => f.name === "room-gempa.env"), files.map((f) => f.name).join());
 
   // Opened again, as files that are dropped on the page: the same scene.
-  const drop = (chosen) => driver.page.evaluate((list) => {
-    const transfer = new DataTransfer();
-    for (const { name, text } of list) transfer.items.add(new File([text], name));
-    window.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
-  }, chosen);
+  const drop = (chosen) => driver.drop(...chosen.map(({ name, text }) => ({ name, content: text })));
   const shown = () => driver.page.evaluate(async () => {
     const { viewer } = await window.mpView.planner;
     return viewer.scene.bodies.slice(viewer.scene.robot).map((body) => body.pose);
@@ -135,7 +130,7 @@ const counted = (driver) => driver.page.evaluate(async () => {
   return { ...counts };
 });
 
-test("handles turn, scale and give up; start and goal are dragged with their clearance", { skip: missing, timeout: 240_000 }, () => withPage("easy", async (driver) => {
+browserTest("handles turn, scale and give up; start and goal are dragged with their clearance", () => withPage("easy", async (driver) => {
   await driver.press("New");
   await driver.until(async () => (await window.mpView.planner).document?.obstacles.length === 0);
   await driver.press("Add");
@@ -182,7 +177,7 @@ test("handles turn, scale and give up; start and goal are dragged with their cle
   await driver.until(async (x) => (await window.mpView.planner).viewer.scene.goals[0].row[0] === x, goal[0]);
 }));
 
-test("in the plane bodies keep z; a world that is no document lets start and goal be dragged", { skip: missing, timeout: 240_000 }, () => withPage("rrs-low", async (driver) => {
+browserTest("in the plane bodies keep z; a world that is no document lets start and goal be dragged", () => withPage("rrs-low", async (driver) => {
   assert.equal((await driver.options("Selected")).length, 3);
   await driver.choose("Selected", "robot at the start");
   const row = () => driver.page.evaluate(async () => (await window.mpView.planner).viewer.scene.start.row);
@@ -197,7 +192,7 @@ test("in the plane bodies keep z; a world that is no document lets start and goa
   await driver.until(async () => (await window.mpView.planner).document?.obstacles.length === 0);
   await driver.press("Add");
   await untilObstacles(driver, 1);
-  await driver.page.evaluate(() => [...document.querySelectorAll("summary")].find((e) => e.textContent === "Room").click());
+  await driver.unfold("Room");
   await driver.choose("The robot moves", "SE2");
   await driver.until(async () => (await window.mpView.planner).viewer.scene.planar);
   await driver.choose("Selected", "cube");
@@ -208,12 +203,8 @@ test("in the plane bodies keep z; a world that is no document lets start and goa
   assert.deepEqual([moved[0], ...moved.slice(2)], [at[0], ...at.slice(2)]);
 }));
 
-test("unsaved changes are asked about; meshes and files of other kinds", { skip: missing, timeout: 240_000 }, () => withPage("easy", async (driver) => {
-  const drop = (name, text) => driver.page.evaluate((file, content) => {
-    const transfer = new DataTransfer();
-    transfer.items.add(new File([content], file));
-    window.dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
-  }, name, text);
+browserTest("unsaved changes are asked about; meshes and files of other kinds", () => withPage("easy", async (driver) => {
+  const drop = (name, text) => driver.drop({ name, content: text });
   const count = (await documentOf(driver)).obstacles.length;
   const tetrahedron = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
   await drop("spike.off", tetrahedron);
@@ -233,7 +224,7 @@ test("unsaved changes are asked about; meshes and files of other kinds", { skip:
 
   for (const [name, text, words] of [["broken.off", "OFF\n4 4", /broken\.off/], ["notes.md", "hello", /notes\.md/], ["a.mpv", "x", /scene file|MPV/], ["p.txt", "2\n0 0 0 0 0\n", /p\.txt/]]) {
     await drop(name, text);
-    await driver.until((source) => new RegExp(source).test(document.querySelector("[role=alert]").textContent), words.source);
+    await driver.untilAlert(words);
     assert.equal((await documentOf(driver)).obstacles.length, count + 1, name);
   }
 }));
