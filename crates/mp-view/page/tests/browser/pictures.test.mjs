@@ -10,14 +10,14 @@ import { png } from "./png.mjs";
 
 const FOLDER = fileURLToPath(new URL("../../../../../docs/pictures/viewer/", import.meta.url));
 const WRITE = process.env.MP_PICTURES === "write";
-/** Scene, name of the picture, planner, whether the search is shown, and the view: a button, and keys that turn it.
+/** Scene, name of the picture, planner, whether the search is shown, and the view: a button, and keys that turn and enlarge it.
  * @type {[scene: string, name: string, planner: string, search: boolean, view: string | null, keys: string[]][]} */
 const SCENES = [
   ["gempa-1", "gempa-1", "rrt-connect", false, null, []],
   ["gempa-2", "gempa-2", "rrt-connect", false, null, []],
   ["gempa-3", "gempa-3", "rrt-connect", false, null, []],
   ["gempa-4", "gempa-4", "rrt-connect", false, null, []],
-  ["arm", "arm", "rrt-connect", false, "Left", [...Array(6).fill("ArrowDown"), ...Array(8).fill("ArrowLeft")]],
+  ["arm", "arm", "rrt-connect", false, "Left", [...Array(5).fill("ArrowUp"), ...Array(8).fill("ArrowLeft"), "f", "+", "+", "+"]],
   ["rrs-maze", "rrs-maze", "rrt-connect", false, null, []],
   ["gempa-1", "roadmap", "prm", true, null, []],
 ];
@@ -96,11 +96,8 @@ for (const [scene, name, planner, search, view, keys] of SCENES) {
       const canvas = document.getElementById("canvas");
       return canvas.width === 2 * width && canvas.height === 2 * height;
     }, [WIDTH, HEIGHT]);
-    if (view) await driver.press(view);
-    await driver.page.keyboard.down("Shift");
-    for (const key of keys) await driver.page.keyboard.press(key);
-    await driver.page.keyboard.up("Shift");
-    await driver.press("Fit");
+    await driver.press(view ?? "Fit");
+    for (const key of keys) await driver.keys(...(key.startsWith("Arrow") ? ["Shift", key] : [key]));
     const sheet = await sheetOf(driver);
     const file = join(FOLDER, `${name}.png`);
     if (WRITE) {
