@@ -30,8 +30,9 @@ const [WIDTH, HEIGHT] = [320, 240];
 const LINE = 160;
 /** Colours may differ by so much: the stored pictures have 256 of them. */
 const NEAR = 40;
-/** The part of the pixels that may differ more: other versions of Chromium round the edges of triangles and lines differently. */
-const PART = 0.02;
+/** The share of the pixels of a part that may differ more: other versions of Chromium round the edges of triangles and lines
+ * differently. A goal that is not drawn in gempa-4 makes 0.25%. */
+const SHARE = 0.002;
 
 /** A picture of the sheet: pixels as the page draws them, in base64. */
 async function partOf(driver) {
@@ -65,19 +66,22 @@ async function sheetOf(driver) {
   return sheet;
 }
 
-/** The part of the pixels that differ from those of a stored picture. */
+/** The share of the pixels that differ from those of a stored picture, in the part of the sheet where it is largest. */
 async function difference(page, sheet, stored) {
   return page.evaluate(async ([ours, theirs, width, height, near]) => {
     const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
     const image = await createImageBitmap(new Blob([bytes(theirs)]));
-    if (image.width !== width || image.height !== height) return 1;
-    const context = new OffscreenCanvas(width, height).getContext("2d");
+    if (image.width !== 3 * width || image.height !== 3 * height) return 1;
+    const context = new OffscreenCanvas(image.width, image.height).getContext("2d");
     context.drawImage(image, 0, 0);
-    const [a, b] = [bytes(ours), context.getImageData(0, 0, width, height).data];
-    let other = 0;
-    for (let i = 0; i < a.length; i += 4) if ([0, 1, 2].some((k) => Math.abs(a[i + k] - b[i + k]) > near)) other++;
-    return (4 * other) / a.length;
-  }, [Buffer.from(sheet).toString("base64"), stored.toString("base64"), 3 * WIDTH, 3 * HEIGHT, NEAR]);
+    const [a, b] = [bytes(ours), context.getImageData(0, 0, image.width, image.height).data];
+    const counts = new Array(9).fill(0);
+    for (let i = 0; i < a.length / 4; i++) {
+      const [x, y] = [i % image.width, Math.floor(i / image.width)];
+      if ([0, 1, 2].some((k) => Math.abs(a[4 * i + k] - b[4 * i + k]) > near)) counts[3 * Math.floor(y / height) + Math.floor(x / width)]++;
+    }
+    return Math.max(...counts) / (width * height);
+  }, [Buffer.from(sheet).toString("base64"), stored.toString("base64"), WIDTH, HEIGHT, NEAR]);
 }
 
 for (const [scene, name, planner, search, view, keys] of SCENES) {
@@ -106,8 +110,8 @@ for (const [scene, name, planner, search, view, keys] of SCENES) {
       return;
     }
     const { page, context } = await newPage();
-    const part = await difference(page, sheet, readFileSync(file)).finally(() => context.close());
-    t.diagnostic(`${(100 * part).toFixed(2)}% of the pixels differ`);
-    assert.ok(part < PART, `${(100 * part).toFixed(2)}% of the pixels differ from docs/pictures/viewer/${name}.png; if the change is right, “MP_PICTURES=write npm run test-browser” stores new pictures`);
+    const share = await difference(page, sheet, readFileSync(file)).finally(() => context.close());
+    t.diagnostic(`${(100 * share).toFixed(2)}% of the pixels differ where most do`);
+    assert.ok(share < SHARE, `${(100 * share).toFixed(2)}% of the pixels of a part differ from docs/pictures/viewer/${name}.png; if the change is right, “MP_PICTURES=write npm run test-browser” stores new pictures`);
   }));
 }
