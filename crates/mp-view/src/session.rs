@@ -2,7 +2,6 @@
 
 mod desk;
 mod files;
-mod growth;
 mod messages;
 mod module;
 mod run;

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import puppeteer from "puppeteer-core";
 
-const PROGRAM = process.env.MP ?? fileURLToPath(new URL("../../../../../target/debug/mp", import.meta.url));
+export const PROGRAM = process.env.MP ?? fileURLToPath(new URL("../../../../../target/debug/mp", import.meta.url));
 const CHROMIUM = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find((path) => path && existsSync(path));
 
 /** Why these tests cannot run here, or false. */
@@ -27,11 +27,16 @@ function addressOf(program) {
   });
 }
 
+const FLAGS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+/** A headless browser that draws in software. @param {string[]} [more] flags */
+export const launch = (more = []) => puppeteer.launch({ executablePath: CHROMIUM, args: [...FLAGS, ...more], protocolTimeout: 600_000 });
+
 /** Opens the page of `mp view` and calls `test` with it. A page that throws, or logs an error, fails the test. */
 export async function withPage(scene, test) {
   const folder = mkdtempSync(join(tmpdir(), "mp-view-"));
   const program = spawn(PROGRAM, ["view", scene, "--no-browser", "--folder", folder], { stdio: ["ignore", "pipe", "inherit"] });
-  const browser = await puppeteer.launch({ executablePath: CHROMIUM, args: ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
+  const browser = await launch();
   try {
     const page = await browser.newPage();
     await page.setViewport({ width: 1200, height: 900 });
