@@ -14,6 +14,9 @@ pub(crate) const MAX_TRIANGLES: usize = 1 << 30;
 /// would have to be built again when one of them is edited.
 const MAX_MERGED: usize = 50_000;
 
+/// Whether a mesh is a solid, once that is known.
+type IsSolid = Arc<OnceLock<bool>>;
+
 /// Named obstacles that stand still. Clones of a robot share them.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
@@ -21,7 +24,7 @@ pub(crate) struct Obstacles {
     /// Each obstacle, in the world frame.
     pub(crate) placed: Vec<(BodyId, Arc<TriMesh>)>,
     /// Each obstacle in its own frame, and whether it is a solid, found at the first use.
-    own: Vec<(TriMesh, Arc<OnceLock<bool>>)>,
+    own: Vec<(TriMesh, IsSolid)>,
     /// The box around all of them; empty when there are none.
     pub(crate) bounds: Aabb,
     /// The obstacles that are solids, made at the first use.
@@ -82,7 +85,7 @@ impl Obstacles {
 
     /// An obstacle with this mesh, the mesh in the world, and whether it is a solid. The obstacle with the number `i` comes
     /// before others.
-    fn find(&self, i: usize, mesh: &TriMesh) -> Option<(&Body, &Arc<TriMesh>, &Arc<OnceLock<bool>>)> {
+    fn find(&self, i: usize, mesh: &TriMesh) -> Option<(&Body, &Arc<TriMesh>, &IsSolid)> {
         let same = |j: &usize| self.own.get(*j).is_some_and(|(own, _)| own == mesh);
         let j = std::iter::once(i).chain(0..self.own.len()).find(same)?;
         let (id, in_world) = &self.placed[j];

@@ -61,7 +61,7 @@ fn message(head: Value) -> Message {
 fn with_files(mut request: Value, files: &[(&str, &[u8])]) -> Message {
     let mut message = Message::default();
     let list: Vec<_> =
-        files.iter().map(|(name, bytes)| json!({"name": name, "bytes": message.array(*bytes)})).collect();
+        files.iter().map(|(name, bytes)| json!({"name": name, "bytes": message.array(bytes)})).collect();
     request["files"] = list.into();
     let Value::Object(head) = request else { panic!("a head is an object") };
     message.head = head;
