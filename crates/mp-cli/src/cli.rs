@@ -95,8 +95,9 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// The file for the picture (`.png`; for worlds in the plane also `.svg`), a film (`.gif`, `.mp4`), the page of the
-    /// viewer (`.html`), which opens in a browser without a network, or meshes with the motion (`.glb`). `{scene}` and
-    /// `{seed}` are replaced by scene and seed. `mp render` has more choices.
+    /// viewer (`.html`), which opens in a browser without a network, the scene as the page reads it (`.mpv`), or meshes with
+    /// the motion (`.glb`). Page and `.mpv` show the trees or the roadmap of the run too. `{scene}` and `{seed}` are
+    /// replaced by scene and seed. `mp render` has more choices.
     #[arg(long, value_name = "FILE")]
     pub(crate) picture: Option<PathBuf>,
     /// Print one JSON object on standard output, and write only the files asked for.

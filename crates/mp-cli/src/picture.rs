@@ -3,8 +3,11 @@
 use crate::cli::{Animation, Drawing};
 use crate::page_planner::PagePlanner;
 use crate::progress::Line;
-use mp_plan::{Cancel, Error, Film, FilmKind, Look, PICTURE_SIZE, PathRows, PictureKind, Report, Scene};
-use mp_view::SceneFile;
+use mp_plan::{
+    Cancel, Error, Film, FilmKind, GrownRoadmap, Look, PICTURE_SIZE, PathRows, PictureKind, Progress, Report,
+    Scene, SearchEvent, Stage, Watch,
+};
+use mp_view::{GrownTrees, SceneFile};
 use std::path::Path;
 
 /// What goes into the file of a picture.
@@ -29,6 +32,38 @@ pub(crate) struct Shown<'a> {
     pub(crate) path: Option<&'a PathRows>,
     pub(crate) report: Option<&'a Report>,
     pub(crate) caption: &'a str,
+}
+
+/// The progress of a run, and what it grows if the picture shows that.
+#[derive(Debug)]
+pub(crate) struct Watched<'l> {
+    pub(crate) line: &'l mut Line,
+    pub(crate) grown: Option<GrownTrees>,
+}
+
+impl Watch for Watched<'_> {
+    fn stage(&mut self, stage: Stage) {
+        self.line.stage(stage);
+    }
+    fn progress(&mut self, progress: &Progress) {
+        self.line.progress(progress);
+    }
+    fn wants_events(&self) -> bool {
+        self.grown.as_ref().is_some_and(Watch::wants_events)
+    }
+    fn event(&mut self, event: SearchEvent<'_>) {
+        if let Some(grown) = &mut self.grown {
+            grown.event(event);
+        }
+    }
+    fn wants_roadmap(&self) -> bool {
+        self.grown.as_ref().is_some_and(Watch::wants_roadmap)
+    }
+    fn roadmap(&mut self, roadmap: GrownRoadmap) {
+        if let Some(grown) = &mut self.grown {
+            grown.roadmap(roadmap);
+        }
+    }
 }
 
 /// How long a film takes, seconds.
@@ -109,16 +144,22 @@ impl Picture {
         }
     }
 
+    /// Whether it shows what a run grows: its trees or its roadmap.
+    pub(crate) fn shows_search(&self) -> bool {
+        matches!(self, Self::Page(_) | Self::Scene)
+    }
+
     /// Whether it is worth stopping.
     pub(crate) fn takes_long(&self) -> bool {
         matches!(self, Self::Film(_))
     }
 
-    /// The bytes of the file; `None` when `cancel` was raised before they were complete. A page shows the report too, if there
-    /// is one.
+    /// The bytes of the file; `None` when `cancel` was raised before they were complete. A page shows the report too, and
+    /// what the run has `grown`, if there are any.
     pub(crate) fn bytes(
         &self,
         shown: &Shown<'_>,
+        grown: Option<GrownTrees>,
         cancel: &Cancel,
         line: &Line,
     ) -> Result<Option<Vec<u8>>, Error> {
@@ -137,6 +178,9 @@ impl Picture {
             (Some(report), _) => file.add_report(scene, report)?,
             (None, Some(path)) => file.add_path(scene, "path", path)?,
             (None, None) => {}
+        }
+        if let Some(grown) = grown {
+            grown.add_to(&mut file);
         }
         Ok(Some(match self {
             Self::Page(None) => file.to_html().into_bytes(),

@@ -5,13 +5,14 @@ use crate::files::Files;
 use crate::input::{is_standard, scene};
 use crate::interrupt;
 use crate::output::{note, print, print_json, write};
-use crate::picture::{Picture, Shown};
+use crate::picture::{Picture, Shown, Watched};
 use crate::progress::Line;
 use crate::request::request;
 use crate::text::{caption, summary, table};
 use mp_plan::{
     Cancel, Control, Error, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel, make_folder,
 };
+use mp_view::GrownTrees;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -107,22 +108,27 @@ fn one(
 ) -> Result<Report, Error> {
     let request = Request { seed, ..request.clone() };
     let mut line = Line::new(scene.name(), request.budget.time_s, watched);
-    let mut report = scene.plan_with(&request, &mut Control::new(cancel.clone(), &mut line))?;
+    let (out, file) = files.of(scene.name(), seed);
+    let drawing = Drawing { threads: Some(threads), ..Drawing::default() };
+    let picture =
+        file.map(|file| Ok::<_, Error>((Picture::of(scene, &file, &drawing, true)?, file))).transpose()?;
+    let shows_search = picture.as_ref().is_some_and(|(picture, _)| picture.shows_search());
+    let grown = shows_search.then(|| GrownTrees::new(scene, &request));
+    let mut watched = Watched { line: &mut line, grown };
+    let mut report = scene.plan_with(&request, &mut Control::new(cancel.clone(), &mut watched))?;
+    let grown = watched.grown;
     let Some(rows) = report.path.clone() else { return Ok(report) };
     let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
-    let (out, picture) = files.of(scene.name(), seed);
     if let Some(file) = out {
         line.say("writing the path");
         let kind = if is_standard(&file) { PathFileKind::Text } else { PathFileKind::of(&file)? };
         write(&file, path.to_file(kind).as_bytes())?;
         report.path_file = Some(file.display().to_string());
     }
-    if let Some(file) = picture {
+    if let Some((picture, file)) = picture {
         line.say("drawing the picture");
-        let drawing = Drawing { threads: Some(threads), ..Drawing::default() };
-        let picture = Picture::of(scene, &file, &drawing, true)?;
         let shown = Shown { scene, path: Some(&path), report: Some(&report), caption: &caption(&report) };
-        match picture.bytes(&shown, cancel, &line)? {
+        match picture.bytes(&shown, grown, cancel, &line)? {
             Some(bytes) => {
                 write(&file, &bytes)?;
                 report.picture_file = Some(file.display().to_string());

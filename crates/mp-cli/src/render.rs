@@ -31,7 +31,7 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
     let shown = Shown { scene: &scene, path, report: None, caption: &caption };
     let cancel = if picture.takes_long() { interrupt::flag() } else { Cancel::new() };
     let line = Line::new(scene.name(), None, true);
-    let Some(bytes) = picture.bytes(&shown, &cancel, &line)? else {
+    let Some(bytes) = picture.bytes(&shown, None, &cancel, &line)? else {
         drop(line);
         note(&format!("interrupted: {} was not written", args.picture.display()));
         return Ok(false);

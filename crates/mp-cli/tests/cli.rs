@@ -333,3 +333,55 @@ fn ctrl_c_stops_at_once_and_says_so() {
     assert!(run.json()["iterations"].as_u64().unwrap() > 0);
     assert!(!dir.exists("p.txt"));
 }
+
+/// A page, and a scene file, of a run show the trees or the roadmap that the run has grown.
+#[test]
+fn pictures_of_runs_have_what_the_run_has_grown() {
+    let dir = Dir::new();
+    let file = |planner: &str, more: &[&str]| {
+        let args =
+            ["plan", "window.env", "--json", "--planner", planner, "--seed", "3", "--picture", "s.mpv"];
+        let run = mp(&dir, &[&args, more].concat());
+        assert_eq!(run.code, 0, "{run:?}");
+        (mp_view::SceneFile::parse(&dir.bytes("s.mpv")).unwrap(), run.json())
+    };
+    let (scene, report) = file("rrt-connect", &[]);
+    assert_eq!(
+        scene.trees.iter().map(|t| t.name.as_str()).collect::<Vec<_>>(),
+        ["from the start", "from the goal"]
+    );
+    let nodes: usize = scene.trees.iter().map(|tree| tree.parents.len()).sum();
+    assert_eq!(report["nodes"], nodes);
+    for (tree, end) in scene.trees.iter().zip([&scene.start, &scene.goals[0]]) {
+        assert_eq!(tree.parents.iter().filter(|&&parent| parent == -1).count(), 1);
+        let root = end.poses[..3].iter().map(|&x| x as f32).collect::<Vec<_>>();
+        assert_eq!(tree.nodes[..3], root, "the root is where the tree begins");
+    }
+    assert!(scene.roadmap.is_none());
+
+    // A tree that is pruned and rewired.
+    let (scene, report) = file("rrt-star", &["--iterations", "3000"]);
+    assert_eq!(report["nodes"], scene.trees[0].parents.len());
+
+    let (scene, report) = file("visibility-prm", &[]);
+    let map = scene.roadmap.unwrap();
+    assert!(scene.trees.is_empty());
+    assert_eq!((&report["nodes"], &report["edges"]), (&map.kind.len().into(), &(map.edges.len() / 2).into()));
+    assert_eq!(report["components"], 1 + map.component.iter().max().unwrap());
+    assert!(map.kind.contains(&1) && map.kind.contains(&2), "guards and connections: {:?}", map.kind);
+    for ends in map.edges.chunks(2) {
+        assert_eq!(map.component[ends[0] as usize], map.component[ends[1] as usize]);
+    }
+
+    // A roadmap that is continued from a file is shown whole.
+    let known = file("prm", &["--roadmap", "r.map"]).0.roadmap.unwrap();
+    let (scene, report) = file("prm", &["--roadmap", "r.map"]);
+    let map = scene.roadmap.unwrap();
+    assert_eq!(map.nodes[..known.nodes.len()], known.nodes);
+    assert_eq!(report["nodes"], map.kind.len());
+
+    // The path is the same whether or not the search is shown.
+    let alone = mp(&dir, &["plan", "window.env", "--json", "--seed", "3"]).json();
+    let (_, shown) = file("rrt-connect", &[]);
+    assert_eq!((&alone["path"], &alone["nodes"]), (&shown["path"], &shown["nodes"]));
+}

@@ -1,6 +1,7 @@
 //! The indexed triangle mesh.
 
 use nalgebra::{Isometry3, Point3};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Why a mesh could not be made.
@@ -60,11 +61,20 @@ fn check_count(what: &'static str, count: usize) -> Result<(), MeshError> {
 /// An indexed triangle mesh (boundary representation): a soup, with no promise of being closed,
 /// manifold, oriented or free of degenerate triangles.
 ///
-/// It is never empty, every coordinate is finite and every index in range: the constructors check this.
-#[derive(Clone, Debug, PartialEq)]
+/// It is never empty, every coordinate is finite and every index in range: the constructors check this. Clones share vertices
+/// and triangles.
+#[derive(Clone, Debug)]
 pub struct TriMesh {
-    vertices: Vec<Point3<f64>>,
-    triangles: Vec<[u32; 3]>,
+    vertices: Arc<Vec<Point3<f64>>>,
+    triangles: Arc<Vec<[u32; 3]>>,
+}
+
+/// The same vertices and triangles in the same order. Clones are not compared number by number.
+impl PartialEq for TriMesh {
+    fn eq(&self, other: &Self) -> bool {
+        (Arc::ptr_eq(&self.vertices, &other.vertices) || self.vertices == other.vertices)
+            && (Arc::ptr_eq(&self.triangles, &other.triangles) || self.triangles == other.triangles)
+    }
 }
 
 impl TriMesh {
@@ -88,7 +98,7 @@ impl TriMesh {
                 return Err(MeshError::IndexOutOfRange { triangle, index, vertices: vertices.len() });
             }
         }
-        Ok(Self { vertices, triangles })
+        Ok(Self { vertices: vertices.into(), triangles: triangles.into() })
     }
 
     /// The vertices.
@@ -114,13 +124,14 @@ impl TriMesh {
 
     /// The same vertices with other triangles, whose indices the caller knows to be in range.
     pub(crate) fn with_triangles(&self, triangles: Vec<[u32; 3]>) -> Self {
-        Self { vertices: self.vertices.clone(), triangles }
+        Self { vertices: Arc::clone(&self.vertices), triangles: triangles.into() }
     }
 
     /// The mesh moved by `pose`.
     #[must_use]
     pub fn transformed(&self, pose: &Isometry3<f64>) -> Self {
-        Self { vertices: self.vertices.iter().map(|p| pose * p).collect(), triangles: self.triangles.clone() }
+        let vertices: Vec<_> = self.vertices.iter().map(|p| pose * p).collect();
+        Self { vertices: vertices.into(), triangles: Arc::clone(&self.triangles) }
     }
 
     /// All of `meshes` in one. `None` when there are none.

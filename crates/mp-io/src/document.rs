@@ -140,15 +140,15 @@ impl SceneDocument {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
-    /// The document of a problem, with its meshes written into it.
+    /// The document of a problem. Its meshes are named, not written into it.
     #[must_use]
-    pub fn with_meshes_of(problem: &RigidProblem) -> Self {
-        let body = |name: &str, file: &Path, mesh: &TriMesh, pose: Option<&Isometry3<f64>>| DocumentBody {
+    pub fn of_problem(problem: &RigidProblem) -> Self {
+        let body = |name: &str, file: &Path, pose: Option<&Isometry3<f64>>| DocumentBody {
             name: name.to_owned(),
             color: None,
             shape: DocumentShape::Mesh {
                 file: file.file_name().map_or_else(|| name.to_owned(), |f| f.to_string_lossy().into_owned()),
-                off: Some(off_text(mesh)),
+                off: None,
             },
             scale: None,
             pose: pose.map(|pose| six_from_pose(pose).map(|v| v + 0.0)),
@@ -158,12 +158,10 @@ impl SceneDocument {
             name: problem.name.clone(),
             space: problem.space,
             bounds: problem.bounds.map(|b| [b.min.coords.into(), b.max.coords.into()]),
-            robot: body(&problem.robot.name, &problem.robot.file, &problem.robot.mesh, None),
+            robot: body(&problem.robot.name, &problem.robot.file, None),
             start: six_from_pose(&problem.start).map(|v| v + 0.0),
             goal: six_from_pose(&problem.goal).map(|v| v + 0.0),
-            obstacles: (problem.obstacles.iter())
-                .map(|o| body(&o.name, &o.file, &o.mesh, Some(&o.pose)))
-                .collect(),
+            obstacles: problem.obstacles.iter().map(|o| body(&o.name, &o.file, Some(&o.pose))).collect(),
         }
     }
 
@@ -178,7 +176,38 @@ impl SceneDocument {
         mesh: &dyn Fn(&str) -> Result<TriMesh, Error>,
     ) -> Result<RigidProblem, Error> {
         self.check(file)?;
-        let robot = self.robot.mesh(file, mesh)?;
+        self.problem_among(file, &self.meshes(mesh)?)
+    }
+
+    /// The mesh of each body, the robot's first, before it is scaled; `None` for figures. `mesh` gives the meshes of files that
+    /// are not written into the document.
+    ///
+    /// # Errors
+    /// [`Error`] when a mesh is missing or not valid.
+    pub fn meshes(
+        &self,
+        mesh: &dyn Fn(&str) -> Result<TriMesh, Error>,
+    ) -> Result<Vec<Option<TriMesh>>, Error> {
+        let of = |body: &DocumentBody| {
+            Ok(match &body.shape {
+                DocumentShape::Mesh { file, off: Some(off) } => {
+                    Some(OffDocument::parse(file, off.as_bytes())?.to_mesh(file)?)
+                }
+                DocumentShape::Mesh { file, off: None } => Some(mesh(file)?),
+                _ => None,
+            })
+        };
+        self.bodies().map(of).collect()
+    }
+
+    /// The problem of the document, as [`problem`](Self::problem), with `meshes` as [`meshes`](Self::meshes) returns them.
+    ///
+    /// # Errors
+    /// As [`problem`](Self::problem).
+    pub fn problem_among(&self, file: &str, meshes: &[Option<TriMesh>]) -> Result<RigidProblem, Error> {
+        self.check(file)?;
+        let mesh = |body: &DocumentBody, i: usize| body.mesh(file, meshes.get(i).and_then(Option::as_ref));
+        let robot = mesh(&self.robot, 0)?;
         let (start, goal) = (pose_from_six(self.start), pose_from_six(self.goal));
         let bounds = self.bounds.map(|[low, high]| Aabb::new(Point3::from(low), Point3::from(high)));
         if let Some(b) = &bounds {
@@ -193,11 +222,11 @@ impl SceneDocument {
                 }
             }
         }
-        let obstacle = |o: &DocumentBody| {
+        let obstacle = |(i, o): (usize, &DocumentBody)| {
             Ok(PlacedBody {
                 name: o.name.clone(),
                 file: o.shape.file().into(),
-                mesh: o.mesh(file, mesh)?,
+                mesh: mesh(o, i + 1)?,
                 pose: pose_from_six(o.pose.unwrap_or_default()),
             })
         };
@@ -205,7 +234,7 @@ impl SceneDocument {
             name: self.name.clone(),
             space: self.space,
             robot: Body { name: self.robot.name.clone(), file: self.robot.shape.file().into(), mesh: robot },
-            obstacles: self.obstacles.iter().map(obstacle).collect::<Result<_, Error>>()?,
+            obstacles: self.obstacles.iter().enumerate().map(obstacle).collect::<Result<_, Error>>()?,
             start,
             goal,
             bounds,
@@ -238,14 +267,14 @@ impl SceneDocument {
         let mut meshes: Vec<(&DocumentBody, String)> = Vec::new();
         let mut files = Vec::new();
         self.check(name)?;
-        for body in self.bodies() {
+        for (body, own) in self.bodies().zip(self.meshes(mesh)?) {
             let same =
                 |known: &&(&DocumentBody, String)| known.0.shape == body.shape && known.0.scale == body.scale;
             let file = match meshes.iter().find(same) {
                 Some((_, file)) => file.clone(),
                 None => {
                     let file = free_name(name, &plain_name(&body.name), &files);
-                    files.push((file.clone(), gempa_mesh_text(&body.mesh(name, mesh)?)));
+                    files.push((file.clone(), gempa_mesh_text(&body.mesh(name, own.as_ref())?)));
                     file
                 }
             };
@@ -273,7 +302,8 @@ impl SceneDocument {
         std::iter::once(&self.robot).chain(&self.obstacles)
     }
 
-    fn bodies_mut(&mut self) -> impl Iterator<Item = &mut DocumentBody> {
+    /// The robot first, then the obstacles, to be changed.
+    pub fn bodies_mut(&mut self) -> impl Iterator<Item = &mut DocumentBody> {
         std::iter::once(&mut self.robot).chain(&mut self.obstacles)
     }
 
@@ -324,8 +354,8 @@ impl SceneDocument {
 }
 
 impl DocumentBody {
-    /// Its mesh, scaled, in its own frame.
-    fn mesh(&self, file: &str, mesh: &dyn Fn(&str) -> Result<TriMesh, Error>) -> Result<TriMesh, Error> {
+    /// Its mesh, scaled, in its own frame. `own` is its mesh unless it is a figure.
+    fn mesh(&self, file: &str, own: Option<&TriMesh>) -> Result<TriMesh, Error> {
         let impossible = |e: primitives::PrimitiveError| {
             Error::new(ErrorKind::Content, file, format!("{} cannot be made: {e}", self.name))
                 .help("give lengths above zero, metres")
@@ -345,10 +375,10 @@ impl DocumentBody {
                 primitives::torus(*ring, *tube, SEGMENTS, TUBE_SEGMENTS).map_err(impossible)?
             }
             DocumentShape::Tetrahedron { edge } => primitives::tetrahedron(*edge).map_err(impossible)?,
-            DocumentShape::Mesh { file, off: Some(off) } => {
-                OffDocument::parse(file, off.as_bytes())?.to_mesh(file)?
-            }
-            DocumentShape::Mesh { file, off: None } => mesh(file)?,
+            DocumentShape::Mesh { file: mesh, .. } => own.cloned().ok_or_else(|| {
+                Error::new(ErrorKind::Content, file, format!("the mesh {mesh} is missing"))
+                    .help("open it first")
+            })?,
         };
         let made = match self.scale {
             Some([x, y, z]) => {

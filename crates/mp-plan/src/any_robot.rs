@@ -16,6 +16,7 @@ use mp_cspace::{Rng, Space, Validity};
 use mp_geom::Aabb;
 use mp_io::RigidProblem;
 use nalgebra::{Isometry3, Point3};
+use std::any::Any;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -52,6 +53,8 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn rigid_problem(&self) -> Option<&RigidProblem>;
     fn is_planar(&self) -> bool;
     fn picture_bounds(&self) -> Option<Aabb>;
+    /// For front ends that need the kind itself.
+    fn as_any(&self) -> &dyn Any;
 }
 
 impl<K: RobotKind + 'static> AnyRobot for K {
@@ -143,5 +146,8 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn picture_bounds(&self) -> Option<Aabb> {
         RobotKind::picture_bounds(self)
+    }
+    fn as_any(&self) -> &dyn Any {
+        self
     }
 }

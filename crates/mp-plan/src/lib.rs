@@ -112,12 +112,12 @@ pub use robot::{
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};
-pub use scene::Scene;
+pub use scene::{EditedScene, Scene};
 #[cfg(feature = "roadmaps")]
 pub use scene_roadmap::SceneRoadmap;
 pub use search::{Search, search};
 pub use sweep::{Sweep, Track};
-pub use watch::{Control, SearchEvent, Stage, Watch};
+pub use watch::{Control, GrownRoadmap, SearchEvent, Stage, Watch};
 
 #[cfg(feature = "pictures")]
 pub use mp_render::{Mode, View};

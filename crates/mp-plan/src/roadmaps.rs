@@ -1,13 +1,17 @@
 //! Planners that build roadmaps, with the feature `roadmaps`. Without it there are none.
 
-use crate::{Error, MetricName, Request, RobotKind};
+use crate::{Error, GrownRoadmap, MetricName, Request, RobotKind};
 use mp_cspace::erased::AnyIndex;
 use mp_cspace::{
     AnyProblem, BuildError, Planner, Workers,
     registry::{PlannerInfo, Settings},
 };
 #[cfg(feature = "roadmaps")]
-use mp_cspace::{Observer, Rng, Stop, StopReason};
+use mp_cspace::{NodeId, Observer, Rng, Stop, StopReason};
+#[cfg(feature = "roadmaps")]
+use mp_roadmap::LinkState;
+#[cfg(feature = "roadmaps")]
+use std::collections::HashMap;
 use std::path::Path;
 
 /// A planner that builds a roadmap.
@@ -145,6 +149,24 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
         let map = [self.planner.map().edges(), self.planner.map_mut().components()];
         Ok((map, wanted.then(|| self.planner.map().clone())))
     }
+
+    /// The roadmap with its configurations as rows.
+    pub(crate) fn grown(&mut self, row: &dyn Fn(&S) -> Vec<f64>) -> GrownRoadmap {
+        let map = self.planner.map_mut();
+        let mut numbers = HashMap::new();
+        let components = (0..map.len() as NodeId).map(|id| {
+            let next = numbers.len() as u32;
+            *numbers.entry(map.component(id)).or_insert(next)
+        });
+        let components = components.collect();
+        let free = map.all_edges().filter(|(_, _, link)| link.state != LinkState::Blocked);
+        GrownRoadmap {
+            edges: free.map(|(_, ends, _)| ends).collect(),
+            rows: map.states().iter().map(row).collect(),
+            kinds: map.tags().map(|tag| tag.kind.name()).collect(),
+            components,
+        }
+    }
 }
 
 /// Without the feature `roadmaps`: any state.
@@ -178,6 +200,9 @@ impl<'p, S: RoadmapState> RoadmapPlanner<'p, S> {
         Err(Error::new(format!("{} is not in this program", info.name)))
     }
     pub(crate) fn planner(&mut self) -> &mut (dyn Planner<S, Edge = ()> + 'p) {
+        match self.none.0 {}
+    }
+    pub(crate) fn grown(&mut self, _: &dyn Fn(&S) -> Vec<f64>) -> GrownRoadmap {
         match self.none.0 {}
     }
     pub(crate) fn keep(

@@ -214,6 +214,9 @@ impl<'p, 'k, K: RobotKind> RobotRun<'p, 'k, K> {
             NamedPlanner::Tree(_) => (None, None),
             NamedPlanner::Roadmap(made) => {
                 let (map, roadmap) = made.keep(self.file.as_ref(), control.keep_roadmap)?;
+                if let Some(watch) = control.watch.as_mut().filter(|watch| watch.wants_roadmap()) {
+                    watch.roadmap(made.grown(&|q| kind.row(q)));
+                }
                 (Some(map), roadmap)
             }
         };

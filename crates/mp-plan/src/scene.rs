@@ -9,7 +9,7 @@ use crate::{
     Sweep, Track, Verdict,
 };
 use mp_geom::{Aabb, TriMesh, six_from_pose};
-use mp_io::{PlanarProblem, PlanarShape, RigidProblem, SceneDocument, SpaceKind};
+use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, SceneDocument, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -35,8 +35,17 @@ pub struct Scene {
     /// Whether its files are those that come with the program.
     #[cfg_attr(not(feature = "scenes"), expect(dead_code, reason = "there are none"))]
     pub(crate) shipped: bool,
-    /// What it was made from, if that is a document of an editor. Its meshes are written into it.
-    pub(crate) document: Option<Arc<SceneDocument>>,
+    /// What it was made from, if that is a document of an editor.
+    document: Option<Arc<EditedScene>>,
+}
+
+/// A scene as an editor keeps it: its document, and the meshes that are not written into the document.
+#[derive(Clone, Debug)]
+pub struct EditedScene {
+    /// The document. Its meshes have names only.
+    pub document: SceneDocument,
+    /// The mesh of each body, the robot's first, without the scale that the document gives; `None` for figures.
+    pub meshes: Vec<Option<TriMesh>>,
 }
 
 impl fmt::Debug for Scene {
@@ -56,10 +65,21 @@ impl Scene {
     /// # Errors
     /// When the bounds of the position are empty, or a mesh or pose is not valid.
     pub fn from_problem(problem: RigidProblem) -> Result<Self, Error> {
+        Self::of_problem(None, problem)
+    }
+
+    fn of_problem(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
+        let before = before.map(|before| before.robot.as_any());
         Ok(match problem.space {
-            SpaceKind::Se3 => Self::new(RigidScene::<Spatial>::new(problem)?),
-            SpaceKind::Se2 => Self::new(RigidScene::<Planar>::new(problem)?),
+            SpaceKind::Se3 => {
+                let before = before.and_then(|before| before.downcast_ref());
+                Self::new(RigidScene::<Spatial>::after(before, problem)?)
+            }
+            SpaceKind::Se2 => {
+                let before = before.and_then(|before| before.downcast_ref());
+                Self::new(RigidScene::<Planar>::after(before, problem)?)
+            }
         })
     }
 
@@ -84,21 +104,52 @@ impl Scene {
         document: SceneDocument,
         mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
     ) -> Result<Self, Error> {
-        let scene = Self::from_problem(document.problem(&document.name, mesh)?)?;
-        Ok(Self { document: Some(Arc::new(document.with_meshes(mesh)?)), ..scene })
+        Self::of_document(None, document, mesh)
     }
 
-    /// The scene as an editor keeps it, with all meshes written into it. `None` unless the robot is a rigid body among
-    /// meshes.
+    /// The scene of `document`, which is an edited document of this scene. What did not change is shared with this scene, so
+    /// that an edit among large meshes takes little time. Otherwise as [`from_document`](Self::from_document).
+    ///
+    /// # Errors
+    /// As [`from_document`](Self::from_document).
+    pub fn edited(
+        &self,
+        document: SceneDocument,
+        mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
+    ) -> Result<Self, Error> {
+        Self::of_document(Some(self), document, mesh)
+    }
+
+    fn of_document(
+        before: Option<&Self>,
+        mut document: SceneDocument,
+        mesh: &dyn Fn(&str) -> Result<TriMesh, mp_io::Error>,
+    ) -> Result<Self, Error> {
+        let meshes = document.meshes(mesh)?;
+        for body in document.bodies_mut() {
+            if let DocumentShape::Mesh { off, .. } = &mut body.shape {
+                *off = None;
+            }
+        }
+        let scene = Self::of_problem(before, document.problem_among(&document.name, &meshes)?)?;
+        Ok(Self { document: Some(Arc::new(EditedScene { document, meshes })), ..scene })
+    }
+
+    /// The scene as an editor keeps it. `None` unless the robot is a rigid body among meshes.
     #[must_use]
-    pub fn document(&self) -> Option<SceneDocument> {
+    pub fn document(&self) -> Option<EditedScene> {
         let problem = self.robot.rigid_problem()?;
-        let mut document = match &self.document {
-            Some(document) => SceneDocument::clone(document),
-            None => SceneDocument::with_meshes_of(problem),
+        let mut edited = match &self.document {
+            Some(edited) => EditedScene::clone(edited),
+            None => {
+                let obstacles = problem.obstacles.iter().map(|o| Some(o.mesh.clone()));
+                let meshes = std::iter::once(Some(problem.robot.mesh.clone())).chain(obstacles).collect();
+                EditedScene { document: SceneDocument::of_problem(problem), meshes }
+            }
         };
+        let document = &mut edited.document;
         (document.start, document.goal) = (six_from_pose(&problem.start), six_from_pose(&problem.goal));
-        Some(document)
+        Some(edited)
     }
 
     /// Sets the file that reports name as the source of the scene.

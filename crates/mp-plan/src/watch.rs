@@ -29,10 +29,29 @@ pub trait Watch {
     }
     /// An event of the search.
     fn event(&mut self, _event: SearchEvent<'_>) {}
+    /// Whether [`roadmap`](Self::roadmap) is to be called.
+    fn wants_roadmap(&self) -> bool {
+        false
+    }
+    /// The roadmap when the search is over, if the planner builds one.
+    fn roadmap(&mut self, _roadmap: GrownRoadmap) {}
 }
 
 /// Watches nothing.
 impl Watch for () {}
+
+/// A roadmap with its configurations as rows of numbers: for viewers. The vectors of nodes have the same length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GrownRoadmap {
+    /// The configuration of each node.
+    pub rows: Vec<Vec<f64>>,
+    /// What each node is: `plain`, `guard`, `connection` or another kind of docs/formats/roadmap.md.
+    pub kinds: Vec<&'static str>,
+    /// The connected component of each node. Components are numbered from 0 by their first nodes.
+    pub components: Vec<u32>,
+    /// The two nodes of each edge that is not blocked.
+    pub edges: Vec<[NodeId; 2]>,
+}
 
 /// An event of a search, with configurations as rows of numbers: for viewers and logs.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,8 @@
 //! Meshes that stand still, as checkers and verifiers need them.
 
+use crate::solid_obstacle::SolidObstacle;
 use mp_collide::reference::RefMesh;
-use mp_collide::{BodyId, CollisionMesh, Scene, SceneError};
+use mp_collide::{Body, BodyId, CollisionMesh, Scene, SceneError};
 use mp_geom::{Aabb, TriMesh};
 use nalgebra::Isometry3;
 use std::sync::{Arc, OnceLock};
@@ -9,21 +10,32 @@ use std::sync::{Arc, OnceLock};
 /// The most triangles of robot and obstacles together: what a reference mesh can hold.
 pub(crate) const MAX_TRIANGLES: usize = 1 << 30;
 
+/// Obstacles with more triangles keep a tree of their own: one tree of all obstacles is faster only where they are many, and
+/// would have to be built again when one of them is edited.
+const MAX_MERGED: usize = 50_000;
+
+/// Whether a mesh is a solid, once that is known.
+type IsSolid = Arc<OnceLock<bool>>;
+
 /// Named obstacles that stand still. Clones of a robot share them.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
     pub(crate) scene: Scene,
     /// Each obstacle, in the world frame.
     pub(crate) placed: Vec<(BodyId, Arc<TriMesh>)>,
+    /// Each obstacle in its own frame, and whether it is a solid, found at the first use.
+    own: Vec<(TriMesh, IsSolid)>,
     /// The box around all of them; empty when there are none.
     pub(crate) bounds: Aabb,
+    /// The obstacles that are solids, made at the first use.
+    solids: OnceLock<Vec<(BodyId, SolidObstacle)>>,
     /// Made for the first verifier; `None` inside when there are no obstacles.
     reference: OnceLock<Option<Arc<RefMesh>>>,
 }
 
 impl Obstacles {
     /// The obstacles of a robot that has `triangles` triangles itself. Each obstacle is a name, a mesh and its pose in the
-    /// world.
+    /// world. The trees of meshes that `known` has are taken from there, and all of `known` if nothing differs.
     ///
     /// # Errors
     /// `too_many`, of the number of triangles, when there are more than [`MAX_TRIANGLES`]; or when an obstacle cannot be
@@ -32,19 +44,65 @@ impl Obstacles {
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
         triangles: usize,
         too_many: impl Fn(usize) -> E,
-    ) -> Result<Self, E> {
-        let (mut scene, mut placed, mut count) = (Scene::new(), Vec::new(), triangles);
-        for (name, mesh, pose) in obstacles {
+        known: Option<&Arc<Self>>,
+    ) -> Result<Arc<Self>, E> {
+        let (mut scene, mut placed, mut own, mut count) = (Scene::new(), Vec::new(), Vec::new(), triangles);
+        let mut unchanged = true;
+        for (i, (name, mesh, pose)) in obstacles.into_iter().enumerate() {
             count = count.saturating_add(mesh.triangles().len());
             if count > MAX_TRIANGLES {
                 return Err(too_many(count));
             }
-            let in_world = Arc::new(mesh.transformed(&pose));
-            placed.push((scene.insert(name, CollisionMesh::new(&mesh), pose)?, in_world));
+            let same = known.and_then(|known| known.find(i, &mesh));
+            let (tree, solid) = match same {
+                Some((body, _, solid)) => (body.mesh().clone(), Arc::clone(solid)),
+                None => (CollisionMesh::new(&mesh), Arc::default()),
+            };
+            let in_world = match same {
+                Some((body, in_world, _)) if *body.pose() == pose => Arc::clone(in_world),
+                _ => Arc::new(mesh.transformed(&pose)),
+            };
+            unchanged &= known.is_some_and(|known| {
+                known.placed.get(i).is_some_and(|(id, before)| {
+                    Arc::ptr_eq(before, &in_world) && known.scene.body(*id).is_some_and(|b| b.name() == name)
+                })
+            });
+            let id = match mesh.triangles().len() > MAX_MERGED {
+                true => scene.insert_movable(name, tree, pose)?,
+                false => scene.insert(name, tree, pose)?,
+            };
+            placed.push((id, in_world));
+            own.push((mesh, solid));
+        }
+        if let Some(known) = known.filter(|known| unchanged && known.placed.len() == placed.len()) {
+            return Ok(Arc::clone(known));
         }
         scene.merge_static();
         let bounds = placed.iter().map(|(_, mesh)| mesh.aabb()).fold(Aabb::empty(), |a, b| a.union(&b));
-        Ok(Self { scene, placed, bounds, reference: OnceLock::new() })
+        let (solids, reference) = (OnceLock::new(), OnceLock::new());
+        Ok(Arc::new(Self { scene, placed, own, bounds, solids, reference }))
+    }
+
+    /// An obstacle with this mesh, the mesh in the world, and whether it is a solid. The obstacle with the number `i` comes
+    /// before others.
+    fn find(&self, i: usize, mesh: &TriMesh) -> Option<(&Body, &Arc<TriMesh>, &IsSolid)> {
+        let same = |j: &usize| self.own.get(*j).is_some_and(|(own, _)| own == mesh);
+        let j = std::iter::once(i).chain(0..self.own.len()).find(same)?;
+        let (id, in_world) = &self.placed[j];
+        Some((self.scene.body(*id)?, in_world, &self.own[j].1))
+    }
+
+    /// The obstacles that are solids.
+    pub(crate) fn solids(&self) -> &[(BodyId, SolidObstacle)] {
+        self.solids.get_or_init(|| {
+            let named = self.placed.iter().zip(&self.own).filter_map(|((id, mesh), (_, solid))| {
+                let name = self.scene.body(*id)?.name();
+                // Whether it is a solid does not depend on its pose.
+                let solid = *solid.get_or_init(|| SolidObstacle::is_solid(mesh));
+                solid.then(|| (*id, SolidObstacle::new(name, mesh)))
+            });
+            named.collect()
+        })
     }
 
     /// All obstacles as one mesh for verifiers; `None` when there are no obstacles.
@@ -64,4 +122,48 @@ impl Obstacles {
 pub(crate) fn resolved_tolerance(wanted: f64, farthest: f64) -> f64 {
     let tolerance = wanted.max(1e-9 * farthest);
     if tolerance > 0.0 { tolerance } else { 1e-6 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mp_geom::primitives::cuboid;
+
+    type Named = (String, TriMesh, Isometry3<f64>);
+
+    fn made(obstacles: &[Named], known: Option<&Arc<Obstacles>>) -> Arc<Obstacles> {
+        let too_many = |_| SceneError::Full;
+        Obstacles::new(obstacles.iter().cloned(), 0, too_many, known).unwrap()
+    }
+
+    /// What did not change is taken from the obstacles before; what changed is as if made anew.
+    #[test]
+    fn unchanged_obstacles_are_shared() {
+        let cube = cuboid(1.0, 1.0, 1.0).unwrap();
+        let at = |x: f64| Isometry3::translation(x, 0.0, 0.0);
+        let before = ["a", "b", "c"].map(|name| (name.to_owned(), cube.clone(), at(name.len() as f64)));
+        let known = made(&before, None);
+        assert!(Arc::ptr_eq(&known, &made(&before, Some(&known))));
+
+        let changes: [fn(&mut Vec<Named>); 5] = [
+            |o| o[1].0 = "other".into(),
+            |o| o[1].2 = Isometry3::translation(0.0, 5.0, 0.0),
+            |o| o[1].1 = cuboid(1.0, 2.0, 1.0).unwrap(),
+            |o| drop(o.remove(1)),
+            |o| o.push(o[0].clone()),
+        ];
+        for change in changes {
+            let mut after = before.to_vec();
+            change(&mut after);
+            let (shared, alone) = (made(&after, Some(&known)), made(&after, None));
+            assert!(!Arc::ptr_eq(&known, &shared));
+            assert!(Arc::ptr_eq(&known.placed[0].1, &shared.placed[0].1));
+            assert_eq!(shared.placed, alone.placed);
+            assert_eq!(shared.bounds, alone.bounds);
+            for (ours, theirs) in shared.scene.bodies().zip(alone.scene.bodies()) {
+                assert_eq!((ours.1.name(), ours.1.pose()), (theirs.1.name(), theirs.1.pose()));
+                assert_eq!(ours.1.mesh().triangles(), theirs.1.mesh().triangles());
+            }
+        }
+    }
 }

@@ -47,11 +47,9 @@ pub(crate) struct Shared {
     pub(crate) robot_mesh: TriMesh,
     pub(crate) robot: CollisionMesh,
     pub(crate) radii: BodyRadii,
-    pub(crate) obstacles: Obstacles,
-    /// Made at the first use.
-    solids: OnceLock<Vec<(BodyId, SolidObstacle)>>,
+    pub(crate) obstacles: Arc<Obstacles>,
     /// The robot as verifiers see it, made for the first one.
-    reference: OnceLock<Arc<RefMesh>>,
+    reference: Arc<OnceLock<Arc<RefMesh>>>,
     /// Made at the first use.
     pub(crate) features: OnceLock<SceneFeatures>,
 }
@@ -59,13 +57,7 @@ pub(crate) struct Shared {
 impl Shared {
     /// The obstacles that are solids.
     pub(crate) fn solids(&self) -> &[(BodyId, SolidObstacle)] {
-        self.solids.get_or_init(|| {
-            let named = self.obstacles.placed.iter().filter_map(|(id, mesh)| {
-                let name = self.obstacles.scene.body(*id)?.name();
-                Some((*id, SolidObstacle::new(name, mesh)?))
-            });
-            named.collect()
-        })
+        self.obstacles.solids()
     }
 
     /// The robot as verifiers see it.
@@ -154,19 +146,34 @@ impl<P: Placement> RigidBody<P> {
         robot: &TriMesh,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, RobotError> {
-        let radii = BodyRadii::of(robot);
+        Self::among_after(None, robot, obstacles)
+    }
+
+    /// As [`among`](Self::among), after a small change: the trees of meshes that `before` has too are taken from there, so
+    /// that only what differs takes time. The result is the same.
+    ///
+    /// # Errors
+    /// As [`among`](Self::among).
+    pub fn among_after(
+        before: Option<&Self>,
+        robot: &TriMesh,
+        obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
+    ) -> Result<Self, RobotError> {
+        let before = before.map(|before| &*before.shared);
+        let same = before.filter(|before| before.robot_mesh == *robot);
+        let radii = same.map_or_else(|| BodyRadii::of(robot), |same| same.radii.clone());
         if radii.radius > MAX_RADIUS {
             return Err(RobotError::TooLarge { radius: radii.radius, max: MAX_RADIUS });
         }
         let too_many = |count| RobotError::TooManyTriangles { count, max: MAX_TRIANGLES };
-        let obstacles = Obstacles::new(obstacles, robot.triangles().len(), too_many)?;
+        let known = before.map(|before| &before.obstacles);
+        let obstacles = Obstacles::new(obstacles, robot.triangles().len(), too_many, known)?;
         let shared = Shared {
             robot_mesh: robot.clone(),
-            robot: CollisionMesh::new(robot),
+            robot: same.map_or_else(|| CollisionMesh::new(robot), |same| same.robot.clone()),
             radii,
             obstacles,
-            solids: OnceLock::new(),
-            reference: OnceLock::new(),
+            reference: same.map(|same| Arc::clone(&same.reference)).unwrap_or_default(),
             features: OnceLock::new(),
         };
         Ok(Self {

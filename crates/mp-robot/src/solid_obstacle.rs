@@ -14,11 +14,15 @@ pub(crate) struct SolidObstacle {
 }
 
 impl SolidObstacle {
-    /// `mesh`, in the world, if it is a solid: closed, consistently oriented, triangles facing outward.
-    pub(crate) fn new(name: &str, mesh: &Arc<TriMesh>) -> Option<Self> {
+    /// Whether a mesh is a solid: closed, consistently oriented, triangles facing outward.
+    pub(crate) fn is_solid(mesh: &TriMesh) -> bool {
         let topology = mesh.topology();
-        let solid = topology.closed && topology.oriented && mesh.signed_volume() > 0.0;
-        solid.then(|| Self { name: name.to_owned(), mesh: Arc::clone(mesh), bounds: mesh.aabb() })
+        topology.closed && topology.oriented && mesh.signed_volume() > 0.0
+    }
+
+    /// `mesh`, in the world, which is a [solid](Self::is_solid).
+    pub(crate) fn new(name: &str, mesh: &Arc<TriMesh>) -> Self {
+        Self { name: name.to_owned(), mesh: Arc::clone(mesh), bounds: mesh.aabb() }
     }
 
     /// Whether `p` is inside, by its winding number. For points within rounding of the surface either answer is
@@ -49,7 +53,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn solid(mesh: TriMesh) -> Option<SolidObstacle> {
-        SolidObstacle::new("it", &Arc::new(mesh))
+        SolidObstacle::is_solid(&mesh).then(|| SolidObstacle::new("it", &Arc::new(mesh)))
     }
 
     proptest! {

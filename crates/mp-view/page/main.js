@@ -104,6 +104,8 @@ Object.assign(window, {
     /** @param {Animation | Mode} mode */
     setMode: (mode) => present().setMode(mode),
     draw: () => present().draw(),
+    /** As a click on the picture. @param {number} x @param {number} y pixels */
+    click: (x, y) => present().click(x, y),
     stats: () => present().stats,
   },
 });

@@ -17,21 +17,6 @@ import { add, cross, dot, place, pointAt, scale, sub, unplace, unrotate } from "
 /** How near to a point or line a click must be, pixels. */
 const NEAR = 8;
 
-/** The ray's parameter where it meets the triangle, or Infinity. @param {Ray} ray @param {Vec3} a @param {Vec3} b @param {Vec3} c */
-export function meetTriangle(ray, a, b, c) {
-  const [u, v] = [sub(b, a), sub(c, a)];
-  const p = cross(ray.direction, v);
-  const det = dot(u, p);
-  if (Math.abs(det) < 1e-30) return Infinity;
-  const s = sub(ray.origin, a);
-  const x = dot(s, p) / det;
-  const q = cross(s, u);
-  const y = dot(ray.direction, q) / det;
-  if (x < 0 || y < 0 || x + y > 1) return Infinity;
-  const t = dot(v, q) / det;
-  return t > 0 ? t : Infinity;
-}
-
 /** Whether the ray meets a box. @param {Ray} ray @param {number[]} low @param {number[]} high */
 function meetsBox(ray, low, high) {
   let [enter, leave] = [0, Infinity];
@@ -50,10 +35,26 @@ function meetItem(ray, item, shape, kept) {
   const local = { origin: unplace(item.pose, item.at, ray.origin), direction: unrotate(item.pose, item.at, ray.direction) };
   if (!shape.triangles.length || !meetsBox(local, shape.low, shape.high)) return Infinity;
   let best = Infinity;
-  const { positions, triangles } = shape;
+  const { positions: p, triangles } = shape;
+  const [[ox, oy, oz], [dx, dy, dz]] = [local.origin, local.direction];
+  // As Möller and Trumbore, with plain numbers: there may be millions of triangles.
   for (let i = 0; i < triangles.length; i += 3) {
-    const t = meetTriangle(local, pointAt(positions, triangles[i]), pointAt(positions, triangles[i + 1]), pointAt(positions, triangles[i + 2]));
-    if (t < best && (!item.cut || kept(t))) best = t;
+    const a = 3 * triangles[i];
+    const b = 3 * triangles[i + 1];
+    const c = 3 * triangles[i + 2];
+    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+    const px = dy * vz - dz * vy, py = dz * vx - dx * vz, pz = dx * vy - dy * vx;
+    const det = ux * px + uy * py + uz * pz;
+    if (Math.abs(det) < 1e-30) continue;
+    const sx = ox - p[a], sy = oy - p[a + 1], sz = oz - p[a + 2];
+    const x = (sx * px + sy * py + sz * pz) / det;
+    if (x < 0 || x > 1) continue;
+    const qx = sy * uz - sz * uy, qy = sz * ux - sx * uz, qz = sx * uy - sy * ux;
+    const y = (dx * qx + dy * qy + dz * qz) / det;
+    if (y < 0 || x + y > 1) continue;
+    const t = (vx * qx + vy * qy + vz * qz) / det;
+    if (t > 0 && t < best && (!item.cut || kept(t))) best = t;
   }
   return best;
 }

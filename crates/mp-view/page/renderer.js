@@ -42,10 +42,16 @@ export class Renderer {
     this.calls = 0;
     this.triangles = 0;
   }
-  /** Takes the shapes of another scene, and frees those it had. @param {Shape[]} shapes */
+  /** Takes the shapes of another scene. Those that it has already stay on the graphics card, the others are freed. @param {Shape[]} shapes */
   setShapes(shapes) {
-    for (const shape of this.shapes) shape.free();
-    this.shapes = shapes.map((s) => new ShapeBuffers(this.gl, s, this.copies, this.strip));
+    const known = new Map(this.shapes.map((buffers) => [buffers.shape, buffers]));
+    this.shapes = shapes.map((shape) => {
+      const buffers = known.get(shape) ?? new ShapeBuffers(this.gl, shape, this.copies, this.strip);
+      known.set(shape, buffers);
+      return buffers;
+    });
+    const used = new Set(this.shapes);
+    for (const buffers of known.values()) if (!used.has(buffers)) buffers.free();
   }
   lineSet() { return new LineSet(this.gl, this.strip); }
 
@@ -111,15 +117,19 @@ export class Renderer {
   /** @param {Item[]} items @param {number} shift of the copies' indices @param {Picture} picture */
   drawSurfaces(items, shift, picture) {
     const gl = this.gl;
+    let prepared = false;
     for (const batch of grouped(items)) {
-      this.useSurface(picture);
+      if (!prepared) this.useSurface(picture);
       const buffers = this.shapes[batch.item.shape];
       const first = batch.first + shift;
       const clear = batch.item.mode === "transparent";
       if (clear || batch.item.role === "copy") gl.enable(gl.BLEND);
       gl.depthMask(!clear);
-      if (batch.item.mode !== "wire") this.fill(buffers, batch, first);
+      // A mesh without edges is not left out of wire pictures.
+      if (batch.item.mode !== "wire" || !buffers.shape.outlined) this.fill(buffers, batch, first);
       if (batch.item.mode === "wire" || picture.edges) this.edges(buffers, batch, first);
+      // Lines are drawn by another program.
+      prepared = !buffers.lines.count;
       if (buffers.lines.count) this.bodyLines(buffers.lines, batch, picture);
       gl.disable(gl.BLEND);
       gl.depthMask(true);

@@ -81,14 +81,17 @@ function array(value, type, what, group = 1) {
  * @param {number} group @returns {Arrays[K]} */
 function finite(value, type, what, group) {
   const found = array(value, type, what, group);
-  for (let i = 0; i < found.length; i++) check(Number.isFinite(found[i]), `In the scene file, the array of ${what} has an entry that is no number.`);
+  let all = true;
+  for (let i = 0; i < found.length; i++) all = all && Number.isFinite(found[i]);
+  check(all, `In the scene file, the array of ${what} has an entry that is no number.`);
   return found;
 }
 
 /** @param {ArrayLike<number>} indices @param {number} end @param {string} what @param {number} [low] */
 function checkIndices(indices, end, what, low = 0) {
   for (let i = 0; i < indices.length; i++) {
-    check(indices[i] >= low && indices[i] < end, `In the scene file, ${what} names number ${indices[i]}, but only ${end} are there.`);
+    // The sentence is made only when it is needed: there may be millions of indices.
+    if (!(indices[i] >= low && indices[i] < end)) throw new Error(`In the scene file, ${what} names number ${indices[i]}, but only ${end} are there.`);
   }
 }
 

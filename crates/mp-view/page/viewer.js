@@ -87,6 +87,7 @@ export class Viewer {
     this.prepare();
     this.panels?.show(scene, this.ofBody.reduce((sum, s) => sum + this.shapes[s].triangles.length / 3, 0));
     this.timeline?.show(scene);
+    byId("hint").textContent = this.shapes.every((shape) => shape.outlined) ? "" : "Edges are left out: a mesh has more than 4 million triangles.";
     if (!keepCamera) this.lookAsUsual();
     for (const listener of this.onshow) listener(scene);
     this.changed();

@@ -22,6 +22,7 @@ mod arrays;
 mod bytes;
 mod error;
 mod glb;
+mod growth;
 mod message;
 mod model;
 mod of_scene;
@@ -29,6 +30,7 @@ mod page;
 mod session;
 
 pub use error::ViewError;
+pub use growth::GrownTrees;
 pub use model::{
     Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
 };

@@ -2,7 +2,6 @@
 
 mod desk;
 mod files;
-mod growth;
 mod mesh;
 mod messages;
 mod module;

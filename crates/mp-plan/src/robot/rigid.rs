@@ -118,9 +118,19 @@ impl<M: RigidSpace> RigidScene<M> {
     /// # Errors
     /// When the bounds of the position are empty, or a mesh or pose is not valid.
     pub fn new(problem: RigidProblem) -> Result<Self, Error> {
+        Self::after(None, problem)
+    }
+
+    /// As [`new`](Self::new), after a small change of the problem: the collision trees of meshes that `before` has too are
+    /// taken from there.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn after(before: Option<&Self>, problem: RigidProblem) -> Result<Self, Error> {
         let space = M::space(&problem.position_bounds())?;
         let obstacles = problem.obstacles.iter().map(|o| (o.name.clone(), o.mesh.clone(), o.pose));
-        let robot = RigidBody::<M>::among(&problem.robot.mesh, obstacles)?;
+        let robot =
+            RigidBody::among_after(before.map(|before| &before.robot), &problem.robot.mesh, obstacles)?;
         let (start, goal) = (M::configuration(&problem.start), M::configuration(&problem.goal));
         let radius = if robot.radius() > 0.0 { robot.radius() } else { 1e-3 * space.extent() };
         Ok(Self { problem, space, robot, start, goals: vec![goal], radius })

@@ -93,9 +93,10 @@ impl SharedArm {
     fn obstacles(
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
-    ) -> Result<Obstacles, ArmError> {
+    ) -> Result<Arc<Obstacles>, ArmError> {
         let triangles = self.bodies.iter().map(|body| body.mesh.triangles().len()).sum();
-        Obstacles::new(obstacles, triangles, |count| ArmError::TooManyTriangles { count, max: MAX_TRIANGLES })
+        let too_many = |count| ArmError::TooManyTriangles { count, max: MAX_TRIANGLES };
+        Obstacles::new(obstacles, triangles, too_many, None)
     }
 
     pub(super) fn name(&self, body: usize) -> &str {
@@ -169,7 +170,7 @@ impl Arm {
         let obstacles = robot.obstacles(obstacles)?;
         Ok(Self {
             robot: Arc::new(robot),
-            obstacles: Arc::new(obstacles),
+            obstacles,
             query: Query::default(),
             counters: CheckCounters::default(),
             scratch: Scratch::default(),
@@ -184,7 +185,7 @@ impl Arm {
         &self,
         obstacles: impl IntoIterator<Item = (String, TriMesh, Isometry3<f64>)>,
     ) -> Result<Self, ArmError> {
-        let obstacles = Arc::new(self.robot.obstacles(obstacles)?);
+        let obstacles = self.robot.obstacles(obstacles)?;
         let mut other = Self { obstacles, ..self.clone() };
         other.take_counters();
         Ok(other)

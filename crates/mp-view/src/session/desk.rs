@@ -8,7 +8,7 @@ use crate::message::{Message, json};
 use crate::{PathTrack, SceneFile};
 use mp_geom::TriMesh;
 use mp_io::{DocumentShape, SceneDocument};
-use mp_plan::{Error, MetricName, PathFileKind, PathRows, Request, Scene};
+use mp_plan::{EditedScene, Error, MetricName, PathFileKind, PathRows, Request, Scene};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -144,22 +144,15 @@ impl Desk {
 
     /// Takes a scene as the one that is open.
     fn adopt(&mut self, scene: Scene, path: Option<PathRows>) {
-        let mut document = scene.document();
-        for body in document.iter_mut().flat_map(|d| std::iter::once(&mut d.robot).chain(&mut d.obstacles)) {
-            self.take_mesh(&mut body.shape);
-        }
+        let document = scene.document().map(|EditedScene { mut document, meshes }| {
+            for (body, mesh) in document.bodies_mut().zip(meshes) {
+                if let (DocumentShape::Mesh { file, .. }, Some(mesh)) = (&mut body.shape, mesh) {
+                    *file = self.name_mesh(file, mesh);
+                }
+            }
+            document
+        });
         self.open = Some(Open { scene, document, path });
-    }
-
-    /// Takes the mesh that is written into a document, and leaves its name.
-    fn take_mesh(&mut self, shape: &mut DocumentShape) {
-        let DocumentShape::Mesh { file, off } = shape else { return };
-        let Some(mesh) = off.take().and_then(|off| {
-            mp_io::OffDocument::parse(file, off.as_bytes()).and_then(|document| document.to_mesh(file)).ok()
-        }) else {
-            return;
-        };
-        *file = self.name_mesh(file, mesh);
     }
 
     /// Keeps a mesh, and returns the name by which documents call it: that of its file, unless another mesh has it.
@@ -182,7 +175,11 @@ impl Desk {
     fn edit(&mut self, request: &Message) -> Answer {
         let document = self.document(request)?;
         let meshes = &self.meshes;
-        let scene = Scene::from_document(document.clone(), &|name| known_mesh(meshes, name))?;
+        let mesh = |name: &str| known_mesh(meshes, name);
+        let scene = match &self.open {
+            Some(open) => open.scene.edited(document.clone(), &mesh)?,
+            None => Scene::from_document(document.clone(), &mesh)?,
+        };
         self.open = Some(Open { scene, document: Some(document), path: None });
         self.reply()
     }

@@ -1,9 +1,9 @@
 //! One run: how it is paused, stepped and cancelled, and what it tells the page.
 
-use super::growth::Growth;
 use super::messages::failure;
 use crate::PathTrack;
 use crate::bytes::path_head;
+use crate::growth::Growth;
 use crate::message::{Message, json};
 use mp_cspace::{Cancel, Clock, Iterations, Progress, Stop};
 use mp_plan::{Control, Error, PathRows, Report, Request, Run, Scene, SearchEvent, Stage, Watch};
@@ -43,8 +43,7 @@ pub(crate) fn locked(outbox: &Mutex<Outbox>) -> MutexGuard<'_, Outbox> {
 
 impl Outbox {
     pub(crate) fn new(run: u64, scene: Scene, request: &Request) -> SharedOutbox {
-        let roadmap = mp_plan::roadmap_planners().iter().any(|info| info.is_called(&request.planner));
-        let growth = Growth::new(scene, roadmap);
+        let growth = Growth::new(scene, request);
         Arc::new(Mutex::new(Self { run, growth, progress: None, ready: false, rest: VecDeque::new() }))
     }
 

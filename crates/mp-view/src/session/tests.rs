@@ -263,6 +263,38 @@ fn documents_are_edited_and_saved() {
     page.ask(json!({"do": "check", "row": [0, 2, 0, 0, 0, 0]}));
 }
 
+/// Edits keep what did not change; the scene is as if the document were opened alone.
+#[test]
+fn edited_scenes_are_as_scenes_made_anew() {
+    let page = Page::new(Opening::default());
+    let mut edited = document();
+    let changes: [fn(&mut Value); 7] = [
+        |_| {},
+        |d| d["obstacles"][0]["color"] = "#010203".into(),
+        |d| d["start"][2] = 0.25.into(),
+        |d| d["obstacles"][1]["pose"][0] = 0.75.into(),
+        |d| d["robot"]["scale"] = json!([1, 2, 1]),
+        |d| d["obstacles"].as_array_mut().unwrap().swap(0, 1),
+        |d| d["obstacles"][1]["name"] = "other".into(),
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        change(&mut edited);
+        let request = json!({"do": "edit", "document": edited});
+        let alone = Page::new(Opening::default());
+        let (kept, anew) = (page.ask(request.clone()), alone.ask(request));
+        assert_eq!((&kept.head, &kept.data), (&anew.head, &anew.data));
+        let run = json!({"do": "plan", "run": number, "request": mp_plan::Request::new("rrt-connect").iterations(2000)});
+        let reports = [&page, &alone].map(|page| {
+            page.ask(run.clone());
+            let mut done = page.until("done").pop().unwrap();
+            let report = done.head["report"].as_object_mut().unwrap();
+            report.retain(|name, _| !name.ends_with("_s"));
+            done
+        });
+        assert_eq!((&reports[0].head, &reports[0].data), (&reports[1].head, &reports[1].data));
+    }
+}
+
 #[test]
 fn meshes_and_scene_files_are_opened() {
     let page = Page::new(Opening::default());

@@ -15,7 +15,7 @@ const CHROMIUM = [process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-
 const FLAGS = ["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--force-device-scale-factor=1"];
 
 /** Why these tests cannot run here, or false. */
-const missing = !CHROMIUM ? "no Chromium: install it, or name it in the variable CHROMIUM"
+export const missing = !CHROMIUM ? "no Chromium: install it, or name it in the variable CHROMIUM"
   : !existsSync(PROGRAM) ? `no program ${PROGRAM}: build it by “cargo build -p mp-motion-cli”, or name it in the variable MP` : false;
 if (missing && process.env.MP_BROWSER_TESTS === "required") throw new Error(`The tests in a browser are required here, but there is ${missing}.`);
 
@@ -31,8 +31,10 @@ export function browserTest(name, run, lacking = false) {
 /** The one browser of a file of tests; it is started when the first test needs it. */
 let browser = null;
 after(async () => (await browser)?.close());
+/** A headless browser that draws in software. @param {string[]} [more] flags */
+export const launch = (more = []) => puppeteer.launch({ executablePath: CHROMIUM, args: [...FLAGS, ...more], protocolTimeout: 600_000 });
 function launched() {
-  browser ??= puppeteer.launch({ executablePath: CHROMIUM, args: FLAGS, protocolTimeout: 300_000 });
+  browser ??= launch();
   return browser;
 }
 

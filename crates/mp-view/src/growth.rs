@@ -1,8 +1,9 @@
-//! What a run has done since the page was told last: nodes, edges, and motions that were not free.
+//! The trees or the roadmap that a run grows: what the page has not been told yet, and all of them for a scene file.
 
 use crate::message::Message;
+use crate::{Roadmap, SceneFile, Tree};
 use mp_cspace::NodeId;
-use mp_plan::{Scene, SearchEvent};
+use mp_plan::{GrownRoadmap, Request, Scene, SearchEvent, Watch};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 
@@ -37,7 +38,8 @@ struct GrowingTree {
 }
 
 impl Growth {
-    pub(crate) fn new(scene: Scene, roadmap: bool) -> Self {
+    pub(crate) fn new(scene: Scene, request: &Request) -> Self {
+        let roadmap = mp_plan::roadmap_planners().iter().any(|info| info.is_called(&request.planner));
         Self { scene, roadmap, trees: Vec::new(), edges: Vec::new(), rejected: Vec::new() }
     }
 
@@ -78,6 +80,22 @@ impl Growth {
         &mut self.trees[tree]
     }
 
+    /// A roadmap as it is drawn.
+    fn drawn(&self, map: GrownRoadmap) -> Roadmap {
+        let kind = |name: &&str| match *name {
+            "plain" => 0,
+            "guard" => 1,
+            "connection" => 2,
+            _ => 3,
+        };
+        Roadmap {
+            nodes: map.rows.iter().flat_map(|row| self.place(row)).collect(),
+            edges: map.edges.into_flattened(),
+            component: map.components,
+            kind: map.kinds.iter().map(kind).collect(),
+        }
+    }
+
     /// Where a configuration is drawn.
     fn place(&self, row: &[f64]) -> [f32; 3] {
         self.scene.traced(row).map_or([0.0; 3], |p| [p.x as f32, p.y as f32, p.z as f32])
@@ -101,9 +119,8 @@ impl Growth {
                 roadmap = json!({"from": tree.sent, "nodes": nodes, "edges": edges});
             } else if tree.sent < tree.parents.len() {
                 let parents = message.array(&tree.parents[tree.sent..]);
-                let name = if i == 0 { "from the start" } else { "from the goal" };
                 trees.push(
-                    json!({"tree": i, "name": name, "from": tree.sent, "nodes": nodes, "parents": parents}),
+                    json!({"tree": i, "name": name_of(i), "from": tree.sent, "nodes": nodes, "parents": parents}),
                 );
             }
             if !tree.rewired.is_empty() {
@@ -158,6 +175,67 @@ impl GrowingTree {
             Some(former) => sent.iter().map(|&id| former[id as usize]).collect(),
             None => sent,
         });
+    }
+}
+
+/// The name of a tree.
+fn name_of(tree: usize) -> &'static str {
+    if tree == 0 { "from the start" } else { "from the goal" }
+}
+
+/// Keeps the trees or the roadmap that a run grows, for [`SceneFile`]: a watch of a run. It changes nothing of the result.
+///
+/// ```
+/// use mp_plan::{Cancel, Control, Request, Scene};
+/// use mp_view::{GrownTrees, SceneFile};
+/// let (scene, request) = (Scene::find("easy")?, Request::new("rrt-connect").seed(7));
+/// let mut grown = GrownTrees::new(&scene, &request);
+/// let report = scene.plan_with(&request, &mut Control::new(Cancel::default(), &mut grown))?;
+/// let mut file = SceneFile::of(&scene)?;
+/// grown.add_to(&mut file);
+/// assert_eq!(file.trees.iter().map(|tree| tree.parents.len() as u64).sum::<u64>(), report.nodes);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct GrownTrees {
+    growth: Growth,
+    roadmap: Option<GrownRoadmap>,
+}
+
+impl GrownTrees {
+    /// For one run of `request` in `scene`.
+    #[must_use]
+    pub fn new(scene: &Scene, request: &Request) -> Self {
+        Self { growth: Growth::new(scene.clone(), request), roadmap: None }
+    }
+
+    /// Adds what the run has grown to a file of its scene.
+    pub fn add_to(self, file: &mut SceneFile) {
+        let Self { growth, roadmap } = self;
+        file.roadmap = roadmap.map(|map| growth.drawn(map));
+        let trees = growth.trees.into_iter().enumerate().filter(|(_, tree)| !tree.parents.is_empty());
+        file.trees.extend(trees.map(|(i, GrowingTree { nodes, parents, .. })| Tree {
+            name: name_of(i).to_owned(),
+            nodes,
+            parents,
+        }));
+    }
+}
+
+impl Watch for GrownTrees {
+    fn wants_events(&self) -> bool {
+        !self.growth.roadmap
+    }
+    fn event(&mut self, event: SearchEvent<'_>) {
+        if !matches!(event, SearchEvent::Blocked { .. }) {
+            self.growth.note(&event);
+        }
+    }
+    fn wants_roadmap(&self) -> bool {
+        self.growth.roadmap
+    }
+    fn roadmap(&mut self, roadmap: GrownRoadmap) {
+        self.roadmap = Some(roadmap);
     }
 }
 
