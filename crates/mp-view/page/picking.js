@@ -1,7 +1,7 @@
 // What is under a pixel: a body, a configuration of the path, or a node of a tree or of the roadmap.
 
 import { brief } from "mp/dom.js";
-import { add, cross, dot, place, pointAt, scale, sub, unplace, unrotate } from "mp/math.js";
+import { add, dot, place, pointAt, scale, sub, unplace, unrotate } from "mp/math.js";
 
 /** @import { Camera, Ray } from "mp/camera.js" */
 /** @import { Mat4, Vec3 } from "mp/math.js" */

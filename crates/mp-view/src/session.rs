@@ -42,8 +42,13 @@ impl AboutRun {
         let about = match text_of(head, "do")? {
             "plan" => {
                 let value = head.get("request").cloned().unwrap_or_default();
-                let request = serde_json::from_value(value)
+                let request: Request = serde_json::from_value(value)
                     .map_err(|e| Error::new(format!("this is no request to plan: {e}")))?;
+                // A page writes files by `save` alone, into its folder.
+                if request.roadmap.is_some() {
+                    return Err(Error::new("a page keeps no roadmap in a file")
+                        .help("leave `roadmap` out: `mp plan --roadmap` keeps one"));
+                }
                 let paused = head.get("paused").and_then(Value::as_bool).unwrap_or(false);
                 Self::Plan { request: Box::new(request), paused }
             }

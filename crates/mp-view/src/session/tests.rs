@@ -203,6 +203,10 @@ fn start_and_goal_of_a_request_are_taken() {
     assert!(
         page.refused(json!({"do": "plan", "run": 2, "request": request, "goals": []})).contains("no goal")
     );
+    let file = std::env::temp_dir().join("mp-session-roadmap");
+    let request = json!({"planner": "prm", "roadmap": file});
+    let refused = page.refused(json!({"do": "plan", "run": 2, "request": request}));
+    assert!(refused.contains("no roadmap in a file") && !file.exists(), "{refused}");
     let refused = page.refused(json!({"do": "plan", "run": 2, "request": {"planner": "rrtt"}}));
     assert!(refused.contains("no planner"), "{refused}");
 }
