@@ -118,6 +118,7 @@ export class Panels {
       checkbox("Start", s.start, (on) => this.set(() => (s.start = on))),
       checkbox(scene.goals.length > 1 ? `Goals (${scene.goals.length})` : "Goal", s.goals, (on) => this.set(() => (s.goals = on))),
     ];
+    boxes.push(checkbox("Frames of the world and the bodies", s.frames, (on) => this.set(() => (s.frames = on))));
     if (scene.paths.length) boxes.push(checkbox("Trace of the path", s.trace, (on) => this.set(() => (s.trace = on))));
     scene.trees.forEach((tree, i) => boxes.push(checkbox(`Tree “${tree.name}” (${brief(tree.parents.length)} nodes)`, s.trees[i], (on) => this.set(() => (s.trees[i] = on)))));
     if (scene.roadmap) {

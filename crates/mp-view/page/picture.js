@@ -12,7 +12,7 @@ import { segmentsOf } from "mp/shapes.js";
 /** @import { Layer } from "mp/viewer.js" */
 /** @typedef {"all" | "step" | "auto"} Animation the three ways to show a path */
 /** @typedef {{mode: Mode, bodies: {visible: boolean, mode: Mode | ""}[], edges: boolean, path: number, animation: Animation,
- *  time: number, other: number, copies: number, copyMode: Mode, start: boolean, goals: boolean, trace: boolean, trees: boolean[],
+ *  time: number, other: number, copies: number, copyMode: Mode, start: boolean, goals: boolean, trace: boolean, frames: boolean, trees: boolean[],
  *  roadmap: boolean, growth: number, section: {axis: number, at: number, flipped: boolean}, dark: boolean,
  *  marked: Vec3 | null}} Settings
  *  `other` is a second path to compare with, or −1; `time` counts configurations of the path; `growth` and the section's `at` are between 0 and 1. */

@@ -86,6 +86,8 @@ export class Timeline {
     this.slider.setAttribute("aria-valuetext", `Configuration ${words}`);
     if (this.output) this.output.textContent = this.path && animation === "all" ? `${words} · ${Math.min(copies, this.last + 1)} shown` : words;
     if (this.playButton) this.playButton.textContent = this.playing ? "Pause" : "Play";
+    // The planner has a button “Pause”, too.
+    this.playButton?.setAttribute("aria-label", this.playing ? "Pause the path" : "Play the path");
     if (this.autoControls) this.autoControls.hidden = animation !== "auto";
     if (this.allControls) this.allControls.hidden = animation !== "all";
     this.plot?.draw(time);

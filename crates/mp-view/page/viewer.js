@@ -4,6 +4,7 @@ import { Camera } from "mp/camera.js";
 import { palette } from "mp/colors.js";
 import { Controls, isTyping } from "mp/controls.js";
 import { byId, showError } from "mp/dom.js";
+import { Frames } from "mp/frames.js";
 import { Panels, VIEWS } from "mp/panels.js";
 import { Picker } from "mp/picking.js";
 import { PictureMaker } from "mp/picture.js";
@@ -49,6 +50,7 @@ const firstSettings = (scene) => ({
   start: true,
   goals: true,
   trace: true,
+  frames: false,
   roadmap: true,
   section: { axis: -1, at: 0.5, flipped: false },
   dark: matchMedia("(prefers-color-scheme: dark)").matches,
@@ -69,6 +71,7 @@ export class Viewer {
     this.waiting = false;
     /** @type {Shape[]} */ this.shapes = [];
     /** The shape of each body. @type {number[]} */ this.ofBody = [];
+    this.addLayer(new Frames(this));
     this.prepare();
     const changed = () => this.changed();
     this.controls = new Controls(this.canvas, this.camera, { changed, clicked: (x, y) => this.click(x, y), centered: (x, y) => this.center(x, y) });

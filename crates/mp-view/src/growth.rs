@@ -193,7 +193,7 @@ fn name_of(tree: usize) -> &'static str {
 /// let report = scene.plan_with(&request, &mut Control::new(Cancel::default(), &mut grown))?;
 /// let mut file = SceneFile::of(&scene)?;
 /// grown.add_to(&mut file);
-/// assert_eq!(file.trees.iter().map(|tree| tree.parents.len() as u64).sum::<u64>(), report.nodes);
+/// assert_eq!(file.trees.iter().map(|tree| tree.parents.len()).sum::<usize>(), report.nodes);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]

@@ -16,7 +16,7 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 39] = modules!(
+const MODULES: [(&str, &str); 40] = modules!(
     "buffers",
     "camera",
     "colors",
@@ -27,6 +27,7 @@ const MODULES: [(&str, &str); 39] = modules!(
     "ends",
     "endspanel",
     "files",
+    "frames",
     "gallery",
     "gizmo",
     "growing",
