@@ -261,7 +261,7 @@ mod tests {
                         tree.rewire(id, (id / 2) as i32 - 1);
                     }
                     5 => {
-                        // The last node and a leaf in the middle go.
+                        // One of the last leaves is removed.
                         let leaf = |id: &usize| !tree.parents.contains(&(*id as i32));
                         let gone = (0..tree.parents.len()).rev().filter(leaf).nth(step % 3);
                         let rest = (0..tree.parents.len()).filter(|id| Some(*id) != gone);
