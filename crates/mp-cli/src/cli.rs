@@ -49,9 +49,10 @@ pub(crate) struct Plan {
     #[arg(value_name = "SCENE")]
     pub(crate) scenes: Vec<PathBuf>,
     /// Which planner. With `or-` before its name, independent runs of it race on all threads; with `restart-`, it
-    /// starts again when it takes too long.
-    #[arg(long, value_name = "NAME", default_value = "rrt-connect", value_parser = PlannerName)]
-    pub(crate) planner: String,
+    /// starts again when it takes too long [default: rrt-connect; rrt among obstacles that move; rsrt for robots that
+    /// move by inputs].
+    #[arg(long, value_name = "NAME", value_parser = PlannerName)]
+    pub(crate) planner: Option<String>,
     /// How far apart two configurations are (`default`: ‖Δp‖ + 0.5·angle, in metres and radians).
     #[arg(long, value_name = "NAME", default_value = "default",
           value_parser = PossibleValuesParser::new(metrics()).map(|name| metric(&name)))]

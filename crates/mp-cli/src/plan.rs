@@ -7,7 +7,7 @@ use crate::interrupt;
 use crate::output::{note, print, print_json, write};
 use crate::picture::{Picture, Shown, Watched};
 use crate::progress::Line;
-use crate::request::request;
+use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use mp_plan::{
     Cancel, Control, Error, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel, make_folder,
@@ -41,6 +41,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     }
 
     let scenes = named.iter().map(|given| scene(given)).collect::<Result<Vec<_>, _>>()?;
+    let requests = scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
         (0..scenes.len()).flat_map(|i| (request.seed..=last).map(move |seed| (i, seed))).collect();
     check_files(&files, &scenes, &jobs)?;
@@ -57,7 +58,7 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     let single = jobs.len() == 1;
     // Runs have a thread each when there are several.
     let threads = if single { args.threads } else { 1 };
-    let job = |(i, seed): (usize, u64)| one(&scenes[i], &request, seed, &cancel, &files, single, threads);
+    let job = |(i, seed): (usize, u64)| one(&scenes[i], &requests[i], seed, &cancel, &files, single, threads);
     let reports = match jobs.as_slice() {
         [only] => vec![job(*only)?],
         _ => {

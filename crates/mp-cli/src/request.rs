@@ -2,7 +2,17 @@
 
 use crate::cli::Plan;
 use crate::input::{is_standard, standard_input};
-use mp_plan::{Budget, Error, Finish, Request};
+use mp_plan::{Budget, Error, Finish, Request, Scene};
+
+/// The request for a scene: with the planner that suits it, if the command line names none.
+pub(crate) fn request_for(scene: &Scene, args: &Plan, request: &Request) -> Result<Request, Error> {
+    let mut request = request.clone();
+    if args.planner.is_none() && args.request.is_none() {
+        request.planner = scene.default_planner().to_owned();
+        request.check()?;
+    }
+    Ok(request)
+}
 
 /// The request that the command line makes.
 pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
@@ -22,7 +32,7 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
         return Ok(request);
     }
     let mut request = Request {
-        planner: args.planner.clone(),
+        planner: args.planner.clone().unwrap_or(Request::default().planner),
         metric: args.metric,
         motion: args.motion,
         budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
@@ -48,6 +58,9 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
     if request.roadmap.is_some() && !single {
         return Err(Error::new("--roadmap needs a single run").help("name one scene, without --runs"));
     }
-    request.check()?;
+    // Without a planner, each scene has its own, which is checked then.
+    if args.planner.is_some() {
+        request.check()?;
+    }
     Ok(request)
 }

@@ -71,6 +71,18 @@ impl StateVector for Isometry3<f64> {
     }
 }
 
+/// The numbers of the value, then the one behind it, such as a time.
+impl<S: StateVector> StateVector for (S, f64) {
+    fn write(&self, out: &mut Vec<f64>) {
+        self.0.write(out);
+        out.push(self.1);
+    }
+    fn read(numbers: &[f64]) -> Option<Self> {
+        let (last, rest) = numbers.split_last()?;
+        Some((S::read(rest)?, *last))
+    }
+}
+
 /// Position, then angle.
 impl StateVector for Se2State {
     fn write(&self, out: &mut Vec<f64>) {

@@ -36,7 +36,18 @@ impl PlannerInfo {
     /// Whether the planner can meet the demand.
     #[must_use]
     pub fn can(&self, demand: Demand) -> bool {
-        self.cannot.iter().all(|(kind, _)| *kind != demand)
+        self.reason_against(demand).is_none()
+    }
+
+    /// Why the planner cannot meet the demand; `None` if it can. Planners that move by inputs are those with the parameter
+    /// `inputs`.
+    #[must_use]
+    pub fn reason_against(&self, demand: Demand) -> Option<&'static str> {
+        let by_inputs = || self.parameters.iter().any(|parameter| parameter.name == "inputs");
+        match demand {
+            Demand::Inputs if !by_inputs() => Some("the robot moves by inputs, and the planner on straight motions"),
+            _ => self.cannot.iter().find(|(kind, _)| *kind == demand).map(|(_, reason)| *reason),
+        }
     }
 
     /// Whether `name` is its name or one of its other names.
@@ -65,6 +76,8 @@ pub enum Demand {
     Region,
     /// To plan with motions that cannot run backward.
     OneWay,
+    /// To move by the inputs of a system only.
+    Inputs,
 }
 
 /// Values of parameters by name.

@@ -8,6 +8,7 @@ mod rn;
 mod se2;
 mod se3;
 mod so3;
+mod vectors;
 
 pub use joints::{Coordinates, JointRange, Joints};
 pub use product::Product;
@@ -16,6 +17,7 @@ pub use se2::{Se2, Se2State};
 pub use se3::Se3;
 pub use so3::So3;
 pub(crate) use so3::twice;
+pub use vectors::AsVectors;
 
 use crate::{Rng, layout::Layout};
 use std::fmt::Debug;

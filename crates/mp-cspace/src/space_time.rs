@@ -2,7 +2,7 @@
 
 use crate::space::lerp;
 use crate::{
-    Goal, KdTree, KnownFree, MotionCheck, MotionValidity, Rng, Sampler, Space, SpaceError,
+    Factored, Goal, KdTree, KnownFree, MotionCheck, MotionValidity, Rng, Sampler, Space, SpaceError,
     error::weight,
     nn::{Embed, Layout},
 };
@@ -114,6 +114,41 @@ impl<C: Space> Space for SpaceTime<C> {
     }
     fn contains(&self, q: &Self::State) -> bool {
         self.positions.contains(&q.0) && (0.0..=self.horizon).contains(&q.1)
+    }
+}
+
+/// Factors: those of the positions, then time, in seconds.
+impl<C: Factored> Factored for SpaceTime<C> {
+    fn factors(&self) -> usize {
+        self.positions.factors() + 1
+    }
+    fn each_factor(&self, from: &Self::State, to: &Self::State, f: &mut impl FnMut(usize, f64)) {
+        self.positions.each_factor(&from.0, &to.0, f);
+        f(self.positions.factors(), (to.1 - from.1).abs());
+    }
+    fn factor_extent(&self, factor: usize) -> f64 {
+        if factor == self.positions.factors() { self.horizon } else { self.positions.factor_extent(factor) }
+    }
+    fn interpolate_factor(
+        &self,
+        factor: usize,
+        from: &Self::State,
+        to: &Self::State,
+        t: f64,
+        out: &mut Self::State,
+    ) {
+        if factor == self.positions.factors() {
+            out.1 = lerp(from.1, to.1, t);
+        } else {
+            self.positions.interpolate_factor(factor, &from.0, &to.0, t, &mut out.0);
+        }
+    }
+    fn factor_layouts(&self) -> Vec<Layout> {
+        [self.positions.factor_layouts(), vec![Layout::euclidean(1)]].concat()
+    }
+    fn embed_factors(&self, state: &Self::State, put: &mut impl FnMut(usize, f64)) {
+        self.positions.embed_factors(&state.0, put);
+        put(self.positions.factors(), state.1);
     }
 }
 

@@ -16,6 +16,7 @@
 mod collada;
 mod csv;
 mod document;
+mod drive;
 mod error;
 mod files;
 pub mod fuzz;
@@ -37,6 +38,7 @@ mod toml_problem;
 pub use collada::parse_collada;
 pub use csv::{csv_text, parse_csv};
 pub use document::{DocumentBody, DocumentShape, SceneDocument};
+pub use drive::{Drive, Driven};
 pub use error::{Error, ErrorKind};
 pub use files::{Disk, Files, InMemory, MAX_MESH_BYTES, MAX_TEXT_BYTES, read_text, write_atomic};
 pub use gempa::{Environment, Obstacle, gempa_mesh_text, parse_gempa_mesh, write_gempa_mesh};
@@ -46,8 +48,9 @@ pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
 pub use path::{JointPath, PathFile};
 pub use planar::{
-    GridMap, PlanarFile, PlanarMap, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
+    GridMap, PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
+pub use toml_problem::{GoalEntry, GoalPart, Timing};
 pub use stl::{parse_stl, stl_text, write_stl};

@@ -11,9 +11,10 @@ pub use grid::GridMap;
 pub use problem::PlanarProblem;
 pub use ros_map::RosMap;
 
+use crate::drive::{Drive, DriveTable, Driven};
 use crate::error::Error;
 use crate::files::decode;
-use crate::toml_problem::{MotionPlaces, MotionTable, TomlText};
+use crate::toml_problem::{GoalPart, MotionPlaces, MotionTable, Timing, TomlText, timed_rows};
 use mp_geom::planar::Polygon;
 use nalgebra::Point2;
 use serde::Deserialize;
@@ -42,6 +43,17 @@ pub struct PlanarObstacle {
     pub name: String,
     /// Its shape in the world, metres.
     pub polygon: Polygon,
+}
+
+/// An obstacle of a [`PlanarFile`] that moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanarMoving {
+    /// Its name in messages.
+    pub name: String,
+    /// Its shape in its own frame, metres.
+    pub polygon: Polygon,
+    /// Where its frame is: time (s), x, y (m) and angle (rad), at increasing times.
+    pub path: Vec<[f64; 4]>,
 }
 
 /// The image or map of a world, as the file names it.
@@ -75,12 +87,18 @@ pub struct PlanarFile {
     pub unknown_is_free: bool,
     /// The polygons.
     pub obstacles: Vec<PlanarObstacle>,
+    /// The obstacles that move.
+    pub moving: Vec<PlanarMoving>,
     /// The robot.
     pub robot: PlanarShape,
-    /// The start: x and y, and for a polygon the angle (rad).
+    /// How the robot moves, if it moves by inputs.
+    pub driven: Option<Driven>,
+    /// When the robot moves, if there are obstacles that move.
+    pub timing: Option<Timing>,
+    /// The start: x and y, and for a polygon the angle (rad). For a robot with accelerations, its velocities may follow.
     pub start: Vec<f64>,
-    /// The goals, at least one.
-    pub goals: Vec<Vec<f64>>,
+    /// What each goal asks of each number, at least one goal.
+    pub goals: Vec<Vec<GoalPart>>,
     places: Places,
     text: String,
     file: String,
@@ -91,6 +109,7 @@ pub struct PlanarFile {
 struct Places {
     world: Range<usize>,
     map: Range<usize>,
+    robot: Range<usize>,
     motion: MotionPlaces,
 }
 
@@ -101,6 +120,8 @@ pub enum PlanarPart {
     World,
     /// The name of the image or map.
     Map,
+    /// The table `robot`.
+    Robot,
     /// The start.
     Start,
     /// The goal of this index.
@@ -115,6 +136,8 @@ struct File {
     motion: MotionTable,
     #[serde(default)]
     obstacle: Vec<Spanned<ObstacleTable>>,
+    #[serde(default)]
+    moving: Vec<Spanned<MovingTable>>,
 }
 
 type Corners = Spanned<[[f64; 2]; 2]>;
@@ -137,6 +160,28 @@ struct WorldTable {
 struct RobotTable {
     disc: Option<Spanned<f64>>,
     polygon: Option<Spanned<Vec<[f64; 2]>>>,
+    kind: Option<Spanned<String>>,
+    duration: Option<Spanned<f64>>,
+    speed: Option<Spanned<f64>>,
+    turning: Option<Spanned<f64>>,
+    wheelbase: Option<Spanned<f64>>,
+    steering: Option<Spanned<f64>>,
+    turning_radius: Option<Spanned<f64>>,
+    reverse: Option<Spanned<bool>>,
+    speeds: Option<Spanned<Vec<f64>>>,
+    accelerations: Option<Spanned<Vec<f64>>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MovingTable {
+    name: Option<String>,
+    polygon: Option<Spanned<Vec<[f64; 2]>>>,
+    #[serde(default)]
+    holes: Vec<Spanned<Vec<[f64; 2]>>>,
+    rectangle: Option<Corners>,
+    circle: Option<Spanned<[f64; 3]>>,
+    path: Spanned<Vec<Vec<f64>>>,
 }
 
 #[derive(Deserialize)]
@@ -158,7 +203,7 @@ impl PlanarFile {
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
         let source = TomlText { file, text, guide: GUIDE };
-        let File { world, robot, motion, obstacle } = source.read()?;
+        let File { world, robot, motion, obstacle, moving } = source.read()?;
         let world_span = world.span();
         let world = world.into_inner();
         let walls = corners(&source, "the walls", world.walls.as_ref())?;
@@ -174,29 +219,50 @@ impl PlanarFile {
         };
         let map_span = world.image.as_ref().or(world.map.as_ref()).map_or(0..0, Spanned::span);
         let map = map_of(&source, world, &map_span)?;
-        let body = body(&source, robot)?;
-        let numbers = if matches!(body, PlanarShape::Disc(_)) { 2 } else { 3 };
+        let robot_span = robot.span();
+        let (body, driven) = body(&source, robot)?;
+        let names = ["x", "y", "yaw"].map(str::to_owned);
+        let names = &names[..if matches!(body, PlanarShape::Disc(_)) { 2 } else { 3 }];
+        if let Some(driven) = &driven {
+            let wrong = driven.check(names);
+            wrong.map_err(|[message, expected]| source.error(&robot_span, message).expected(expected))?;
+        }
+        let state_names = driven.as_ref().map_or_else(|| names.to_vec(), |driven| driven.state_names(names));
         let state = |what: &str, q: &Spanned<Vec<f64>>| {
             source.check(what, q.get_ref(), &q.span())?;
-            if q.get_ref().len() == numbers {
+            if [names.len(), state_names.len()].contains(&q.get_ref().len()) {
                 return Ok(());
             }
             let message = format!("{what} has {} numbers", q.get_ref().len());
-            let expected = if numbers == 2 { "x and y: a disc does not turn" } else { "x, y and the angle" };
+            let expected =
+                if names.len() == 2 { "x and y: a disc does not turn" } else { "x, y and the angle" };
             Err(source.error(&q.span(), message).expected(expected))
         };
         let motion = motion.read(&source, state)?;
+        let goals = motion.goals.iter().enumerate().map(|(i, goal)| {
+            let parts = goal.parts("the goal", &state_names, names.len(), motion.tolerance);
+            let place = motion.places.goal(i);
+            parts.map_err(|[message, expected]| source.error(place, message).expected(expected))
+        });
+        let goals: Vec<Vec<GoalPart>> = goals.collect::<Result<_, _>>()?;
+        check_reachable(&source, driven.is_some(), &motion.places, &goals)?;
         let obstacles = obstacle.into_iter().enumerate().map(|(i, o)| entry(&source, i, o));
+        let moving = moving.into_iter().enumerate().map(|(i, m)| moving_entry(&source, i, m));
+        let moving: Vec<PlanarMoving> = moving.collect::<Result<_, _>>()?;
+        check_timing(&source, moving.len(), driven.is_some(), motion.timing.is_some(), &motion.places)?;
         Ok(Self {
             walls,
             bounds,
             map,
             unknown_is_free,
             obstacles: obstacles.collect::<Result<_, _>>()?,
+            moving,
             robot: body,
+            driven,
+            timing: motion.timing,
             start: motion.start,
-            goals: motion.goals,
-            places: Places { world: world_span, map: map_span, motion: motion.places },
+            goals,
+            places: Places { world: world_span, map: map_span, robot: robot_span, motion: motion.places },
             text: text.to_owned(),
             file: file.to_owned(),
         })
@@ -208,6 +274,7 @@ impl PlanarFile {
         let span = match part {
             PlanarPart::World => &self.places.world,
             PlanarPart::Map => &self.places.map,
+            PlanarPart::Robot => &self.places.robot,
             PlanarPart::Start => &self.places.motion.start,
             PlanarPart::Goal(i) => self.places.motion.goal(i),
         };
@@ -286,22 +353,114 @@ fn map_of(
     }
 }
 
-/// The shape of the robot.
-fn body(source: &TomlText<'_>, robot: Spanned<RobotTable>) -> Result<PlanarShape, Error> {
+/// The shape of the robot, and how it moves by inputs.
+fn body(
+    source: &TomlText<'_>,
+    robot: Spanned<RobotTable>,
+) -> Result<(PlanarShape, Option<Driven>), Error> {
     let span = robot.span();
-    match robot.into_inner() {
-        RobotTable { disc: Some(radius), polygon: None } => {
+    let robot = robot.into_inner();
+    let shape = match (robot.disc, robot.polygon) {
+        (Some(radius), None) => {
             source.positive("the radius", &[*radius.get_ref()], &radius.span())?;
-            Ok(PlanarShape::Disc(radius.into_inner()))
+            PlanarShape::Disc(radius.into_inner())
         }
-        RobotTable { disc: None, polygon: Some(ring) } => {
-            Ok(PlanarShape::Polygon(polygon(source, "the robot", vec![ring])?))
-        }
+        (None, Some(ring)) => PlanarShape::Polygon(polygon(source, "the robot", vec![ring])?),
         _ => {
             let message = "the robot is not exactly one of a disc and a polygon";
-            Err(source.error(&span, message).expected("`disc = RADIUS` or `polygon = [[x, y], ...]`"))
+            return Err(source
+                .error(&span, message)
+                .expected("`disc = RADIUS` or `polygon = [[x, y], ...]`"));
         }
+    };
+    let table = DriveTable {
+        kind: robot.kind,
+        duration: robot.duration,
+        speed: robot.speed,
+        turning: robot.turning,
+        wheelbase: robot.wheelbase,
+        steering: robot.steering,
+        turning_radius: robot.turning_radius,
+        reverse: robot.reverse,
+        speeds: robot.speeds,
+        accelerations: robot.accelerations,
+    };
+    let driven = table.read(source, &span, &["car", "unicycle", "velocities", "accelerations"])?;
+    // A car and a unicycle have a direction, so that their shape turns, round as it may be.
+    let heads = driven.as_ref().is_some_and(|d| matches!(d.drive, Drive::Car { .. } | Drive::Unicycle { .. }));
+    Ok(match shape {
+        PlanarShape::Disc(radius) if heads => {
+            let round = Polygon::around_circle([0.0; 2], radius, CORNERS);
+            let round = round.map_err(|e| source.error(&span, format!("the robot: {e}")).expected("a radius"));
+            (PlanarShape::Polygon(round?), driven)
+        }
+        shape => (shape, driven),
+    })
+}
+
+/// Refuses goals that a robot moved by inputs cannot reach exactly.
+fn check_reachable(
+    source: &TomlText<'_>,
+    driven: bool,
+    places: &MotionPlaces,
+    goals: &[Vec<GoalPart>],
+) -> Result<(), Error> {
+    let exact = |parts: &Vec<GoalPart>| parts.iter().any(|part| matches!(part, GoalPart::Exactly(_)));
+    match (driven, goals.iter().position(exact), &places.tolerance) {
+        (true, Some(i), _) => {
+            let message = "a robot that moves by inputs cannot reach these numbers exactly";
+            Err(source
+                .error(places.goal(i), message)
+                .expected("`tolerance = 0.1` in [motion], or intervals: { x = [1.0, 1.2] }"))
+        }
+        (false, _, Some(place)) => {
+            let message = "only robots that move by inputs need a tolerance";
+            Err(source.error(place, message).expected("intervals in the goal: { x = [1.0, 1.2] }, or no tolerance"))
+        }
+        _ => Ok(()),
     }
+}
+
+/// Refuses obstacles that move without a speed of the robot, and a speed without them.
+fn check_timing(
+    source: &TomlText<'_>,
+    moving: usize,
+    driven: bool,
+    timed: bool,
+    places: &MotionPlaces,
+) -> Result<(), Error> {
+    match (moving, timed, &places.speed) {
+        (1.., _, _) if driven => {
+            let message = "obstacles move, and the robot moves by inputs: this is not planned here";
+            Err(source.error(&places.start, message).expected("`[[moving]]`, or a kind of robot, not both"))
+        }
+        (1.., false, _) => {
+            let message = "obstacles move, and the robot has no speed";
+            Err(source.error(&places.start, message).expected("`speed = METRES_PER_SECOND` in [motion]"))
+        }
+        (0, true, Some(place)) => {
+            let message = "the robot has a speed, and nothing else moves";
+            Err(source.error(place, message).expected("obstacles that move: `[[moving]]`, or no speed"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The obstacle of a table that moves.
+fn moving_entry(
+    source: &TomlText<'_>,
+    index: usize,
+    table: Spanned<MovingTable>,
+) -> Result<PlanarMoving, Error> {
+    let span = table.span();
+    let MovingTable { name, polygon, holes, rectangle, circle, path } = table.into_inner();
+    let name = name.unwrap_or_else(|| format!("moving obstacle {}", index + 1));
+    let shape = ObstacleTable { name: Some(name), polygon, holes, rectangle, circle };
+    let PlanarObstacle { name, polygon } = shaped(source, index, span, shape)?;
+    let shown = crate::text::clipped(&name).to_string();
+    let rows = timed_rows(source, &shown, &path, [3, 1], "rows [TIME, x, y] or [TIME, x, y, ANGLE], times increasing")?;
+    let path = rows.iter().map(|row| [row[0], row[1], row[2], row[3]]).collect();
+    Ok(PlanarMoving { name, polygon, path })
 }
 
 /// The polygon of these rings; `what` is its name in errors.
@@ -330,7 +489,16 @@ fn entry(
     table: Spanned<ObstacleTable>,
 ) -> Result<PlanarObstacle, Error> {
     let span = table.span();
-    let table = table.into_inner();
+    shaped(source, index, span, table.into_inner())
+}
+
+/// The obstacle of the table at `span`.
+fn shaped(
+    source: &TomlText<'_>,
+    index: usize,
+    span: Range<usize>,
+    table: ObstacleTable,
+) -> Result<PlanarObstacle, Error> {
     let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
     let shown = crate::text::clipped(&name).to_string();
     let made = |span: &Range<usize>, made: Result<Polygon, mp_geom::planar::PolygonError>| {

@@ -7,9 +7,10 @@ mod urdf_mesh;
 
 pub use problem::RobotProblem;
 
+use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
 use crate::files::decode;
-use crate::toml_problem::{MotionPlaces, MotionTable, TomlText};
+use crate::toml_problem::{GoalEntry, MotionPlaces, MotionTable, TomlText};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -57,10 +58,14 @@ pub struct RobotFile {
     pub base: [f64; 6],
     /// Limits that replace those of the URDF, by joint.
     pub limits: Vec<(String, [f64; 2])>,
-    /// The joint values at the start.
+    /// How the robot moves, if it moves by inputs.
+    pub driven: Option<Driven>,
+    /// The joint values at the start. For a robot with accelerations, its velocities may follow.
     pub start: Vec<f64>,
-    /// The joint values at the goals, at least one.
-    pub goals: Vec<Vec<f64>>,
+    /// The goals, at least one.
+    pub goals: Vec<GoalEntry>,
+    /// How far from the goal a number of the last configuration may be; 0 when it is not given.
+    pub tolerance: f64,
     /// The obstacles.
     pub obstacles: Vec<ObstacleEntry>,
     places: Places,
@@ -73,6 +78,7 @@ pub struct RobotFile {
 struct Places {
     urdf: Range<usize>,
     srdf: Range<usize>,
+    robot: Range<usize>,
     motion: MotionPlaces,
     limits: Vec<Range<usize>>,
 }
@@ -84,6 +90,8 @@ pub enum RobotPart {
     Urdf,
     /// The name of the SRDF.
     Srdf,
+    /// The table `robot`.
+    Robot,
     /// The start.
     Start,
     /// The goal of this index.
@@ -95,7 +103,7 @@ pub enum RobotPart {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    robot: RobotTable,
+    robot: Spanned<RobotTable>,
     motion: MotionTable,
     #[serde(default)]
     obstacle: Vec<Spanned<ObstacleTable>>,
@@ -110,6 +118,10 @@ struct RobotTable {
     base: Option<Spanned<[f64; 6]>>,
     #[serde(default)]
     limits: BTreeMap<String, Spanned<[f64; 2]>>,
+    kind: Option<Spanned<String>>,
+    duration: Option<Spanned<f64>>,
+    speeds: Option<Spanned<Vec<f64>>>,
+    accelerations: Option<Spanned<Vec<f64>>>,
 }
 
 #[derive(Deserialize)]
@@ -133,6 +145,16 @@ impl RobotFile {
         let text = decode(file, bytes)?;
         let source = TomlText { file, text, guide: GUIDE };
         let File { robot, motion, obstacle } = source.read()?;
+        let robot_span = robot.span();
+        let robot = robot.into_inner();
+        let table = DriveTable {
+            kind: robot.kind,
+            duration: robot.duration,
+            speeds: robot.speeds,
+            accelerations: robot.accelerations,
+            ..DriveTable::default()
+        };
+        let driven = table.read(&source, &robot_span, &["velocities", "accelerations"])?;
         let base = source.six("the base", robot.base)?;
         let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
         for (joint, range) in robot.limits {
@@ -148,10 +170,20 @@ impl RobotFile {
         }
         let state = |what: &str, q: &Spanned<Vec<f64>>| source.check(what, q.get_ref(), &q.span());
         let motion = motion.read(&source, state)?;
+        if let (None, Some(place)) = (&driven, &motion.places.tolerance) {
+            let message = "only robots that move by inputs need a tolerance";
+            let expected = "intervals in the goal: { joint = [1.0, 1.2] }, or no tolerance";
+            return Err(source.error(place, message).expected(expected));
+        }
+        if let Some(place) = &motion.places.speed {
+            let message = "nothing moves around this robot, so that it needs no speed";
+            return Err(source.error(place, message).expected("no `speed` in [motion]"));
+        }
         let obstacles = obstacle.into_iter().enumerate().map(|(i, o)| entry(&source, i, o));
         let places = Places {
             urdf: robot.urdf.span(),
             srdf: robot.srdf.as_ref().map_or(0..0, Spanned::span),
+            robot: robot_span,
             motion: motion.places,
             limits: places_of_limits,
         };
@@ -161,8 +193,10 @@ impl RobotFile {
             packages: robot.packages,
             base,
             limits,
+            driven,
             start: motion.start,
             goals: motion.goals,
+            tolerance: motion.tolerance,
             obstacles: obstacles.collect::<Result<_, _>>()?,
             places,
             text: text.to_owned(),
@@ -176,6 +210,7 @@ impl RobotFile {
         let span = match part {
             RobotPart::Urdf => &self.places.urdf,
             RobotPart::Srdf => &self.places.srdf,
+            RobotPart::Robot => &self.places.robot,
             RobotPart::Start => &self.places.motion.start,
             RobotPart::Goal(i) => self.places.motion.goal(i),
             RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),

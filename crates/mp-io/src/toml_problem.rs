@@ -2,8 +2,10 @@
 
 use crate::error::{Error, ErrorKind};
 use crate::problem::MAX_COORDINATE;
+use crate::text::clipped;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use toml::Spanned;
 
@@ -65,20 +67,141 @@ impl TomlText<'_> {
     }
 }
 
+/// What a goal asks of one number of a configuration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GoalPart {
+    /// To have this value.
+    Exactly(f64),
+    /// To be in this interval, both ends included.
+    Between([f64; 2]),
+    /// Nothing.
+    Free,
+}
+
+/// A goal as a problem gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GoalEntry {
+    /// All numbers of a configuration, in order.
+    All(Vec<f64>),
+    /// Some of them, by name; the others are free.
+    Named(BTreeMap<String, GoalPart>),
+}
+
+impl GoalEntry {
+    /// What the goal asks of each number of a configuration, of which the first `least` have no defaults. With `tolerance` above
+    /// zero, values become intervals.
+    ///
+    /// # Errors
+    /// What is wrong and what is expected: too many or too few numbers, or a name that is none of `names`.
+    pub fn parts(
+        &self,
+        what: &str,
+        names: &[String],
+        least: usize,
+        tolerance: f64,
+    ) -> Result<Vec<GoalPart>, [String; 2]> {
+        let about = |part: GoalPart| match part {
+            GoalPart::Exactly(v) if tolerance > 0.0 => GoalPart::Between([v - tolerance, v + tolerance]),
+            part => part,
+        };
+        match self {
+            Self::All(values) if (least..=names.len()).contains(&values.len()) => {
+                let free = std::iter::repeat_n(GoalPart::Free, names.len() - values.len());
+                Ok(values.iter().map(|v| about(GoalPart::Exactly(*v))).chain(free).collect())
+            }
+            Self::All(values) => {
+                let numbers = if values.len() == 1 { "1 number".into() } else { format!("{} numbers", values.len()) };
+                Err([format!("{what} has {numbers}"), format!("{least}: {}", names[..least].join(", "))])
+            }
+            Self::Named(parts) => {
+                if let Some(name) = parts.keys().find(|name| !names.contains(name)) {
+                    let message = format!("{what} names `{}`, which the robot does not have", clipped(name));
+                    return Err([message, format!("one or more of: {}", names.join(", "))]);
+                }
+                Ok(names.iter().map(|name| parts.get(name).copied().map_or(GoalPart::Free, about)).collect())
+            }
+        }
+    }
+
+    /// All numbers of the configuration; `None` when some are free.
+    #[must_use]
+    pub fn values(&self) -> Option<&[f64]> {
+        match self {
+            Self::All(values) => Some(values),
+            Self::Named(_) => None,
+        }
+    }
+
+    /// Its numbers, for checks of their size.
+    fn numbers(&self) -> Vec<f64> {
+        match self {
+            Self::All(values) => values.clone(),
+            Self::Named(parts) => parts
+                .values()
+                .flat_map(|part| match part {
+                    GoalPart::Exactly(v) => vec![*v],
+                    GoalPart::Between(range) => range.to_vec(),
+                    GoalPart::Free => Vec::new(),
+                })
+                .collect(),
+        }
+    }
+}
+
+/// The text of a goal.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "a goal is a list of numbers, or a table of the numbers that are fixed, such as { x = 1.0, y = [2.0, 2.5] }"
+)]
+enum GoalText {
+    All(Vec<f64>),
+    Named(BTreeMap<String, PartText>),
+}
+
+/// The text of one number of a goal.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum PartText {
+    Exactly(f64),
+    Between([f64; 2]),
+}
+
 /// The table `motion` of a problem.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MotionTable {
     start: Spanned<Vec<f64>>,
-    goal: Option<Spanned<Vec<f64>>>,
-    goals: Option<Spanned<Vec<Spanned<Vec<f64>>>>>,
+    goal: Option<Spanned<GoalText>>,
+    goals: Option<Spanned<Vec<Spanned<GoalText>>>>,
+    tolerance: Option<Spanned<f64>>,
+    speed: Option<Spanned<f64>>,
+    start_time: Option<Spanned<f64>>,
+    goal_time: Option<Spanned<PartText>>,
+    horizon: Option<Spanned<f64>>,
 }
 
 /// The start and the goals of a problem, at least one, and their places.
 pub(crate) struct Motion {
     pub(crate) start: Vec<f64>,
-    pub(crate) goals: Vec<Vec<f64>>,
+    pub(crate) goals: Vec<GoalEntry>,
+    /// How far a number of the last configuration may be from that of the goal; 0 when it is not given.
+    pub(crate) tolerance: f64,
+    pub(crate) timing: Option<Timing>,
     pub(crate) places: MotionPlaces,
+}
+
+/// When a robot moves among obstacles that move: seconds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Timing {
+    /// The greatest speed of the robot, in the metric of its space per second.
+    pub speed: f64,
+    /// The time of the start.
+    pub start: f64,
+    /// The time of the arrival; any time when it is not given.
+    pub goal: Option<[f64; 2]>,
+    /// The last time at which the robot may move; `None` for a time after which nothing else moves.
+    pub horizon: Option<f64>,
 }
 
 /// Where start and goals are in the text.
@@ -86,6 +209,8 @@ pub(crate) struct Motion {
 pub(crate) struct MotionPlaces {
     pub(crate) start: Range<usize>,
     goals: Vec<Range<usize>>,
+    pub(crate) tolerance: Option<Range<usize>>,
+    pub(crate) speed: Option<Range<usize>>,
 }
 
 impl MotionPlaces {
@@ -96,7 +221,7 @@ impl MotionPlaces {
 }
 
 impl MotionTable {
-    /// The start and the goals, each checked by `check`, which also takes its name in errors.
+    /// The start and the goals; `check` checks the numbers of the start, and takes its name in errors.
     pub(crate) fn read(
         self,
         text: &TomlText<'_>,
@@ -119,12 +244,147 @@ impl MotionTable {
                 return Err(text.error(&self.start.span(), message).expected(expected));
             }
         };
-        goals.iter().try_for_each(|goal| check("the goal", goal))?;
-        let places =
-            MotionPlaces { start: self.start.span(), goals: goals.iter().map(Spanned::span).collect() };
-        let goals = goals.into_iter().map(Spanned::into_inner).collect();
-        Ok(Motion { start: self.start.into_inner(), goals, places })
+        let places = MotionPlaces {
+            start: self.start.span(),
+            goals: goals.iter().map(Spanned::span).collect(),
+            tolerance: self.tolerance.as_ref().map(Spanned::span),
+            speed: self.speed.as_ref().map(Spanned::span),
+        };
+        let goals = goals.into_iter().map(|goal| {
+            let span = goal.span();
+            let goal = match goal.into_inner() {
+                GoalText::All(values) => GoalEntry::All(values),
+                GoalText::Named(parts) if parts.is_empty() => {
+                    let message = "the goal asks for nothing";
+                    return Err(text.error(&span, message).expected("at least one number, such as { x = 1.0 }"));
+                }
+                GoalText::Named(parts) => {
+                    let parts = parts.into_iter().map(|(name, part)| match part {
+                        PartText::Exactly(v) => Ok((name, GoalPart::Exactly(v))),
+                        PartText::Between(range) => {
+                            let what = format!("{} of the goal", clipped(&name));
+                            Ok((name, GoalPart::Between(interval(text, &what, range, &span)?)))
+                        }
+                    });
+                    GoalEntry::Named(parts.collect::<Result<_, Error>>()?)
+                }
+            };
+            text.check("the goal", &goal.numbers(), &span)?;
+            Ok(goal)
+        });
+        let goals = goals.collect::<Result<_, Error>>()?;
+        let tolerance = match &self.tolerance {
+            None => 0.0,
+            Some(given) => {
+                text.positive("the tolerance", &[*given.get_ref()], &given.span())?;
+                *given.get_ref()
+            }
+        };
+        let timing = timing(text, self.speed, self.start_time, self.goal_time, self.horizon)?;
+        Ok(Motion { start: self.start.into_inner(), goals, tolerance, timing, places })
     }
+}
+
+/// An interval whose ends are in order.
+fn interval(text: &TomlText<'_>, what: &str, range: [f64; 2], span: &Range<usize>) -> Result<[f64; 2], Error> {
+    text.check(what, &range, span)?;
+    if range[0] <= range[1] {
+        return Ok(range);
+    }
+    let message = format!("{what} is from {} to {}", range[0], range[1]);
+    Err(text.error(span, message).expected("the lower end first"))
+}
+
+/// When the robot moves; `None` when no speed is given.
+fn timing(
+    text: &TomlText<'_>,
+    speed: Option<Spanned<f64>>,
+    start: Option<Spanned<f64>>,
+    goal: Option<Spanned<PartText>>,
+    horizon: Option<Spanned<f64>>,
+) -> Result<Option<Timing>, Error> {
+    let Some(speed) = speed else {
+        let stray = [
+            ("start_time", start.as_ref().map(Spanned::span)),
+            ("goal_time", goal.as_ref().map(Spanned::span)),
+            ("horizon", horizon.as_ref().map(Spanned::span)),
+        ];
+        return match stray.into_iter().find_map(|(name, span)| Some((name, span?))) {
+            None => Ok(None),
+            Some((name, span)) => {
+                let message = format!("`{name}` is given, and no speed");
+                Err(text.error(&span, message).expected("`speed = METRES_PER_SECOND` beside it"))
+            }
+        };
+    };
+    text.positive("the speed", &[*speed.get_ref()], &speed.span())?;
+    let seconds = |what: &str, value: f64, span: &Range<usize>| {
+        text.check(what, &[value], span)?;
+        match value >= 0.0 {
+            true => Ok(value),
+            false => Err(text.error(span, format!("{what} is {value}")).expected("seconds, zero or more")),
+        }
+    };
+    let at = |what: &str, given: &Option<Spanned<f64>>| {
+        given.as_ref().map(|given| seconds(what, *given.get_ref(), &given.span())).transpose()
+    };
+    let begin = at("the time of the start", &start)?.unwrap_or(0.0);
+    let end = at("the horizon", &horizon)?;
+    if let (Some(end), Some(place)) = (end, &horizon)
+        && end <= begin
+    {
+        let message = format!("the horizon is {end} s, and the start at {begin} s");
+        return Err(text.error(&place.span(), message).expected("a time after the start"));
+    }
+    let arrival = match goal {
+        None => None,
+        Some(goal) => {
+            let span = goal.span();
+            let range = match goal.into_inner() {
+                PartText::Exactly(time) => [time; 2],
+                PartText::Between(range) => interval(text, "the time of the goal", range, &span)?,
+            };
+            seconds("the time of the goal", range[0], &span)?;
+            if range[1] < begin || end.is_some_and(|end| range[0] > end) {
+                let message = format!("the goal is at {} to {} s, which is not between start and horizon", range[0], range[1]);
+                return Err(text.error(&span, message).expected("a time after the start, up to the horizon"));
+            }
+            Some(range)
+        }
+    };
+    Ok(Some(Timing { speed: *speed.get_ref(), start: begin, goal: arrival, horizon: end }))
+}
+
+/// The timed poses of something that moves, at increasing times: each row has the time (s) and `numbers` more numbers, of which
+/// the last `optional` may be left out.
+pub(crate) fn timed_rows(
+    text: &TomlText<'_>,
+    what: &str,
+    rows: &Spanned<Vec<Vec<f64>>>,
+    [numbers, optional]: [usize; 2],
+    expected: &str,
+) -> Result<Vec<Vec<f64>>, Error> {
+    let span = rows.span();
+    let fault = |message: String| Err(text.error(&span, message).expected(expected));
+    if rows.get_ref().is_empty() {
+        return fault(format!("the path of {what} is empty"));
+    }
+    let mut last = f64::NEG_INFINITY;
+    let mut found = Vec::new();
+    for (i, row) in rows.get_ref().iter().enumerate() {
+        text.check(&format!("the path of {what}"), row, &span)?;
+        if !(1 + numbers - optional..=1 + numbers).contains(&row.len()) {
+            return fault(format!("row {} of the path of {what} has {} numbers", i + 1, row.len()));
+        }
+        if row[0] <= last {
+            return fault(format!("row {} of the path of {what} is at {} s, not after the row before", i + 1, row[0]));
+        }
+        last = row[0];
+        let mut row = row.clone();
+        row.resize(1 + numbers, 0.0);
+        found.push(row);
+    }
+    Ok(found)
 }
 
 #[cfg(test)]

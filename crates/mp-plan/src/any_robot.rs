@@ -29,6 +29,8 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn details(&self) -> Vec<(String, String)>;
     fn free_share(&self, samples: u32) -> f64;
     fn path_format(&self) -> PathFormat;
+    fn default_planner(&self) -> &'static str;
+    fn moving_obstacles(&self) -> usize;
     fn start(&self) -> Vec<f64>;
     fn goals(&self) -> Vec<Vec<f64>>;
     fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Arc<dyn AnyRobot>, Error>;
@@ -80,6 +82,12 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn path_format(&self) -> PathFormat {
         RobotKind::path_format(self)
+    }
+    fn default_planner(&self) -> &'static str {
+        RobotKind::default_planner(self)
+    }
+    fn moving_obstacles(&self) -> usize {
+        RobotKind::moving_obstacles(self)
     }
     fn start(&self) -> Vec<f64> {
         self.row(RobotKind::start(self))

@@ -1,6 +1,7 @@
 //! Verifies a path, with code that shares nothing with the planner's checks.
 
 use crate::explain::list;
+use crate::goals::next_to;
 use crate::numbers::brief;
 use crate::path::states;
 use crate::{Error, PathRows, RobotKind};
@@ -71,8 +72,11 @@ pub(crate) fn check<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Verdict, 
     if !start.is_near() {
         faults.push(format!("does not begin at the start: {}{} off", brief(start.off), start.unit));
     }
-    let ends = kind.goals().iter().map(|goal| kind.mismatch(last, goal));
-    let nearest = ends.min_by(|a, b| a.off.total_cmp(&b.off));
+    let ends: Vec<_> = match kind.goal_parts() {
+        None => kind.goals().iter().map(|goal| kind.mismatch(last, goal)).collect(),
+        Some(goals) => goals.iter().map(|goal| kind.mismatch(last, &next_to(kind, goal, last))).collect(),
+    };
+    let nearest = ends.into_iter().min_by(|a, b| a.off.total_cmp(&b.off));
     if let Some(goal) = nearest
         && !goal.is_near()
     {

@@ -1,10 +1,11 @@
 //! Finishing a path: shortens it, writes it as text, and verifies what the text says.
 
 use crate::check::{clearance, verified};
+use crate::prepared::Possible;
 use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{Cancel, Certified, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
+use mp_cspace::{Cancel, Certified, Demand, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::Ordering;
 
 /// The stream of random numbers for shortening. Planning uses another one.
@@ -49,7 +50,7 @@ pub fn shorten<K: RobotKind>(
 ) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("shorten").entered();
     let certified: AnyCheck<'_, K::State> =
-        Box::new(Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?);
+        Box::new(Possible { kind, check: Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())? });
     Ok(shorten_by(kind.space(), Cancellable(certified, cancel), path, seed))
 }
 
@@ -72,7 +73,8 @@ pub(crate) fn finish<K: RobotKind>(
     control: &mut Control<'_>,
 ) -> Result<Option<Finished>, Error> {
     control.stage(Stage::Finishing);
-    if request.finish == Finish::Shorten {
+    let by_inputs = kind.demands().contains(&Demand::Inputs);
+    if request.finish == Finish::Shorten && !by_inputs {
         let short = shorten(kind, found, request.seed, &control.cancel)?;
         if let Some(finished) = verified_as_written(kind, &short, true)? {
             return Ok(Some(finished));

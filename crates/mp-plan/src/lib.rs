@@ -60,6 +60,7 @@ mod explain;
 mod film;
 mod find;
 mod finish;
+mod goals;
 pub mod info;
 mod inputs;
 mod load;
@@ -95,6 +96,7 @@ pub use explain::Explanation;
 pub use film::{Film, FilmKind};
 pub use find::find_problem;
 pub use finish::shorten;
+pub use goals::GoalPart;
 pub use inputs::is_same_file;
 pub use numbers::{brief, count, positive_number};
 pub use output::{folder_of, make_folder, write_file};
@@ -107,8 +109,8 @@ pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
-    ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
-    PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, Touch,
+    ArmScene, Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, Mismatch, PathFormat, PlanarBody,
+    MovingScene, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound, Touch, WithMoving,
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};

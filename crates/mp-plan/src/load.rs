@@ -78,7 +78,11 @@ fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
 /// The scene of an arm.
 #[cfg(feature = "urdf")]
 fn arm(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
-    Ok(Scene::new(crate::ArmScene::from_problem_in(files, mp_io::RobotProblem::load_from(files, file)?)?))
+    let scene = crate::ArmScene::from_problem_in(files, mp_io::RobotProblem::load_from(files, file)?)?;
+    Ok(match scene.driven()? {
+        Some(driven) => Scene::new(driven),
+        None => Scene::new(scene),
+    })
 }
 
 #[cfg(not(feature = "planar"))]

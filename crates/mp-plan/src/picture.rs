@@ -203,7 +203,8 @@ impl Scene {
             items.push(Item::lines(vec![frame], OBSTACLE, 1.0));
         }
         let (title, subtitle) = (self.name().to_owned(), caption.to_owned());
-        Ok(World { title, subtitle, low, high, items, robot, sweep, mode: look.mode })
+        let moving = self.moving_obstacles().min(robot.len());
+        Ok(World { title, subtitle, low, high, items, robot, moving, sweep, mode: look.mode })
     }
 }
 
@@ -216,6 +217,8 @@ pub(crate) struct World {
     /// Obstacles and walls.
     items: Vec<Item>,
     robot: Vec<Vec<Vec<Point2<f64>>>>,
+    /// How many of the last of these are obstacles that move.
+    moving: usize,
     sweep: Sweep,
     mode: Mode,
 }
@@ -225,11 +228,27 @@ impl World {
     /// that point.
     pub(crate) fn drawing(&self, now: Option<&[Isometry3<f64>]>, centre: Option<Point2<f64>>) -> Drawing {
         let at = |poses: &[Isometry3<f64>], colour: u32| {
-            let rings = self.robot.iter().zip(poses).flat_map(|(rings, pose)| placed(rings, pose)).collect();
+            let robot = self.robot.iter().zip(poses).take(self.robot.len() - self.moving);
+            let rings = robot.flat_map(|(rings, pose)| placed(rings, pose)).collect();
             area(rings, colour, self.mode)
         };
         let sweep = &self.sweep;
         let mut items = self.items.clone();
+        // Obstacles that move are drawn where they are at the moment, or at start and goal.
+        let obstacles = |poses: &[Isometry3<f64>], faint: f64| {
+            let moving = self.robot.iter().zip(poses).skip(self.robot.len() - self.moving);
+            let rings = moving.flat_map(|(rings, pose)| placed(rings, pose)).collect();
+            area(rings, OBSTACLE, self.mode).faint(faint)
+        };
+        if self.moving > 0 {
+            match now {
+                Some(poses) => items.push(obstacles(poses, 1.0)),
+                None => {
+                    items.extend(sweep.between.iter().map(|poses| obstacles(poses, 0.12)));
+                    items.extend([obstacles(&sweep.start, 0.8), obstacles(&sweep.goal, 0.35)]);
+                }
+            }
+        }
         if now.is_none() {
             items.extend(sweep.between.iter().map(|poses| at(poses, MIDDLE).faint(0.3)));
         }

@@ -1,6 +1,6 @@
 //! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
-use crate::{Error, roadmaps};
+use crate::{Error, RobotKind, roadmaps};
 use mp_cspace::registry::{PlannerInfo, Settings};
 use std::fmt;
 
@@ -61,6 +61,20 @@ impl PlannerKind {
             Self::Roadmap(info) => settings.check(info)?,
         }
         Ok(())
+    }
+
+    /// Refuses a robot that demands what the planner cannot do.
+    pub(crate) fn meets<K: RobotKind>(&self, kind: &K) -> Result<(), Error> {
+        let info = match self {
+            Self::Tree(spec) => spec.planner,
+            Self::Roadmap(info) => info,
+        };
+        let demands = kind.demands();
+        let Some(reason) = demands.iter().find_map(|demand| info.reason_against(*demand)) else { return Ok(()) };
+        let able = |info: &&PlannerInfo| demands.iter().all(|demand| info.can(*demand));
+        let names: Vec<_> = planners().filter(able).map(|info| info.name).collect();
+        Err(Error::new(format!("{self} cannot plan for {}: {reason}", kind.name()))
+            .help(format!("take one of: {}", names.join(", "))))
     }
 
     pub(crate) fn is_roadmap(&self) -> bool {

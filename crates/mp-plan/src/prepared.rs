@@ -1,12 +1,14 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
+use crate::goals;
 use crate::counted::{Counted, QueryBudget};
+use crate::planners::PlannerKind;
 use crate::roadmaps::{PlannerParts, RoadmapFile, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Goals, Iterations, Nodes,
+    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes,
     ParameterError, Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
 };
 use mp_tree::TreeState;
@@ -29,6 +31,7 @@ pub(crate) struct Prepared<'k, K: RobotKind> {
 
 impl<'k, K: RobotKind> Prepared<'k, K> {
     pub(crate) fn new(kind: &'k K, request: &'k Request) -> Result<Self, Error> {
+        PlannerKind::new(&request.planner)?.meets(kind)?;
         let Measured { space, index } = kind.measured(request.metric)?;
         let (verifier, queries) = (kind.verifier()?, AtomicU64::new(0));
         Ok(Self { kind, request, space, index, verifier, queries })
@@ -46,11 +49,15 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
                 Box::new(build_error(Discrete::new(&self.space, counted(), resolution(length)))?)
             }
         };
-        let goals = Goals::states(kind.goals().iter().cloned());
+        let check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check });
         let local = Straight::new(&self.space, check);
         let verifier: AnyCheck<'_, K::State> = Box::new(self.verifier.clone());
-        let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals)?;
-        Ok(problem.with_obstacles(kind.obstacles(&counted)))
+        let problem = Problem::new(&self.space, local, verifier, kind.start().clone(), goals::of_kind(kind))?;
+        let problem = problem.with_obstacles(kind.obstacles(&counted));
+        Ok(match kind.input_system() {
+            Some(system) => problem.with_inputs(system),
+            None => problem,
+        })
     }
 
     /// The planner of trees called `name`.
@@ -104,6 +111,24 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
             .or(budget.nodes.map(Nodes))
             .or(time.map(|time| Deadline::by(clock, time.saturating_sub(spent))))
             .or(budget.queries.map(|most| QueryBudget { queries: &self.queries, most }))
+    }
+}
+
+/// A check that finds no motion free that the robot cannot make.
+pub(crate) struct Possible<'k, K, M> {
+    pub(crate) kind: &'k K,
+    pub(crate) check: M,
+}
+
+impl<K: RobotKind, M: MotionValidity<K::State>> MotionValidity<K::State> for Possible<'_, K, M> {
+    fn check_motion(&mut self, from: &K::State, to: &K::State) -> MotionCheck {
+        self.check_extension(from, to, KnownFree::Neither)
+    }
+    fn check_extension(&mut self, from: &K::State, to: &K::State, known: KnownFree) -> MotionCheck {
+        match self.kind.can_move(from, to) {
+            true => self.check.check_extension(from, to, known),
+            false => MotionCheck::Unproven { at: 0.0 },
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Relaxing a path by a snake.
 
 use crate::counted::Counted;
+use crate::prepared::Possible;
 use crate::{Control, Error, Finish, Request, RobotKind, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
@@ -38,7 +39,8 @@ fn relaxed<K: RobotKind>(kind: &K, path: Path<K::State>) -> Result<Path<K::State
         return Err(Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
             .help("leave relaxing out: shortening needs none"));
     };
-    let check = Box::new(Certified::new(kind.space(), kind.checker().clone(), kind.tolerance())?);
+    let check = Certified::new(kind.space(), kind.checker().clone(), kind.tolerance())?;
+    let check = Box::new(Possible { kind, check });
     relaxed_by(&AnySpace::new(kind.space()), check, Box::new(kind.verifier()?), gradient, path)
 }
 

@@ -1,11 +1,16 @@
 //! Kinds of robots: the interface between a scene and the rest of this crate.
 
 mod arm;
+mod driven;
+mod moving;
 mod planar;
 mod rigid;
 mod tuples;
+mod vectors;
 
 pub use arm::ArmScene;
+pub use driven::{DrivenScene, SpeedBound};
+pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
 pub use rigid::{RigidScene, RigidSpace};
 
@@ -14,7 +19,7 @@ use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    DefaultNn, Factored, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _, StateVector,
+    DefaultNn, Demand, Factored, InputSystem, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _, StateVector,
     Validity,
     nn::Embed,
     obstacles::{ClearanceGradient, ObstacleHints},
@@ -195,6 +200,12 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// The goal configurations, at least one.
     fn goals(&self) -> &[Self::State];
 
+    /// What each goal asks of each number of a configuration, if that is not to be one of the configurations
+    /// [`goals`](Self::goals), which are then examples.
+    fn goal_parts(&self) -> Option<&[Vec<mp_io::GoalPart>]> {
+        None
+    }
+
     /// The same robot among the same obstacles, with another start and other goals, of which there is at least one. By
     /// default an error: override it for front ends in which ends are moved.
     ///
@@ -206,6 +217,23 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     {
         Err(Error::new(format!("{} cannot be given another start or goal", self.name()))
             .help("make the scene again with other ends"))
+    }
+
+    /// Whether the robot can make the motion at all, obstacles aside. By default it can make any.
+    fn can_move(&self, _from: &Self::State, _to: &Self::State) -> bool {
+        true
+    }
+    /// What planners must be able to do to plan for it. By default nothing special.
+    fn demands(&self) -> &'static [Demand] {
+        &[]
+    }
+    /// How the robot moves by inputs, if it can move in no other way.
+    fn input_system(&self) -> Option<InputSystem<'_, Self::State>> {
+        None
+    }
+    /// The planner that is taken when none is named.
+    fn default_planner(&self) -> &'static str {
+        "rrt-connect"
     }
 
     /// The checker. Clone it to use it.
@@ -304,6 +332,10 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
 
     /// The bodies of the scene: those of the robot first, then the obstacles.
     fn bodies(&self) -> Vec<Body>;
+    /// How many of the last bodies of the robot are obstacles that move.
+    fn moving_obstacles(&self) -> usize {
+        0
+    }
     /// The poses of the bodies of the robot, in the order of [`bodies`](Self::bodies).
     fn poses(&self, q: &Self::State) -> Vec<Isometry3<f64>>;
     /// The point whose curve a picture shows: by default the origin of the last body of the robot.

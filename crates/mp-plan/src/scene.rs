@@ -89,9 +89,24 @@ impl Scene {
     /// When world, robot or bounds are not valid.
     pub fn from_world(problem: PlanarProblem) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %problem.name).entered();
+        let (moves, driven) = (!problem.file.moving.is_empty(), problem.file.driven.clone());
         Ok(match problem.file.robot {
-            PlanarShape::Disc(_) => Self::new(PlanarScene::<DiscRobot>::new(problem)?),
-            PlanarShape::Polygon(_) => Self::new(PlanarScene::<PolygonRobot>::new(problem)?),
+            PlanarShape::Disc(_) => {
+                let scene = PlanarScene::<DiscRobot>::new(problem)?;
+                match driven {
+                    Some(driven) => Self::new(scene.driven(&driven)?),
+                    None if moves => Self::new(scene.among_moving()?),
+                    None => Self::new(scene),
+                }
+            }
+            PlanarShape::Polygon(_) => {
+                let scene = PlanarScene::<PolygonRobot>::new(problem)?;
+                match driven {
+                    Some(driven) => Self::new(scene.driven(&driven)?),
+                    None if moves => Self::new(scene.among_moving()?),
+                    None => Self::new(scene),
+                }
+            }
         })
     }
 
@@ -227,6 +242,18 @@ impl Scene {
     /// own and does not support it.
     pub fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Self, Error> {
         Ok(Self { robot: self.robot.with_ends(start, goals)?, ..self.clone() })
+    }
+
+    /// The planner that is taken when none is named: one that suits the robot.
+    #[must_use]
+    pub fn default_planner(&self) -> &'static str {
+        self.robot.default_planner()
+    }
+
+    /// How many of the bodies without a pose, the last of them, are obstacles that move.
+    #[must_use]
+    pub fn moving_obstacles(&self) -> usize {
+        self.robot.moving_obstacles()
     }
 
     /// Plans a path: searches for it, shortens it, and verifies it as it will be written. The same scene and request give

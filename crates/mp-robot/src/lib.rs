@@ -9,8 +9,8 @@
 //! | [`DiscRobot`] | `Vector2<f64>`, in R² | a disc among polygons |
 //! | [`PolygonRobot`] | [`Se2State`](mp_cspace::Se2State), in SE(2) | a polygon among polygons |
 //!
-//! The first three are a [`RigidBody`]. Obstacles stand still, except those of [`AmongMoving`]: a rigid body
-//! in space and time among bodies on known trajectories.
+//! The first three are a [`RigidBody`]. Obstacles stand still, except those of [`AmongMoving`], a rigid body in space and
+//! time among bodies on known trajectories, and of [`AmongMovingAreas`], the same in the plane.
 //!
 //! For planners, robots implement [`Validity`](mp_cspace::Validity), [`Clearance`](mp_cspace::Clearance) and
 //! [`MotionClearance`](mp_cspace::MotionClearance), with the trees of `mp-collide`. A [`RigidBody`] also implements
@@ -62,6 +62,9 @@ pub use arm::{
 pub use counters::CheckCounters;
 pub use moving::{AmongMoving, MovingVerifier, Trajectory, TrajectoryError};
 pub use placement::{BodyRadii, Placement, Planar, Point, Spatial};
-pub use planar::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
+pub use planar::{
+    AmongMovingAreas, DiscRobot, DiscVerifier, MovingAreasVerifier, PlanarConfiguration, PlanarRobot,
+    PolygonRobot, PolygonVerifier,
+};
 pub use rigid::{FreeFlyer, PlanarFlyer, PointRobot, RigidBody, RobotError};
 pub use verify::Verifier;

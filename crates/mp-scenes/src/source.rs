@@ -11,6 +11,7 @@ mod cubicles;
 pub mod disc_scenes;
 mod furniture;
 mod gempa;
+mod motions;
 mod piano;
 mod planar;
 mod scene;
@@ -55,6 +56,7 @@ pub fn generate() -> Files {
     planar::add(&mut files);
     arm::add(&mut files);
     disc_scenes::add(&mut files);
+    motions::add(&mut files);
     files
 }
 

@@ -15,6 +15,7 @@ pub use workers::Workers;
 use crate::erased::{AnyGeometry, AnyGradient, AnySpace, AnyStraight};
 use crate::{LocalPlanner, Space, obstacles::ObstacleHints};
 use std::fmt;
+use std::sync::Arc;
 
 /// A space, the local planner that moves in it, the verifier of finished paths, a start and
 /// goals.
@@ -25,6 +26,28 @@ pub struct Problem<'c, C: Space, L: LocalPlanner<C::State>> {
     start: C::State,
     goals: Goals<'c, C::State>,
     obstacles: ObstacleKnowledge<'c, C::State>,
+    inputs: Option<InputSystem<'c, C::State>>,
+}
+
+/// How an input, applied for a while (s), moves a state, behind a pointer: for planners by name.
+pub type AnyFlow<'c, S> = Arc<dyn Fn(&S, &[f64], f64) -> S + Send + Sync + 'c>;
+
+/// How a robot moves by inputs, for planners by name that do so. The local planner of the problem checks the motion from a
+/// state to the state that an input leads to.
+#[derive(Clone)]
+pub struct InputSystem<'c, S> {
+    /// How an input moves a state.
+    pub flow: AnyFlow<'c, S>,
+    /// The inputs. The first number is that of directions, 0 for the robot's own choice; the second that of magnitudes.
+    pub inputs: Arc<dyn Fn(usize, u32) -> Vec<Vec<f64>> + Send + Sync + 'c>,
+    /// How long an input is held, seconds.
+    pub duration: f64,
+}
+
+impl<S> fmt::Debug for InputSystem<'_, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("InputSystem").field("duration", &self.duration).finish_non_exhaustive()
+    }
 }
 
 /// A problem of an erased space, with straight edges.
@@ -137,6 +160,7 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
                 start,
                 goals,
                 obstacles: ObstacleKnowledge::default(),
+                inputs: None,
             }),
         }
     }
@@ -192,6 +216,18 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         Self { obstacles, ..self }
     }
 
+    /// The same problem for a robot that moves by inputs, for planners by name.
+    #[must_use]
+    pub fn with_inputs(self, inputs: InputSystem<'c, C::State>) -> Self {
+        Self { inputs: Some(inputs), ..self }
+    }
+
+    /// How the robot moves by inputs, if it can move in no other way.
+    #[must_use]
+    pub fn inputs(&self) -> Option<&InputSystem<'c, C::State>> {
+        self.inputs.as_ref()
+    }
+
     /// Takes the obstacle knowledge out of the problem.
     pub fn take_obstacles(&mut self) -> ObstacleKnowledge<'c, C::State> {
         std::mem::take(&mut self.obstacles)
@@ -213,8 +249,8 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> Problem<'c, C, L> {
         self,
         make: impl FnOnce(L) -> Result<M, E>,
     ) -> Result<Problem<'c, C, M>, E> {
-        let Self { space, local, verify, start, goals, obstacles } = self;
-        Ok(Problem { space, local: make(local)?, verify, start, goals, obstacles })
+        let Self { space, local, verify, start, goals, obstacles, inputs } = self;
+        Ok(Problem { space, local: make(local)?, verify, start, goals, obstacles, inputs })
     }
 }
 

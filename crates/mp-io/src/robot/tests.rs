@@ -24,7 +24,7 @@ fn a_problem_and_its_files() {
     assert_eq!((problem.name.as_str(), problem.urdf.as_str()), ("task", "<robot name=\"arm\"/>"));
     assert_eq!(problem.base().translation.z, 0.5);
     assert_eq!(problem.file.limits, [("elbow".to_owned(), [-1.0, 1.5])]);
-    assert_eq!(problem.file.goals, [[1.0, 0.0], [0.0, -1.0]]);
+    assert_eq!(problem.file.goals, [vec![1.0, 0.0], vec![0.0, -1.0]].map(crate::GoalEntry::All));
     let names: Vec<_> = problem.obstacles.iter().map(|o| o.name.as_str()).collect();
     assert_eq!(names, ["table", "obstacle 2", "obstacle 3", "obstacle 4"]);
     let sizes: Vec<_> = problem.obstacles.iter().map(|o| o.mesh.aabb().max).collect();

@@ -1,10 +1,12 @@
 //! Arms, and other trees of links, among meshes.
 
 use super::{
-    Body, BodyShape, Column, Counted, End, Measured, Queries, RobotKind, Touch, hints_and_gradient, no_metric,
+    Body, BodyShape, Column, Counted, DrivenScene, End, Measured, Queries, RobotKind, SpeedBound, Touch,
+    hints_and_gradient, no_metric,
 };
+use crate::goals::{GoalPart, examples, rows};
 use crate::{Error, MetricName, brief};
-use mp_cspace::{JointRange, Joints, Manhattan, ObstacleKnowledge, WithMetric};
+use mp_cspace::{JointRange, Joints, Manhattan, MotionClearance, ObstacleKnowledge, Space, WithMetric};
 use mp_geom::TriMesh;
 use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
 use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};
@@ -25,6 +27,8 @@ pub struct ArmScene {
     space: Joints<Configuration>,
     start: Configuration,
     goals: Vec<Configuration>,
+    /// What the goals ask of each number, if they are not configurations.
+    goal_parts: Option<Vec<Vec<GoalPart>>>,
     /// The problem that it was made from, to locate errors in its file.
     source: Option<Box<RobotProblem>>,
 }
@@ -73,7 +77,7 @@ impl ArmScene {
             return Err(Error::new("there is no goal"));
         }
         let (start, goals) = (state(start), goals.iter().map(|goal| state(goal)).collect());
-        Ok(Self { name, arm, obstacles, space, start, goals, source: None })
+        Ok(Self { name, arm, obstacles, space, start, goals, goal_parts: None, source: None })
     }
 
     /// The scene of the problem of a file.
@@ -110,16 +114,61 @@ impl ArmScene {
         }
         let arm = Self::among(&model, &problem.obstacles).map_err(of)?;
         let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.clone()).collect();
-        let start = std::iter::once((RobotPart::Start, "the start", &problem.file.start));
-        let goals = problem.file.goals.iter().enumerate().map(|(i, q)| (RobotPart::Goal(i), "the goal", q));
-        for (part, what, values) in start.chain(goals) {
-            if let Some([message, help]) = wrong_count(what, values, &names) {
-                return Err(problem.file.fault(part, &message, &help).into());
+        let file = &problem.file;
+        let driven = file.driven.as_ref();
+        let state_names = driven.map_or_else(|| names.clone(), |driven| driven.state_names(&names));
+        let fault = |part, [message, help]: [String; 2]| Error::from(file.fault(part, &message, &help));
+        if file.start.len() != state_names.len()
+            && let Some(wrong) = wrong_count("the start", &file.start, &names)
+        {
+            return Err(fault(RobotPart::Start, wrong));
+        }
+        let mut parts = Vec::new();
+        for (i, goal) in file.goals.iter().enumerate() {
+            if let Some(values) = goal.values()
+                && values.len() != state_names.len()
+                && let Some(wrong) = wrong_count("the goal", values, &names)
+            {
+                return Err(fault(RobotPart::Goal(i), wrong));
+            }
+            let goal = goal.parts("the goal", &state_names, names.len(), file.tolerance);
+            parts.push(goal.map_err(|wrong| fault(RobotPart::Goal(i), wrong))?);
+        }
+        if let Some(driven) = driven {
+            driven.check(&names).map_err(|wrong| fault(RobotPart::Robot, wrong))?;
+            let exact = |goal: &Vec<GoalPart>| goal.iter().any(|part| matches!(part, GoalPart::Exactly(_)));
+            if let Some(i) = parts.iter().position(exact) {
+                let message = "a robot that moves by inputs cannot reach these numbers exactly".to_owned();
+                let help = "say `tolerance = 0.1` in [motion], or give intervals: { joint = [1.0, 1.2] }";
+                return Err(fault(RobotPart::Goal(i), [message, help.to_owned()]));
             }
         }
-        let (start, goals) = (problem.file.start.clone(), problem.file.goals.clone());
-        let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, &goals);
-        Ok(Self { source: Some(Box::new(problem)), ..scene.map_err(of)? })
+        parts.iter_mut().for_each(|goal| goal.truncate(names.len()));
+        let (start, first) = (file.start[..names.len()].to_vec(), vec![file.start[..names.len()].to_vec()]);
+        let goals = rows(&parts);
+        let given = goals.as_ref().unwrap_or(&first);
+        let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, given);
+        let mut scene = Self { source: Some(Box::new(problem)), ..scene.map_err(of)? };
+        if goals.is_none() {
+            scene.goals = examples(&scene, &parts);
+            scene.goal_parts = Some(parts);
+        }
+        Ok(scene)
+    }
+
+    /// The same arm, moved by inputs as its file says; `None` when the file says nothing of it.
+    ///
+    /// # Errors
+    /// When the arm cannot move so.
+    pub fn driven(&self) -> Result<Option<DrivenScene<Self>>, Error> {
+        let Some(file) = self.source.as_ref().map(|problem| &problem.file) else { return Ok(None) };
+        let Some(driven) = &file.driven else { return Ok(None) };
+        let names: Vec<_> = self.arm.coordinates().iter().map(|c| c.name.clone()).collect();
+        let state_names = driven.state_names(&names);
+        let parts = file.goals.iter().map(|goal| goal.parts("the goal", &state_names, names.len(), file.tolerance));
+        let parts = parts.collect::<Result<_, _>>().map_err(|[message, help]| Error::new(message).help(help))?;
+        let velocity = file.start[names.len()..].to_vec();
+        DrivenScene::new(self.clone(), driven, &velocity, parts).map(Some)
     }
 
     /// The arm among its obstacles.
@@ -168,6 +217,21 @@ fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 
     })
 }
 
+impl SpeedBound for ArmScene {
+    /// The bounds on the motion of links are linear in how far the joints go, wherever they are.
+    fn speed_bound(&self, rates: &[f64]) -> f64 {
+        let from = self.space.unit_cube_to_state(&vec![0.5; self.arm.dof()]);
+        let fastest = rates.iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        if fastest == 0.0 {
+            return 0.0;
+        }
+        // Small enough for no joint to come round.
+        let little = 1e-3 / fastest;
+        let to = &from + DVector::from_iterator(rates.len(), rates.iter().map(|rate| rate.abs() * little));
+        self.arm.motion_bound(&from, &to) / little * (1.0 + 1e-9)
+    }
+}
+
 impl Queries for Arm {
     fn queries(&self) -> u64 {
         self.counters().queries()
@@ -195,9 +259,12 @@ impl RobotKind for ArmScene {
     fn goals(&self) -> &[Configuration] {
         &self.goals
     }
+    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
+        self.goal_parts.as_deref()
+    }
     fn with_ends(&self, start: Configuration, goals: Vec<Configuration>) -> Result<Self, Error> {
         // The lines of the file say nothing about these ends.
-        Ok(Self { start, goals, source: None, ..self.clone() })
+        Ok(Self { start, goals, goal_parts: None, source: None, ..self.clone() })
     }
 
     fn checker(&self) -> &Arm {
@@ -302,6 +369,8 @@ impl RobotKind for ArmScene {
         if let Some(problem) = &self.source {
             details.insert(0, ("urdf".to_owned(), problem.urdf_file.display().to_string()));
         }
+        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
+        details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         details.extend(self.arm.model().notes.iter().map(|note| ("note".to_owned(), note.clone())));
         details
     }

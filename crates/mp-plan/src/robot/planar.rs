@@ -1,20 +1,24 @@
 //! Robots in the plane among polygons: a disc, or a polygon that turns.
 
 use super::{
-    Body, BodyShape, Checker, Column, Counted, End, Measured, Queries, RobotKind, Touch, hints_and_gradient,
-    no_metric,
+    Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, MovingScene, Queries, RobotKind, SpeedBound,
+    Touch, WithMoving, hints_and_gradient, no_metric,
 };
+use crate::goals::{GoalPart, examples, rows};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
 use mp_cspace::erased::CompiledIndex;
 use mp_cspace::{
-    Factored, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
+    Embed, Factored, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::Aabb;
+use mp_cspace::space_time::SpaceTime;
 use mp_geom::planar::PlanarWorld;
-use mp_io::{PlanarPart, PlanarProblem, PlanarShape};
-use mp_robot::{DiscRobot, DiscVerifier, PolygonRobot, PolygonVerifier};
+use mp_io::{Driven, PlanarPart, PlanarProblem, PlanarShape};
+use mp_robot::{
+    AmongMovingAreas, DiscRobot, DiscVerifier, MovingAreasVerifier, PlanarConfiguration, PlanarRobot, PolygonRobot, PolygonVerifier, Trajectory,
+};
 use mp_tree::TreeState;
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, Translation3, UnitQuaternion, Vector2, Vector3};
 use std::f64::consts::TAU;
@@ -30,12 +34,12 @@ const CORNERS: u32 = 48;
 
 /// A robot in the plane: [`DiscRobot`] or [`PolygonRobot`].
 pub trait PlanarBody:
-    Checker<Self::State> + ObstacleHints<Self::State> + ClearanceGradient<Self::State> + Debug + 'static
+    PlanarRobot<Configuration = <Self as PlanarBody>::State> + Checker<<Self as PlanarBody>::State> + ObstacleHints<Self::State> + ClearanceGradient<Self::State> + Debug + 'static
 {
     /// A configuration.
-    type State: TreeState + RoadmapState + StateVector + 'static;
+    type State: TreeState + RoadmapState + StateVector + PlanarConfiguration + 'static;
     /// The space of configurations.
-    type Space: Factored + CompiledIndex + Space<State = Self::State> + Debug;
+    type Space: Factored + CompiledIndex + Embed + Space<State = Self::State> + Debug;
     /// The independent check of finished paths.
     type Verifier<'c>: MotionValidity<Self::State> + Clone + Send + Sync
     where
@@ -57,6 +61,11 @@ pub trait PlanarBody:
     fn space(bounds: [[f64; 2]; 2]) -> Result<Self::Space, Error>;
     /// A verifier.
     fn verifier<'c>(&self, space: &'c Self::Space) -> Self::Verifier<'c>;
+    /// A verifier among areas that move.
+    fn moving_verifier<'c>(
+        space: &'c SpaceTime<Self::Space>,
+        among: &AmongMovingAreas<Self>,
+    ) -> MovingAreasVerifier<'c, Self::Space, Self::Verifier<'c>>;
     /// The world in which it moves.
     fn world(&self) -> &Arc<PlanarWorld>;
     /// The clearance (m) that certified checks resolve.
@@ -73,6 +82,38 @@ pub trait PlanarBody:
     fn pose(q: &Self::State) -> Isometry2<f64>;
     /// `q` moved by the vector `by`, with the same rotation.
     fn moved(q: &Self::State, by: Vector2<f64>) -> Self::State;
+}
+
+impl<B: PlanarBody> SpeedBound for PlanarScene<B> {
+    fn speed_bound(&self, rates: &[f64]) -> f64 {
+        let rate = |i: usize| rates.get(i).copied().unwrap_or(0.0);
+        rate(0).hypot(rate(1)) + PlanarBody::radius(&self.robot) * rate(2)
+    }
+}
+
+impl<B: PlanarBody> WithMoving for PlanarScene<B> {
+    type Among = AmongMovingAreas<B>;
+    type AmongVerifier<'c> = MovingAreasVerifier<'c, B::Space, B::Verifier<'c>>;
+
+    fn among_verifier<'c>(
+        &'c self,
+        space: &'c SpaceTime<B::Space>,
+        among: &AmongMovingAreas<B>,
+    ) -> Result<Self::AmongVerifier<'c>, Error> {
+        Ok(B::moving_verifier(space, among))
+    }
+    fn obstacle_poses(among: &AmongMovingAreas<B>, time: f64) -> Vec<Isometry3<f64>> {
+        among.poses(time).collect()
+    }
+    fn touched(among: &mut AmongMovingAreas<B>, q: &(<B as PlanarBody>::State, f64)) -> Vec<usize> {
+        among.touching(q)
+    }
+}
+
+impl<R: PlanarRobot> Queries for AmongMovingAreas<R> {
+    fn queries(&self) -> u64 {
+        self.counters().queries()
+    }
 }
 
 impl Queries for DiscRobot {
@@ -105,6 +146,12 @@ impl PlanarBody for DiscRobot {
     }
     fn verifier(&self, _: &Rn<2>) -> DiscVerifier {
         DiscVerifier::new(self)
+    }
+    fn moving_verifier<'c>(
+        space: &'c SpaceTime<Rn<2>>,
+        among: &AmongMovingAreas<Self>,
+    ) -> MovingAreasVerifier<'c, Rn<2>, DiscVerifier> {
+        MovingAreasVerifier::of_disc(space, among)
     }
     fn world(&self) -> &Arc<PlanarWorld> {
         self.world()
@@ -155,6 +202,12 @@ impl PlanarBody for PolygonRobot {
     fn verifier<'c>(&self, space: &'c Se2) -> PolygonVerifier<'c, Se2> {
         PolygonVerifier::new(space, self)
     }
+    fn moving_verifier<'c>(
+        space: &'c SpaceTime<Se2>,
+        among: &AmongMovingAreas<Self>,
+    ) -> MovingAreasVerifier<'c, Se2, PolygonVerifier<'c, Se2>> {
+        MovingAreasVerifier::of_polygon(space, among)
+    }
     fn world(&self) -> &Arc<PlanarWorld> {
         self.world()
     }
@@ -189,6 +242,8 @@ pub struct PlanarScene<B: PlanarBody> {
     space: B::Space,
     start: B::State,
     goals: Vec<B::State>,
+    /// What the goals ask of each number, if they are not configurations.
+    goal_parts: Option<Vec<Vec<GoalPart>>>,
 }
 
 impl<B: PlanarBody> PlanarScene<B> {
@@ -201,9 +256,53 @@ impl<B: PlanarBody> PlanarScene<B> {
         let world = PlanarWorld::new(polygons, problem.file.walls).map_err(|e| Error::new(e.to_string()))?;
         let robot = B::among(Arc::new(world), &problem.file.robot)?;
         let space = B::space(problem.bounds)?;
-        let start = B::state(&problem.file.start);
-        let goals = problem.file.goals.iter().map(|row| B::state(row)).collect();
-        Ok(Self { problem, robot, space, start, goals })
+        let numbers = B::COLUMNS.len();
+        let start = B::state(&problem.file.start[..numbers]);
+        // A robot with accelerations may have goals of its velocities too, which are not those of this scene.
+        let parts = problem.file.goals.iter().map(|goal| goal[..numbers.min(goal.len())].to_vec());
+        let parts: Vec<Vec<GoalPart>> = parts.collect();
+        let (mut goals, mut goal_parts) = (vec![start.clone()], None);
+        match rows(&parts) {
+            Some(rows) => goals = rows.iter().map(|row| B::state(row)).collect(),
+            None => goal_parts = Some(parts),
+        }
+        let mut scene = Self { problem, robot, space, start, goals, goal_parts };
+        if let Some(parts) = &scene.goal_parts {
+            scene.goals = examples(&scene, parts);
+        }
+        Ok(scene)
+    }
+
+    /// The same robot, also among the obstacles of the problem that move.
+    ///
+    /// # Errors
+    /// When the problem does not say how fast the robot is, or a shape or a time is not valid.
+    pub fn among_moving(self) -> Result<MovingScene<Self>, Error> {
+        let Some(timing) = self.problem.file.timing.clone() else {
+            return Err(Error::new("obstacles move, and the robot has no speed").help("say how fast it is"));
+        };
+        let moving = self.problem.file.moving.clone();
+        let pose = |[x, y, angle]: [f64; 3]| {
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
+            Isometry3::from_parts(Translation3::new(x, y, 0.0), turn)
+        };
+        let areas = moving.iter().map(|m| {
+            let poses = m.path.iter().map(|&[time, x, y, angle]| (time, pose([x, y, angle])));
+            let trajectory = Trajectory::new(poses)
+                .map_err(|e| Error::new(format!("the path of {}: {e}", m.name)))?;
+            Ok((m.polygon.clone(), trajectory))
+        });
+        let areas: Vec<_> = areas.collect::<Result<_, Error>>()?;
+        let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(timing.start, f64::max);
+        // Time to wait until nothing moves, and then to go around everything.
+        let horizon = timing.horizon.unwrap_or(last + 2.0 * self.space.extent() / timing.speed);
+        let among = AmongMovingAreas::new(self.robot.clone(), areas)?;
+        let body = |m: &mp_io::PlanarMoving| Body {
+            name: m.name.clone(),
+            shape: BodyShape::Area(m.polygon.rings().to_vec()),
+            pose: None,
+        };
+        MovingScene::new(self, among, moving.iter().map(body).collect(), &timing, horizon)
     }
 
     /// The problem that it was made from.
@@ -216,6 +315,16 @@ impl<B: PlanarBody> PlanarScene<B> {
     #[must_use]
     pub fn robot(&self) -> &B {
         &self.robot
+    }
+
+    /// The same robot, moved by inputs.
+    ///
+    /// # Errors
+    /// When the robot cannot move so.
+    pub fn driven(self, driven: &Driven) -> Result<DrivenScene<Self>, Error> {
+        let velocity = self.problem.file.start[B::COLUMNS.len()..].to_vec();
+        let goals = self.problem.file.goals.clone();
+        DrivenScene::new(self, driven, &velocity, goals)
     }
 
     /// The rings around the robot at `q`, in the world, metres.
@@ -247,11 +356,16 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
         &self.goals
     }
 
+    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
+        self.goal_parts.as_deref()
+    }
+
     fn with_ends(&self, start: B::State, goals: Vec<B::State>) -> Result<Self, Error> {
         let mut scene = self.clone();
         scene.problem.file.start = B::row(&start);
-        scene.problem.file.goals = goals.iter().map(B::row).collect();
-        (scene.start, scene.goals) = (start, goals);
+        let exactly = |q: &B::State| B::row(q).into_iter().map(GoalPart::Exactly).collect();
+        scene.problem.file.goals = goals.iter().map(exactly).collect();
+        (scene.start, scene.goals, scene.goal_parts) = (start, goals, None);
         Ok(scene)
     }
 
@@ -342,6 +456,10 @@ impl<B: PlanarBody> RobotKind for PlanarScene<B> {
     fn limits(&self) -> Vec<Option<[f64; 2]>> {
         let [low, high] = self.problem.bounds;
         (0..B::COLUMNS.len()).map(|i| (i < 2).then(|| [low[i], high[i]])).collect()
+    }
+    fn details(&self) -> Vec<(String, String)> {
+        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
+        goals.map(|goal| ("goal is".to_owned(), goal)).collect()
     }
     fn row(&self, q: &B::State) -> Vec<f64> {
         B::row(q)

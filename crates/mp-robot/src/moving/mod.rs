@@ -88,6 +88,18 @@ impl<P: Placement> AmongMoving<P> {
         self.moving.iter().map(move |obstacle| obstacle.trajectory.pose(time))
     }
 
+    /// The indices of the moving obstacles that the robot touches.
+    pub fn touching(&mut self, (q, time): &(P::State, f64)) -> Vec<usize> {
+        let pose = P::pose(q);
+        let touches = |obstacle: &MovingObstacle| {
+            self.counters.collision_checks += 1;
+            let seen = obstacle.trajectory.pose(*time).inv_mul(&pose);
+            obstacle.scene.collides(&mut self.query, &self.body.shared.robot, &seen)
+        };
+        let each = self.moving.iter().map(touches).enumerate();
+        each.filter_map(|(i, touched)| touched.then_some(i)).collect()
+    }
+
     pub(crate) fn moving(&self) -> &Arc<[MovingObstacle]> {
         &self.moving
     }

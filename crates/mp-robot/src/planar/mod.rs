@@ -3,10 +3,12 @@
 mod disc;
 mod edge_list;
 mod hints;
+mod moving;
 mod polygon;
 mod verify;
 
 pub use disc::DiscRobot;
+pub use moving::{AmongMovingAreas, MovingAreasVerifier, PlanarConfiguration, PlanarRobot};
 pub use polygon::PolygonRobot;
 pub use verify::{DiscVerifier, PolygonVerifier};
 

@@ -1,8 +1,8 @@
 //! Problems whose local planner moves by a uniform set of inputs, for planners made by name.
 
 use crate::{BuildError, Parameter, Problem, Settings, Tuning};
-use mp_control::{InputPlanner, InputSet, Kinematic, LocalFlowCheck};
-use mp_cspace::{LocalPlanner, Space};
+use mp_control::{Flow, InputPlanner, InputSet, Kinematic, LocalFlowCheck};
+use mp_cspace::{AnyFlow, LocalPlanner, Space};
 
 /// The number of directions of a set of inputs.
 pub const INPUTS: Parameter = Parameter {
@@ -20,23 +20,54 @@ pub const LEVELS: Parameter = Parameter {
     doc: "lengths of motion: the step, a quarter of it, a quarter of that, and so on",
 };
 
-/// A local planner that moves by velocities, one second each; its motions and edges are those of `L`.
-pub(crate) type ByVelocities<'c, C, L> = InputPlanner<'c, C, Kinematic<'c, C>, Vec<f64>, LocalFlowCheck<L>>;
+/// How planners made by name move by inputs.
+pub(crate) enum NamedFlow<'c, C: Space> {
+    /// By velocities.
+    Velocities(Kinematic<'c, C>),
+    /// As the robot does.
+    Own(AnyFlow<'c, C::State>),
+}
 
-/// The problem with a local planner that moves by [`InputSet::uniform`], one step long. From within a step, listed goals
+impl<C: Space> Flow<C::State, Vec<f64>> for NamedFlow<'_, C> {
+    fn integrate(&self, from: &C::State, input: &Vec<f64>, time: f64) -> C::State {
+        match self {
+            Self::Velocities(flow) => flow.integrate(from, input, time),
+            Self::Own(flow) => flow(from, input, time),
+        }
+    }
+    fn reversed(&self, to: &C::State, input: &Vec<f64>, time: f64) -> Option<C::State> {
+        match self {
+            Self::Velocities(flow) => flow.reversed(to, input, time),
+            Self::Own(_) => None,
+        }
+    }
+}
+
+/// A local planner that moves by inputs; its motions and edges are those of `L`.
+pub(crate) type ByInputs<'c, C, L> = InputPlanner<'c, C, NamedFlow<'c, C>, Vec<f64>, LocalFlowCheck<L>>;
+
+/// The problem with a local planner that moves by the inputs of the robot, or, for a robot that can make any motion, by
+/// velocities for one second each: [`InputSet::uniform`], one step long. Then, from within a step, listed goals
 /// are connected to exactly; where goals are sampled, and so not known beforehand, every target is.
 pub(crate) fn moved_by_inputs<'c, C: Space, L: LocalPlanner<C::State>>(
     problem: Problem<'c, C, L>,
     tuning: &Tuning,
     settings: &Settings,
-) -> Result<Problem<'c, C, ByVelocities<'c, C, L>>, BuildError> {
+) -> Result<Problem<'c, C, ByInputs<'c, C, L>>, BuildError> {
     let space = problem.space();
     let reach = tuning.step.length_in(space)?;
     let directions = settings.count(INPUTS.name)?.unwrap_or(0);
     let directions = in_range(INPUTS.name, directions, 0, 1 << 20)?;
     let levels = in_range(LEVELS.name, settings.count(LEVELS.name)?.unwrap_or(3), 1, 20)?;
+    if let Some(system) = problem.inputs().cloned() {
+        let inputs = InputSet::new((system.inputs)(directions as usize, levels))?;
+        let flow = NamedFlow::Own(system.flow);
+        return problem.try_map_local(|local| {
+            Ok(InputPlanner::new(space, flow, inputs, system.duration, LocalFlowCheck(local))?)
+        });
+    }
     let inputs = InputSet::uniform(space, reach, directions as usize, levels)?;
-    let flow = Kinematic::new(space)?;
+    let flow = NamedFlow::Velocities(Kinematic::new(space)?);
     let (goals, sampled) = (problem.goals().listed().to_vec(), problem.goals().has_sampler());
     problem.try_map_local(|local| {
         let planner = InputPlanner::new(space, flow, inputs, 1.0, LocalFlowCheck(local))?;

@@ -1,0 +1,118 @@
+//! Goals of which some numbers are fixed, some are in intervals, and some are free.
+
+use crate::RobotKind;
+use mp_cspace::angle::wrap_angle;
+use mp_cspace::{Clearance, Goals, Rng, Sampler, Space};
+pub use mp_io::GoalPart;
+use rand::RngExt;
+
+/// How often a free configuration of a goal is looked for.
+const TRIES: usize = 1000;
+/// How far, as a part of the extent of the space, a configuration may be from a goal that it is at: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Where the row of a configuration would have to be to be at a goal: the same row if it is there.
+fn row_at<K: RobotKind>(kind: &K, goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f64> {
+    let (columns, limits) = (kind.columns(), kind.limits());
+    for (i, (part, x)) in goal.iter().zip(&mut row).enumerate() {
+        // An angle without limits is the same after a full turn.
+        let turns = limits.get(i).is_some_and(Option::is_none) && columns.get(i).is_some_and(|c| c.unit == "rad");
+        match *part {
+            GoalPart::Exactly(v) => *x = v,
+            GoalPart::Between([low, high]) if turns => {
+                let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+                let off = wrap_angle(*x - middle);
+                if off.abs() > half {
+                    *x = middle + half.copysign(off);
+                }
+            }
+            GoalPart::Between([low, high]) => *x = x.max(low).min(high),
+            GoalPart::Free => {}
+        }
+    }
+    row
+}
+
+/// The configuration of a goal that is next to `q`.
+pub(crate) fn next_to<K: RobotKind>(kind: &K, goal: &[GoalPart], q: &K::State) -> K::State {
+    kind.state(&row_at(kind, goal, kind.row(q)))
+}
+
+/// A configuration of a goal, drawn at random.
+fn drawn<K: RobotKind>(kind: &K, goal: &[GoalPart], rng: &mut Rng) -> K::State {
+    let mut row = kind.row(&kind.space().sample_uniform(rng));
+    for (part, x) in goal.iter().zip(&mut row) {
+        match *part {
+            GoalPart::Exactly(v) => *x = v,
+            GoalPart::Between([low, high]) => *x = low + (high - low) * rng.random::<f64>(),
+            GoalPart::Free => {}
+        }
+    }
+    kind.state(&row)
+}
+
+/// Draws from the goals of a robot, each equally likely.
+struct FromGoals<'k, K: RobotKind> {
+    kind: &'k K,
+    goals: &'k [Vec<GoalPart>],
+}
+
+impl<K: RobotKind> Sampler<K::State> for FromGoals<'_, K> {
+    fn sample(&mut self, rng: &mut Rng) -> K::State {
+        let which = if self.goals.len() > 1 { rng.random_range(0..self.goals.len()) } else { 0 };
+        drawn(self.kind, &self.goals[which], rng)
+    }
+}
+
+/// The goals of a robot, for planners: the configurations, or what they may be.
+pub(crate) fn of_kind<K: RobotKind>(kind: &K) -> Goals<'_, K::State> {
+    let Some(goals) = kind.goal_parts() else { return Goals::states(kind.goals().iter().cloned()) };
+    let rounding = ROUNDING * kind.space().extent().max(1.0);
+    let reached = move |q: &K::State| {
+        goals.iter().any(|goal| kind.space().distance(q, &next_to(kind, goal, q)) <= rounding)
+    };
+    Goals::region(reached).with_sampler(FromGoals { kind, goals })
+}
+
+/// One configuration for each goal, free if one is found: with the numbers of the start where the goal leaves them free, or
+/// else drawn at random, always the same.
+pub(crate) fn examples<K: RobotKind>(kind: &K, goals: &[Vec<GoalPart>]) -> Vec<K::State> {
+    let (mut checker, mut rng) = (kind.checker().clone(), Rng::seed(0));
+    let enough = 2.0 * kind.tolerance();
+    let example = |goal: &Vec<GoalPart>| {
+        let mut row = row_at(kind, goal, kind.row(kind.start()));
+        for (part, x) in goal.iter().zip(&mut row) {
+            if let GoalPart::Between([low, high]) = part {
+                *x = 0.5 * (low + high);
+            }
+        }
+        let first = kind.state(&row);
+        let mut free = |q: &K::State| kind.space().contains(q) && checker.clearance(q, enough) >= enough;
+        if free(&first) {
+            return first;
+        }
+        (0..TRIES).map(|_| drawn(kind, goal, &mut rng)).find(&mut free).unwrap_or(first)
+    };
+    goals.iter().map(example).collect()
+}
+
+/// The configurations of goals of which every number is given; `None` when one is not.
+pub(crate) fn rows(goals: &[Vec<GoalPart>]) -> Option<Vec<Vec<f64>>> {
+    let value = |part: &GoalPart| match part {
+        GoalPart::Exactly(v) => Some(*v),
+        _ => None,
+    };
+    goals.iter().map(|goal| goal.iter().map(value).collect()).collect()
+}
+
+/// A goal as people write it: `x 1.5 to 1.7, y 2, yaw free`.
+pub(crate) fn written<K: RobotKind>(kind: &K, goal: &[GoalPart]) -> String {
+    let part = |(column, part): (crate::Column, &GoalPart)| match part {
+        GoalPart::Exactly(v) => format!("{} {}", column.name, crate::brief(*v)),
+        GoalPart::Between([low, high]) => {
+            format!("{} {} to {}", column.name, crate::brief(*low), crate::brief(*high))
+        }
+        GoalPart::Free => format!("{} free", column.name),
+    };
+    kind.columns().into_iter().zip(goal).map(part).collect::<Vec<_>>().join(", ")
+}
