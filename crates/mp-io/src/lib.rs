@@ -30,6 +30,7 @@ mod ompl;
 mod path;
 mod planar;
 mod problem;
+mod rigid_toml;
 mod robot;
 mod stl;
 mod text;
@@ -51,6 +52,7 @@ pub use planar::{
     GridMap, PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
+pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
 pub use toml_problem::{GoalEntry, GoalPart, Timing};
 pub use stl::{parse_stl, stl_text, write_stl};

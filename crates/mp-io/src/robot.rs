@@ -5,6 +5,7 @@ mod problem;
 mod tests;
 mod urdf_mesh;
 
+pub(crate) use problem::Figures;
 pub use problem::RobotProblem;
 
 use crate::drive::{DriveTable, Driven};
@@ -126,14 +127,14 @@ struct RobotTable {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct ObstacleTable {
-    name: Option<String>,
-    mesh: Option<Spanned<String>>,
+pub(crate) struct ObstacleTable {
+    pub(crate) name: Option<String>,
+    pub(crate) mesh: Option<Spanned<String>>,
     #[serde(rename = "box")]
-    cuboid: Option<Spanned<[f64; 3]>>,
-    sphere: Option<Spanned<f64>>,
-    cylinder: Option<Spanned<[f64; 2]>>,
-    pose: Option<Spanned<[f64; 6]>>,
+    pub(crate) cuboid: Option<Spanned<[f64; 3]>>,
+    pub(crate) sphere: Option<Spanned<f64>>,
+    pub(crate) cylinder: Option<Spanned<[f64; 2]>>,
+    pub(crate) pose: Option<Spanned<[f64; 6]>>,
 }
 
 impl RobotFile {
@@ -179,7 +180,8 @@ impl RobotFile {
             let message = "nothing moves around this robot, so that it needs no speed";
             return Err(source.error(place, message).expected("no `speed` in [motion]"));
         }
-        let obstacles = obstacle.into_iter().enumerate().map(|(i, o)| entry(&source, i, o));
+        let obstacles = obstacle.into_iter().enumerate();
+        let obstacles = obstacles.map(|(i, o)| entry(&source, i, o.span(), o.into_inner()));
         let places = Places {
             urdf: robot.urdf.span(),
             srdf: robot.srdf.as_ref().map_or(0..0, Spanned::span),
@@ -218,15 +220,23 @@ impl RobotFile {
         self.fault_at(span, message, help)
     }
 
+    /// The text, for errors.
+    fn source(&self) -> TomlText<'_> {
+        TomlText { file: &self.file, text: &self.text, guide: GUIDE }
+    }
+
     fn fault_at(&self, span: &Range<usize>, message: &str, help: &str) -> Error {
-        TomlText { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
+        self.source().error(span, message).help(help)
     }
 }
 
-/// The obstacle of a table.
-fn entry(source: &TomlText<'_>, index: usize, table: Spanned<ObstacleTable>) -> Result<ObstacleEntry, Error> {
-    let span = table.span();
-    let table = table.into_inner();
+/// The obstacle of the table at `span`.
+pub(crate) fn entry(
+    source: &TomlText<'_>,
+    index: usize,
+    span: Range<usize>,
+    table: ObstacleTable,
+) -> Result<ObstacleEntry, Error> {
     let name = table.name.unwrap_or_else(|| format!("obstacle {}", index + 1));
     let mut shapes = Vec::new();
     if let Some(mesh) = table.mesh {

@@ -373,7 +373,7 @@ pub(crate) fn timed_rows(
     let mut found = Vec::new();
     for (i, row) in rows.get_ref().iter().enumerate() {
         text.check(&format!("the path of {what}"), row, &span)?;
-        if !(1 + numbers - optional..=1 + numbers).contains(&row.len()) {
+        if ![1 + numbers - optional, 1 + numbers].contains(&row.len()) {
             return fault(format!("row {} of the path of {what} has {} numbers", i + 1, row.len()));
         }
         if row[0] <= last {

@@ -114,6 +114,9 @@ fn fault_text<K: RobotKind>(kind: &K, path: &Path<K::State>, fault: PathFault) -
         fault => return fault.to_string(),
     };
     let (from, to) = (&path.states[edge], path.states.get(edge + 1).unwrap_or(&path.states[edge]));
+    if !kind.can_move(from, to) {
+        return format!("the robot cannot move from configuration {} to {}", edge + 1, edge + 2);
+    }
     let state = kind.space().interpolate(from, to, check.failed_at().unwrap_or(0.0));
     let at: Vec<_> = kind.row(&state).into_iter().map(brief).collect();
     let touching = kind.touching(&state);

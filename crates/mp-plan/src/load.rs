@@ -2,13 +2,13 @@
 
 use crate::inputs::Recording;
 use crate::{Error, Scene};
-use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RobotProblem, SceneDocument};
+use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
 use std::path::Path;
 use std::sync::Mutex;
 
 impl Scene {
-    /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem or a world
-    /// in the plane (`.toml`), a scene of the editor (`.mp.json`).
+    /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem, a rigid body or
+    /// a world in the plane (`.toml`), a scene of the editor (`.mp.json`).
     ///
     /// # Errors
     /// When a file cannot be read or is not valid: with file, line, column and remedy.
@@ -34,6 +34,9 @@ impl Scene {
         let files: &dyn Files = &recording;
         let scene = match RobotProblem::is_named(file) {
             true if PlanarProblem::is_planar_world_in(files, file) => planar(files, file).map_err(of)?,
+            true if RigidTask::is_one(files, file) => {
+                Self::from_task(RigidTask::load_from(files, file)?).map_err(of)?
+            }
             true => arm(files, file)?,
             false if ending == "json" => {
                 let folder = file.parent().unwrap_or(Path::new(""));

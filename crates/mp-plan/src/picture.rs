@@ -139,14 +139,15 @@ impl Scene {
             BodyShape::Mesh(mesh) => Some(mesh.clone()),
             _ => None,
         };
-        let robot: Vec<TriMesh> = bodies.iter().filter(|b| b.pose.is_none()).filter_map(mesh).collect();
+        let mut robot: Vec<TriMesh> = bodies.iter().filter(|b| b.pose.is_none()).filter_map(mesh).collect();
+        let moving = robot.split_off(robot.len().saturating_sub(self.moving_obstacles()));
         let still = bodies.iter().filter_map(|body| Some(mp_render::Body::new(&mesh(body)?, body.pose?)));
         // A robot of one body is one model at many poses. A robot of several bodies is merged anew for each configuration.
         let single = match robot.as_slice() {
             [only] => Some(mp_render::Body::new(only, Isometry3::identity())),
             _ => None,
         };
-        let shown = |poses: &Vec<Isometry3<f64>>| match (&single, poses.as_slice()) {
+        let shown = |poses: &Vec<Isometry3<f64>>| match (&single, &poses[..robot.len()]) {
             (Some(body), [pose]) => body.at(*pose),
             _ => {
                 let placed: Vec<_> =
@@ -158,6 +159,9 @@ impl Scene {
             }
         };
         let sweep = self.sweep(path)?;
+        // Obstacles that move are drawn where they are at the start.
+        let first = moving.iter().zip(&sweep.start[robot.len()..]);
+        let still = still.chain(first.map(|(mesh, pose)| mp_render::Body::new(mesh, *pose)));
         Ok(mp_render::Scene {
             title: self.name().to_owned(),
             subtitle: caption.to_owned(),

@@ -5,7 +5,7 @@ use crate::prepared::Possible;
 use crate::{Control, Error, Finish, Request, RobotKind, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
-use mp_cspace::{Certified, Path, Space, verify_path};
+use mp_cspace::{Certified, Demand, Path, Space, verify_path};
 use mp_snake::{Params, Repulsion, relax};
 use mp_tree::TreeState;
 use std::sync::atomic::AtomicU64;
@@ -24,6 +24,9 @@ pub(crate) fn relax_if_requested<K: RobotKind>(
 ) -> Result<Path<K::State>, Error> {
     if request.finish != Finish::Relax {
         return Ok(path);
+    }
+    if kind.demands().contains(&Demand::Inputs) {
+        return Err(Error::new("a robot that moves by inputs cannot follow a relaxed path").help("leave relaxing out"));
     }
     control.stage(Stage::Relaxing);
     relaxed(kind, path)

@@ -1,7 +1,7 @@
 //! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
-use crate::robot::{PlanarScene, RigidScene};
+use crate::robot::{PlanarScene, RigidScene, RigidSpace};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     Sweep, Track, Verdict,
 };
 use mp_geom::{Aabb, TriMesh, six_from_pose};
-use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, SceneDocument, SpaceKind};
+use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -81,6 +81,25 @@ impl Scene {
                 Self::new(RigidScene::<Planar>::after(before, problem)?)
             }
         })
+    }
+
+    /// A scene of a rigid body among meshes of which some move, or with goals that leave something free.
+    ///
+    /// # Errors
+    /// When the bounds of the position are empty, or a mesh, a pose or a time is not valid.
+    pub fn from_task(task: RigidTask) -> Result<Self, Error> {
+        fn made<M: RigidSpace>(task: RigidTask) -> Result<Scene, Error> {
+            let scene = RigidScene::<M>::new(task.problem)?.with_goals(task.goals);
+            Ok(match &task.timing {
+                Some(timing) => Scene::new(scene.among_moving(&task.moving, timing)?),
+                None => Scene::new(scene),
+            })
+        }
+        let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
+        match task.problem.space {
+            SpaceKind::Se3 => made::<Spatial>(task),
+            SpaceKind::Se2 => made::<Planar>(task),
+        }
     }
 
     /// A scene of a robot in the plane among polygons.

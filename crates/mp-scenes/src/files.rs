@@ -82,6 +82,7 @@ pub const FILES: &[File] = files! {
     "scenes/alpha-1.5.env"
     "scenes/apartment.env"
     "scenes/arm.toml"
+    "scenes/blade.toml"
     "scenes/bugtrap.env"
     "scenes/crossing.toml"
     "scenes/cubicles.env"

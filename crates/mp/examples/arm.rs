@@ -22,7 +22,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         fits.then(|| Q::from_column_slice(values)).ok_or("this example is for six joints")
     };
     let start = state(&task.file.start)?;
-    let goals = task.file.goals.iter().map(|goal| state(goal)).collect::<Result<Vec<_>, _>>()?;
+    let goals = task.file.goals.iter().map(|goal| match goal.values() {
+        Some(values) => state(values),
+        None => Err("this example is for goals that give all joints"),
+    });
+    let goals = goals.collect::<Result<Vec<_>, _>>()?;
 
     let (tolerance, verifier) = (arm.tolerance(), ArmVerifier::new(&space, &arm)?);
     let local = Straight::new(&space, Certified::new(&space, arm, tolerance)?);

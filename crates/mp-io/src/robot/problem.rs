@@ -1,10 +1,11 @@
 //! Robot problems and the files they name.
 
-use super::{ObstacleShape, RobotFile, RobotPart};
+use super::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart};
 use crate::error::Error;
 use crate::files::{Disk, Files, MAX_TEXT_BYTES, decode, stem};
 use crate::mesh::read_mesh_of;
 use crate::problem::{MAX_COORDINATE, PlacedBody, vertex_beyond};
+use crate::toml_problem::TomlText;
 use mp_geom::{TriMesh, pose_from_six, primitives};
 use nalgebra::Isometry3;
 use std::path::{Path, PathBuf};
@@ -74,44 +75,71 @@ impl RobotProblem {
             Some(name) => Some(text(RobotPart::Srdf, name)?.1),
             None => None,
         };
-        let mut obstacles: Vec<PlacedBody> = Vec::new();
+        let (mut obstacles, mut figures) = (Vec::new(), Figures::new(files, path));
         for entry in &file.obstacles {
-            let fault = |message: &str, help: &str| file.fault_at(&entry.span, message, help);
-            let primitive = |made: Result<TriMesh, primitives::PrimitiveError>| {
-                made.map(|mesh| (path.to_owned(), mesh))
-                    .map_err(|e| fault(&e.to_string(), "give sizes in metres, not too small"))
-            };
-            let (from, mesh) = match &entry.shape {
-                ObstacleShape::Box([x, y, z]) => primitive(primitives::cuboid(*x, *y, *z))?,
-                ObstacleShape::Sphere(radius) => primitive(ball(*radius))?,
-                ObstacleShape::Cylinder([radius, height]) => {
-                    let around = radius / (std::f64::consts::PI / f64::from(SEGMENTS)).cos();
-                    primitive(primitives::cylinder(around, *height, SEGMENTS))?
-                }
-                ObstacleShape::Mesh(name) => {
-                    let place = folder.join(name);
-                    // Many obstacles often share a mesh: read it once.
-                    match obstacles.iter().find(|o| o.file == place) {
-                        Some(seen) => (place, seen.mesh.clone()),
-                        None => {
-                            let mesh = read_mesh_of(files, &place).map_err(|e| {
-                                let message = format!("the mesh of {} is not usable: {e}", entry.name);
-                                fault(&message, e.remedy_of_named_file()).with_kind(e.kind())
-                            })?;
-                            (place, mesh)
-                        }
-                    }
-                }
-            };
-            if vertex_beyond(&mesh).is_some() {
-                let message = format!("{} has a vertex beyond {MAX_COORDINATE:e} m", entry.name);
-                return Err(fault(&message, "coordinates are metres: scale the mesh"));
-            }
+            let (from, mesh) = figures.mesh(&file.source(), entry)?;
             let (name, pose) = (entry.name.clone(), pose_from_six(entry.pose));
             obstacles.push(PlacedBody { name, file: from, mesh, pose });
         }
         let packages = file.packages.as_ref().map(|name| folder.join(name));
         Ok(Self { name: stem(path), file, urdf_file, urdf, srdf, packages, obstacles })
+    }
+}
+
+/// Makes the meshes of obstacles.
+pub(crate) struct Figures<'a> {
+    files: &'a dyn Files,
+    /// The file of the problem.
+    path: &'a Path,
+    /// The meshes read so far, with their files.
+    read: Vec<(PathBuf, TriMesh)>,
+}
+
+impl<'a> Figures<'a> {
+    /// For the problem in the file `path`, to which names are relative.
+    pub(crate) fn new(files: &'a dyn Files, path: &'a Path) -> Self {
+        Self { files, path, read: Vec::new() }
+    }
+
+    /// The file and the mesh of an obstacle. Spheres and cylinders become meshes that contain them.
+    pub(crate) fn mesh(
+        &mut self,
+        source: &TomlText<'_>,
+        entry: &ObstacleEntry,
+    ) -> Result<(PathBuf, TriMesh), Error> {
+        let fault = |message: &str, help: &str| source.error(&entry.span, message).help(help);
+        let primitive = |made: Result<TriMesh, primitives::PrimitiveError>| {
+            made.map(|mesh| (self.path.to_owned(), mesh))
+                .map_err(|e| fault(&e.to_string(), "give sizes in metres, not too small"))
+        };
+        let (from, mesh) = match &entry.shape {
+            ObstacleShape::Box([x, y, z]) => primitive(primitives::cuboid(*x, *y, *z))?,
+            ObstacleShape::Sphere(radius) => primitive(ball(*radius))?,
+            ObstacleShape::Cylinder([radius, height]) => {
+                let around = radius / (std::f64::consts::PI / f64::from(SEGMENTS)).cos();
+                primitive(primitives::cylinder(around, *height, SEGMENTS))?
+            }
+            ObstacleShape::Mesh(name) => {
+                let place = self.path.parent().unwrap_or(Path::new("")).join(name);
+                // Many obstacles often share a mesh: read it once.
+                match self.read.iter().find(|(file, _)| *file == place) {
+                    Some(seen) => seen.clone(),
+                    None => {
+                        let mesh = read_mesh_of(self.files, &place).map_err(|e| {
+                            let message = format!("the mesh of {} is not usable: {e}", entry.name);
+                            fault(&message, e.remedy_of_named_file()).with_kind(e.kind())
+                        })?;
+                        self.read.push((place.clone(), mesh.clone()));
+                        (place, mesh)
+                    }
+                }
+            }
+        };
+        if vertex_beyond(&mesh).is_some() {
+            let message = format!("{} has a vertex beyond {MAX_COORDINATE:e} m", entry.name);
+            return Err(fault(&message, "coordinates are metres: scale the mesh"));
+        }
+        Ok((from, mesh))
     }
 }
 

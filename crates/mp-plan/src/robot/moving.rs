@@ -5,7 +5,7 @@ use super::{Body, Checker, Column, End, Measured, Mismatch, RobotKind, Touch, no
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;
-use mp_cspace::{AsVectors, Clearance, Demand, Embed, MotionValidity, StateVector};
+use mp_cspace::{AsVectors, Clearance, Demand, Embed, MotionValidity, Space, StateVector};
 use mp_geom::Aabb;
 use mp_io::Timing;
 use nalgebra::{DVector, Isometry3, Point3};
@@ -203,6 +203,7 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     }
     fn details(&self) -> Vec<(String, String)> {
         let mut details = self.still.details();
+        details.retain(|(name, _)| name != "goal is");
         let names: Vec<&str> = self.obstacles.iter().map(|body| body.name.as_str()).collect();
         details.push(("moving".to_owned(), names.join(", ")));
         details.push(("speed".to_owned(), format!("at most {} per second", crate::brief(self.space.0.speed()))));
@@ -219,6 +220,23 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     fn state(&self, row: &[f64]) -> DVector<f64> {
         let (time, position) = row.split_last().unwrap_or((&0.0, &[]));
         vector::<K>((self.still.state(position), *time))
+    }
+    fn odd_rows(&self, rows: &[Vec<f64>]) -> Option<String> {
+        let moments: Vec<_> = rows.iter().map(|row| self.moment(&self.state(row))).collect();
+        let space = &self.space.0;
+        let i = moments.windows(2).position(|pair| !space.can_move(&pair[0], &pair[1]))?;
+        let [(a, begin), (b, end)] = [&moments[i], &moments[i + 1]];
+        let (way, brief) = (self.still.space().distance(a, b), crate::brief);
+        Some(match end > begin {
+            true => format!(
+                "configuration {} is {} from the one before, too far for {} s at {} per second",
+                i + 2,
+                brief(way),
+                brief(end - begin),
+                brief(space.speed())
+            ),
+            false => format!("configuration {} is at {} s, not after the one before", i + 2, brief(*end)),
+        })
     }
     fn mismatch(&self, q: &DVector<f64>, wanted: &DVector<f64>) -> Mismatch {
         let [(q, time), (wanted, when)] = [q, wanted].map(|q| self.moment(q));

@@ -1,21 +1,25 @@
 //! Rigid bodies among meshes, in space or in the plane.
 
 use super::{
-    Body, BodyShape, Column, Counted, End, Measured, Mismatch, PathFormat, Queries, RobotKind, Touch,
-    hints_and_gradient, tuples,
+    Body, BodyShape, Column, Counted, End, Measured, Mismatch, MovingScene, PathFormat, Queries, RobotKind,
+    Touch, WithMoving, hints_and_gradient, tuples,
 };
+use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
 use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
+use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    DefaultNn, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, ObstacleKnowledge, Path,
+    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, ObstacleKnowledge, Path,
     ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
-use mp_io::{RigidProblem, SpaceKind};
-use mp_robot::{Placement, Planar, RigidBody, Spatial, Verifier};
+use mp_io::{RigidMoving, RigidProblem, SpaceKind, Timing};
+use mp_robot::{
+    AmongMoving, MovingVerifier, Placement, Planar, RigidBody, Spatial, Trajectory, Verifier,
+};
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use std::fmt::Debug;
@@ -30,7 +34,7 @@ const PICTURE_SPACING: f64 = 0.55;
 /// How a rigid body moves: [`Spatial`], in SE(3), or [`Planar`], in SE(2).
 pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateState + StateVector> {
     /// The space of its configurations.
-    type Space: Factored + CompiledIndex + DefaultNn<State = Self::State, Nn: 'static> + Debug;
+    type Space: Factored + CompiledIndex + Embed + DefaultNn<State = Self::State, Nn: 'static> + Debug;
     /// The metric of the point that moves farthest.
     type Displacement: Metric<Self::Space, Nn: 'static> + TrueMetric<Self::Space> + Clone + Send + 'static;
     /// The metric of the swept volume.
@@ -109,6 +113,8 @@ pub struct RigidScene<M: RigidSpace> {
     robot: RigidBody<M>,
     start: M::State,
     goals: Vec<M::State>,
+    /// What the goals ask of each number, if they are not configurations.
+    goal_parts: Option<Vec<Vec<GoalPart>>>,
     radius: f64,
 }
 
@@ -133,7 +139,47 @@ impl<M: RigidSpace> RigidScene<M> {
             RigidBody::among_after(before.map(|before| &before.robot), &problem.robot.mesh, obstacles)?;
         let (start, goal) = (M::configuration(&problem.start), M::configuration(&problem.goal));
         let radius = if robot.radius() > 0.0 { robot.radius() } else { 1e-3 * space.extent() };
-        Ok(Self { problem, space, robot, start, goals: vec![goal], radius })
+        Ok(Self { problem, space, robot, start, goals: vec![goal], goal_parts: None, radius })
+    }
+
+    /// The same robot with these goals: what each asks of each of the six numbers.
+    #[must_use]
+    pub fn with_goals(mut self, goals: Vec<Vec<GoalPart>>) -> Self {
+        match rows(&goals) {
+            Some(rows) => {
+                self.goals = rows.iter().map(|row| self.state(row)).collect();
+                self.goal_parts = None;
+            }
+            None => {
+                self.goals = examples(&self, &goals);
+                self.goal_parts = Some(goals);
+            }
+        }
+        self
+    }
+
+    /// The same robot, also among obstacles that move.
+    ///
+    /// # Errors
+    /// When a mesh is too large, or a path or a time is not valid.
+    pub fn among_moving(self, moving: &[RigidMoving], timing: &Timing) -> Result<MovingScene<Self>, Error> {
+        let meshes = moving.iter().map(|m| {
+            let pose = |row: &[f64; 7]| (row[0], pose_from_six(std::array::from_fn(|i| row[i + 1])));
+            let trajectory = Trajectory::new(m.path.iter().map(pose))
+                .map_err(|e| Error::new(format!("the path of {}: {e}", m.name)))?;
+            Ok((m.name.clone(), m.mesh.clone(), trajectory))
+        });
+        let meshes: Vec<_> = meshes.collect::<Result<_, Error>>()?;
+        let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(timing.start, f64::max);
+        // Time to wait until nothing moves, and then to go around everything.
+        let horizon = timing.horizon.unwrap_or(last + 2.0 * self.space.extent() / timing.speed);
+        let among = AmongMoving::new(self.robot.clone(), meshes)?;
+        let body = |m: &RigidMoving| Body {
+            name: m.name.clone(),
+            shape: BodyShape::Mesh(m.mesh.clone()),
+            pose: None,
+        };
+        MovingScene::new(self, among, moving.iter().map(body).collect(), timing, horizon)
     }
 
     /// The problem that it was made from.
@@ -161,6 +207,31 @@ impl<P: Placement> Queries for RigidBody<P> {
     }
 }
 
+impl<M: RigidSpace> WithMoving for RigidScene<M> {
+    type Among = AmongMoving<M>;
+    type AmongVerifier<'c> = MovingVerifier<'c, M::Space, M>;
+
+    fn among_verifier<'c>(
+        &'c self,
+        space: &'c SpaceTime<M::Space>,
+        among: &AmongMoving<M>,
+    ) -> Result<Self::AmongVerifier<'c>, Error> {
+        Ok(MovingVerifier::new(space, among)?)
+    }
+    fn obstacle_poses(among: &AmongMoving<M>, time: f64) -> Vec<Isometry3<f64>> {
+        among.poses(time).collect()
+    }
+    fn touched(among: &mut AmongMoving<M>, q: &(M::State, f64)) -> Vec<usize> {
+        among.touching(q)
+    }
+}
+
+impl<P: Placement> Queries for AmongMoving<P> {
+    fn queries(&self) -> u64 {
+        self.counters().queries()
+    }
+}
+
 impl<M: RigidSpace> RobotKind for RigidScene<M> {
     type State = M::State;
     type Space = M::Space;
@@ -183,12 +254,17 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         &self.goals
     }
 
+    fn goal_parts(&self) -> Option<&[Vec<GoalPart>]> {
+        self.goal_parts.as_deref()
+    }
+
     fn with_ends(&self, start: M::State, goals: Vec<M::State>) -> Result<Self, Error> {
         let mut problem = self.problem.clone();
         problem.start = M::pose(&start);
         problem.goal = goals.first().map_or(problem.goal, M::pose);
         let space = M::space(&problem.position_bounds())?;
-        Ok(Self { problem, space, robot: self.robot.clone(), start, goals, radius: self.radius })
+        let (robot, radius) = (self.robot.clone(), self.radius);
+        Ok(Self { problem, space, robot, start, goals, goal_parts: None, radius })
     }
 
     fn checker(&self) -> &RigidBody<M> {
@@ -312,8 +388,13 @@ impl<M: RigidSpace> RobotKind for RigidScene<M> {
         };
         tuples::six_tuples(states.len() - 1, self.radius, at).iter().map(|six| six.to_vec()).collect()
     }
+    fn details(&self) -> Vec<(String, String)> {
+        let goals = self.goal_parts.iter().flatten().map(|goal| crate::goals::written(self, goal));
+        goals.map(|goal| ("goal is".to_owned(), goal)).collect()
+    }
+    /// The editor knows one goal, all of whose numbers are given.
     fn rigid_problem(&self) -> Option<&RigidProblem> {
-        Some(&self.problem)
+        (self.goal_parts.is_none() && self.goals.len() == 1).then_some(&self.problem)
     }
     fn export(&self, folder: &std::path::Path) -> Result<std::path::PathBuf, Error> {
         Ok(mp_io::export_ompl(&self.problem, folder, &self.problem.name, &mp_io::OmplExport::default())?)

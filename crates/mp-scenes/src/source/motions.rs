@@ -186,10 +186,51 @@ name = \"pillar\"
 circle = [3.6, 1.6, 0.5]
 ";
 
+/// A box flies through a window in which a blade turns.
+const BLADE: &str = "\
+# A box flies through a window while a blade turns in it.
+
+[robot]
+box = [0.5, 0.16, 0.16]
+bounds = [[-2, -1.6, -1.6], [2, 1.6, 1.6]]
+
+[motion]
+start = [-1.5, 0, 0, 0, 0, 0]     # x y z, then the angles about Z, Y and X
+goal = [1.5, 0, 0, 0, 0, 0]
+speed = 1.5
+horizon = 12
+
+[[obstacle]]
+name = \"left\"
+box = [0.1, 1.2, 3.2]
+pose = [0, 1.1, 0, 0, 0, 0]
+
+[[obstacle]]
+name = \"right\"
+box = [0.1, 1.2, 3.2]
+pose = [0, -1.1, 0, 0, 0, 0]
+
+[[obstacle]]
+name = \"lintel\"
+box = [0.1, 1, 1.1]
+pose = [0, 0, 1.05, 0, 0, 0]
+
+[[obstacle]]
+name = \"sill\"
+box = [0.1, 1, 1.1]
+pose = [0, 0, -1.05, 0, 0, 0]
+
+[[moving]]
+name = \"blade\"
+box = [0.04, 0.95, 0.12]
+path = [[0, 0, 0, 0, 0, 0, 0], [4, 0, 0, 0, 0, 0, 2], [8, 0, 0, 0, 0, 0, 4], [12, 0, 0, 0, 0, 0, 6]]
+";
+
 /// Adds the scenes.
 pub(super) fn add(files: &mut Files) {
     for (name, text) in [
         ("accelerations", ACCELERATIONS),
+        ("blade", BLADE),
         ("crossing", CROSSING),
         ("docks", DOCKS),
         ("parking", PARKING),

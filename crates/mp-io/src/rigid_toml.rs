@@ -1,0 +1,285 @@
+//! Rigid bodies among meshes in TOML: obstacles that move, and goals that leave something free.
+
+use crate::error::Error;
+use crate::files::{Files, MAX_TEXT_BYTES, decode, stem};
+use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind};
+use crate::robot::{Figures, ObstacleTable, entry};
+use crate::toml_problem::{GoalPart, MotionTable, Timing, TomlText, timed_rows};
+use mp_geom::{Aabb, TriMesh, pose_from_six};
+use nalgebra::Point3;
+use serde::Deserialize;
+use std::path::Path;
+use toml::Spanned;
+
+/// The page that describes the format.
+const GUIDE: &str = "the format is described in docs/formats/rigid-problem.md";
+
+/// The names of the numbers of a configuration, in space and in the plane.
+const NAMES: [&str; 6] = ["x", "y", "z", "alpha", "beta", "gamma"];
+/// The numbers that are not zero in the plane.
+const IN_THE_PLANE: [usize; 3] = [0, 1, 3];
+
+/// A mesh that moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RigidMoving {
+    /// Its name in messages.
+    pub name: String,
+    /// Its mesh, in its own frame, metres.
+    pub mesh: TriMesh,
+    /// Where its frame is: time (s), then the six numbers of a pose, at increasing times.
+    pub path: Vec<[f64; 7]>,
+}
+
+/// A rigid body among meshes of which some move, with goals that may leave something free; all files are read.
+#[derive(Clone, Debug)]
+pub struct RigidTask {
+    /// The robot, the obstacles that stand still, the start, and an example of the first goal.
+    pub problem: RigidProblem,
+    /// The obstacles that move.
+    pub moving: Vec<RigidMoving>,
+    /// When the robot moves, if there are obstacles that move.
+    pub timing: Option<Timing>,
+    /// What each goal asks of each of the six numbers, at least one goal.
+    pub goals: Vec<Vec<GoalPart>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    robot: Spanned<RobotTable>,
+    motion: MotionTable,
+    #[serde(default)]
+    obstacle: Vec<Spanned<ObstacleTable>>,
+    #[serde(default)]
+    moving: Vec<Spanned<MovingTable>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct RobotTable {
+    mesh: Option<Spanned<String>>,
+    #[serde(rename = "box")]
+    cuboid: Option<Spanned<[f64; 3]>>,
+    sphere: Option<Spanned<f64>>,
+    cylinder: Option<Spanned<[f64; 2]>>,
+    bounds: Option<Spanned<[[f64; 3]; 2]>>,
+    planar: Option<bool>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MovingTable {
+    name: Option<String>,
+    mesh: Option<Spanned<String>>,
+    #[serde(rename = "box")]
+    cuboid: Option<Spanned<[f64; 3]>>,
+    sphere: Option<Spanned<f64>>,
+    cylinder: Option<Spanned<[f64; 2]>>,
+    path: Spanned<Vec<Vec<f64>>>,
+}
+
+impl RigidTask {
+    /// Whether a file is such a problem: its name ends in `.toml`, and its table `robot` has a shape.
+    #[must_use]
+    pub fn is_one(files: &dyn Files, path: &Path) -> bool {
+        let named = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"));
+        let read = || files.read(path, MAX_TEXT_BYTES).ok();
+        named && read().is_some_and(|bytes| has_shape(&String::from_utf8_lossy(&bytes)))
+    }
+
+    /// Reads the problem at `path` and its meshes, whose names are relative to it.
+    ///
+    /// # Errors
+    /// [`Error`] when a file cannot be read or makes no sense, with file, line and column.
+    pub fn load_from(files: &dyn Files, path: &Path) -> Result<Self, Error> {
+        let file = path.display().to_string();
+        let bytes = files.read(path, MAX_TEXT_BYTES)?;
+        let text = decode(&file, &bytes)?;
+        let source = TomlText { file: &file, text, guide: GUIDE };
+        let File { robot, motion, obstacle, moving } = source.read()?;
+        let robot_span = robot.span();
+        let robot = robot.into_inner();
+        let planar = robot.planar.unwrap_or(false);
+        let mut figures = Figures::new(files, path);
+        let table = ObstacleTable {
+            name: Some("robot".to_owned()),
+            mesh: robot.mesh,
+            cuboid: robot.cuboid,
+            sphere: robot.sphere,
+            cylinder: robot.cylinder,
+            pose: None,
+        };
+        let body = entry(&source, 0, robot_span, table)?;
+        let (from, mesh) = figures.mesh(&source, &body)?;
+        let robot_body = Body { name: body.name, file: from, mesh };
+
+        let mut obstacles = Vec::new();
+        for (i, table) in obstacle.into_iter().enumerate() {
+            let (span, table) = (table.span(), table.into_inner());
+            let entry = entry(&source, i, span, table)?;
+            let (file, mesh) = figures.mesh(&source, &entry)?;
+            obstacles.push(PlacedBody { name: entry.name, file, mesh, pose: pose_from_six(entry.pose) });
+        }
+        let mut movers = Vec::new();
+        for (i, table) in moving.into_iter().enumerate() {
+            let (span, table) = (table.span(), table.into_inner());
+            let MovingTable { name, mesh, cuboid, sphere, cylinder, path } = table;
+            let name = name.unwrap_or_else(|| format!("moving obstacle {}", i + 1));
+            let shown = crate::text::clipped(&name).to_string();
+            let table = ObstacleTable { name: Some(name), mesh, cuboid, sphere, cylinder, pose: None };
+            let entry = entry(&source, i, span, table)?;
+            let (_, mesh) = figures.mesh(&source, &entry)?;
+            let expected = "rows [TIME, x, y, z] or [TIME, x, y, z, α, β, γ], times increasing";
+            let rows = timed_rows(&source, &shown, &path, [6, 3], expected)?;
+            let row = |row: &Vec<f64>| std::array::from_fn(|i| row.get(i).copied().unwrap_or(0.0));
+            movers.push(RigidMoving { name: entry.name, mesh, path: rows.iter().map(row).collect() });
+        }
+
+        let own: Vec<usize> = if planar { IN_THE_PLANE.to_vec() } else { (0..6).collect() };
+        let names: Vec<String> = own.iter().map(|&i| NAMES[i].to_owned()).collect();
+        let numbers = names.join(", ");
+        let check = |what: &str, q: &Spanned<Vec<f64>>| {
+            source.check(what, q.get_ref(), &q.span())?;
+            if q.get_ref().len() == own.len() {
+                return Ok(());
+            }
+            let message = format!("{what} has {} numbers", q.get_ref().len());
+            Err(source.error(&q.span(), message).expected(format!("{}: {numbers}", own.len())))
+        };
+        let motion = motion.read(&source, check)?;
+        if let Some(place) = &motion.places.tolerance {
+            let message = "only robots that move by inputs need a tolerance";
+            return Err(source.error(place, message).expected("intervals in the goal: { x = [1.0, 1.2] }"));
+        }
+        match (movers.is_empty(), &motion.places.speed) {
+            (false, None) => {
+                let message = "obstacles move, and the robot has no speed";
+                let expected = "`speed = METRES_PER_SECOND` in [motion]";
+                return Err(source.error(&motion.places.start, message).expected(expected));
+            }
+            (true, Some(place)) => {
+                let message = "the robot has a speed, and nothing else moves";
+                return Err(source.error(place, message).expected("obstacles that move: `[[moving]]`, or no speed"));
+            }
+            _ => {}
+        }
+        let six = |values: &[f64]| {
+            let mut six = [0.0; 6];
+            own.iter().zip(values).for_each(|(&i, v)| six[i] = *v);
+            six
+        };
+        let mut goals = Vec::new();
+        for (i, goal) in motion.goals.iter().enumerate() {
+            let place = motion.places.goal(i);
+            let parts = goal.parts("the goal", &names, names.len(), 0.0);
+            let parts = parts.map_err(|[message, expected]| source.error(place, message).expected(expected))?;
+            let mut all = vec![GoalPart::Exactly(0.0); 6];
+            own.iter().zip(parts).for_each(|(&i, part)| all[i] = part);
+            let pitch = std::f64::consts::FRAC_PI_2;
+            let steep = match all[4] {
+                GoalPart::Exactly(v) => v.abs() > pitch,
+                GoalPart::Between([low, high]) => low < -pitch || high > pitch,
+                GoalPart::Free => false,
+            };
+            if steep && goal.values().is_none() {
+                let message = "beta of a goal that leaves something free is beyond a quarter turn";
+                return Err(source.error(place, message).expected("beta from -π/2 to π/2"));
+            }
+            goals.push(all);
+        }
+        let bounds = match &robot.bounds {
+            None => None,
+            Some(given) => {
+                let [low, high] = *given.get_ref();
+                source.check("the bounds", &[low, high].concat(), &given.span())?;
+                // In the plane only x and y count.
+                let axes = if planar { 2 } else { 3 };
+                if (0..axes).any(|i| low[i] >= high[i]) {
+                    let message = "the bounds enclose nothing";
+                    return Err(source.error(&given.span(), message).expected("the lower corner, then the upper"));
+                }
+                Some(Aabb::new(Point3::from(low), Point3::from(high)))
+            }
+        };
+        let example = |part: &GoalPart, start: f64| match *part {
+            GoalPart::Exactly(v) => v,
+            GoalPart::Between([low, high]) => 0.5 * (low + high),
+            GoalPart::Free => start,
+        };
+        let start = six(&motion.start);
+        let goal: [f64; 6] = std::array::from_fn(|i| example(&goals[0][i], start[i]));
+        let problem = RigidProblem {
+            name: stem(path),
+            space: if planar { SpaceKind::Se2 } else { SpaceKind::Se3 },
+            robot: robot_body,
+            obstacles,
+            start: pose_from_six(start),
+            goal: pose_from_six(goal),
+            bounds,
+        };
+        Ok(Self { problem, moving: movers, timing: motion.timing, goals })
+    }
+}
+
+/// Whether the table `robot` of a text has a shape.
+fn has_shape(text: &str) -> bool {
+    let mut in_robot = false;
+    text.lines().map(str::trim_start).any(|line| {
+        if line.starts_with('[') {
+            in_robot = line.starts_with("[robot]");
+        }
+        let key = line.split(['=', ' ', '\t']).next().unwrap_or_default();
+        in_robot && ["mesh", "box", "sphere", "cylinder"].contains(&key)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::Disk;
+    use crate::toml_problem::tests::is_clear;
+
+    const GOOD: &str = "[robot]\nbox = [0.4, 0.2, 0.2]\nbounds = [[-3, -3, -1], [3, 3, 1]]\n\n[motion]\n\
+        start = [-2, 0, 0, 0, 0, 0]\ngoal = { x = 2, y = [-1, 1] }\nspeed = 1\n\n[[obstacle]]\nsphere = 0.3\n\
+        pose = [0, 1, 0, 0, 0, 0]\n\n[[moving]]\nname = \"door\"\nbox = [0.1, 2, 2]\n\
+        path = [[0, 0, 0, 0], [4, 0, 3, 0, 1, 0, 0]]\n";
+
+    fn load(text: &str) -> Result<RigidTask, Error> {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("task.toml");
+        std::fs::write(&path, text).unwrap();
+        assert!(RigidTask::is_one(&Disk, &path));
+        RigidTask::load_from(&Disk, &path)
+    }
+
+    #[test]
+    fn a_task_is_read() {
+        let task = load(GOOD).unwrap();
+        assert_eq!(task.problem.obstacles[0].name, "obstacle 1");
+        assert_eq!((task.moving[0].name.as_str(), task.moving[0].path[1]), ("door", [4.0, 0.0, 3.0, 0.0, 1.0, 0.0, 0.0]));
+        assert_eq!(task.goals[0][..3], [GoalPart::Exactly(2.0), GoalPart::Between([-1.0, 1.0]), GoalPart::Free]);
+        assert_eq!(task.timing.unwrap().speed, 1.0);
+        let flat = GOOD.replace("bounds", "planar = true\nbounds").replace("[-2, 0, 0, 0, 0, 0]", "[-2, 0, 0.5]");
+        let task = load(&flat).unwrap();
+        assert_eq!((task.problem.space, task.goals[0][2]), (SpaceKind::Se2, GoalPart::Exactly(0.0)));
+    }
+
+    #[test]
+    fn faults_have_their_place() {
+        for (from, to, line, words) in [
+            ("box = [0.4", "box = [0", 2, "a side of the box"),
+            ("[-3, -3, -1]", "[-3, 4, -1]", 3, "enclose nothing"),
+            ("[-2, 0, 0, 0, 0, 0]", "[-2, 0, 0]", 6, "the start has 3"),
+            ("{ x = 2", "{ x = 2, beta = 2", 7, "a quarter turn"),
+            ("{ x = 2", "{ yaw = 2", 7, "`yaw`"),
+            ("speed = 1\n", "", 6, "no speed"),
+            ("[4, 0, 3, 0, 1, 0, 0]", "[4, 0, 3]", 17, "has 3 numbers"),
+            ("sphere = 0.3", "mesh = \"lost.off\"", 11, "no such file"),
+            ("speed = 1", "tolerance = 1", 8, "only robots that move by inputs"),
+        ] {
+            assert!(GOOD.contains(from), "{from}");
+            let error = load(&GOOD.replacen(from, to, 1)).unwrap_err();
+            assert!(is_clear(&error, line, words), "{to}: {error}");
+        }
+    }
+}
