@@ -105,7 +105,7 @@ impl GoalEntry {
             part => part,
         };
         match self {
-            Self::All(values) if (least..=names.len()).contains(&values.len()) => {
+            Self::All(values) if [least, names.len()].contains(&values.len()) => {
                 let free = std::iter::repeat_n(GoalPart::Free, names.len() - values.len());
                 Ok(values.iter().map(|v| about(GoalPart::Exactly(*v))).chain(free).collect())
             }
