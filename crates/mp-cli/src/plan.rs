@@ -41,7 +41,8 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     }
 
     let scenes = named.iter().map(|given| scene(given)).collect::<Result<Vec<_>, _>>()?;
-    let requests = scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
+    let requests =
+        scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
     let jobs: Vec<(usize, u64)> =
         (0..scenes.len()).flat_map(|i| (request.seed..=last).map(move |seed| (i, seed))).collect();
     check_files(&files, &scenes, &jobs)?;

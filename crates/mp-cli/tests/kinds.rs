@@ -48,7 +48,10 @@ fn the_same_seed_gives_the_same_path_on_any_number_of_threads() {
         };
         assert_eq!(plan("1", "one.txt"), plan("2", "two.txt"), "{scene}");
     }
-    let run = mp(&dir, &["plan", "velocities", "--planner", "restart-rsrt", "--set", "unit=50", "--out", "again.txt"]);
+    let run = mp(
+        &dir,
+        &["plan", "velocities", "--planner", "restart-rsrt", "--set", "unit=50", "--out", "again.txt"],
+    );
     assert_eq!(run.code, 0, "{run:?}");
     assert_eq!(mp(&dir, &["check", "velocities", "again.txt"]).code, 0);
 }
@@ -180,7 +183,13 @@ fn faults_of_files_have_their_line() {
         (MOVING, "speed = 1\n", "speed = 0\n", 8, "the speed is 0"),
         (MOVING, "speed = 1\n", "speed = 1\nhorizon = -1\n", 9, "the horizon is -1"),
         (MOVING, "speed = 1\n", "speed = 1\nstart_time = 5\nhorizon = 4\n", 10, "a time after the start"),
-        (MOVING, "speed = 1\n", "speed = 1\nhorizon = 5\ngoal_time = [6, 7]\n", 10, "not between start and horizon"),
+        (
+            MOVING,
+            "speed = 1\n",
+            "speed = 1\nhorizon = 5\ngoal_time = [6, 7]\n",
+            10,
+            "not between start and horizon",
+        ),
         (MOVING, "speed = 1\n", "speed = 1\ngoal_time = [7, 6]\n", 9, "from 7 to 6"),
         (MOVING, "[4, 2, 2]", "[0, 2, 2]", 12, "row 2 of the path of bar is at 0 s"),
         (MOVING, "[4, 2, 2]", "[4, 2]", 12, "row 2 of the path of bar has 2 numbers"),
@@ -191,13 +200,25 @@ fn faults_of_files_have_their_line() {
         (MOVING, "{ x = 3.5 }", "{ x = [3.5, 3] }", 7, "from 3.5 to 3"),
         (MOVING, "{ x = 3.5 }", "{}", 7, "asks for nothing"),
         (MOVING, "{ x = 3.5 }", "{ x = \"far\" }", 7, "a goal is a list of numbers"),
-        (MOVING, "disc = 0.1\n", "disc = 0.1\nkind = \"velocities\"\nspeeds = [1, 1]\nduration = 1\n", 10, "exactly"),
+        (
+            MOVING,
+            "disc = 0.1\n",
+            "disc = 0.1\nkind = \"velocities\"\nspeeds = [1, 1]\nduration = 1\n",
+            10,
+            "exactly",
+        ),
         (CAR, "speed = 1\n", "", 3, "needs `speed`"),
         (CAR, "\"car\"", "\"cart\"", 5, "no kind of robot `cart`"),
         (CAR, "kind = \"car\"\n", "", 8, "`duration` is given, and no kind"),
         (CAR, "steering = 0.5\n", "", 3, "needs `steering`"),
         (CAR, "steering = 0.5", "steering = 1.6", 8, "the steering angle is 1.6"),
-        (CAR, "steering = 0.5", "steering = 0.5\nturning_radius = 2", 9, "a steering angle and a turning radius"),
+        (
+            CAR,
+            "steering = 0.5",
+            "steering = 0.5\nturning_radius = 2",
+            9,
+            "a steering angle and a turning radius",
+        ),
         (CAR, "steering = 0.5", "steering = 0.5\nspeeds = [1, 1]", 9, "has no `speeds`"),
         (CAR, "duration = 0.5", "duration = 0", 9, "`duration` is 0"),
         (CAR, "{ x = [6, 7], y = [6, 7] }", "[6, 6, 0]", 12, "cannot reach these numbers exactly"),
@@ -284,6 +305,9 @@ fn arms_have_free_joints_and_inputs_too() {
         dir.write("bad.toml", text);
         let run = mp(&dir, &["plan", "bad.toml"]);
         let place = format!("bad.toml:{line}:");
-        assert!(run.code == 2 && run.stderr.contains(&place) && run.stderr.contains(words), "{words}: {run:?}");
+        assert!(
+            run.code == 2 && run.stderr.contains(&place) && run.stderr.contains(words),
+            "{words}: {run:?}"
+        );
     }
 }

@@ -102,14 +102,15 @@ pub use observer::{Both, Event, EventCounts, Observer, OnEvent};
 pub use path::{Path, least_clearance, verify_path};
 pub use planner::{Outcome, Planner};
 pub use problem::{
-    AnyFlow, AnyProblem, BoxedHints, BoxedVerify, BuildError, Endpoint, Goals, InputSystem, ObstacleKnowledge, Problem,
-    ProblemParts, Step, Verify, Workers,
+    AnyFlow, AnyProblem, BoxedHints, BoxedVerify, BuildError, Endpoint, Goals, InputSystem,
+    ObstacleKnowledge, Problem, ProblemParts, Step, Verify, Workers,
 };
 pub use registry::Demand;
 pub use rng::Rng;
 pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};
 pub use space::{
-    AsVectors, Coordinates, Factored, JointRange, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space, TrueMetric,
+    AsVectors, Coordinates, Factored, JointRange, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space,
+    TrueMetric,
 };
 pub use stop::{
     Cancel, Clock, Deadline, Iterations, Motions, Nodes, Or, Progress, SparseClock, Stop, StopReason,

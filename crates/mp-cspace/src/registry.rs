@@ -45,7 +45,9 @@ impl PlannerInfo {
     pub fn reason_against(&self, demand: Demand) -> Option<&'static str> {
         let by_inputs = || self.parameters.iter().any(|parameter| parameter.name == "inputs");
         match demand {
-            Demand::Inputs if !by_inputs() => Some("the robot moves by inputs, and the planner on straight motions"),
+            Demand::Inputs if !by_inputs() => {
+                Some("the robot moves by inputs, and the planner on straight motions")
+            }
             _ => self.cannot.iter().find(|(kind, _)| *kind == demand).map(|(_, reason)| *reason),
         }
     }

@@ -105,8 +105,11 @@ impl DriveTable {
         };
         let keys = KEYS.iter().find(|(name, _)| name == kind.get_ref() && kinds.contains(name));
         let Some((name, keys)) = keys else {
-            let message = format!("there is no kind of robot `{}` here", crate::text::clipped(kind.get_ref()));
-            return Err(text.error(&kind.span(), message).expected(format!("`kind = {}`, or no kind", one_of(kinds))));
+            let message =
+                format!("there is no kind of robot `{}` here", crate::text::clipped(kind.get_ref()));
+            return Err(text
+                .error(&kind.span(), message)
+                .expected(format!("`kind = {}`, or no kind", one_of(kinds))));
         };
         if let Some((key, span)) = given().find(|(key, _)| *key != "duration" && !keys.contains(key)) {
             let message = format!("a robot of the kind `{name}` has no `{key}`");
@@ -138,7 +141,9 @@ impl DriveTable {
                         positive("steering", "", &self.steering)?;
                         if *angle.get_ref() >= std::f64::consts::FRAC_PI_2 {
                             let message = format!("the steering angle is {}", angle.get_ref());
-                            return Err(text.error(&angle.span(), message).expected("an angle below π/2 rad"));
+                            return Err(text
+                                .error(&angle.span(), message)
+                                .expected("an angle below π/2 rad"));
                         }
                         *angle.get_ref()
                     }

@@ -49,10 +49,11 @@ pub use off::{OffColor, OffDocument, OffFace, off_text, write_off};
 pub use ompl::{OmplExport, OmplProblem, OmplState, export_ompl};
 pub use path::{JointPath, PathFile};
 pub use planar::{
-    GridMap, PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape, RosMap,
+    GridMap, PlanarFile, PlanarMap, PlanarMoving, PlanarObstacle, PlanarPart, PlanarProblem, PlanarShape,
+    RosMap,
 };
 pub use problem::{Body, MAX_COORDINATE, PlacedBody, RigidProblem, SpaceKind};
 pub use rigid_toml::{RigidMoving, RigidTask};
 pub use robot::{ObstacleEntry, ObstacleShape, RobotFile, RobotPart, RobotProblem};
-pub use toml_problem::{GoalEntry, GoalPart, Timing};
 pub use stl::{parse_stl, stl_text, write_stl};
+pub use toml_problem::{GoalEntry, GoalPart, Timing};

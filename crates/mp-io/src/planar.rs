@@ -354,10 +354,7 @@ fn map_of(
 }
 
 /// The shape of the robot, and how it moves by inputs.
-fn body(
-    source: &TomlText<'_>,
-    robot: Spanned<RobotTable>,
-) -> Result<(PlanarShape, Option<Driven>), Error> {
+fn body(source: &TomlText<'_>, robot: Spanned<RobotTable>) -> Result<(PlanarShape, Option<Driven>), Error> {
     let span = robot.span();
     let robot = robot.into_inner();
     let shape = match (robot.disc, robot.polygon) {
@@ -387,11 +384,13 @@ fn body(
     };
     let driven = table.read(source, &span, &["car", "unicycle", "velocities", "accelerations"])?;
     // A car and a unicycle have a direction, so that their shape turns, round as it may be.
-    let heads = driven.as_ref().is_some_and(|d| matches!(d.drive, Drive::Car { .. } | Drive::Unicycle { .. }));
+    let heads =
+        driven.as_ref().is_some_and(|d| matches!(d.drive, Drive::Car { .. } | Drive::Unicycle { .. }));
     Ok(match shape {
         PlanarShape::Disc(radius) if heads => {
             let round = Polygon::around_circle([0.0; 2], radius, CORNERS);
-            let round = round.map_err(|e| source.error(&span, format!("the robot: {e}")).expected("a radius"));
+            let round =
+                round.map_err(|e| source.error(&span, format!("the robot: {e}")).expected("a radius"));
             (PlanarShape::Polygon(round?), driven)
         }
         shape => (shape, driven),
@@ -415,7 +414,9 @@ fn check_reachable(
         }
         (false, _, Some(place)) => {
             let message = "only robots that move by inputs need a tolerance";
-            Err(source.error(place, message).expected("intervals in the goal: { x = [1.0, 1.2] }, or no tolerance"))
+            Err(source
+                .error(place, message)
+                .expected("intervals in the goal: { x = [1.0, 1.2] }, or no tolerance"))
         }
         _ => Ok(()),
     }
@@ -458,7 +459,13 @@ fn moving_entry(
     let shape = ObstacleTable { name: Some(name), polygon, holes, rectangle, circle };
     let PlanarObstacle { name, polygon } = shaped(source, index, span, shape)?;
     let shown = crate::text::clipped(&name).to_string();
-    let rows = timed_rows(source, &shown, &path, [3, 1], "rows [TIME, x, y] or [TIME, x, y, ANGLE], times increasing")?;
+    let rows = timed_rows(
+        source,
+        &shown,
+        &path,
+        [3, 1],
+        "rows [TIME, x, y] or [TIME, x, y, ANGLE], times increasing",
+    )?;
     let path = rows.iter().map(|row| [row[0], row[1], row[2], row[3]]).collect();
     Ok(PlanarMoving { name, polygon, path })
 }

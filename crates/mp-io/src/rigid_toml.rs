@@ -159,7 +159,9 @@ impl RigidTask {
             }
             (true, Some(place)) => {
                 let message = "the robot has a speed, and nothing else moves";
-                return Err(source.error(place, message).expected("obstacles that move: `[[moving]]`, or no speed"));
+                return Err(source
+                    .error(place, message)
+                    .expected("obstacles that move: `[[moving]]`, or no speed"));
             }
             _ => {}
         }
@@ -172,7 +174,8 @@ impl RigidTask {
         for (i, goal) in motion.goals.iter().enumerate() {
             let place = motion.places.goal(i);
             let parts = goal.parts("the goal", &names, names.len(), 0.0);
-            let parts = parts.map_err(|[message, expected]| source.error(place, message).expected(expected))?;
+            let parts =
+                parts.map_err(|[message, expected]| source.error(place, message).expected(expected))?;
             let mut all = vec![GoalPart::Exactly(0.0); 6];
             own.iter().zip(parts).for_each(|(&i, part)| all[i] = part);
             let pitch = std::f64::consts::FRAC_PI_2;
@@ -196,7 +199,9 @@ impl RigidTask {
                 let axes = if planar { 2 } else { 3 };
                 if (0..axes).any(|i| low[i] >= high[i]) {
                     let message = "the bounds enclose nothing";
-                    return Err(source.error(&given.span(), message).expected("the lower corner, then the upper"));
+                    return Err(source
+                        .error(&given.span(), message)
+                        .expected("the lower corner, then the upper"));
                 }
                 Some(Aabb::new(Point3::from(low), Point3::from(high)))
             }
@@ -256,10 +261,17 @@ mod tests {
     fn a_task_is_read() {
         let task = load(GOOD).unwrap();
         assert_eq!(task.problem.obstacles[0].name, "obstacle 1");
-        assert_eq!((task.moving[0].name.as_str(), task.moving[0].path[1]), ("door", [4.0, 0.0, 3.0, 0.0, 1.0, 0.0, 0.0]));
-        assert_eq!(task.goals[0][..3], [GoalPart::Exactly(2.0), GoalPart::Between([-1.0, 1.0]), GoalPart::Free]);
+        assert_eq!(
+            (task.moving[0].name.as_str(), task.moving[0].path[1]),
+            ("door", [4.0, 0.0, 3.0, 0.0, 1.0, 0.0, 0.0])
+        );
+        assert_eq!(
+            task.goals[0][..3],
+            [GoalPart::Exactly(2.0), GoalPart::Between([-1.0, 1.0]), GoalPart::Free]
+        );
         assert_eq!(task.timing.unwrap().speed, 1.0);
-        let flat = GOOD.replace("bounds", "planar = true\nbounds").replace("[-2, 0, 0, 0, 0, 0]", "[-2, 0, 0.5]");
+        let flat =
+            GOOD.replace("bounds", "planar = true\nbounds").replace("[-2, 0, 0, 0, 0, 0]", "[-2, 0, 0.5]");
         let task = load(&flat).unwrap();
         assert_eq!((task.problem.space, task.goals[0][2]), (SpaceKind::Se2, GoalPart::Exactly(0.0)));
     }

@@ -110,7 +110,8 @@ impl GoalEntry {
                 Ok(values.iter().map(|v| about(GoalPart::Exactly(*v))).chain(free).collect())
             }
             Self::All(values) => {
-                let numbers = if values.len() == 1 { "1 number".into() } else { format!("{} numbers", values.len()) };
+                let numbers =
+                    if values.len() == 1 { "1 number".into() } else { format!("{} numbers", values.len()) };
                 Err([format!("{what} has {numbers}"), format!("{least}: {}", names[..least].join(", "))])
             }
             Self::Named(parts) => {
@@ -256,7 +257,9 @@ impl MotionTable {
                 GoalText::All(values) => GoalEntry::All(values),
                 GoalText::Named(parts) if parts.is_empty() => {
                     let message = "the goal asks for nothing";
-                    return Err(text.error(&span, message).expected("at least one number, such as { x = 1.0 }"));
+                    return Err(text
+                        .error(&span, message)
+                        .expected("at least one number, such as { x = 1.0 }"));
                 }
                 GoalText::Named(parts) => {
                     let parts = parts.into_iter().map(|(name, part)| match part {
@@ -286,7 +289,12 @@ impl MotionTable {
 }
 
 /// An interval whose ends are in order.
-fn interval(text: &TomlText<'_>, what: &str, range: [f64; 2], span: &Range<usize>) -> Result<[f64; 2], Error> {
+fn interval(
+    text: &TomlText<'_>,
+    what: &str,
+    range: [f64; 2],
+    span: &Range<usize>,
+) -> Result<[f64; 2], Error> {
     text.check(what, &range, span)?;
     if range[0] <= range[1] {
         return Ok(range);
@@ -346,7 +354,10 @@ fn timing(
             };
             seconds("the time of the goal", range[0], &span)?;
             if range[1] < begin || end.is_some_and(|end| range[0] > end) {
-                let message = format!("the goal is at {} to {} s, which is not between start and horizon", range[0], range[1]);
+                let message = format!(
+                    "the goal is at {} to {} s, which is not between start and horizon",
+                    range[0], range[1]
+                );
                 return Err(text.error(&span, message).expected("a time after the start, up to the horizon"));
             }
             Some(range)
@@ -377,7 +388,11 @@ pub(crate) fn timed_rows(
             return fault(format!("row {} of the path of {what} has {} numbers", i + 1, row.len()));
         }
         if row[0] <= last {
-            return fault(format!("row {} of the path of {what} is at {} s, not after the row before", i + 1, row[0]));
+            return fault(format!(
+                "row {} of the path of {what} is at {} s, not after the row before",
+                i + 1,
+                row[0]
+            ));
         }
         last = row[0];
         let mut row = row.clone();

@@ -49,8 +49,10 @@ pub fn shorten<K: RobotKind>(
     cancel: &Cancel,
 ) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("shorten").entered();
-    let certified: AnyCheck<'_, K::State> =
-        Box::new(Possible { kind, check: Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())? });
+    let certified: AnyCheck<'_, K::State> = Box::new(Possible {
+        kind,
+        check: Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?,
+    });
     Ok(shorten_by(kind.space(), Cancellable(certified, cancel), path, seed))
 }
 

@@ -16,7 +16,8 @@ fn row_at<K: RobotKind>(kind: &K, goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f
     let (columns, limits) = (kind.columns(), kind.limits());
     for (i, (part, x)) in goal.iter().zip(&mut row).enumerate() {
         // An angle without limits is the same after a full turn.
-        let turns = limits.get(i).is_some_and(Option::is_none) && columns.get(i).is_some_and(|c| c.unit == "rad");
+        let turns =
+            limits.get(i).is_some_and(Option::is_none) && columns.get(i).is_some_and(|c| c.unit == "rad");
         match *part {
             GoalPart::Exactly(v) => *x = v,
             GoalPart::Between([low, high]) if turns => {

@@ -109,8 +109,9 @@ pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
-    ArmScene, Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, Mismatch, PathFormat, PlanarBody,
-    MovingScene, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound, Touch, WithMoving,
+    ArmScene, Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, Mismatch, MovingScene,
+    PathFormat, PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound, Touch,
+    WithMoving,
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};

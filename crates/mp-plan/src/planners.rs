@@ -70,7 +70,9 @@ impl PlannerKind {
             Self::Roadmap(info) => info,
         };
         let demands = kind.demands();
-        let Some(reason) = demands.iter().find_map(|demand| info.reason_against(*demand)) else { return Ok(()) };
+        let Some(reason) = demands.iter().find_map(|demand| info.reason_against(*demand)) else {
+            return Ok(());
+        };
         let able = |info: &&PlannerInfo| demands.iter().all(|demand| info.can(*demand));
         let names: Vec<_> = planners().filter(able).map(|info| info.name).collect();
         Err(Error::new(format!("{self} cannot plan for {}: {reason}", kind.name()))

@@ -1,15 +1,16 @@
 //! A request prepared for a robot: the space, an index, a verifier, and the problems, planners and stops made from them.
 
-use crate::goals;
 use crate::counted::{Counted, QueryBudget};
+use crate::goals;
 use crate::planners::PlannerKind;
 use crate::roadmaps::{PlannerParts, RoadmapFile, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
 use mp_cspace::{
-    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Iterations, KnownFree, MotionCheck, MotionValidity, Nodes,
-    ParameterError, Problem, Resolution, Stop, Straight, Workers, registry::PlannerInfo,
+    AnyProblem, BuildError, Cancel, Certified, Clock, Deadline, Discrete, Iterations, KnownFree, MotionCheck,
+    MotionValidity, Nodes, ParameterError, Problem, Resolution, Stop, Straight, Workers,
+    registry::PlannerInfo,
 };
 use mp_tree::TreeState;
 use std::sync::Arc;

@@ -26,7 +26,8 @@ pub(crate) fn relax_if_requested<K: RobotKind>(
         return Ok(path);
     }
     if kind.demands().contains(&Demand::Inputs) {
-        return Err(Error::new("a robot that moves by inputs cannot follow a relaxed path").help("leave relaxing out"));
+        return Err(Error::new("a robot that moves by inputs cannot follow a relaxed path")
+            .help("leave relaxing out"));
     }
     control.stage(Stage::Relaxing);
     relaxed(kind, path)

@@ -19,8 +19,8 @@ use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
 use mp_cspace::erased::{AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::{
-    DefaultNn, Demand, Factored, InputSystem, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _, StateVector,
-    Validity,
+    DefaultNn, Demand, Factored, InputSystem, MotionClearance, MotionValidity, ObstacleKnowledge, Space as _,
+    StateVector, Validity,
     nn::Embed,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
@@ -341,6 +341,10 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
     /// The point whose curve a picture shows: by default the origin of the last body of the robot.
     fn traced(&self, q: &Self::State) -> Point3<f64> {
         self.poses(q).last().map_or(Point3::origin(), |pose| Point3::from(pose.translation.vector))
+    }
+    /// How long a motion takes, seconds, if its states say so: films then run in time, and else at even speed.
+    fn seconds(&self, _from: &Self::State, _to: &Self::State) -> Option<f64> {
+        None
     }
     /// The distance between two copies of the robot along a path in a picture: about how far its points move, metres.
     fn picture_spacing(&self) -> f64;

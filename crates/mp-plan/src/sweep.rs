@@ -48,12 +48,14 @@ pub struct Track {
     pub trace: Vec<Point3<f64>>,
     /// A lower bound (m) on the clearance at each; zero in collision.
     pub clearance: Vec<f64>,
-    /// How far (m) the robot has moved from the start to each: an upper bound for its points.
+    /// How far (m) the robot has moved from the start to each: an upper bound for its points. For robots whose states say when
+    /// they are there, how long (s) that took.
     pub travel: Vec<f64>,
 }
 
 impl Track {
-    /// The poses of the robot's bodies and the drawn point at a fraction of the way, 0 to 1, at even speed. `None` without
+    /// The poses of the robot's bodies and the drawn point at a fraction of the way, 0 to 1, at even speed, or of the time for
+    /// robots whose states say when they are there. `None` without
     /// configurations.
     #[must_use]
     pub fn at(&self, fraction: f64) -> Option<(Vec<Isometry3<f64>>, Point3<f64>)> {
@@ -91,6 +93,7 @@ pub(crate) fn track<K: RobotKind>(kind: &K, path: &PathRows) -> Result<Track, Er
     let mut way = 0.0;
     for (edge, length) in lengths.iter().enumerate() {
         let parts = (length / spacing).ceil().clamp(1.0, MAX_BETWEEN) as u32;
+        let length = kind.seconds(&states[edge], &states[edge + 1]).unwrap_or(*length);
         for k in 0..parts {
             let t = f64::from(k) / f64::from(parts);
             add(&kind.space().interpolate(&states[edge], &states[edge + 1], t), way + length * t);

@@ -38,7 +38,12 @@ impl<C: Space<State: StateVector>> AsVectors<C> {
     }
 
     /// `read` of two states; `other` when one of the vectors is not a state.
-    fn of_two<T>(from: &DVector<f64>, to: &DVector<f64>, other: T, read: impl FnOnce(C::State, C::State) -> T) -> T {
+    fn of_two<T>(
+        from: &DVector<f64>,
+        to: &DVector<f64>,
+        other: T,
+        read: impl FnOnce(C::State, C::State) -> T,
+    ) -> T {
         match (Self::state(from), Self::state(to)) {
             (Some(from), Some(to)) => read(from, to),
             _ => other,
@@ -60,7 +65,9 @@ impl<C: Space<State: StateVector>> Space for AsVectors<C> {
     }
     fn interpolate_into(&self, from: &DVector<f64>, to: &DVector<f64>, t: f64, out: &mut DVector<f64>) {
         let nearer = if t < 0.5 { from } else { to };
-        *out = Self::of_two(from, to, nearer.clone(), |from, to| Self::vector(&self.0.interpolate(&from, &to, t)));
+        *out = Self::of_two(from, to, nearer.clone(), |from, to| {
+            Self::vector(&self.0.interpolate(&from, &to, t))
+        });
     }
     fn unit_cube_to_state(&self, u: &[f64]) -> DVector<f64> {
         Self::vector(&self.0.unit_cube_to_state(u))
@@ -140,7 +147,10 @@ mod tests {
             let [u, v] = [&a, &b].map(AsVectors::<C>::vector);
             assert_eq!(AsVectors::<C>::state(&u).as_ref(), Some(&a));
             assert_eq!(vectors.distance(&u, &v).to_bits(), space.distance(&a, &b).to_bits());
-            assert_eq!(vectors.interpolate(&u, &v, 0.3), AsVectors::<C>::vector(&space.interpolate(&a, &b, 0.3)));
+            assert_eq!(
+                vectors.interpolate(&u, &v, 0.3),
+                AsVectors::<C>::vector(&space.interpolate(&a, &b, 0.3))
+            );
             assert!(vectors.contains(&u));
             for factor in 0..space.factors() {
                 let (mut p, mut q) = (u.clone(), a.clone());

@@ -36,7 +36,10 @@ fn a_world_of_polygons() {
     let polygon = GOOD.replace("disc = 0.07", "polygon = [[0, 0], [1, 0], [0, 1]]");
     let turned = polygon.replace("[0.3, 0.3]", "[0.3, 0.3, 0]").replace("[3.5, 2.5]", "[3.5, 2.5, 1.5]");
     let file = PlanarFile::parse("f", turned.as_bytes()).unwrap();
-    assert!(matches!(file.robot, PlanarShape::Polygon(_)) && file.goals == [[3.5, 2.5, 1.5].map(GoalPart::Exactly)]);
+    assert!(
+        matches!(file.robot, PlanarShape::Polygon(_))
+            && file.goals == [[3.5, 2.5, 1.5].map(GoalPart::Exactly)]
+    );
 }
 
 #[test]

@@ -165,8 +165,10 @@ impl ArmScene {
         let Some(driven) = &file.driven else { return Ok(None) };
         let names: Vec<_> = self.arm.coordinates().iter().map(|c| c.name.clone()).collect();
         let state_names = driven.state_names(&names);
-        let parts = file.goals.iter().map(|goal| goal.parts("the goal", &state_names, names.len(), file.tolerance));
-        let parts = parts.collect::<Result<_, _>>().map_err(|[message, help]| Error::new(message).help(help))?;
+        let parts =
+            file.goals.iter().map(|goal| goal.parts("the goal", &state_names, names.len(), file.tolerance));
+        let parts =
+            parts.collect::<Result<_, _>>().map_err(|[message, help]| Error::new(message).help(help))?;
         let velocity = file.start[names.len()..].to_vec();
         DrivenScene::new(self.clone(), driven, &velocity, parts).map(Some)
     }

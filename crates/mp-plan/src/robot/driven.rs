@@ -26,9 +26,7 @@ const SHORTEST: f64 = 1e-12;
 const STEERING: usize = 2;
 
 /// A kind of robot that can be moved by inputs.
-pub trait SpeedBound:
-    RobotKind<Space: Embed + 'static, State: StateVector, Checker: Debug> + Clone
-{
+pub trait SpeedBound: RobotKind<Space: Embed + 'static, State: StateVector, Checker: Debug> + Clone {
     /// An upper bound (m/s) on the speed of any point of the robot while no degree of freedom moves faster than its rate (m/s,
     /// rad/s).
     fn speed_bound(&self, rates: &[f64]) -> f64;
@@ -196,7 +194,8 @@ impl System {
                 let angle = |i: usize| steering * (i as f64 / each_side as f64 - 1.0);
                 let angles = (0..=2 * each_side).map(angle);
                 let ways = if *reverse { vec![*speed, -speed] } else { vec![*speed] };
-                let inputs = angles.flat_map(|angle| ways.iter().map(move |v| vec![*v, angle]).collect::<Vec<_>>());
+                let inputs =
+                    angles.flat_map(|angle| ways.iter().map(move |v| vec![*v, angle]).collect::<Vec<_>>());
                 scaled(inputs.collect(), |input, factor| input[0] *= factor)
             }
             Drive::Unicycle { speed, turning, reverse } => {
@@ -251,7 +250,11 @@ impl<C: Space<State: StateVector>> DrivenSpace<C> {
     fn apart(&self, from: &Parts<C::State>, to: &Parts<C::State>) -> f64 {
         let of_velocity = from.velocity.iter().zip(&to.velocity).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
         let of_position = self.positions.distance(&from.q, &to.q);
-        if from.velocity.is_empty() { of_position } else { of_position.hypot(self.weight * of_velocity.sqrt()) }
+        if from.velocity.is_empty() {
+            of_position
+        } else {
+            of_position.hypot(self.weight * of_velocity.sqrt())
+        }
     }
 
     /// Whether the input of `to` leads there from `from`.
@@ -295,7 +298,13 @@ impl<C: Space<State: StateVector>> Space for DrivenSpace<C> {
                 straight.velocity = between.collect();
                 self.system.vector(&straight)
             }
-            _ => if t < 0.5 { from.clone() } else { to.clone() },
+            _ => {
+                if t < 0.5 {
+                    from.clone()
+                } else {
+                    to.clone()
+                }
+            }
         };
     }
     fn unit_cube_to_state(&self, u: &[f64]) -> DVector<f64> {
@@ -351,7 +360,9 @@ impl<C: Factored<State: StateVector>> Factored for DrivenSpace<C> {
         match factor.checked_sub(self.positions.factors()) {
             None => self.positions.interpolate_factor(factor, &from.q, &to.q, t, &mut q.q),
             Some(i) => {
-                if let (Some(v), Some(a), Some(b)) = (q.velocity.get_mut(i), from.velocity.get(i), to.velocity.get(i)) {
+                if let (Some(v), Some(a), Some(b)) =
+                    (q.velocity.get_mut(i), from.velocity.get(i), to.velocity.get(i))
+                {
                     *v = a + (b - a) * t;
                 }
             }
@@ -409,7 +420,9 @@ impl<K: SpeedBound> Clearance<DVector<f64>> for DrivenChecker<K> {
     /// None outside of the bounds, which curved motions may leave.
     fn clearance(&mut self, q: &DVector<f64>, enough: f64) -> f64 {
         match self.space.parts(q) {
-            Some(parts) if self.space.positions.contains(&parts.q) => self.checker.clearance(&parts.q, enough),
+            Some(parts) if self.space.positions.contains(&parts.q) => {
+                self.checker.clearance(&parts.q, enough)
+            }
             _ => 0.0,
         }
     }
@@ -448,7 +461,8 @@ pub struct DrivenVerifier<'c, K: SpeedBound> {
 impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
     fn check_motion(&mut self, from: &DVector<f64>, to: &DVector<f64>) -> MotionCheck {
         let space = &self.scene.space;
-        let [Some(a), Some(b)] = [from, to].map(|q| space.contains(q).then(|| space.parts(q)).flatten()) else {
+        let [Some(a), Some(b)] = [from, to].map(|q| space.contains(q).then(|| space.parts(q)).flatten())
+        else {
             return MotionCheck::Unproven { at: 0.0 };
         };
         if from == to {
@@ -522,7 +536,11 @@ impl<K: SpeedBound> DrivenScene<K> {
             _ => 0,
         };
         let mut columns = own.clone();
-        columns.extend(own.iter().take(velocities).map(|c| Column::new(format!("v_{}", c.name), format!("{}/s", c.unit))));
+        columns.extend(
+            own.iter()
+                .take(velocities)
+                .map(|c| Column::new(format!("v_{}", c.name), format!("{}/s", c.unit))),
+        );
         goals.iter_mut().for_each(|goal| goal.resize(columns.len(), GoalPart::Free));
         columns.extend(inputs.iter().map(|(name, unit)| Column::new(name, unit)));
         columns.push(Column::new("duration", "s"));
@@ -539,7 +557,11 @@ impl<K: SpeedBound> DrivenScene<K> {
         start.velocity.iter_mut().zip(velocity).for_each(|(v, given)| *v = *given);
         let start = space.system.vector(&start);
         let robot = Arc::new(robot);
-        let checker = DrivenChecker { robot: Arc::clone(&robot), space: space.clone(), checker: robot.checker().clone() };
+        let checker = DrivenChecker {
+            robot: Arc::clone(&robot),
+            space: space.clone(),
+            checker: robot.checker().clone(),
+        };
         let ends = vec![start.clone()];
         let mut scene = Self { robot, space, checker, start, goals: ends, goal_parts: goals, columns };
         scene.goals = scene.examples();
@@ -626,12 +648,11 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     }
     fn input_system(&self) -> Option<InputSystem<'_, DVector<f64>>> {
         let space = &self.space;
-        let flow: AnyFlow<'_, DVector<f64>> = Arc::new(move |from: &DVector<f64>, input: &[f64], time| {
-            match space.parts(from) {
+        let flow: AnyFlow<'_, DVector<f64>> =
+            Arc::new(move |from: &DVector<f64>, input: &[f64], time| match space.parts(from) {
                 Some(parts) => space.system.vector(&space.system.flow(&space.positions, &parts, input, time)),
                 None => from.clone(),
-            }
-        });
+            });
         let system = Arc::clone(&self.space.system);
         let inputs = Arc::new(move |directions, levels| system.choices(directions, levels));
         Some(InputSystem { flow, inputs, duration: self.space.system.duration })
@@ -747,7 +768,9 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
                 i + 2,
                 crate::brief(off)
             ),
-            false if !system.allows(&b.input) => format!("the input of configuration {} is beyond its limits", i + 2),
+            false if !system.allows(&b.input) => {
+                format!("the input of configuration {} is beyond its limits", i + 2)
+            }
             false => format!(
                 "the input of configuration {} is held for {} s, not for up to {} s",
                 i + 2,
@@ -765,6 +788,9 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     }
     fn traced(&self, q: &DVector<f64>) -> Point3<f64> {
         self.robot.traced(&self.parts(q).q)
+    }
+    fn seconds(&self, _: &DVector<f64>, to: &DVector<f64>) -> Option<f64> {
+        Some(self.parts(to).duration.max(0.0))
     }
     fn picture_spacing(&self) -> f64 {
         self.robot.picture_spacing()

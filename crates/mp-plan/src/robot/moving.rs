@@ -60,12 +60,20 @@ impl<K: WithMoving> MovingScene<K> {
     ///
     /// # Errors
     /// When the times or the speed are not valid.
-    pub fn new(still: K, among: K::Among, obstacles: Vec<Body>, timing: &Timing, horizon: f64) -> Result<Self, Error> {
+    pub fn new(
+        still: K,
+        among: K::Among,
+        obstacles: Vec<Body>,
+        timing: &Timing,
+        horizon: f64,
+    ) -> Result<Self, Error> {
         let space = AsVectors(SpaceTime::new(still.space().clone(), horizon, timing.speed)?);
         let start = vector::<K>((still.start().clone(), timing.start));
         let exactly = |q: &K::State| still.row(q).into_iter().map(GoalPart::Exactly).collect();
-        let parts = still.goal_parts().map_or_else(|| still.goals().iter().map(exactly).collect(), <[_]>::to_vec);
-        let arrival = GoalPart::Between(timing.goal.unwrap_or([timing.start, horizon]).map(|t| t.min(horizon)));
+        let parts =
+            still.goal_parts().map_or_else(|| still.goals().iter().map(exactly).collect(), <[_]>::to_vec);
+        let arrival =
+            GoalPart::Between(timing.goal.unwrap_or([timing.start, horizon]).map(|t| t.min(horizon)));
         let goal_parts = with_time(parts, arrival);
         let among = OnVectors::new(among);
         let goals = vec![start.clone()];
@@ -175,7 +183,12 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         let mut touches = self.still.touching(&moment.0);
         let name = |i: usize| self.obstacles.get(i).map_or("?", |body| body.name.as_str()).to_owned();
         let touched = K::touched(&mut self.among.inner().clone(), &moment).into_iter();
-        touches.extend(touched.map(|i| Touch { part: None, other: name(i), with_itself: false, depth: None }));
+        touches.extend(touched.map(|i| Touch {
+            part: None,
+            other: name(i),
+            with_itself: false,
+            depth: None,
+        }));
         touches
     }
     fn nearest_free(&self, q: &DVector<f64>) -> Option<DVector<f64>> {
@@ -206,7 +219,8 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
         details.retain(|(name, _)| name != "goal is");
         let names: Vec<&str> = self.obstacles.iter().map(|body| body.name.as_str()).collect();
         details.push(("moving".to_owned(), names.join(", ")));
-        details.push(("speed".to_owned(), format!("at most {} per second", crate::brief(self.space.0.speed()))));
+        details
+            .push(("speed".to_owned(), format!("at most {} per second", crate::brief(self.space.0.speed()))));
         let goals = self.goal_parts.iter().map(|goal| crate::goals::written(self, goal));
         details.extend(goals.map(|goal| ("goal is".to_owned(), goal)));
         details
@@ -248,7 +262,8 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     }
 
     fn bodies(&self) -> Vec<Body> {
-        let (robot, still): (Vec<_>, Vec<_>) = self.still.bodies().into_iter().partition(|b| b.pose.is_none());
+        let (robot, still): (Vec<_>, Vec<_>) =
+            self.still.bodies().into_iter().partition(|b| b.pose.is_none());
         robot.into_iter().chain(self.obstacles.iter().cloned()).chain(still).collect()
     }
     fn moving_obstacles(&self) -> usize {
@@ -262,6 +277,9 @@ impl<K: WithMoving> RobotKind for MovingScene<K> {
     }
     fn traced(&self, q: &DVector<f64>) -> Point3<f64> {
         self.still.traced(&self.moment(q).0)
+    }
+    fn seconds(&self, from: &DVector<f64>, to: &DVector<f64>) -> Option<f64> {
+        Some((self.moment(to).1 - self.moment(from).1).max(0.0))
     }
     fn picture_spacing(&self) -> f64 {
         self.still.picture_spacing()

@@ -1,23 +1,24 @@
 //! Robots in the plane among polygons: a disc, or a polygon that turns.
 
 use super::{
-    Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, MovingScene, Queries, RobotKind, SpeedBound,
-    Touch, WithMoving, hints_and_gradient, no_metric,
+    Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, MovingScene, Queries, RobotKind,
+    SpeedBound, Touch, WithMoving, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::roadmaps::RoadmapState;
 use crate::{Error, MetricName};
 use mp_cspace::erased::CompiledIndex;
+use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
     Embed, Factored, MotionValidity, ObstacleKnowledge, Rn, Se2, Se2State, Space, StateVector,
     obstacles::{ClearanceGradient, ObstacleHints},
 };
 use mp_geom::Aabb;
-use mp_cspace::space_time::SpaceTime;
 use mp_geom::planar::PlanarWorld;
 use mp_io::{Driven, PlanarPart, PlanarProblem, PlanarShape};
 use mp_robot::{
-    AmongMovingAreas, DiscRobot, DiscVerifier, MovingAreasVerifier, PlanarConfiguration, PlanarRobot, PolygonRobot, PolygonVerifier, Trajectory,
+    AmongMovingAreas, DiscRobot, DiscVerifier, MovingAreasVerifier, PlanarConfiguration, PlanarRobot,
+    PolygonRobot, PolygonVerifier, Trajectory,
 };
 use mp_tree::TreeState;
 use nalgebra::{Isometry2, Isometry3, Point2, Point3, Translation3, UnitQuaternion, Vector2, Vector3};
@@ -34,7 +35,12 @@ const CORNERS: u32 = 48;
 
 /// A robot in the plane: [`DiscRobot`] or [`PolygonRobot`].
 pub trait PlanarBody:
-    PlanarRobot<Configuration = <Self as PlanarBody>::State> + Checker<<Self as PlanarBody>::State> + ObstacleHints<Self::State> + ClearanceGradient<Self::State> + Debug + 'static
+    PlanarRobot<Configuration = <Self as PlanarBody>::State>
+    + Checker<<Self as PlanarBody>::State>
+    + ObstacleHints<Self::State>
+    + ClearanceGradient<Self::State>
+    + Debug
+    + 'static
 {
     /// A configuration.
     type State: TreeState + RoadmapState + StateVector + PlanarConfiguration + 'static;
@@ -288,8 +294,8 @@ impl<B: PlanarBody> PlanarScene<B> {
         };
         let areas = moving.iter().map(|m| {
             let poses = m.path.iter().map(|&[time, x, y, angle]| (time, pose([x, y, angle])));
-            let trajectory = Trajectory::new(poses)
-                .map_err(|e| Error::new(format!("the path of {}: {e}", m.name)))?;
+            let trajectory =
+                Trajectory::new(poses).map_err(|e| Error::new(format!("the path of {}: {e}", m.name)))?;
             Ok((m.polygon.clone(), trajectory))
         });
         let areas: Vec<_> = areas.collect::<Result<_, Error>>()?;

@@ -12,14 +12,12 @@ use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, ObstacleKnowledge, Path,
-    ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric, WithMetric,
+    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, ObstacleKnowledge,
+    Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{RigidMoving, RigidProblem, SpaceKind, Timing};
-use mp_robot::{
-    AmongMoving, MovingVerifier, Placement, Planar, RigidBody, Spatial, Trajectory, Verifier,
-};
+use mp_robot::{AmongMoving, MovingVerifier, Placement, Planar, RigidBody, Spatial, Trajectory, Verifier};
 use mp_tree::TreeState;
 use nalgebra::{Isometry3, Point2, Point3};
 use std::fmt::Debug;

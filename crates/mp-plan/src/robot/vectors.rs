@@ -1,9 +1,7 @@
 //! Checks of states that are written as vectors of numbers, so that the planners compiled for vectors serve more robots.
 
 use super::Queries;
-use mp_cspace::{
-    Clearance, KnownFree, MotionCheck, MotionClearance, MotionValidity, StateVector, Validity,
-};
+use mp_cspace::{Clearance, KnownFree, MotionCheck, MotionClearance, MotionValidity, StateVector, Validity};
 use nalgebra::DVector;
 use std::fmt::Debug;
 use std::marker::PhantomData;

@@ -163,9 +163,8 @@ impl<R: PlanarRobot> AmongMovingAreas<R> {
 
     /// The indices of the moving areas that the robot touches.
     pub fn touching(&mut self, (q, time): &(R::Configuration, f64)) -> Vec<usize> {
-        let touches = |(area, robot): (&MovingArea, &mut R)| {
-            !robot.is_valid(&R::seen_from(&area.frame(*time), q))
-        };
+        let touches =
+            |(area, robot): (&MovingArea, &mut R)| !robot.is_valid(&R::seen_from(&area.frame(*time), q));
         let each = self.moving.iter().zip(&mut self.seen).map(touches).enumerate();
         each.filter_map(|(i, touched)| touched.then_some(i)).collect()
     }

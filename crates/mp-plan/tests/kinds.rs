@@ -1,0 +1,139 @@
+//! Robots that move by inputs, among obstacles that move, and goals that leave something free: beside a second computation.
+
+use mp_control::{Car, DoubleIntegrator, Flow};
+use mp_cspace::{Rn, Rng, Se2State};
+use mp_plan::{PathRows, Request, Scene};
+use nalgebra::Vector2;
+use rand::RngExt;
+
+fn path(scene: &Scene, rows: Vec<Vec<f64>>) -> PathRows {
+    PathRows { format: scene.path_format(), columns: scene.columns(), rows }
+}
+
+/// Whether the robot touches something at any of many moments along inputs that are held one after the other; `at` gives the
+/// row after a part of the last input.
+fn touches(scene: &Scene, moments: impl IntoIterator<Item = Vec<f64>>) -> bool {
+    moments.into_iter().any(|row| !scene.explain(&row).unwrap().touching.is_empty())
+}
+
+/// Random inputs of a car: what the scene finds free touches nothing, and what touches something is not free.
+#[test]
+fn a_car_is_where_its_inputs_lead() {
+    let scene = Scene::find("parking").unwrap();
+    let car = Car::new(2.5).unwrap();
+    let (mut rng, mut free, mut hit) = (Rng::seed(5), 0, 0);
+    for _ in 0..60 {
+        let mut q = Se2State::new(3.0, 5.5, 0.0);
+        let mut rows = vec![scene.start()];
+        let mut moments = Vec::new();
+        for _ in 0..rng.random_range(2..12) {
+            let input =
+                [*[2.0, -2.0, 1.0].get(rng.random_range(0..3)).unwrap(), rng.random_range(-0.46..0.46)];
+            let duration = rng.random_range(0.1..0.5);
+            for i in 0..=60 {
+                let p = car.integrate(&q, &input, duration * f64::from(i) / 60.0);
+                moments.push(vec![p.translation.x, p.translation.y, p.angle, 0.0, 0.0, 0.0]);
+            }
+            q = car.integrate(&q, &input, duration);
+            rows.push(vec![q.translation.x, q.translation.y, q.angle, input[0], input[1], duration]);
+        }
+        let verdict = scene.check(&path(&scene, rows)).unwrap();
+        // The car seldom ends where it should.
+        let faults: Vec<_> =
+            verdict.faults.iter().filter(|fault| !fault.starts_with("does not end")).collect();
+        let touched = touches(&scene, moments);
+        assert!(!(touched && faults.is_empty()), "{verdict:?}");
+        assert!(faults.iter().all(|fault| !fault.contains("input")), "{verdict:?}");
+        free += usize::from(faults.is_empty());
+        hit += usize::from(touched);
+    }
+    assert!(free > 10 && hit > 10, "{free} {hit}");
+}
+
+#[test]
+fn a_puck_is_where_its_accelerations_lead() {
+    let scene = Scene::find("accelerations").unwrap();
+    let plane = Rn::<2>::new([0.0; 2], [4.0, 3.0]).unwrap();
+    let system = DoubleIntegrator::new(&plane).unwrap();
+    let mut rng = Rng::seed(6);
+    let (mut free, mut hit) = (0, 0);
+    for _ in 0..80 {
+        let mut state = (Vector2::new(0.4, 0.4), Vector2::zeros());
+        let mut rows = vec![scene.start()];
+        let mut moments = Vec::new();
+        for _ in 0..rng.random_range(2..10) {
+            let input = Vector2::new(rng.random_range(-0.3..0.8), rng.random_range(-0.3..0.8));
+            for i in 0..=60 {
+                let (q, _) = system.integrate(&state, &input, 0.4 * f64::from(i) / 60.0);
+                moments.push(vec![q.x, q.y, 0.0, 0.0, 0.0, 0.0, 0.0]);
+            }
+            state = system.integrate(&state, &input, 0.4);
+            let (q, v) = state;
+            rows.push(vec![q.x, q.y, v.x, v.y, input.x, input.y, 0.4]);
+        }
+        let fast = rows.iter().any(|row| row[2].abs().max(row[3].abs()) > 1.0);
+        let verdict = scene.check(&path(&scene, rows)).unwrap();
+        let faults: Vec<_> =
+            verdict.faults.iter().filter(|fault| !fault.starts_with("does not end")).collect();
+        let touched = touches(&scene, moments);
+        assert!(!((touched || fast) && faults.is_empty()), "{verdict:?}");
+        free += usize::from(faults.is_empty());
+        hit += usize::from(touched);
+    }
+    assert!(free > 10 && hit > 10, "{free} {hit}");
+}
+
+#[test]
+fn paths_touch_nothing_at_any_moment() {
+    for name in ["crossing", "blade", "parking", "unicycle", "velocities", "accelerations"] {
+        let scene = Scene::find(name).unwrap();
+        let report = scene.plan(&Request::new(scene.default_planner()).seed(9)).unwrap();
+        let rows = report.path.unwrap_or_else(|| panic!("{name}: {:?}", report.why));
+        let track = scene.track(&path(&scene, rows)).unwrap();
+        assert!(track.rows.len() > 50 && track.clearance.iter().all(|c| *c > 0.0), "{name}");
+        assert!(!touches(&scene, track.rows), "{name}");
+    }
+}
+
+/// Front ends move start and goal: the kind of goal stays.
+#[test]
+fn ends_can_be_moved() {
+    let scene = Scene::find("velocities").unwrap();
+    let mut goal = scene.goals().remove(0);
+    (goal[0], goal[1]) = (4.0, 0.8);
+    let moved = scene.with_ends(&[0.9, 3.4, 0.1, 0.0, 0.0, 0.0, 0.0], &[goal]).unwrap();
+    let report = moved.plan(&Request::new("rsrt").seed(2)).unwrap();
+    let rows = report.path.unwrap();
+    let (first, last) = (&rows[0], &rows[rows.len() - 1]);
+    assert_eq!(first[..3], [0.9, 3.4, 0.1]);
+    assert!(
+        (last[0] - 4.0).abs() <= 0.15 && (last[1] - 0.8).abs() <= 0.15 && last[2].abs() <= 0.15,
+        "{last:?}"
+    );
+
+    let scene = Scene::find("crossing").unwrap();
+    let moved = scene.with_ends(&[3.0, 1.0, 0.0], &[vec![9.0, 9.0, 30.0]]).unwrap();
+    let rows = moved.plan(&Request::new("rrt")).unwrap().path.unwrap();
+    assert_eq!((rows[0][..2].to_vec(), rows[rows.len() - 1][..2].to_vec()), (vec![3.0, 1.0], vec![9.0, 9.0]));
+}
+
+/// Each goal of a set is reached when it is the only one that can be.
+#[test]
+fn any_goal_of_a_set_will_do() {
+    let scene = Scene::find("docks").unwrap();
+    let mut ends = [0; 4];
+    for seed in 1..=12 {
+        let rows = scene.plan(&Request::new("rrt").seed(seed)).unwrap().path.unwrap();
+        let end = rows[rows.len() - 1].clone();
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        let which = match end[..] {
+            [x, y, yaw] if near(x, 5.4) && near(y, 0.5) && near(yaw, 0.0) => 0,
+            [x, y, yaw] if near(x, 5.4) && near(y, 1.2) && near(yaw, 0.0) => 1,
+            [x, y, _] if near(x, 5.4) && near(y, 3.5) => 2,
+            [x, y, yaw] if (2.5..=4.0).contains(&x) && near(y, 3.6) && yaw.abs() <= 0.1 + 1e-9 => 3,
+            _ => panic!("no goal: {end:?}"),
+        };
+        ends[which] += 1;
+    }
+    assert!(ends.iter().filter(|n| **n > 0).count() > 1, "{ends:?}");
+}
