@@ -77,6 +77,14 @@ pub(crate) struct Plan {
     /// Plan this many times, with seeds N, N + 1, …, and print a table.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,
+    /// Find this many routes that are far apart, and write each to a file of its own: `-1`, `-2`, … is put before the ending of
+    /// the files. For cyclic-rrt, which is taken unless another planner is named, and planners that build roadmaps.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub(crate) routes: Option<u16>,
+    /// How far apart routes are: each is somewhere farther from all routes before it. A distance of the metric, or a
+    /// percentage of the extent of the space.
+    #[arg(long, value_name = "DISTANCE", default_value = "10%", requires = "routes", value_parser = parsed::<Length>)]
+    pub(crate) apart: Length,
     /// How many runs at once; for a single run, how many threads it may use. Results do not depend on it.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,

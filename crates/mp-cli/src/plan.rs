@@ -40,6 +40,14 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         return Err(Error::new("standard input can be one scene only"));
     }
 
+    if args.routes.is_some() {
+        if named.len() > 1 || args.runs > 1 {
+            return Err(Error::new("--routes needs a single run").help("name one scene, without --runs"));
+        }
+        if args.out.as_deref().is_some_and(is_standard) {
+            return Err(Error::new("--out -: there is a file for each route").help("name a file"));
+        }
+    }
     let scenes = named.iter().map(|given| scene(given)).collect::<Result<Vec<_>, _>>()?;
     let requests =
         scenes.iter().map(|scene| request_for(scene, args, &request)).collect::<Result<Vec<_>, _>>()?;
@@ -56,6 +64,9 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
     }
 
     let cancel = interrupt::flag();
+    if let (Some(count), [scene], [request]) = (args.routes, scenes.as_slice(), requests.as_slice()) {
+        return routes(args, scene, request, count, &cancel, &files);
+    }
     let single = jobs.len() == 1;
     // Runs have a thread each when there are several.
     let threads = if single { args.threads } else { 1 };
@@ -81,6 +92,67 @@ pub(crate) fn run(args: &Plan) -> Result<bool, Error> {
         note(&format!("interrupted: {missing} of {} runs were not started", jobs.len()));
     }
     Ok(missing == 0 && solved)
+}
+
+/// Finds routes, and writes each to files of its own. True when there are as many as asked for.
+fn routes(
+    args: &Plan,
+    scene: &Scene,
+    request: &Request,
+    count: u16,
+    cancel: &Cancel,
+    files: &Files,
+) -> Result<bool, Error> {
+    let mut line = Line::new(scene.name(), request.budget.time_s, true);
+    let found = {
+        let mut watched = Watched { line: &mut line, grown: None };
+        let mut control = Control::new(cancel.clone(), &mut watched);
+        scene.routes(request, usize::from(count), args.apart, &mut control)?
+    };
+    let mut reports = Vec::new();
+    for (i, mut report) in found.into_iter().enumerate() {
+        let [out, file] = <[_; 2]>::from(files.of(scene.name(), request.seed))
+            .map(|file| file.map(|file| numbered(&file, i + 1)));
+        let drawing = Drawing { threads: Some(args.threads), ..Drawing::default() };
+        if let Some(rows) = report.path.clone() {
+            let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+            if let Some(file) = out {
+                write(&file, path.to_file(PathFileKind::of(&file)?).as_bytes())?;
+                report.path_file = Some(file.display().to_string());
+            }
+            if let Some(file) = file {
+                let picture = Picture::of(scene, &file, &drawing, true)?;
+                let shown =
+                    Shown { scene, path: Some(&path), report: Some(&report), caption: &caption(&report) };
+                if let Some(bytes) = picture.bytes(&shown, None, cancel, &line)? {
+                    write(&file, &bytes)?;
+                    report.picture_file = Some(file.display().to_string());
+                }
+            }
+        }
+        reports.push(report);
+    }
+    drop(line);
+    let solved = reports.iter().filter(|report| report.solved).count();
+    if args.json {
+        print_json(&Runs::new(reports))?;
+    } else {
+        for (i, report) in reports.iter().enumerate() {
+            print(&format!("route {} of {solved}\n{}", i + 1, summary(report)))?;
+        }
+    }
+    if solved < usize::from(count) {
+        note(&format!("{solved} of {count} routes were found that are {} apart", args.apart));
+    }
+    Ok(solved >= usize::from(count))
+}
+
+/// The name of a file with a number before its ending.
+fn numbered(file: &Path, number: usize) -> PathBuf {
+    let [stem, ending] = [file.file_stem(), file.extension()]
+        .map(|part| part.unwrap_or_default().to_string_lossy().into_owned());
+    let dot = if ending.is_empty() { "" } else { "." };
+    file.with_file_name(format!("{stem}-{number}{dot}{ending}"))
 }
 
 /// Refuses bad output files, and two runs with the same file.

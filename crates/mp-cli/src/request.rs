@@ -8,7 +8,8 @@ use mp_plan::{Budget, Error, Finish, Request, Scene};
 pub(crate) fn request_for(scene: &Scene, args: &Plan, request: &Request) -> Result<Request, Error> {
     let mut request = request.clone();
     if args.planner.is_none() && args.request.is_none() {
-        request.planner = scene.default_planner().to_owned();
+        let planner = if args.routes.is_some() { "cyclic-rrt" } else { scene.default_planner() };
+        request.planner = planner.to_owned();
         request.check()?;
     }
     Ok(request)

@@ -24,6 +24,12 @@ pub trait Planner<S> {
     fn improves(&self) -> bool {
         false
     }
+    /// At most `k` verified paths that are far apart, the cheapest first: each is somewhere farther than `apart`, in the metric
+    /// of the space, from all before it. To be called when a path was found; more steps give more of them. `None`, the default,
+    /// where the planner lists no paths.
+    fn routes(&mut self, _k: usize, _apart: f64) -> Option<Vec<Path<S, Self::Edge>>> {
+        None
+    }
     /// Runs until solved or stopped. Call again to continue with the same trees.
     fn solve(
         &mut self,
@@ -58,5 +64,8 @@ impl<S, P: Planner<S> + ?Sized> Planner<S> for Box<P> {
     }
     fn improves(&self) -> bool {
         (**self).improves()
+    }
+    fn routes(&mut self, k: usize, apart: f64) -> Option<Vec<Path<S, P::Edge>>> {
+        (**self).routes(k, apart)
     }
 }

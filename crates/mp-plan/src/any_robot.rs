@@ -9,8 +9,8 @@ use crate::run::AnyPrepared;
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Column, Control, Error, Explanation, PathFormat, PathRows, Report, Request, RobotKind, Sweep,
-    Track, Verdict,
+    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, Report, Request, RobotKind,
+    Sweep, Track, Verdict,
 };
 use mp_cspace::{Rng, Space, Validity};
 use mp_geom::Aabb;
@@ -36,6 +36,13 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn with_ends(&self, start: &[f64], goals: &[Vec<f64>]) -> Result<Arc<dyn AnyRobot>, Error>;
     fn traced(&self, row: &[f64]) -> Result<Point3<f64>, Error>;
     fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error>;
+    fn routes(
+        &self,
+        request: &Request,
+        count: usize,
+        apart: Length,
+        control: &mut Control<'_>,
+    ) -> Result<Vec<Report>, Error>;
     fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error>;
     #[cfg(feature = "roadmaps")]
     fn roadmap(
@@ -107,6 +114,15 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn plan(&self, request: &Request, control: &mut Control<'_>) -> Result<Report, Error> {
         plan(self, request, control)
+    }
+    fn routes(
+        &self,
+        request: &Request,
+        count: usize,
+        apart: Length,
+        control: &mut Control<'_>,
+    ) -> Result<Vec<Report>, Error> {
+        crate::routes::routes(self, request, count, apart, control)
     }
     fn prepare<'s>(&'s self, request: &'s Request) -> Result<Box<dyn AnyPrepared + 's>, Error> {
         crate::run::prepare(self, request)

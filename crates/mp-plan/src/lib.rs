@@ -80,6 +80,7 @@ mod report;
 mod request;
 mod roadmaps;
 mod robot;
+mod routes;
 mod run;
 mod runs;
 mod scene;

@@ -252,10 +252,10 @@ impl<K: RobotKind> AnyRun for RobotRun<'_, '_, K> {
 }
 
 /// A stop, and another that only pauses.
-struct Pausing<'a> {
-    stop: &'a mut dyn Stop,
-    pause: &'a mut dyn Stop,
-    paused: bool,
+pub(crate) struct Pausing<'a> {
+    pub(crate) stop: &'a mut dyn Stop,
+    pub(crate) pause: &'a mut dyn Stop,
+    pub(crate) paused: bool,
 }
 
 impl Stop for Pausing<'_> {

@@ -5,8 +5,8 @@ use crate::robot::{PlanarScene, RigidScene, RigidSpace};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Column, Control, Error, Explanation, PathFormat, PathRows, PreparedRun, Report, Request, RobotKind,
-    Sweep, Track, Verdict,
+    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun, Report, Request,
+    RobotKind, Sweep, Track, Verdict,
 };
 use mp_geom::{Aabb, TriMesh, six_from_pose};
 use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
@@ -294,6 +294,30 @@ impl Scene {
         let mut report = self.robot.plan(request, control)?;
         report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
         Ok(report)
+    }
+
+    /// Plans at most `count` routes, the shortest first: verified paths, each of which is somewhere farther than `apart`, in the
+    /// metric of the space, from all before it. Routes are those of the graph that the planner grows, without detours (Abraham,
+    /// Delling, Goldberg and Werneck, *Alternative routes in road networks*, 2013): the planner must be `cyclic-rrt` or build
+    /// roadmaps. It grows until there are as many routes, or its budget is used up. Each is shortened by itself; one that
+    /// shortening would bring within half of `apart` of another stays as it was found. Without any route there is one report,
+    /// which says why.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan), and when the planner finds one path only.
+    pub fn routes(
+        &self,
+        request: &Request,
+        count: usize,
+        apart: Length,
+        control: &mut Control<'_>,
+    ) -> Result<Vec<Report>, Error> {
+        self.check_ends()?;
+        let mut reports = self.robot.routes(request, count.max(1), apart, control)?;
+        for report in &mut reports {
+            report.scene_file = self.file.as_ref().map(|file| file.display().to_string());
+        }
+        Ok(reports)
     }
 
     /// Prepares a run that is advanced in pieces.

@@ -3,7 +3,7 @@
 use super::forest::Forest;
 use super::planner::verify;
 use super::{AStar, Builder, EdgeChecker, EdgeId, GraphPath, LinkState, Query, Roadmap};
-use mp_cspace::shortest::shortest_paths;
+use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
     BuildError, Direction, Endpoint, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Path, Reversible,
     Space,
@@ -262,6 +262,30 @@ where
     {
         RunningQuery { roadmap: self, checker, ends: [start, goal] }.alternatives(k)
     }
+
+    /// At most `k` verified paths from `start` to `goal` that are far apart, with their lengths. The first is the shortest.
+    /// Each other one is the shortest through a node that is farther than `apart`, in the metric of the space, from all
+    /// paths before, with shortest paths to and from that node, and without a detour there: within a length of `apart` before and
+    /// behind that node no path is shorter (Abraham, Delling, Goldberg and Werneck 2013). They begin and end with the same
+    /// motions. A roadmap without cycles has only one.
+    ///
+    /// # Errors
+    /// When the roadmap has no path, with the reason.
+    pub fn routes<C, L>(
+        &mut self,
+        checker: &mut EdgeChecker<'_, C, L>,
+        [start, goal]: [&S; 2],
+        k: usize,
+        apart: f64,
+    ) -> Result<Listed<S, E>, Unanswered>
+    where
+        C: Space<State = S>,
+        L: LocalPlanner<S, Edge = E>,
+        N: NearestNeighbors<C>,
+    {
+        RunningQuery { roadmap: self, checker, ends: [start, goal] }
+            .listed(|query, nodes| query.far_apart(nodes, k, apart))
+    }
 }
 
 /// A query that is being answered: the roadmap, how motions are checked, start and goal.
@@ -298,11 +322,20 @@ where
         }
     }
 
-    fn alternatives(mut self, k: usize) -> Result<Listed<C::State, L::Edge>, Unanswered> {
+    fn alternatives(self, k: usize) -> Result<Listed<C::State, L::Edge>, Unanswered> {
+        self.listed(|query, nodes| query.shortest_paths(nodes, k))
+    }
+
+    /// The paths that `choose` finds between two nodes, with the motions from the start and to the goal. It is called again
+    /// when it returns `None`, as an edge had to be blocked.
+    fn listed(
+        mut self,
+        choose: impl Fn(&mut Self, [NodeId; 2]) -> Option<Vec<GraphPath>>,
+    ) -> Result<Listed<C::State, L::Edge>, Unanswered> {
         self.prepare()?;
         loop {
             let ends = self.connect_ends()?;
-            if let Some(found) = self.shortest_paths(ends.nodes, k) {
+            if let Some(found) = choose(&mut self, ends.nodes) {
                 let more = ends.first.1.cost + ends.last.1.cost;
                 let map = &self.roadmap.map;
                 let paths = found.iter().filter_map(|path| Some((map.path(path)?, path.length + more)));
@@ -395,7 +428,14 @@ where
 
     /// The shortest paths between two nodes, all of whose edges are verified; `None` when an edge had to be blocked.
     fn shortest_paths(&mut self, [from, to]: [NodeId; 2], k: usize) -> Option<Vec<GraphPath>> {
-        let IndexedRoadmap { map, star, .. } = &mut *self.roadmap;
+        let arcs = self.arcs(from);
+        let found = shortest_paths(&arcs, from, to, k);
+        found.into_iter().map(|(length, nodes)| self.checked(length, nodes)).collect()
+    }
+
+    /// The arcs that leave each node of the component of a node.
+    fn arcs(&mut self, from: NodeId) -> Vec<Vec<(u32, f64)>> {
+        let map = &mut self.roadmap.map;
         let component = map.component(from);
         let mut arcs: Vec<Vec<(u32, f64)>> = vec![Vec::new(); map.len()];
         for node in 0..map.len() as NodeId {
@@ -406,14 +446,38 @@ where
                 out.dedup_by_key(|arc| arc.0);
             }
         }
+        arcs
+    }
+
+    /// The path through these nodes, if all of its edges are verified; `None` when one had to be blocked.
+    fn checked(&mut self, length: f64, nodes: Vec<u32>) -> Option<GraphPath> {
+        let IndexedRoadmap { map, star, .. } = &mut *self.roadmap;
+        let edges =
+            nodes.windows(2).map(|pair| shortest_edge(map, pair[0], pair[1])).collect::<Option<_>>()?;
+        let path = GraphPath { nodes, edges, length };
+        let free = star.check(map, self.checker, &path) && verify(map, self.checker, &path);
+        free.then_some(path)
+    }
+
+    /// Paths between two nodes that are far apart, all of whose edges are verified; `None` when an edge had to be blocked.
+    fn far_apart(&mut self, [from, to]: [NodeId; 2], k: usize, apart: f64) -> Option<Vec<GraphPath>> {
+        let arcs = self.arcs(from);
+        let mut open: Vec<NodeId> =
+            (0..arcs.len() as NodeId).filter(|&id| !arcs[id as usize].is_empty()).collect();
         let mut paths = Vec::new();
-        for (length, nodes) in shortest_paths(&arcs, from, to, k) {
-            let edges =
-                nodes.windows(2).map(|pair| shortest_edge(map, pair[0], pair[1])).collect::<Option<_>>()?;
-            let path = GraphPath { nodes, edges, length };
-            if !star.check(map, self.checker, &path) || !verify(map, self.checker, &path) {
-                return None;
-            }
+        while paths.len() < k {
+            let via = open.iter().copied();
+            let Some((length, nodes)) = shortest_via(&arcs, from, to, apart, via) else { break };
+            let path = self.checked(length, nodes)?;
+            let (map, space) = (&self.roadmap.map, self.checker.space());
+            let on = path.nodes.windows(2).flat_map(|pair| {
+                let [a, b] = [pair[0], pair[1]].map(|id| map.state(id));
+                // A quarter of the distance asked for.
+                let pieces = (4.0 * space.distance(a, b) / apart).ceil().clamp(1.0, 1e3) as u32;
+                (0..=pieces).map(move |i| space.interpolate(a, b, f64::from(i) / f64::from(pieces)))
+            });
+            let on: Vec<C::State> = on.collect();
+            open.retain(|&id| on.iter().all(|q| space.distance(q, map.state(id)) > apart));
             paths.push(path);
         }
         Some(paths)

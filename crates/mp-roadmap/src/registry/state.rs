@@ -62,6 +62,18 @@ pub trait RoadmapState: Clone + Debug + PartialEq + Send + Sync + Sized {
         goal: &Self,
     ) -> Result<Path<Self>, Unanswered>;
 
+    /// As [`IndexedRoadmap::routes`], without the lengths.
+    ///
+    /// # Errors
+    /// When the roadmap has no path, with the reason.
+    fn routes(
+        roadmap: &mut AnyRoadmap<Self>,
+        checker: &mut AnyEdgeChecker<'_, Self>,
+        ends: [&Self; 2],
+        k: usize,
+        apart: f64,
+    ) -> Result<Vec<Path<Self>>, Unanswered>;
+
     /// As [`IndexedRoadmap::verify`].
     fn verify_roadmap(roadmap: &mut AnyRoadmap<Self>, checker: &mut AnyEdgeChecker<'_, Self>) -> usize;
 }
@@ -95,6 +107,16 @@ macro_rules! compile_for {
                 goal: &Self,
             ) -> ::core::result::Result<$crate::Path<Self>, $crate::Unanswered> {
                 roadmap.answer(checker, start, goal)
+            }
+            fn routes(
+                roadmap: &mut $crate::AnyRoadmap<Self>,
+                checker: &mut $crate::AnyEdgeChecker<'_, Self>,
+                ends: [&Self; 2],
+                k: usize,
+                apart: f64,
+            ) -> ::core::result::Result<::std::vec::Vec<$crate::Path<Self>>, $crate::Unanswered> {
+                let routes = roadmap.routes(checker, ends, k, apart)?;
+                ::core::result::Result::Ok(routes.into_iter().map(|(path, _)| path).collect())
             }
             fn verify_roadmap(
                 roadmap: &mut $crate::AnyRoadmap<Self>,

@@ -31,7 +31,7 @@
 //! and those of [RRT](super::rrt). A small tolerance makes few cycles; a large one makes many, and many
 //! paths that differ little. A passage may need nodes closer together than the tolerance: they are
 //! added as soon as the nodes similar to them are joined. Made [by name](crate::build) it finds a path as RRT does, a
-//! little slower, and does not list alternatives.
+//! little slower; [`Planner::routes`](mp_cspace::Planner::routes) lists routes.
 //!
 //! Two routes around a block:
 //! ```
@@ -81,7 +81,7 @@ const TOLERANCE: Parameter = Parameter {
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "cyclic-rrt",
-    summary: "RRT with cycles; lists alternative paths when used from code, for one path RRT is better",
+    summary: "RRT with cycles, to list routes that are far apart; for one path RRT is better",
     citation: "Jouandeau, Touati and Ali Cherif 2008; LaValle 1998",
     parameters: &[STEP, TOLERANCE, GOAL_BIAS, PATIENCE],
     aliases: &[],
@@ -379,5 +379,10 @@ where
 
     fn progress(&self) -> Progress {
         self.inner.progress()
+    }
+
+    fn routes(&mut self, k: usize, apart: f64) -> Option<Vec<Path<C::State, L::Edge>>> {
+        let routes = CyclicRrt::routes(self, k, apart).ok()?;
+        Some(routes.into_iter().map(|(path, _)| path).collect())
     }
 }

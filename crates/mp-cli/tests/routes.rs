@@ -1,0 +1,82 @@
+//! Several routes of one scene, by the command line.
+
+mod common;
+
+use common::{Dir, mp};
+
+/// A block in the middle of a room: there are two ways around it.
+const BLOCK: &str = "[world]\nwalls = [[0, 0], [4, 4]]\n[robot]\ndisc = 0.1\n[motion]\nstart = [0.4, 2]\ngoal = [3.6, 2]\n\
+    [[obstacle]]\nrectangle = [[1.2, 1], [2.8, 3]]\n";
+
+/// Whether the path in a file goes above the block.
+fn is_above(dir: &Dir, file: &str) -> bool {
+    let heights = dir.read(file);
+    let heights = heights.lines().skip(1).filter_map(|line| line.split(' ').nth(1)?.parse::<f64>().ok());
+    let (low, high) = heights.fold((4.0_f64, 0.0_f64), |(low, high), y| (low.min(y), high.max(y)));
+    assert!((low < 1.0) != (high > 3.0), "from {low} to {high}");
+    high > 3.0
+}
+
+#[test]
+fn two_ways_around_a_block_are_two_routes() {
+    let dir = Dir::empty();
+    dir.write("block.toml", BLOCK);
+    for planner in ["cyclic-rrt", "prm", "prm-star", "lazy-prm"] {
+        let out = format!("{planner}.txt");
+        let args = [
+            "plan",
+            "block.toml",
+            "--planner",
+            planner,
+            "--routes",
+            "2",
+            "--out",
+            &out,
+            "--picture",
+            "p.svg",
+        ];
+        let run = mp(&dir, &args);
+        assert_eq!(run.code, 0, "{planner}: {run:?}");
+        let files = [1, 2].map(|i| format!("{planner}-{i}.txt"));
+        assert_ne!(is_above(&dir, &files[0]), is_above(&dir, &files[1]), "{planner}");
+        for file in &files {
+            let check = mp(&dir, &["check", "block.toml", file]);
+            assert!(check.code == 0 && check.stdout.contains("certified free"), "{check:?}");
+        }
+        assert!(dir.exists("p-1.svg") && dir.exists("p-2.svg") && !dir.exists("p.svg"));
+    }
+    // The same again, bit for bit.
+    let first = dir.read("cyclic-rrt-2.txt");
+    assert_eq!(mp(&dir, &["plan", "block.toml", "--routes", "2", "--out", "again.txt"]).code, 0);
+    assert_eq!(dir.read("again-2.txt"), first);
+}
+
+#[test]
+fn what_cannot_be_is_said() {
+    let dir = Dir::empty();
+    dir.write("block.toml", BLOCK);
+    // Nothing is so far apart.
+    let run = mp(
+        &dir,
+        &["plan", "block.toml", "--routes", "3", "--apart", "90%", "--iterations", "2000", "--json"],
+    );
+    assert!(run.code == 1 && run.stderr.contains("1 of 3 routes"), "{run:?}");
+    assert_eq!(run.json()["runs"].as_array().map(Vec::len), Some(1), "{run:?}");
+    for (args, words) in [
+        (&["--planner", "rrt-connect"][..], "rrt-connect finds one path"),
+        (&["--planner", "restart-cyclic-rrt"], "finds one path"),
+        (&["--runs", "2"], "--routes needs a single run"),
+        (&["--out", "-"], "a file for each route"),
+        (&["--apart", "0"], "above zero"),
+    ] {
+        let run = mp(&dir, &[&["plan", "block.toml", "--routes", "2"], args].concat());
+        assert!(run.code == 2 && run.stderr.contains(words), "{words}: {run:?}");
+    }
+    let alone = mp(&dir, &["plan", "block.toml", "--apart", "10%"]);
+    assert!(alone.code == 2 && alone.stderr.contains("--routes"), "{alone:?}");
+    let free = BLOCK.replace("goal = [3.6, 2]", "goal = { x = 3.6 }");
+    dir.write("free.toml", free);
+    let run = mp(&dir, &["plan", "free.toml", "--routes", "2", "--planner", "prm"]);
+    assert!(run.code == 2 && run.stderr.contains("leaves nothing free"), "{run:?}");
+    assert_eq!(mp(&dir, &["plan", "parking", "--routes", "2"]).code, 2);
+}

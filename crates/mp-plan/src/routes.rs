@@ -1,0 +1,198 @@
+//! Several routes of one scene: verified paths that are far apart.
+
+use crate::path::states;
+use crate::plan::reported;
+use crate::planners::PlannerKind;
+use crate::prepared::Prepared;
+use crate::run::Pausing;
+use crate::search::Search;
+use crate::{Control, Error, Finish, Length, PathRows, Report, Request, RobotKind, Stage, planners};
+use mp_cspace::{Iterations, Outcome, Path, Planner, Progress, Rng, Space, StopReason, Workers};
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+/// Iterations before routes are looked for; then twice as many each time.
+const FIRST: u64 = 1000;
+
+/// What was found: paths, the counts, the time, and why it ended.
+struct Listed<S> {
+    paths: Vec<Path<S>>,
+    progress: Progress,
+    time: Duration,
+    ended: StopReason,
+    map: Option<[usize; 2]>,
+}
+
+/// At most `count` routes: see [`Scene::routes`](crate::Scene::routes).
+pub(crate) fn routes<K: RobotKind>(
+    kind: &K,
+    request: &Request,
+    count: usize,
+    apart: Length,
+    control: &mut Control<'_>,
+) -> Result<Vec<Report>, Error> {
+    let _span = tracing::info_span!("routes", scene = kind.name(), planner = %request.planner).entered();
+    request.check()?;
+    let planner = PlannerKind::new(&request.planner)?;
+    let prepared = Prepared::new(kind, request)?;
+    let apart = match apart {
+        Length::Absolute(length) => length,
+        Length::Fraction(part) => part * kind.space().extent(),
+    };
+    control.stage(Stage::Planning);
+    let listed = match &planner {
+        PlannerKind::Tree(spec) if spec.meta_planners.is_empty() && spec.planner.name == "cyclic-rrt" => {
+            of_tree(&prepared, &spec.to_string(), count, apart, control)?
+        }
+        PlannerKind::Tree(_) => return Err(one_path_only(&planner)),
+        #[cfg(feature = "roadmaps")]
+        PlannerKind::Roadmap(info) => of_roadmap(&prepared, info, count, apart, control)?,
+        #[cfg(not(feature = "roadmaps"))]
+        PlannerKind::Roadmap(_) => return Err(one_path_only(&planner)),
+    };
+    let queries = prepared.queries.load(Ordering::Relaxed);
+    let search = |outcome| Search {
+        outcome,
+        progress: listed.progress,
+        queries,
+        time: listed.time,
+        first: None,
+        map: listed.map,
+        roadmap: None,
+    };
+    if listed.paths.is_empty() {
+        return Ok(vec![reported(kind, request, search(Outcome::Stopped(listed.ended)), None, control)?]);
+    }
+    let mut reports: Vec<Report> = Vec::new();
+    for path in &listed.paths {
+        let found = || search(Outcome::Solved(path.clone()));
+        let mut report = reported(kind, request, found(), None, control)?;
+        // What shortening has brought together stays as it was found.
+        if report.solved && !is_far(kind, &report, &reports, apart)? && report.shortened {
+            let as_found = Request { finish: Finish::AsFound, ..request.clone() };
+            report = reported(kind, &as_found, found(), None, control)?;
+        }
+        reports.push(report);
+    }
+    Ok(reports)
+}
+
+fn one_path_only(planner: &PlannerKind) -> Error {
+    let roadmaps = planners().filter(|info| crate::roadmap_planners().iter().any(|r| r.name == info.name));
+    let names: Vec<_> = std::iter::once("cyclic-rrt").chain(roadmaps.map(|info| info.name)).collect();
+    Error::new(format!("{planner} finds one path, not several routes"))
+        .help(format!("take one of: {}", names.join(", ")))
+}
+
+/// Whether some point of the path is farther than `apart` from all points of each of the others, a quarter of that apart.
+fn is_far<K: RobotKind>(kind: &K, report: &Report, others: &[Report], apart: f64) -> Result<bool, Error> {
+    let space = kind.space();
+    let points = |report: &Report| {
+        let rows = report.path.clone().unwrap_or_default();
+        let path = PathRows { format: kind.path_format(), columns: Vec::new(), rows };
+        let states = states(kind, &path)?;
+        let mut points = Vec::new();
+        for pair in states.windows(2) {
+            let pieces = (4.0 * space.distance(&pair[0], &pair[1]) / apart).ceil().clamp(1.0, 1e3) as u32;
+            let at = |i: u32| space.interpolate(&pair[0], &pair[1], f64::from(i) / f64::from(pieces));
+            points.extend((0..pieces).map(at));
+        }
+        points.extend(states.last().cloned());
+        Ok::<_, Error>(points)
+    };
+    let own = points(report)?;
+    for other in others.iter().filter(|other| other.solved) {
+        let on = points(other)?;
+        if !own.iter().any(|q| on.iter().all(|p| space.distance(p, q) > 0.5 * apart)) {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// The routes in the graph of a planner that grows one.
+fn of_tree<K: RobotKind>(
+    prepared: &Prepared<'_, K>,
+    name: &str,
+    count: usize,
+    apart: f64,
+    control: &mut Control<'_>,
+) -> Result<Listed<K::State>, Error> {
+    let workers = Workers::new(prepared.request.threads)?;
+    let (clock, began) = (control.clock, control.clock.now());
+    let mut planner = prepared.tree_planner(name, &workers)?;
+    let (mut rng, mut target) = (Rng::seed(prepared.request.seed), FIRST);
+    loop {
+        let spent = clock.now().saturating_sub(began);
+        let ended = prepared.watched(control, spent, |stop, events| {
+            loop {
+                let mut pausing = Pausing { stop: &mut *stop, pause: &mut Iterations(target), paused: false };
+                match planner.solve(&mut rng, &mut pausing, events) {
+                    // More steps close more cycles.
+                    Outcome::Solved(_) => {}
+                    Outcome::Stopped(_) if pausing.paused => break None,
+                    Outcome::Stopped(reason) => break Some(reason),
+                }
+            }
+        });
+        let paths = planner.routes(count, apart).unwrap_or_default();
+        if paths.len() >= count || ended.is_some() {
+            let (progress, time) = (planner.progress(), clock.now().saturating_sub(began));
+            let ended = ended.unwrap_or(StopReason::Exhausted);
+            return Ok(Listed { paths, progress, time, ended, map: None });
+        }
+        target = target.saturating_mul(2);
+    }
+}
+
+/// The routes in a roadmap.
+#[cfg(feature = "roadmaps")]
+fn of_roadmap<K: RobotKind>(
+    prepared: &Prepared<'_, K>,
+    info: &mp_cspace::registry::PlannerInfo,
+    count: usize,
+    apart: f64,
+    control: &mut Control<'_>,
+) -> Result<Listed<K::State>, Error> {
+    use crate::roadmaps::{RoadmapFile, RoadmapState};
+    use mp_roadmap::{AnyEdgeChecker, AnyRoadmap, PATIENCE};
+    /// How many of the nearest nodes an end is connected to.
+    const NEIGHBOURS: usize = 20;
+
+    let (kind, request) = (prepared.kind, prepared.request);
+    let [goal] = kind.goals() else {
+        let help = "give one goal, or take cyclic-rrt";
+        return Err(Error::new(format!("{} lists routes to one goal only", info.name)).help(help));
+    };
+    if kind.goal_parts().is_some() {
+        let help = "give all numbers of the goal, or take cyclic-rrt";
+        return Err(
+            Error::new(format!("{} lists routes to a goal that leaves nothing free", info.name)).help(help)
+        );
+    }
+    let file = RoadmapFile::of_request(kind, request)?;
+    let (clock, began) = (control.clock, control.clock.now());
+    let workers = Workers::new(request.threads)?;
+    let mut made = prepared.roadmap_planner(info, workers, file.as_ref())?;
+    let (mut rng, mut target) = (Rng::seed(request.seed), FIRST);
+    loop {
+        let spent = clock.now().saturating_sub(began);
+        let (ended, paused) = prepared.watched(control, spent, |stop, events| {
+            let mut pausing = Pausing { stop, pause: &mut Iterations(target), paused: false };
+            let reason = made.build(&mut rng, &mut pausing, events);
+            (reason, pausing.paused)
+        });
+        let (map, roadmap) = made.keep(file.as_ref(), true)?;
+        let roadmap = roadmap.unwrap_or_default();
+        let mut roadmap = AnyRoadmap::new(&prepared.space, roadmap, prepared.index.clone(), NEIGHBOURS)?;
+        let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
+        let found = K::State::routes(&mut roadmap, &mut checker, [kind.start(), goal], count, apart);
+        drop(checker);
+        let paths = found.unwrap_or_default();
+        if paths.len() >= count || !paused {
+            let (progress, time) = (made.planner().progress(), clock.now().saturating_sub(began));
+            return Ok(Listed { paths, progress, time, ended, map: Some(map) });
+        }
+        target = target.saturating_mul(2);
+    }
+}
