@@ -4,6 +4,9 @@ use crate::{Area, Body, Configuration, Mesh, PathTrack, Polyline, Role, SceneFil
 use mp_plan::{BodyShape, Error, PathRows, Report, Scene, Track};
 use nalgebra::{Isometry3, Point3};
 
+/// The colour of obstacles that move.
+const MOVING: [u8; 3] = [0x8d, 0x99, 0xae];
+
 impl SceneFile {
     /// The bodies of `scene`, its start and its goals.
     ///
@@ -37,21 +40,25 @@ impl SceneFile {
         for row in scene.goals().into_iter().chain([scene.start()]) {
             ends.push(scene.poses(&row)?);
         }
+        // Obstacles that move have poses along the path, as the robot has, and the colour of obstacles.
+        let bodies = scene.bodies();
+        let own = bodies.iter().filter(|body| body.pose.is_none()).count() - scene.moving_obstacles();
         let mut robots = 0;
-        for body in scene.bodies() {
-            let own = corners(&body.shape);
+        for body in bodies {
+            let points = corners(&body.shape);
             match &body.pose {
-                Some(pose) => bounds.add(own.iter().map(|p| pose * p)),
+                Some(pose) => bounds.add(points.iter().map(|p| pose * p)),
                 None => {
                     let poses = ends.iter().filter_map(|poses| poses.get(robots));
-                    poses.for_each(|pose| bounds.add(own.iter().map(|p| pose * p)));
+                    poses.for_each(|pose| bounds.add(points.iter().map(|p| pose * p)));
                     robots += 1;
                 }
             }
             let (name, pose) = (body.name, body.pose.as_ref().map(seven));
             let role = if pose.is_some() { Role::Obstacle } else { Role::Robot };
             let shape = file.add_shape(&body.shape);
-            file.bodies.push(Body { name, role, shape, pose, color: None });
+            let moves = pose.is_none() && robots > own;
+            file.bodies.push(Body { name, role, shape, pose, color: moves.then_some(MOVING) });
         }
         file.bounds = bounds.get();
         Ok(file)
