@@ -78,7 +78,8 @@ pub(crate) struct Plan {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: u32,
     /// Find this many routes that are far apart, and write each to a file of its own: `-1`, `-2`, … is put before the ending of
-    /// the files. For cyclic-rrt, which is taken unless another planner is named, and planners that build roadmaps.
+    /// the files. For cyclic-rrt, which is taken unless another planner is named, and planners whose roadmaps have
+    /// cycles, such as prm-star.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=100))]
     pub(crate) routes: Option<u16>,
     /// How far apart routes are: each is somewhere farther from all routes before it. A distance of the metric, or a

@@ -11,16 +11,22 @@ const TRIES: usize = 1000;
 /// How far, as a part of the extent of the space, a configuration may be from a goal that it is at: rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Where the row of a configuration would have to be to be at a goal: the same row if it is there.
-fn row_at<K: RobotKind>(kind: &K, goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f64> {
-    let (columns, limits) = (kind.columns(), kind.limits());
+/// Which numbers of a configuration are angles without limits, that is, the same after a full turn.
+fn turning<K: RobotKind>(kind: &K) -> Vec<bool> {
+    let limits = kind.limits();
+    let turns = |(i, column): (usize, crate::Column)| {
+        column.unit == "rad" && limits.get(i).is_some_and(Option::is_none)
+    };
+    kind.columns().into_iter().enumerate().map(turns).collect()
+}
+
+/// Where the row of a configuration would have to be to be at a goal: the same row if it is there. `turning` says which
+/// numbers are the same after a full turn.
+fn row_at(turning: &[bool], goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f64> {
     for (i, (part, x)) in goal.iter().zip(&mut row).enumerate() {
-        // An angle without limits is the same after a full turn.
-        let turns =
-            limits.get(i).is_some_and(Option::is_none) && columns.get(i).is_some_and(|c| c.unit == "rad");
         match *part {
             GoalPart::Exactly(v) => *x = v,
-            GoalPart::Between([low, high]) if turns => {
+            GoalPart::Between([low, high]) if turning.get(i) == Some(&true) => {
                 let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
                 let off = wrap_angle(*x - middle);
                 if off.abs() > half {
@@ -36,7 +42,7 @@ fn row_at<K: RobotKind>(kind: &K, goal: &[GoalPart], mut row: Vec<f64>) -> Vec<f
 
 /// The configuration of a goal that is next to `q`.
 pub(crate) fn next_to<K: RobotKind>(kind: &K, goal: &[GoalPart], q: &K::State) -> K::State {
-    kind.state(&row_at(kind, goal, kind.row(q)))
+    kind.state(&row_at(&turning(kind), goal, kind.row(q)))
 }
 
 /// A configuration of a goal, drawn at random.
@@ -69,8 +75,11 @@ impl<K: RobotKind> Sampler<K::State> for FromGoals<'_, K> {
 pub(crate) fn of_kind<K: RobotKind>(kind: &K) -> Goals<'_, K::State> {
     let Some(goals) = kind.goal_parts() else { return Goals::states(kind.goals().iter().cloned()) };
     let rounding = ROUNDING * kind.space().extent().max(1.0);
+    let turning = turning(kind);
     let reached = move |q: &K::State| {
-        goals.iter().any(|goal| kind.space().distance(q, &next_to(kind, goal, q)) <= rounding)
+        let row = kind.row(q);
+        let there = |goal: &Vec<GoalPart>| kind.state(&row_at(&turning, goal, row.clone()));
+        goals.iter().any(|goal| kind.space().distance(q, &there(goal)) <= rounding)
     };
     Goals::region(reached).with_sampler(FromGoals { kind, goals })
 }
@@ -81,7 +90,7 @@ pub(crate) fn examples<K: RobotKind>(kind: &K, goals: &[Vec<GoalPart>]) -> Vec<K
     let (mut checker, mut rng) = (kind.checker().clone(), Rng::seed(0));
     let enough = 2.0 * kind.tolerance();
     let example = |goal: &Vec<GoalPart>| {
-        let mut row = row_at(kind, goal, kind.row(kind.start()));
+        let mut row = row_at(&turning(kind), goal, kind.row(kind.start()));
         for (part, x) in goal.iter().zip(&mut row) {
             if let GoalPart::Between([low, high]) = part {
                 *x = 0.5 * (low + high);

@@ -188,6 +188,15 @@ fn of_roadmap<K: RobotKind>(
         let (mut checker, ..) = AnyEdgeChecker::of(prepared.problem()?, PATIENCE);
         let found = K::State::routes(&mut roadmap, &mut checker, [kind.start(), goal], count, apart);
         drop(checker);
+        let [edges, components] = map;
+        if count > 1 && edges > 0 && edges + components == made.nodes() {
+            let help = "take cyclic-rrt, or a planner whose roadmap has cycles, such as prm-star or lazy-prm";
+            return Err(Error::new(format!(
+                "{} builds a roadmap without cycles, in which there is one route only",
+                info.name
+            ))
+            .help(help));
+        }
         let paths = found.unwrap_or_default();
         if paths.len() >= count || !paused {
             let (progress, time) = (made.planner().progress(), clock.now().saturating_sub(began));

@@ -296,10 +296,10 @@ impl Scene {
         Ok(report)
     }
 
-    /// Plans at most `count` routes, the shortest first: verified paths, each of which is somewhere farther than `apart`, in the
+    /// Plans at most `count` routes, the shortest as found first: verified paths, each of which is somewhere farther than `apart`, in the
     /// metric of the space, from all before it. Routes are those of the graph that the planner grows, without detours (Abraham,
     /// Delling, Goldberg and Werneck, *Alternative routes in road networks*, 2013): the planner must be `cyclic-rrt` or build
-    /// roadmaps. It grows until there are as many routes, or its budget is used up. Each is shortened by itself; one that
+    /// roadmaps with cycles. It grows until there are as many routes, or its budget is used up. Each is shortened by itself; one that
     /// shortening would bring within half of `apart` of another stays as it was found. Without any route there is one report,
     /// which says why.
     ///
