@@ -21,20 +21,14 @@ fn is_above(dir: &Dir, file: &str) -> bool {
 fn two_ways_around_a_block_are_two_routes() {
     let dir = Dir::empty();
     dir.write("block.toml", BLOCK);
-    for planner in ["cyclic-rrt", "prm-star"] {
+    for planner in ["cyclic-rrt", "prm-star", "prm"] {
         let out = format!("{planner}.txt");
-        let args = [
-            "plan",
-            "block.toml",
-            "--planner",
-            planner,
-            "--routes",
-            "2",
-            "--out",
-            &out,
-            "--picture",
-            "p.svg",
-        ];
+        let mut args = vec!["plan", "block.toml", "--planner", planner, "--routes", "2"];
+        args.extend(["--out", &out, "--picture", "p.svg"]);
+        // By default its roadmap has none.
+        if planner == "prm" {
+            args.extend(["--set", "cycles=yes"]);
+        }
         let run = mp(&dir, &args);
         assert_eq!(run.code, 0, "{planner}: {run:?}");
         let files = [1, 2].map(|i| format!("{planner}-{i}.txt"));

@@ -190,7 +190,10 @@ fn of_roadmap<K: RobotKind>(
         drop(checker);
         let [edges, components] = map;
         if count > 1 && edges > 0 && edges + components == made.nodes() {
-            let help = "take cyclic-rrt, or a planner whose roadmap has cycles, such as prm-star or lazy-prm";
+            let help = match info.parameters.iter().any(|parameter| parameter.name == "cycles") {
+                true => "set its parameter `cycles` to yes, or take cyclic-rrt, prm-star or lazy-prm",
+                false => "take cyclic-rrt, prm-star or lazy-prm",
+            };
             return Err(Error::new(format!(
                 "{} builds a roadmap without cycles, in which there is one route only",
                 info.name
