@@ -256,13 +256,13 @@ impl<'c, C, V> MovingAreasVerifier<'c, C, V> {
 /// A configuration of the plane, as verifiers see it.
 pub trait PlanarConfiguration: Clone {
     /// The configuration as it is seen from a frame with this origin and angle.
-    fn from_frame(&self, origin: Vector2<f64>, angle: f64) -> Self;
+    fn seen_in(&self, origin: Vector2<f64>, angle: f64) -> Self;
     /// Its position and its angle.
     fn position_and_angle(&self) -> (Vector2<f64>, f64);
 }
 
 impl PlanarConfiguration for Vector2<f64> {
-    fn from_frame(&self, origin: Vector2<f64>, angle: f64) -> Self {
+    fn seen_in(&self, origin: Vector2<f64>, angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
         let d = self - origin;
         Vector2::new(c * d.x + s * d.y, c * d.y - s * d.x)
@@ -273,8 +273,8 @@ impl PlanarConfiguration for Vector2<f64> {
 }
 
 impl PlanarConfiguration for Se2State {
-    fn from_frame(&self, origin: Vector2<f64>, angle: f64) -> Self {
-        Self { translation: self.translation.from_frame(origin, angle), angle: self.angle - angle }
+    fn seen_in(&self, origin: Vector2<f64>, angle: f64) -> Self {
+        Self { translation: self.translation.seen_in(origin, angle), angle: self.angle - angle }
     }
     fn position_and_angle(&self) -> (Vector2<f64>, f64) {
         (self.translation, self.angle)
@@ -301,7 +301,7 @@ where
             let approach = half * (travel + speed * (to.1 - from.1));
             let pose = area.trajectory.pose(time);
             let (_, _, angle) = pose.rotation.euler_angles();
-            let seen = q.from_frame(pose.translation.vector.xy(), angle);
+            let seen = q.seen_in(pose.translation.vector.xy(), angle);
             match verifier.check_motion(&seen, &seen) {
                 MotionCheck::Free { clearance } if clearance >= (approach + self.tolerance) * ROUND_UP => {
                     least = least.min(clearance - approach);
