@@ -26,10 +26,10 @@ fn a_car_is_where_its_inputs_lead() {
         let mut q = Se2State::new(3.0, 5.5, 0.0);
         let mut rows = vec![scene.start()];
         let mut moments = Vec::new();
-        for _ in 0..rng.random_range(2..12) {
-            let input =
-                [*[2.0, -2.0, 1.0].get(rng.random_range(0..3)).unwrap(), rng.random_range(-0.46..0.46)];
-            let duration = rng.random_range(0.1..0.5);
+        for _ in 0..rng.random_range(6..40) {
+            let speed = if rng.random_range(0..4) > 0 { 2.0 } else { -1.0 };
+            let input = [speed, rng.random_range(-0.46..0.3)];
+            let duration = rng.random_range(0.2..0.5);
             for i in 0..=60 {
                 let p = car.integrate(&q, &input, duration * f64::from(i) / 60.0);
                 moments.push(vec![p.translation.x, p.translation.y, p.angle, 0.0, 0.0, 0.0]);
