@@ -1,7 +1,7 @@
 //! Scene files of every kind of scene: written, read, animated, and broken on purpose.
 
 use mp_plan::{Request, Scene};
-use mp_view::{PathTrack, Roadmap, Role, SceneFile, Tree, ViewError};
+use mp_view::{Bends, PathTrack, Roadmap, Role, SceneFile, Tree, ViewError};
 use proptest::prelude::*;
 use std::sync::OnceLock;
 
@@ -24,6 +24,7 @@ fn full() -> &'static SceneFile {
             name: "start".into(),
             nodes: vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
             parents: vec![-1, 0],
+            bends: Bends { nodes: vec![1, 2], through: vec![0.0, 1.5, 2.0, 1.0, 4.0, 5.0] },
         });
         file.bodies[1].color = Some([0, 127, 255]);
         file.roadmap = Some(Roadmap {
