@@ -1,6 +1,6 @@
 // What a search has reached: the cells of a grid in which the drawn points of its nodes lie, seen along an axis.
 
-import { brief, el, labelled, select } from "mp/dom.js";
+import { brief, el, labelled, legendOf, select } from "mp/dom.js";
 
 /** @import { Color, Palette } from "mp/colors.js" */
 /** @import { Vec3 } from "mp/math.js" */
@@ -155,7 +155,7 @@ export class Coverage {
     if (grid.update(this.nodes(s)) || this.dark !== s.dark || image.owner !== grid) {
       this.dark = s.dark;
       image.write(grid, grid.width, grid.height, grid.pixels(colors.covered));
-      this.legend.textContent = this.words(grid);
+      this.legend.replaceChildren(...legendOf(colors.covered, this.words(grid)));
     }
     const [low, high] = reachBox(this.viewer.scene);
     // On the far side of the box, where it hides nothing.

@@ -1,6 +1,7 @@
 // The field that pushes snakes, as an image below a world of the plane. The planner makes it: docs/formats/session.md, `field`.
 
-import { brief, checkbox, el, labelled, showError } from "mp/dom.js";
+import { palette } from "mp/colors.js";
+import { brief, checkbox, el, labelled, legendOf, showError } from "mp/dom.js";
 
 /** @import { ImageSet } from "mp/buffers.js" */
 /** @import { Palette } from "mp/colors.js" */
@@ -69,7 +70,8 @@ export class FieldLayer {
       const reply = /** @type {any} */ (await session.request({ do: "field", row: ends.request().start, range, cells: CELLS }));
       if (asked !== this.asked) return;
       this.field = reply;
-      this.legend.textContent = `Obstacles push within ${brief(reply.range)} m. Clear: no force; full colour: the robot touches an obstacle.`;
+      const words = `From no force to an obstacle that is touched. Obstacles push within ${brief(reply.range)} m.`;
+      this.legend.replaceChildren(...legendOf(palette(viewer.settings.dark).pushed, words));
       viewer.changed();
     } catch (error) {
       if (asked === this.asked) showError(error);

@@ -138,6 +138,8 @@ out vec2 at;
 void main() {
   at = vec2(gl_VertexID & 1, gl_VertexID >> 1);
   gl_Position = both * vec4(corner + at.x * right + at.y * up, 1.0);
+  // A floor may be at the same place.
+  gl_Position.z -= 0.0002 * gl_Position.w;
 }`;
 
 export const IMAGE_FRAGMENT = `${HEAD}

@@ -51,9 +51,10 @@ const kept = (driver) => driver.page.evaluate(async () => {
   return path && { verified: path.verified, ofRun: path.ofRun, count: path.count, written: path.written.length };
 });
 
-browserTest("a cancel while a path is finished keeps the path", (t) => withInside("cubicles", async (driver) => {
+browserTest("a cancel while a path is finished keeps the path", (t) => withInside("apartment", async (driver) => {
+  // To finish a path here takes a second or more: a cancel finds it at work.
   const times = [];
-  for (const run of [1, 2, 3]) {
+  for (const run of [1, 2]) {
     await driver.press("Plan");
     await driver.until((wanted) => document.querySelector("#runs .scroll tbody tr")?.cells[2].textContent === String(wanted), run);
     const { milliseconds, words } = await driver.page.evaluate(cancelIn, "finishing");
