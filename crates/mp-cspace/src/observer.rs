@@ -53,6 +53,13 @@ pub enum Event<'a, S> {
         /// The node it leads to.
         to: NodeId,
     },
+    /// An edge of a roadmap, added before, turned out to be blocked.
+    Unlinked {
+        /// The node it led from.
+        from: NodeId,
+        /// The node it led to.
+        to: NodeId,
+    },
     /// An extension of `tree` failed.
     Trapped {
         /// Which tree.
@@ -140,6 +147,7 @@ impl<S> Observer<S> for EventCounts {
             Event::Iteration(_)
             | Event::Rewired { .. }
             | Event::Linked { .. }
+            | Event::Unlinked { .. }
             | Event::Blocked { .. }
             | Event::Pruned { .. } => {}
             Event::Sampled(_) => self.sampled += 1,

@@ -73,8 +73,8 @@ mod tests {
     fn energies_are_those_of_clearances() {
         for name in ["rrs-low", "rrs-maze"] {
             let scene = Scene::find(name).unwrap();
-            let image = scene.field(&scene.start(), Some("0.3"), 40).unwrap();
-            assert_eq!(image.range, 0.3);
+            let image = scene.field(&scene.start(), Some("0.15"), 40).unwrap();
+            assert_eq!(image.range, 0.15);
             let height = image.energy.len() / image.width;
             assert_eq!((image.width.max(height), image.energy.len() % image.width), (40, 0));
             let (mut far, mut pushed) = (0, 0);
@@ -86,7 +86,7 @@ mod tests {
                 if !found.free || !found.in_bounds {
                     continue;
                 }
-                let near = (1.0 - found.clearance / 0.3).max(0.0);
+                let near = (1.0 - found.clearance / 0.15).max(0.0);
                 assert!(
                     (energy - 0.5 * near * near).abs() < 1e-6,
                     "{name} {i}: {energy} at {}",

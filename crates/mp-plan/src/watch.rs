@@ -100,6 +100,13 @@ pub enum SearchEvent<'a> {
         /// The other.
         to: NodeId,
     },
+    /// An edge of a roadmap, added before, turned out to be blocked.
+    Unlinked {
+        /// One end.
+        from: NodeId,
+        /// The other.
+        to: NodeId,
+    },
     /// A state was sampled.
     Sampled {
         /// Its configuration.
@@ -231,6 +238,7 @@ impl<S> Observer<S> for Events<'_, '_, '_, S> {
                 SearchEvent::Rewired { tree, id, parent, through: between(tree, through) }
             }
             Event::Linked { from, to } => SearchEvent::Linked { from, to },
+            Event::Unlinked { from, to } => SearchEvent::Unlinked { from, to },
             Event::Blocked { from, toward } => SearchEvent::Blocked { from: row(from), toward: row(toward) },
             Event::Rejected => SearchEvent::Rejected,
             Event::Pruned { tree, survivors } => SearchEvent::Pruned { tree, survivors },

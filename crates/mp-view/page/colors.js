@@ -38,9 +38,9 @@ const OBSTACLES = ["#b4bdc9", "#c9bda9", "#acbfb3", "#c2b2bd", "#a9bcc4", "#cdc7
 /** @param {number} obstacle its number @returns {Color} */
 export const obstacleColor = (obstacle) => OBSTACLES[obstacle % OBSTACLES.length];
 
-/** A colour for a component of a roadmap; neighbouring numbers differ clearly. @param {number} component @returns {Color} */
-export function componentColor(component) {
-  const hue = (0.58 + component * 0.381966) % 1;
+/** A colour for a component of a roadmap; neighbouring numbers differ clearly. @param {number} first its first milestone @returns {Color} */
+export function componentColor(first) {
+  const hue = (0.58 + first * 0.381966) % 1;
   const channel = (/** @type {number} */ shift) => 0.47 + 0.3 * Math.cos(2 * Math.PI * (hue + shift));
   return [channel(0), channel(-1 / 3), channel(-2 / 3)];
 }

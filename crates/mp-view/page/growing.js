@@ -39,6 +39,11 @@ export class KeptRows {
     this.count += coordinates.length / this.set.floats;
     this.set.append(coordinates, (i) => this.color(from + i));
   }
+  /** Gives a row other coordinates. @param {number} row @param {Float32Array} coordinates */
+  replace(row, coordinates) {
+    this.numbers.set(coordinates, row * this.set.floats);
+    this.set.replace(row, coordinates);
+  }
   /** Writes rows whose colours have changed. @param {number[]} rows */
   recolor(rows) {
     const { set, numbers } = this;

@@ -81,10 +81,14 @@ export class PictureMaker {
     const { nodes, edges, component, kind } = /** @type {NonNullable<Scene["roadmap"]>} */ (this.scene.roadmap);
     const segments = new Float32Array(3 * edges.length);
     edges.forEach((node, i) => segments.set(nodes.subarray(3 * node, 3 * node + 3), 3 * i));
+    // The colour of a component is that of its first milestone, as while a roadmap grows.
+    /** @type {Map<number, number>} */ const first = new Map();
+    component.forEach((c, i) => { if (!first.has(c)) first.set(c, i); });
+    const color = (/** @type {number} */ i) => componentColor(first.get(component[i]) ?? 0);
     const lines = this.renderer.lineSet();
-    lines.append(segments, (i) => [...componentColor(component[edges[2 * i]]), 1]);
+    lines.append(segments, (i) => [...color(edges[2 * i]), 1]);
     const points = this.renderer.pointSet();
-    points.append(nodes, (i) => [...componentColor(component[i]), KIND_SIZES[Math.min(kind[i], 3)]]);
+    points.append(nodes, (i) => [...color(i), KIND_SIZES[Math.min(kind[i], 3)]]);
     return { lines, points };
   }
   /** @param {Settings} s @returns {Picture} */

@@ -168,7 +168,8 @@ function readBends(tree, count, name) {
   const through = finite(tree.through, "f32", `bends of the tree “${name}”`, 3);
   checkIndices(bent.filter((_, i) => i % 2 === 0), count, `a bent edge of the tree “${name}”`);
   const points = bent.reduce((sum, n, i) => sum + (i % 2 ? n : 0), 0);
-  check(through.length === 3 * points, `In the scene file, the tree “${name}” must have as many bends as its bent edges say.`);
+  const some = bent.every((n, i) => i % 2 === 0 || n > 0);
+  check(some && through.length === 3 * points, `In the scene file, the tree “${name}” must have as many bends as its bent edges say.`);
   return { bent, through };
 }
 

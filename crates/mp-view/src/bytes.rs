@@ -291,8 +291,9 @@ impl SceneFile {
             fits(tree.nodes.len() == 3 * count, "trees", LENGTH)?;
             fits(tree.parents.iter().all(|&p| (-1..count as i64).contains(&i64::from(p))), "trees", INDEX)?;
             let (pairs, rest) = tree.bends.nodes.as_chunks::<2>();
-            let points: usize = pairs.iter().map(|[_, points]| *points as usize).sum();
-            fits(rest.is_empty() && tree.bends.through.len() == 3 * points, "bent edges", LENGTH)?;
+            let points: u64 = pairs.iter().map(|[_, points]| u64::from(*points)).sum();
+            let all = rest.is_empty() && tree.bends.through.len() as u64 == 3 * points;
+            fits(all && pairs.iter().all(|[_, points]| *points > 0), "bent edges", LENGTH)?;
             fits(pairs.iter().all(|[node, _]| (*node as usize) < count), "bent edges", INDEX)?;
         }
         if let Some(map) = &self.roadmap {

@@ -18,7 +18,10 @@ pub(crate) struct Growth {
     /// Whether the planner builds a roadmap.
     roadmap: bool,
     trees: Vec<GrowingTree>,
+    /// Edges of a roadmap that the page does not have.
     edges: Vec<u32>,
+    /// Edges that turned out to be blocked, and that the page does not know of.
+    unlinked: Vec<u32>,
     rejected: Vec<f32>,
 }
 
@@ -44,7 +47,14 @@ struct GrowingTree {
 impl Growth {
     pub(crate) fn new(scene: Scene, request: &Request) -> Self {
         let roadmap = mp_plan::roadmap_planners().iter().any(|info| info.is_called(&request.planner));
-        Self { scene, roadmap, trees: Vec::new(), edges: Vec::new(), rejected: Vec::new() }
+        Self {
+            scene,
+            roadmap,
+            trees: Vec::new(),
+            edges: Vec::new(),
+            unlinked: Vec::new(),
+            rejected: Vec::new(),
+        }
     }
 
     /// Notes an event.
@@ -64,6 +74,7 @@ impl Growth {
             }
             SearchEvent::Pruned { tree, survivors } => self.tree(*tree).prune(survivors),
             SearchEvent::Linked { from, to } => self.edges.extend([*from, *to]),
+            SearchEvent::Unlinked { from, to } => self.unlinked.extend([*from, *to]),
             SearchEvent::Blocked { from, toward } => {
                 if self.rejected.len() >= 6 * MAX_REJECTED {
                     self.rejected.drain(..3 * MAX_REJECTED);
@@ -115,7 +126,8 @@ impl Growth {
     /// The event `grown` with all that the page does not have, if there is anything; afterwards the page has it.
     pub(crate) fn take(&mut self, run: u64) -> Option<Message> {
         let news = self.trees.iter().any(GrowingTree::has_news);
-        if !news && self.edges.is_empty() && self.rejected.is_empty() {
+        let links = [&self.edges, &self.unlinked].iter().any(|edges| !edges.is_empty());
+        if !news && !links && self.rejected.is_empty() {
             return None;
         }
         let mut message = Message::event("grown", run);
@@ -127,8 +139,11 @@ impl Growth {
             let nodes = message.array(&tree.nodes[3 * tree.sent..]);
             if self.roadmap {
                 let edges = message.array(&std::mem::take(&mut self.edges));
+                let unlinked = message.array(&std::mem::take(&mut self.unlinked));
                 let kinds = message.array(&tree.kinds[tree.sent..]);
-                roadmap = json!({"from": tree.sent, "nodes": nodes, "edges": edges, "kind": kinds});
+                roadmap = json!({
+                    "from": tree.sent, "nodes": nodes, "edges": edges, "unlinked": unlinked, "kind": kinds,
+                });
             } else if tree.sent < tree.parents.len() {
                 let parents = message.array(&tree.parents[tree.sent..]);
                 let bends = tree.bends_of(tree.sent..tree.parents.len());

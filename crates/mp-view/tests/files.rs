@@ -111,11 +111,16 @@ fn files_that_do_not_fit_are_refused_with_a_reason() {
 #[test]
 fn indices_and_counts_are_checked() {
     type Break = fn(&mut SceneFile);
-    let breaks: [Break; 8] = [
+    let breaks: [Break; 13] = [
         |file| file.meshes[0].triangles[0] = u32::MAX,
         |file| file.meshes[0].positions.truncate(4),
         |file| file.trees[0].parents[1] = 2,
         |file| file.trees[0].parents[1] = -2,
+        |file| file.trees[0].bends.nodes[0] = 2,
+        |file| file.trees[0].bends.nodes[1] = u32::MAX,
+        |file| file.trees[0].bends.nodes.truncate(1),
+        |file| file.trees[0].bends.nodes.extend([0, 0]),
+        |file| file.paths[0].travel = Some(vec![0.0; 3]),
         |file| file.roadmap.as_mut().unwrap().edges[0] = 3,
         |file| file.start.row.clear(),
         |file| file.paths[0] = PathTrack { trace: vec![0.0; 3], ..PathTrack::default() },

@@ -149,6 +149,8 @@ test("milestones and edges of a roadmap have the colour of their component while
     }
     assert.equal(new Set(known.values()).size, known.size);
     assert.equal(map.components.count, known.size);
+    // It is the colour of the first milestone.
+    known.forEach((c, of) => assert.deepEqual(c, componentColor(component.slice(0, from + 40).indexOf(of)).join(" ")));
     ends.forEach(([a], e) => assert.deepEqual(map.edges.set.colors[e].slice(0, 3).join(" "), color(a)));
   }
   assert.deepEqual(map.nodes.set.colors.slice(0, 1)[0].slice(3), [0.3], "a sampled milestone");
@@ -157,7 +159,7 @@ test("milestones and edges of a roadmap have the colour of their component while
   assert.notDeepEqual(componentColor(0), componentColor(1));
 });
 
-test("joining components writes only the smaller one again", () => {
+test("joining components writes only the one with the later first milestone again", () => {
   const map = new GrowingRoadmap(renderer);
   const chain = (from, count) => Array.from({ length: count - 1 }, (_, i) => [from + i, from + i + 1]).flat();
   const nodes = (count) => ({ nodes: new Float32Array(3 * count), kind: new Uint8Array(count) });
@@ -166,4 +168,24 @@ test("joining components writes only the smaller one again", () => {
   [map.nodes.set.written, map.edges.set.written] = [0, 0];
   map.append({ ...nodes(1), edges: new Uint32Array([1003, 500]) });
   assert.deepEqual([map.nodes.set.written, map.edges.set.written], [10, 9]);
+});
+
+test("edges that turn out to be blocked are taken away, and components fall apart", () => {
+  const map = new GrowingRoadmap(renderer);
+  const places = Array.from({ length: 15 }, (_, i) => i);
+  const color = (i) => map.nodes.set.colors[i].slice(0, 3).join();
+  const groups = () => [0, 1, 2, 3, 4].map((i) => [0, 1, 2, 3, 4].findIndex((k) => color(k) === color(i)));
+  map.append({ nodes: new Float32Array(places), edges: new Uint32Array([0, 1, 2, 1, 2, 3, 3, 4]), kind: new Uint8Array(5), unlinked: new Uint32Array(0) });
+  assert.deepEqual(groups(), [0, 0, 0, 0, 0]);
+  map.append({ nodes: new Float32Array(0), edges: new Uint32Array(0), kind: new Uint8Array(0), unlinked: new Uint32Array([2, 1]) });
+  assert.deepEqual(groups(), [0, 0, 2, 2, 2]);
+  assert.deepEqual([map.components.count, [...map.degrees.subarray(0, 5)]], [2, [1, 1, 1, 2, 1]]);
+  assert.deepEqual(map.edges.set.rows[1], [6, 7, 8, 6, 7, 8], "a point instead of the edge");
+  assert.deepEqual(map.edges.set.colors.map((c) => c.slice(0, 3).join()), [0, 2, 2, 3].map(color));
+  // Edges that come later can be taken away too, by the same event.
+  map.append({ nodes: new Float32Array(0), edges: new Uint32Array([0, 4, 1, 2]), kind: new Uint8Array(0), unlinked: new Uint32Array([0, 4]) });
+  assert.deepEqual(groups(), groups().map(() => 0));
+  map.restart(renderer);
+  assert.deepEqual(map.edges.set.rows[4], [0, 1, 2, 0, 1, 2]);
+  assert.equal(map.components.count, 1);
 });

@@ -221,6 +221,33 @@ fn events_have_kinds_of_milestones() {
     }
 }
 
+/// Edges of a lazy roadmap that turn out to be blocked are taken away: what is left is the roadmap of the run at its end.
+#[test]
+fn events_take_blocked_edges_away() {
+    let page = opened("rrs-high");
+    let request = mp_plan::Request::new("lazy-prm").seed(4).iterations(20_000);
+    page.ask(json!({"do": "plan", "run": 1, "request": request}));
+    let (mut edges, mut gone) = (Vec::<[u32; 2]>::new(), 0);
+    for event in page.until("done").iter().filter(|e| e.head.get("roadmap").is_some_and(Value::is_object)) {
+        let map = &event.head["roadmap"];
+        edges.extend(numbers_of::<u32>(event, &map["edges"]).as_chunks::<2>().0);
+        for ends in numbers_of::<u32>(event, &map["unlinked"]).as_chunks::<2>().0 {
+            edges.remove(edges.iter().position(|edge| edge == ends).expect("the page has this edge"));
+            gone += 1;
+        }
+    }
+    assert!(gone > 10, "{gone}");
+    let scene = Scene::find("rrs-high").unwrap();
+    let mut grown = crate::GrownTrees::new(&scene, &request);
+    scene.plan_with(&request, &mut mp_plan::Control::new(mp_cspace::Cancel::default(), &mut grown)).unwrap();
+    let mut file = SceneFile::of(&scene).unwrap();
+    grown.add_to(&mut file);
+    let mut kept: Vec<_> = file.roadmap.unwrap().edges.as_chunks::<2>().0.to_vec();
+    kept.sort_unstable();
+    edges.sort_unstable();
+    assert_eq!(edges, kept);
+}
+
 /// The path as found is told before it is finished, and a session checks it: a page that loses its planner keeps the path.
 #[test]
 fn paths_as_found_are_told_and_checked() {

@@ -57,7 +57,7 @@ browserTest("a roadmap has the colours of its components and the sizes of its ki
     gl.bindBuffer(gl.ARRAY_BUFFER, nodes.set.rows.buffer);
     if (nodes.count) gl.getBufferSubData(gl.ARRAY_BUFFER, 0, bytes);
     const rows = Array.from({ length: nodes.count }, (_, i) => [...bytes.subarray(16 * i + 12, 16 * i + 16)]);
-    return { rows, of: components.of.map(({ number }) => number), kinds: [...kinds.subarray(0, nodes.count)], count: components.count };
+    return { rows, of: components.of.map(({ first }) => first), kinds: [...kinds.subarray(0, nodes.count)], count: components.count };
   });
   let [before, merged] = [0, false];
   for (let step = 0; step < 40 && !merged; step++) {
