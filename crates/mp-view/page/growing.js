@@ -68,6 +68,9 @@ export class KeptRows {
   }
 }
 
+/** The nodes whose edges bend. @param {Bends | null} bends @returns {number[]} */
+const bentNodes = (bends) => Array.from({ length: (bends?.bent.length ?? 0) / 2 }, (_, i) => bends?.bent[2 * i] ?? 0);
+
 /** Node i has segment i, which ends at it and begins at its parent or, where the edge bends, at the last bend; a root's segment is a
  * point. The other segments of bent edges follow one another in a set of their own. */
 export class GrowingTree {
@@ -123,7 +126,7 @@ export class GrowingTree {
     this.nodes.set(nodes, 3 * from);
     this.parents.set(parents, from);
     this.bend(bends);
-    this.upload(from);
+    this.upload(from, bentNodes(bends));
   }
   /** Notes where edges bend. @param {Bends | null} bends */
   bend(bends) {
@@ -135,8 +138,9 @@ export class GrowingTree {
       at = end;
     }
   }
-  /** Writes the segments of the nodes from this one on to the graphics card. @param {number} from */
-  upload(from) {
+  /** Writes the segments of the nodes from this one on to the graphics card. @param {number} from
+   * @param {number[]} bent those of them whose edges bend, which rise */
+  upload(from, bent = [...this.bends.keys()].sort((a, b) => a - b)) {
     const segments = new Float32Array(6 * (this.count - from));
     for (let i = from; i < this.count; i++) {
       this.segment(i, segments, 6 * (i - from));
@@ -144,22 +148,22 @@ export class GrowingTree {
     }
     this.lines?.append(segments, () => WHITE);
     if (!from) this.seen = [];
-    for (const node of [...this.bends.keys()].filter((i) => i >= from).sort((a, b) => a - b)) this.uploadBend(node, node + 1);
+    this.uploadBends(bent, (node) => node + 1);
   }
-  /** Writes the segments between the parent and the last bend. @param {number} node @param {number} seen */
-  uploadBend(node, seen) {
-    const bend = this.bends.get(node);
-    const parent = this.parents[node];
-    if (!bend || parent < 0) return;
-    const { points } = bend;
-    const segments = new Float32Array(2 * points.length);
-    for (let i = 0; i < points.length; i += 3) {
-      segments.set(i ? points.subarray(i - 3, i) : this.nodes.subarray(3 * parent, 3 * parent + 3), 2 * i);
-      segments.set(points.subarray(i, i + 3), 2 * i + 3);
-    }
-    bend.at = this.seen.length;
-    for (let i = 0; i < points.length; i += 3) this.seen.push(seen);
-    this.bent?.append(segments, () => WHITE);
+  /** Writes the segments between the parents of nodes and the last bends of their edges. @param {number[]} bent the nodes
+   * @param {(node: number) => number} seen how many nodes there are when they are seen */
+  uploadBends(bent, seen) {
+    const ends = bent.flatMap((node) => {
+      const bend = this.bends.get(node);
+      const parent = this.parents[node];
+      if (!bend || parent < 0) return [];
+      const { points } = bend;
+      bend.at = this.seen.length;
+      for (let i = 0; i < points.length; i += 3) this.seen.push(seen(node));
+      const line = [...this.nodes.subarray(3 * parent, 3 * parent + 3), ...points];
+      return Array.from({ length: points.length / 3 }, (_, i) => line.slice(3 * i, 3 * i + 6)).flat();
+    });
+    this.bent?.append(new Float32Array(ends), () => WHITE);
   }
   /** @param {number} i @param {Float32Array} out @param {number} at */
   segment(i, out, at) {
@@ -179,8 +183,8 @@ export class GrowingTree {
       this.parents[node] = parents[i];
       this.segment(node, segment, 0);
       this.lines?.replace(node, segment);
-      this.uploadBend(node, this.count);
     });
+    this.uploadBends(bentNodes(bends), () => this.count);
   }
   /** Forgets the bends of an edge: their segments become points at its node. @param {number} node */
   straighten(node) {
