@@ -221,27 +221,31 @@ fn bad_settings_are_refused() {
 fn events_tell_how_edges_bend() {
     let (space, boxes) = (square(), orchard());
     for name in SNAKES {
-        let settings = Settings::parse(["step=0.2", "range=0.05"]).unwrap();
-        let problem = problem(&space, &boxes, [[0.02, 0.02], [0.98, 0.98]]);
-        let mut planner = build(name, problem, &settings).unwrap();
-        let (mut trees, mut bent, mut check) = ([Vec::new(), Vec::new()], [0; 2], Exact(boxes.clone()));
-        let mut note = OnEvent(|event: Event<'_, Point>| match event {
-            Event::Rooted { tree, state, .. } => trees[tree].push(*state),
-            Event::Added { tree, parent, state, through, .. } => {
-                let parent = trees[tree][parent as usize];
-                let (from, to) = if tree == 0 { (parent, *state) } else { (*state, parent) };
-                let line: Vec<Point> =
-                    [from].into_iter().chain(through.iter().copied()).chain([to]).collect();
-                for ends in line.windows(2) {
-                    assert!(check.check_motion(&ends[0], &ends[1]).is_free(), "{name}, tree {tree}: {line:?}");
+        let (mut bent, mut check) = ([0; 2], Exact(boxes.clone()));
+        for seed in 0..20 {
+            let settings = Settings::parse(["step=0.2", "range=0.05"]).unwrap();
+            let problem = problem(&space, &boxes, [[0.02, 0.02], [0.98, 0.98]]);
+            let mut planner = build(name, problem, &settings).unwrap();
+            let mut trees = [Vec::new(), Vec::new()];
+            let mut note = OnEvent(|event: Event<'_, Point>| match event {
+                Event::Rooted { tree, state, .. } => trees[tree].push(*state),
+                Event::Added { tree, parent, state, through, .. } => {
+                    let parent = trees[tree][parent as usize];
+                    let (from, to) = if tree == 0 { (parent, *state) } else { (*state, parent) };
+                    let line: Vec<Point> =
+                        [from].into_iter().chain(through.iter().copied()).chain([to]).collect();
+                    for ends in line.windows(2) {
+                        let free = check.check_motion(&ends[0], &ends[1]).is_free();
+                        assert!(free, "{name}, tree {tree}: {line:?}");
+                    }
+                    bent[tree] += usize::from(through.len() > 1);
+                    trees[tree].push(*state);
                 }
-                bent[tree] += usize::from(through.len() > 1);
-                trees[tree].push(*state);
-            }
-            Event::Pruned { .. } => panic!("no edge of this scene fails"),
-            _ => {}
-        });
-        let _ = planner.solve(&mut Rng::seed(3), &mut Iterations(300), &mut note);
+                Event::Pruned { .. } => panic!("no edge of this scene fails"),
+                _ => {}
+            });
+            let _ = planner.solve(&mut Rng::seed(seed), &mut Iterations(300), &mut note);
+        }
         assert!(bent[0] > 0 && (name == "rrs" || bent[1] > 0), "{name}: {bent:?}");
     }
 }
