@@ -151,6 +151,15 @@ fn numbers_of<T: crate::arrays::Entry>(event: &Message, array: &Value) -> Vec<T>
     crate::arrays::extract(&event.data, &array, "array").unwrap()
 }
 
+/// The scene file of a run, with what it has grown.
+fn file_of_run(scene: &Scene, request: &mp_plan::Request) -> SceneFile {
+    let mut grown = crate::GrownTrees::new(scene, request);
+    scene.plan_with(request, &mut mp_plan::Control::new(mp_cspace::Cancel::default(), &mut grown)).unwrap();
+    let mut file = SceneFile::of(scene).unwrap();
+    grown.add_to(&mut file);
+    file
+}
+
 /// Edges that snakes bend are drawn as they are: in a world of the plane the drawn points are the configurations, so the whole path
 /// as found is made of edges of the events.
 #[test]
@@ -185,6 +194,11 @@ fn events_have_bent_edges() {
             }
         }
         assert!(bent > 5, "{planner}: {bent} edges bend");
+        // A file of the same run has them too.
+        let (scene, request) = (Scene::find("rrs-high").unwrap(), serde_json::from_value(request).unwrap());
+        let file = file_of_run(&scene, &request);
+        assert_eq!(file.trees.iter().map(|tree| tree.bends.nodes.len() / 2).sum::<usize>(), bent);
+        assert_eq!(SceneFile::parse(&file.to_bytes()).unwrap(), file);
         let done = events.last().unwrap();
         let path: Vec<Vec<f64>> = serde_json::from_value(done.head["report"]["path"].clone()).unwrap();
         let near = |p: &[f32; 3], q: &[f64]| (0..2).all(|k| (f64::from(p[k]) - q[k]).abs() < 1e-5);
@@ -211,10 +225,7 @@ fn events_have_kinds_of_milestones() {
         kinds.extend(numbers_of::<u8>(event, &event.head["roadmap"]["kind"]));
     }
     let scene = Scene::find("rrs-low").unwrap();
-    let mut grown = crate::GrownTrees::new(&scene, &request);
-    scene.plan_with(&request, &mut mp_plan::Control::new(mp_cspace::Cancel::default(), &mut grown)).unwrap();
-    let mut file = SceneFile::of(&scene).unwrap();
-    grown.add_to(&mut file);
+    let file = file_of_run(&scene, &request);
     assert_eq!(kinds, file.roadmap.unwrap().kind);
     for kind in [1, 2] {
         assert!(kinds.contains(&kind), "{kind}");
@@ -238,10 +249,7 @@ fn events_take_blocked_edges_away() {
     }
     assert!(gone > 10, "{gone}");
     let scene = Scene::find("rrs-high").unwrap();
-    let mut grown = crate::GrownTrees::new(&scene, &request);
-    scene.plan_with(&request, &mut mp_plan::Control::new(mp_cspace::Cancel::default(), &mut grown)).unwrap();
-    let mut file = SceneFile::of(&scene).unwrap();
-    grown.add_to(&mut file);
+    let file = file_of_run(&scene, &request);
     let mut kept: Vec<_> = file.roadmap.unwrap().edges.as_chunks::<2>().0.to_vec();
     kept.sort_unstable();
     edges.sort_unstable();
