@@ -56,6 +56,7 @@ mod check;
 mod counted;
 mod error;
 mod explain;
+mod field;
 #[cfg(feature = "pictures")]
 mod film;
 mod find;
@@ -91,6 +92,7 @@ mod watch;
 pub use check::Verdict;
 pub use error::Error;
 pub use explain::Explanation;
+pub use field::FieldImage;
 #[cfg(feature = "pictures")]
 pub use film::{Film, FilmKind};
 pub use find::find_problem;

@@ -361,6 +361,24 @@ impl Scene {
         self.robot.track(path)
     }
 
+    /// The field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.
+    /// `range` is that of the planner `rrs`, by default its default. The longer side has so many `cells`, 4,096 at most.
+    ///
+    /// # Errors
+    /// When the scene is no world of the plane, the row is not one of its configurations, or the range is no length.
+    #[cfg_attr(
+        not(feature = "planar"),
+        expect(unused_variables, reason = "there are no worlds of the plane")
+    )]
+    pub fn field(&self, row: &[f64], range: Option<&str>, cells: usize) -> Result<crate::FieldImage, Error> {
+        #[cfg(feature = "planar")]
+        if self.is_planar_world() {
+            return self.robot.field(row, range, cells);
+        }
+        Err(Error::new(format!("the field of {} is not drawn", self.name()))
+            .help("only that of a world of the plane is"))
+    }
+
     /// Writes the problem to `folder` as one JSON file and two OFF files for other planners. Returns the JSON file.
     ///
     /// # Errors

@@ -179,4 +179,10 @@ where
     fn admits(&mut self, q: &C::State) -> bool {
         self.check.check_motion(q, q).is_free()
     }
+    fn vertices<'e>(&self, edge: &'e PolylineEdge<C::State>) -> &'e [C::State]
+    where
+        C::State: 'e,
+    {
+        edge.vertices()
+    }
 }

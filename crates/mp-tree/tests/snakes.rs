@@ -221,3 +221,37 @@ fn bad_settings_are_refused() {
     }
     assert!(planner("rss").unwrap_err().to_string().contains("`rrs`"));
 }
+
+/// Observers learn how edges bend: every piece of every edge is free, in forward time, in the trees from the start and from the goal.
+#[test]
+fn events_tell_how_edges_bend() {
+    let (space, boxes) = (square(), orchard());
+    for name in SNAKES {
+        let (mut bent, mut check) = ([0; 2], Exact(boxes.clone()));
+        for seed in 0..20 {
+            let settings = Settings::parse(["step=0.2", "range=0.05"]).unwrap();
+            let problem = problem(&space, &boxes, [[0.02, 0.02], [0.98, 0.98]]);
+            let mut planner = build(name, problem, &settings).unwrap();
+            let mut trees = [Vec::new(), Vec::new()];
+            let mut note = OnEvent(|event: Event<'_, Point>| match event {
+                Event::Rooted { tree, state, .. } => trees[tree].push(*state),
+                Event::Added { tree, parent, state, through, .. } => {
+                    let parent = trees[tree][parent as usize];
+                    let (from, to) = if tree == 0 { (parent, *state) } else { (*state, parent) };
+                    let line: Vec<Point> =
+                        [from].into_iter().chain(through.iter().copied()).chain([to]).collect();
+                    for ends in line.windows(2) {
+                        let free = check.check_motion(&ends[0], &ends[1]).is_free();
+                        assert!(free, "{name}, tree {tree}: {line:?}");
+                    }
+                    bent[tree] += usize::from(through.len() > 1);
+                    trees[tree].push(*state);
+                }
+                Event::Pruned { .. } => panic!("no edge of this scene fails"),
+                _ => {}
+            });
+            let _ = planner.solve(&mut Rng::seed(seed), &mut Iterations(300), &mut note);
+        }
+        assert!(bent[0] > 0 && (name == "rrs" || bent[1] > 0), "{name}: {bent:?}");
+    }
+}
