@@ -106,7 +106,7 @@ fn relaxed(prepared: &PreparedWorld) -> Result<Drawing> {
     let after = relax(&space, &mut robot, &mut repulsion, &path, params, 1.15).into_error()?.path;
     let mut safety = |path| 100.0 * least_clearance(&space, &mut robot, path, 1e-4).map_or(0.0, |t| t.found);
     let subtitle = format!(
-        "{:.0} cm long, {:.1} cm from obstacles (grey); relaxed {:.0} cm and {:.1} cm (orange)",
+        "{:.0} cm long, {:.1} cm from obstacles (grey), relaxed {:.0} cm and {:.1} cm (orange)",
         100.0 * path.length(&space),
         safety(&path),
         100.0 * after.length(&space),
