@@ -222,7 +222,7 @@ where
         match DASHES[pattern] {
             None => area.draw(&PathElement::new([(x, y), (x + 24, y)], style))?,
             Some((dash, gap)) => {
-                area.draw(&DashedPathElement::new([(x, y), (x + 24, y)].into_iter(), dash, gap, style))?;
+                area.draw(&DashedPathElement::new([(x, y), (x + 24, y)], dash, gap, style))?;
             }
         }
         area.draw(&Text::new(curve.name.clone(), (x + 30, y - 6), ("sans-serif", 12)))?;
