@@ -174,7 +174,9 @@ fn a_robot_alone_is_planned_checked_drawn_and_described() {
         )
     };
     let links: String = (1..5).map(link).collect();
-    ["robots", "kit"].map(|folder| std::fs::create_dir(dir.path(folder)).unwrap());
+    for folder in ["robots", "kit"] {
+        std::fs::create_dir(dir.path(folder)).unwrap();
+    }
     dir.write("robots/alone.urdf", format!("<robot name=\"alone\">\n<link name=\"l0\"/>\n{links}</robot>"));
     let bar = "OFF\n4 4 0\n-0.15 0 0\n0.15 0.02 0\n0.15 -0.02 0.02\n0.15 -0.02 -0.02\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n";
     dir.write("kit/bar.off", bar);

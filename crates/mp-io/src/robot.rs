@@ -113,10 +113,13 @@ struct RobotTable {
     srdf: Option<Spanned<String>>,
     packages: Option<String>,
     base: Option<Spanned<BaseEntry>>,
-    bounds: Option<Spanned<[[f64; 3]; 2]>>,
+    bounds: Option<Spanned<Corners>>,
     #[serde(default)]
     limits: BTreeMap<String, Spanned<[f64; 2]>>,
 }
+
+/// The lower and the upper corner of a box.
+type Corners = [[f64; 3]; 2];
 
 /// Where the base stands, or that it floats.
 #[derive(Deserialize)]
@@ -210,8 +213,8 @@ impl RobotFile {
 fn base_of(
     source: &TomlText<'_>,
     base: Option<Spanned<BaseEntry>>,
-    bounds: Option<Spanned<[[f64; 3]; 2]>>,
-) -> Result<([f64; 6], Option<[[f64; 3]; 2]>), Error> {
+    bounds: Option<Spanned<Corners>>,
+) -> Result<([f64; 6], Option<Corners>), Error> {
     let span = base.as_ref().map_or(0..0, Spanned::span);
     let floats = match base.map(Spanned::into_inner) {
         Some(BaseEntry::Word(word)) if word == "floating" => true,
