@@ -1,6 +1,7 @@
 //! Spaces: the traits, and the spaces one file each.
 
 mod ellipsoid;
+mod floating;
 mod joints;
 mod poses;
 mod product;
@@ -9,6 +10,7 @@ mod se2;
 mod se3;
 mod so3;
 
+pub use floating::FloatingJoints;
 pub use joints::{Coordinates, JointRange, Joints};
 pub use product::Product;
 pub use rn::Rn;

@@ -53,13 +53,15 @@ pub struct RobotFile {
     pub srdf: Option<String>,
     /// The folder that `package://` means.
     pub packages: Option<String>,
-    /// The pose of the root link, six numbers.
+    /// The pose of the root link, six numbers; zeros if the base floats.
     pub base: [f64; 6],
+    /// The lower and the upper corner (m) of the box in which the origin of the root link moves, if the base floats.
+    pub floating: Option<[[f64; 3]; 2]>,
     /// Limits that replace those of the URDF, by joint.
     pub limits: Vec<(String, [f64; 2])>,
-    /// The joint values at the start.
+    /// The joint values at the start; first the six numbers of the pose of the base, if it floats.
     pub start: Vec<f64>,
-    /// The joint values at the goals, at least one.
+    /// The configurations at the goals, at least one.
     pub goals: Vec<Vec<f64>>,
     /// The obstacles.
     pub obstacles: Vec<ObstacleEntry>,
@@ -73,6 +75,7 @@ pub struct RobotFile {
 struct Places {
     urdf: Range<usize>,
     srdf: Range<usize>,
+    base: Range<usize>,
     motion: MotionPlaces,
     limits: Vec<Range<usize>>,
 }
@@ -84,6 +87,8 @@ pub enum RobotPart {
     Urdf,
     /// The name of the SRDF.
     Srdf,
+    /// The base.
+    Base,
     /// The start.
     Start,
     /// The goal of this index.
@@ -107,9 +112,21 @@ struct RobotTable {
     urdf: Spanned<String>,
     srdf: Option<Spanned<String>>,
     packages: Option<String>,
-    base: Option<Spanned<[f64; 6]>>,
+    base: Option<Spanned<BaseEntry>>,
+    bounds: Option<Spanned<Corners>>,
     #[serde(default)]
     limits: BTreeMap<String, Spanned<[f64; 2]>>,
+}
+
+/// The lower and the upper corner of a box.
+type Corners = [[f64; 3]; 2];
+
+/// Where the base stands, or that it floats.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected six numbers, `[x, y, z, α, β, γ]`, or \"floating\"")]
+enum BaseEntry {
+    Pose([f64; 6]),
+    Word(String),
 }
 
 #[derive(Deserialize)]
@@ -133,7 +150,8 @@ impl RobotFile {
         let text = decode(file, bytes)?;
         let source = TomlText { file, text, guide: GUIDE };
         let File { robot, motion, obstacle } = source.read()?;
-        let base = source.six("the base", robot.base)?;
+        let base_span = robot.base.as_ref().map_or(0..0, Spanned::span);
+        let (base, floating) = base_of(&source, robot.base, robot.bounds)?;
         let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
         for (joint, range) in robot.limits {
             let (what, span) = (format!("the limits of {}", crate::text::clipped(&joint)), range.span());
@@ -152,6 +170,7 @@ impl RobotFile {
         let places = Places {
             urdf: robot.urdf.span(),
             srdf: robot.srdf.as_ref().map_or(0..0, Spanned::span),
+            base: base_span,
             motion: motion.places,
             limits: places_of_limits,
         };
@@ -160,6 +179,7 @@ impl RobotFile {
             srdf: robot.srdf.map(Spanned::into_inner),
             packages: robot.packages,
             base,
+            floating,
             limits,
             start: motion.start,
             goals: motion.goals,
@@ -176,6 +196,7 @@ impl RobotFile {
         let span = match part {
             RobotPart::Urdf => &self.places.urdf,
             RobotPart::Srdf => &self.places.srdf,
+            RobotPart::Base => &self.places.base,
             RobotPart::Start => &self.places.motion.start,
             RobotPart::Goal(i) => self.places.motion.goal(i),
             RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),
@@ -185,6 +206,59 @@ impl RobotFile {
 
     fn fault_at(&self, span: &Range<usize>, message: &str, help: &str) -> Error {
         TomlText { file: &self.file, text: &self.text, guide: GUIDE }.error(span, message).help(help)
+    }
+}
+
+/// The pose of the base, and its bounds if it floats.
+fn base_of(
+    source: &TomlText<'_>,
+    base: Option<Spanned<BaseEntry>>,
+    bounds: Option<Spanned<Corners>>,
+) -> Result<([f64; 6], Option<Corners>), Error> {
+    let span = base.as_ref().map_or(0..0, Spanned::span);
+    let floats = match base.map(Spanned::into_inner) {
+        Some(BaseEntry::Word(word)) if word == "floating" => true,
+        Some(BaseEntry::Word(word)) => {
+            let message = format!("the base is `{}`", crate::text::clipped(&word));
+            return Err(source
+                .error(&span, message)
+                .expected("six numbers, `[x, y, z, α, β, γ]`, or \"floating\""));
+        }
+        Some(BaseEntry::Pose(pose)) => {
+            source.check("the base", &pose, &span)?;
+            if let Some(bounds) = bounds {
+                let message = "the base stands still, but has bounds";
+                return Err(source
+                    .error(&bounds.span(), message)
+                    .expected("`base = \"floating\"` beside them"));
+            }
+            return Ok((pose, None));
+        }
+        None => false,
+    };
+    match (floats, bounds) {
+        (true, Some(bounds)) => {
+            let ([low, high], span) = (*bounds.get_ref(), bounds.span());
+            source.check("the bounds of the base", &[low, high].concat(), &span)?;
+            if (0..3).all(|i| low[i] < high[i]) {
+                return Ok(([0.0; 6], Some([low, high])));
+            }
+            let message = "the bounds of the base enclose nothing";
+            Err(source
+                .error(&span, message)
+                .expected("the lower corner, then the upper: `[[x, y, z], [x, y, z]]`"))
+        }
+        (true, None) => {
+            let message = "the base floats without bounds";
+            Err(source.error(&span, message).expected(
+                "`bounds = [[x, y, z], [x, y, z]]` beside it: the box in which the origin of the root link moves",
+            ))
+        }
+        (false, Some(bounds)) => {
+            let message = "there are bounds of a base that stands still";
+            Err(source.error(&bounds.span(), message).expected("`base = \"floating\"` beside them"))
+        }
+        (false, None) => Ok(([0.0; 6], None)),
     }
 }
 

@@ -51,6 +51,7 @@
 //! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
 //! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify` and `check`.
 
+mod alone;
 mod any_robot;
 mod check;
 mod counted;
@@ -109,8 +110,9 @@ pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
-    ArmScene, Body, BodyShape, Checker, Column, Counted, End, Measured, Mismatch, PathFormat, PlanarBody,
-    PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, Touch,
+    ArmScene, Body, BodyShape, Checker, Column, Counted, End, FloatingScene, LinkedScene, LinkedSpace,
+    Measured, Mismatch, PathFormat, PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind,
+    Touch,
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};

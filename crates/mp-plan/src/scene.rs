@@ -37,6 +37,7 @@ pub struct Scene {
     pub(crate) shipped: bool,
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
+    notes: Arc<[String]>,
 }
 
 /// A scene as an editor keeps it: its document, and the meshes that are not written into the document.
@@ -57,7 +58,14 @@ impl fmt::Debug for Scene {
 impl Scene {
     /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`], [`ArmScene`](crate::ArmScene), [`PlanarScene`].
     pub fn new(robot: impl RobotKind + 'static) -> Self {
-        Self { robot: Arc::new(robot), file: None, inputs: Arc::default(), shipped: false, document: None }
+        Self {
+            robot: Arc::new(robot),
+            file: None,
+            inputs: Arc::default(),
+            shipped: false,
+            document: None,
+            notes: Arc::default(),
+        }
     }
 
     /// A scene of a rigid body among meshes.
@@ -158,6 +166,17 @@ impl Scene {
         Self { file: Some(file.into()), ..self }
     }
 
+    #[cfg(any(feature = "planar", feature = "urdf"))]
+    pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {
+        Self { notes: notes.into(), ..self }
+    }
+
+    /// What was chosen for a scene whose file is a robot or a map alone, in sentences. Empty for other scenes.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
     /// The name of the scene.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -188,10 +207,11 @@ impl Scene {
         self.robot.limits()
     }
 
-    /// Further facts about the robot, for people: name and text.
+    /// Further facts about the scene, for people: name and text. The [notes](Self::notes) are among them.
     #[must_use]
     pub fn details(&self) -> Vec<(String, String)> {
-        self.robot.details()
+        let notes = self.notes.iter().map(|note| ("note".to_owned(), note.clone()));
+        self.robot.details().into_iter().chain(notes).collect()
     }
 
     /// The fraction of the space in which the robot is free, estimated from `samples` samples. The same scene gives the same

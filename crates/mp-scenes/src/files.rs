@@ -71,8 +71,11 @@ pub const FILES: &[File] = files! {
     "meshes/windows/easy_wall.off"
     "meshes/windows/robot.off"
     "meshes/windows/twisty_wall.off"
+    "meshes/wrench/nut.off"
+    "meshes/wrench/wall.off"
     "paths/alpha.txt"
     "robots/six.urdf"
+    "robots/wrench.urdf"
     "scenes/alpha-1.0.env"
     "scenes/alpha-1.1.env"
     "scenes/alpha-1.2.env"
@@ -96,4 +99,5 @@ pub const FILES: &[File] = files! {
     "scenes/rrs-maze.toml"
     "scenes/rrs-random.toml"
     "scenes/twisty.env"
+    "scenes/wrench.toml"
 };

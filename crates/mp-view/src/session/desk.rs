@@ -210,7 +210,8 @@ impl Desk {
         let mut members = serde_json::Map::new();
         members.insert("scene".to_owned(), message.array(&file.to_bytes()));
         members.insert("document".to_owned(), json(&open.document));
-        members.insert("notes".to_owned(), open.scene.lint().into());
+        let notes: Vec<String> = open.scene.notes().iter().cloned().chain(open.scene.lint()).collect();
+        members.insert("notes".to_owned(), notes.into());
         Ok(members)
     }
 

@@ -576,3 +576,32 @@ fn workers_plan_the_same() {
     assert_eq!(done.head["report"]["fingerprint"], json!(alone.fingerprint));
     assert_eq!(done.head["report"]["iterations"], json!(alone.iterations));
 }
+
+/// A robot or a map alone becomes a scene, and the page is told what was chosen.
+#[test]
+fn robots_and_maps_alone_are_opened() {
+    let page = Page::new(Opening::default());
+    let urdf = "<robot name=\"one\"><link name=\"base\"/>\n<link name=\"arm\"><collision><geometry>\
+                <mesh filename=\"package://kit/meshes/bar.off\"/></geometry></collision></link>\n\
+                <joint name=\"turn\" type=\"revolute\"><parent link=\"base\"/><child link=\"arm\"/>\
+                <limit lower=\"-1\" upper=\"2\"/></joint></robot>";
+    let bar = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let files: [(&str, &[u8]); 2] = [("bar.off", bar.as_bytes()), ("one.urdf", urdf.as_bytes())];
+    let reply = page.reply(with_files(json!({"do": "open"}), &files));
+    let notes = reply.head["notes"].to_string();
+    assert!(notes.contains("one.urdf is a robot alone"), "{:?}", reply.head);
+    let scene = scene_of(&reply);
+    assert_eq!((&*scene.start.row, &*scene.goals[0].row), (&[0.0][..], &[1.0][..]));
+
+    let map = "image: room.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
+    let room = "P2\n4 3\n255\n0 0 0 0\n0 254 254 0\n0 0 0 0\n";
+    let files: [(&str, &[u8]); 2] = [("room.pgm", room.as_bytes()), ("room.yaml", map.as_bytes())];
+    let reply = page.reply(with_files(json!({"do": "open"}), &files));
+    assert!(reply.head["notes"].to_string().contains("room.yaml is a map alone"), "{:?}", reply.head);
+    let scene = scene_of(&reply);
+    assert!((scene.goals[0].row[0] - scene.start.row[0]).abs() > 0.4, "{:?}", scene.start.row);
+    // An image without its map says what is missing.
+    let alone: [(&str, &[u8]); 1] = [("room.pgm", room.as_bytes())];
+    let refused = page.reply(with_files(json!({"do": "open"}), &alone));
+    assert!(refused.head["error"]["help"].as_str().unwrap().contains("room.yaml"), "{:?}", refused.head);
+}
