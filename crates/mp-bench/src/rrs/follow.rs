@@ -151,8 +151,12 @@ const CELL: f64 = 0.02;
 const STRIDE: f64 = 0.25;
 /// The greatest energy of the risk, beside that of repulsion, which is ½ where the robot touches an obstacle; and how much
 /// longer a path may become.
-const WEIGHT: f64 = 2.0;
+const WEIGHT: f64 = 1.0;
 const STRETCH: f64 = 1.15;
+/// The length of an implicit step (m²), and the most steps. The risk changes over two or three cells: steps as long as the
+/// range of repulsion overshoot.
+const PACE: f64 = 1e-3;
+const STEPS: u32 = 400;
 
 /// The landscape of risk of a path (Fig. 1): the probability of passing each place, times that of hitting an obstacle there.
 pub(super) fn risk_of(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<[Grid; 3]> {
@@ -173,7 +177,7 @@ fn relaxed(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Resul
     let most = risk.values().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let repulsion = Repulsion::new(&prepared.map, RANGE).into_error()?;
     let mut field = With::new(repulsion, risk.map(|v| v / most), WEIGHT).into_error()?;
-    let params = Params { iterations: 100, ..Params::for_range(RANGE).into_error()? };
+    let params = Params { iterations: STEPS, pace: PACE, ..Params::for_range(RANGE).into_error()? };
     let relaxed = relax(space, &mut prepared.robot.clone(), &mut field, path, params, STRETCH);
     Ok(relaxed.into_error()?.path)
 }
