@@ -1,6 +1,7 @@
 //! Processor time.
 
-use mp_cspace::{Progress, Stop, StopReason};
+use mp_cspace::{Clock, Progress, Stop, StopReason};
+use std::time::Duration;
 
 /// Nanoseconds of processor time that this thread has used; other work on the machine disturbs it less than
 /// wall-clock time.
@@ -20,6 +21,11 @@ pub(crate) fn nanoseconds() -> f64 {
 /// Seconds of processor time since `began`, a value of [`nanoseconds`].
 pub(crate) fn seconds_since(began: f64) -> f64 {
     (nanoseconds() - began) * 1e-9
+}
+
+/// The processor time of the thread that reads it, as the clock of a planner's budget and report.
+pub(crate) fn processor_clock() -> Clock {
+    Clock::new(|| Duration::from_nanos(nanoseconds() as u64))
 }
 
 /// Stops at a given processor time of this thread.

@@ -7,5 +7,8 @@ mod table;
 
 pub(crate) use lab::Lab;
 pub(crate) use log::{Group, Log};
-pub(crate) use stats::{Median, geometric_mean, mean, ratio, seconds, short, wilson};
+pub(crate) use stats::{
+    Median, bootstrap, geometric_mean, mean, paired_ratio, ratio, restricted_mean, seconds, short, survival,
+    wilson,
+};
 pub(crate) use table::{Table, bit, sections};

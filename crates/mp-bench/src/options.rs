@@ -14,7 +14,8 @@ pub(crate) struct Common {
     /// Runs (seeds) of each case.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(crate) runs: Option<u32>,
-    /// Scenes to measure on (default: those of the suite); with `roadmaps`, only these are measured.
+    /// Scenes to measure on (default: those of the suite); with `roadmaps`, only these are measured;
+    /// with `rsrt`, the problems with these words in their names.
     #[arg(long = "scene", value_name = "SCENE")]
     pub(crate) scenes: Vec<String>,
     /// Seconds a run may take.

@@ -5,6 +5,7 @@ use crate::output::note;
 use mp_plan::{Error, write_file};
 use mp_render::{Drawing, Series};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
+use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use std::ops::Range;
 use std::path::Path;
@@ -21,19 +22,30 @@ pub(crate) struct ChartCurve {
     pub(crate) ranges: Vec<(f64, f64, f64)>,
     /// Whether it is drawn thin, as a companion of another curve.
     pub(crate) thin: bool,
+    /// The index of its dashes and markers, which tell it from curves of the same colour.
+    pub(crate) pattern: usize,
 }
 
 impl ChartCurve {
     /// A curve without ranges.
     pub(crate) fn new(name: impl Into<String>, colour: usize, points: Vec<(f64, f64)>) -> Self {
-        Self { name: name.into(), colour, points, ranges: Vec::new(), thin: false }
+        Self { name: name.into(), colour, points, ranges: Vec::new(), thin: false, pattern: 0 }
     }
 
     /// The same curve, drawn thin.
     pub(crate) fn thin(self) -> Self {
         Self { thin: true, ..self }
     }
+
+    /// The same curve with other dashes and markers: solid with discs, dashed with triangles, dotted with crosses, and
+    /// long dashes with rings.
+    pub(crate) fn pattern(self, pattern: usize) -> Self {
+        Self { pattern, ..self }
+    }
 }
+
+/// Lengths of dashes and of the gaps between them, pixels; the first is a solid line.
+const DASHES: [Option<(u32, u32)>; 4] = [None, Some((7, 4)), Some((2, 4)), Some((14, 5))];
 
 /// The title of a chart, and the labels of its axes.
 #[derive(Clone, Copy, Debug)]
@@ -163,6 +175,15 @@ fn builder<'a, 'b, DB: DrawingBackend>(
     builder
 }
 
+/// Draws the marker of a curve in the legend and at its points.
+macro_rules! marked {
+    ($area:ident, $chart:ident, $legend:ident, $points:ident, |$p:ident| $marker:expr) => {{
+        let $p = $legend;
+        $area.draw(&$marker)?;
+        $chart.draw_series($points.iter().map(|&$p| $marker))?;
+    }};
+}
+
 /// Draws the grid, the curves and their names.
 fn fill<DB, X, Y>(
     area: &DrawingArea<DB, plotters::coord::Shift>,
@@ -189,13 +210,30 @@ where
         let colour = COLOURS[curve.colour % COLOURS.len()];
         let style = colour.stroke_width(if curve.thin { 1 } else { 2 });
         let points: Vec<_> = curve.points.iter().copied().filter(&shown).collect();
-        chart.draw_series(LineSeries::new(points.iter().copied(), style))?;
+        let pattern = curve.pattern % DASHES.len();
+        match DASHES[pattern] {
+            None => chart.draw_series(LineSeries::new(points.iter().copied(), style))?,
+            Some((dash, gap)) => {
+                chart.draw_series(DashedLineSeries::new(points.iter().copied(), dash, gap, style))?
+            }
+        };
         // The legend is to the right of the curves and hides none.
         let (x, y) = (WIDTH as i32 - LEGEND as i32 + 12, 56 + 20 * i as i32);
-        area.draw(&PathElement::new([(x, y), (x + 18, y)], style))?;
-        area.draw(&Text::new(curve.name.clone(), (x + 24, y - 6), ("sans-serif", 12)))?;
+        match DASHES[pattern] {
+            None => area.draw(&PathElement::new([(x, y), (x + 24, y)], style))?,
+            Some((dash, gap)) => {
+                area.draw(&DashedPathElement::new([(x, y), (x + 24, y)], dash, gap, style))?;
+            }
+        }
+        area.draw(&Text::new(curve.name.clone(), (x + 30, y - 6), ("sans-serif", 12)))?;
         if points.len() <= 40 && !curve.thin {
-            chart.draw_series(points.iter().map(|p| Circle::new(*p, 3, colour.filled())))?;
+            let legend = (x + 12, y);
+            match pattern {
+                0 => marked!(area, chart, legend, points, |p| Circle::new(p, 3, colour.filled())),
+                1 => marked!(area, chart, legend, points, |p| TriangleMarker::new(p, 5, colour.filled())),
+                2 => marked!(area, chart, legend, points, |p| Cross::new(p, 4, colour.stroke_width(2))),
+                _ => marked!(area, chart, legend, points, |p| Circle::new(p, 4, colour.stroke_width(1))),
+            }
         }
         let ranges = curve.ranges.iter().filter(|r| shown(&(r.0, r.1)) && shown(&(r.0, r.2)));
         chart.draw_series(ranges.map(|&(x, low, high)| {

@@ -30,7 +30,7 @@ pub(crate) struct Options {
     /// Instead, compare RRT and RRS for a body in space, on `gempa-3` or the given scenes, with the same steps.
     #[arg(long, conflicts_with = "follow")]
     flying: bool,
-    /// Instead, draw the field that pushes snakes, and a tree with bent edges.
+    /// Instead, draw the field that pushes snakes, a tree with bent edges, a path relaxed, and the landscape of risk.
     #[arg(long, conflicts_with_all = ["follow", "flying"])]
     pictures: bool,
 }

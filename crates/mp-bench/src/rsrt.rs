@@ -1,5 +1,6 @@
-//! The experiments of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas algorithms*:
-//! the natural expansion of an RRT (§2.4), and RRT against RSRT in worlds of 2 to 512 obstacles (§4), for a free-flyer
+//! The experiments of Jouandeau, Touati and Ali Cherif 2008, *Incremental motion planning with Las Vegas algorithms*, in
+//! four parts: the natural expansion of an RRT (§2.4); a factorial experiment on what RSRT changes, over the number of inputs
+//! (§3.2); restarts of runs with heavy tails; and RRT against RSRT in worlds of 2 to 512 obstacles (§4), for a free-flyer
 //! and an arm of six joints, with states that are positions or have velocities, under three metrics.
 //!
 //! The paper stops a series when solving takes more than 60 s on a computer of 2008; `--cap` says how
@@ -7,18 +8,22 @@
 
 mod clutter;
 mod expansion;
+mod factorial;
+mod factorial_tables;
+mod restarts;
+mod restarts_tables;
 mod robots;
 mod series;
 mod solve;
 mod tables;
 
 use crate::error::Result;
-use crate::experiment::Lab;
+use crate::experiment::{Lab, sections};
 use crate::options::Common;
 use crate::output::note;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use clutter::LEVELS;
-use mp_plan::positive_number;
+use mp_plan::{Error, positive_number};
 use std::time::Duration;
 
 /// Seconds of processor time that correspond to the paper's 60 s of 2008.
@@ -26,24 +31,104 @@ const CAP: f64 = 6.0;
 const QUICK_CAP: f64 = 0.25;
 /// Instances of each problem (§4).
 const INSTANCES: u32 = 10;
+/// Seeds of each cell of the factorial experiment, and of each schedule of restarts.
+const SEEDS: u32 = 20;
+const RESTARTED_SEEDS: u32 = 100;
+
+/// A part of the suite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Part {
+    /// Triangles of a tree that grows in a free square.
+    Expansion,
+    /// Order × acceptance × number of inputs.
+    Factorial,
+    /// Schedules of restarts.
+    Restarts,
+    /// RRT and RSRT among 2 to 512 obstacles.
+    Clutter,
+}
 
 /// The options of the suite `rsrt` alone.
-#[derive(Clone, Copy, Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `rsrt`")]
 pub(crate) struct Options {
     /// Seconds of processor time per run, in place of the paper's 60 s of 2008 [default: 6; 0.25 with --quick].
     #[arg(long, value_name = "S", value_parser = positive_number)]
     cap: Option<f64>,
+    /// A part to run [default: all].
+    #[arg(long = "part", value_name = "PART")]
+    parts: Vec<Part>,
 }
 
 /// Runs the suite. True when it was measured completely.
 pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let lab = Lab::new(common)?;
-    if !expansion::run(&lab, common.quick, 1)? {
+    let cap = options.cap.unwrap_or(if common.quick { QUICK_CAP } else { CAP });
+    let part = |part: Part| options.parts.is_empty() || options.parts.contains(&part);
+    if part(Part::Expansion) && !expansion::run(&lab, common.quick, 1)? {
         return Ok(false);
     }
-    let cap = options.cap.unwrap_or(if common.quick { QUICK_CAP } else { CAP });
+    Ok((!part(Part::Factorial) || run_factorial(&lab, common, cap)?)
+        && (!part(Part::Restarts) || run_restarts(&lab, common, cap)?)
+        && (!part(Part::Clutter) || run_clutter(&lab, common, cap)?))
+}
+
+/// The problems whose names contain one of the scenes given; all, if none is given.
+fn chosen<P: Clone>(common: &Common, all: &[P], name: impl Fn(&P) -> &'static str) -> Result<Vec<P>> {
+    let given = &common.scenes;
+    let wanted = |p: &&P| given.is_empty() || given.iter().any(|scene| name(p).contains(scene.as_str()));
+    let chosen: Vec<P> = all.iter().filter(wanted).cloned().collect();
+    if chosen.is_empty() {
+        let names: Vec<&str> = all.iter().map(name).collect();
+        let message = format!("no problem has `{}` in its name", given.join("` or `"));
+        return Err(Error::new(message).help(format!("the problems are: {}", names.join("; "))));
+    }
+    Ok(chosen)
+}
+
+fn run_factorial(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
+    let quick = common.quick;
+    let plan = factorial::Plan {
+        seeds: common.runs_or(2, SEEDS).into(),
+        inputs: factorial::INPUTS.iter().copied().take(if quick { 2 } else { 4 }).collect(),
+        problems: chosen(common, &factorial::PROBLEMS, |p| p.name)?,
+        cap,
+    };
+    let name = lab.name("rsrt-factorial");
+    let mut log = lab.log(&name, cap)?;
+    if !factorial::measure(&plan, lab, &mut log)? {
+        return Ok(false);
+    }
+    let results = factorial_tables::Results::new(&log, &plan);
+    let text = sections(3, &results.headline());
+    let details = results
+        .by_problem()
+        .into_iter()
+        .chain([("Solved runs and median times, s".into(), results.corners())]);
+    lab.write(&format!("{name}-by-problem.md"), &sections(3, &details.collect::<Vec<_>>()))?;
+    lab.publish_runs(&name, &text, &log, |case| plan.has(case), results.charts())?;
+    Ok(true)
+}
+
+fn run_restarts(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
+    let plan = restarts::Plan {
+        seeds: common.runs_or(2, RESTARTED_SEEDS).into(),
+        problems: chosen(common, &restarts::PROBLEMS, |p| p.name)?,
+        cap,
+    };
+    let name = lab.name("rsrt-restarts");
+    let mut log = lab.log(&name, cap)?;
+    if !restarts::measure(&plan, lab, &mut log)? {
+        return Ok(false);
+    }
+    let results = restarts_tables::Results::new(&log, &plan);
+    let text = results.summary().markdown() + "\n";
+    lab.publish_runs(&name, &text, &log, |case| case.seed <= plan.seeds, results.charts())?;
+    Ok(true)
+}
+
+fn run_clutter(lab: &Lab, common: &Common, cap: f64) -> Result<bool> {
     let quick = usize::from(common.quick);
     let plan = series::Plan {
         cap,
@@ -52,11 +137,9 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     };
     let name = lab.name("rsrt");
     let mut log = lab.log(&name, cap)?;
-    let complete = series::measure(&plan, &lab, &mut log)?;
+    let complete = series::measure(&plan, lab, &mut log)?;
     let results = tables::Results::new(&log, &plan);
-    // An interrupted measurement may have nothing to draw.
-    let charts = if complete { results.charts() } else { Vec::new() };
-    lab.publish(&name, &results.markdown(), [&results.summary(), &results.each()], charts)?;
+    lab.publish(&name, &results.markdown(), [&results.summary(), &results.each()], results.charts())?;
     note(&format!("{} runs of up to {:?} each", log.all().len(), Duration::from_secs_f64(cap)));
     Ok(complete)
 }

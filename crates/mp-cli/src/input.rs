@@ -30,12 +30,15 @@ pub(crate) fn refuse_two_standard_inputs(scene: &Path, path: Option<&Path>) -> R
     }
 }
 
-/// The scene that an argument names; `-` is standard input.
+/// The scene that an argument names; `-` is standard input. What was chosen for a robot or a map alone is said to the person
+/// watching.
 pub(crate) fn scene(given: &Path) -> Result<Scene, Error> {
-    if is_standard(given) {
-        return Scene::parse("stdin", &standard_input()?, Path::new(""));
-    }
-    Scene::find(given)
+    let scene = match is_standard(given) {
+        true => Scene::parse("stdin", &standard_input()?, Path::new(""))?,
+        false => Scene::find(given)?,
+    };
+    scene.notes().iter().for_each(|line| note(&format!("note: {line}")));
+    Ok(scene)
 }
 
 /// The path that an argument names; `-` is standard input, in any format.

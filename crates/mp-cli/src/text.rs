@@ -46,7 +46,11 @@ pub(crate) fn summary(report: &Report) -> String {
         row("length", format!("{length}, {how} and verified in {}", seconds(report.finish_s)));
     }
     if let Some(clearance) = report.clearance {
-        row("clearance", format!("at least {} m", brief(clearance)));
+        let text = match clearance.is_finite() {
+            true => format!("at least {} m", brief(clearance)),
+            false => "there is nothing to hit".to_owned(),
+        };
+        row("clearance", text);
     }
     if let (Some(file), Some(path)) = (&report.path_file, &report.path) {
         row("path", format!("{file}, {} configurations", path.len()));

@@ -158,3 +158,189 @@ fn worlds_in_the_plane_are_planned_checked_drawn_and_described() {
     let metric = mp(&dir, &["plan", "room.toml", "--metric", "manhattan"]);
     assert_eq!((metric.code, metric.stderr.contains("take one of: default")), (2, true), "{metric:?}");
 }
+
+/// A robot alone: planned from a free configuration to another, and what was chosen is said.
+#[test]
+fn a_robot_alone_is_planned_checked_drawn_and_described() {
+    let dir = Dir::new();
+    // The links of a chain of four turn in one plane: at zero the last one, which is bent back, lies in the first.
+    let link = |i: u32| {
+        format!(
+            "<link name=\"l{i}\"><collision><origin xyz=\"0.2 0 0\"/><geometry><mesh filename=\"package://kit/bar.off\"/>\
+             </geometry></collision></link>\n<joint name=\"j{i}\" type=\"revolute\"><parent link=\"l{}\"/><child link=\"l{i}\"/>\
+             <origin xyz=\"0.4 0 0\" rpy=\"0 0 {}\"/><axis xyz=\"0 0 1\"/><limit lower=\"-0.5\" upper=\"1.5\"/></joint>\n",
+            i - 1,
+            if i > 1 { 2.0 } else { 0.0 },
+        )
+    };
+    let links: String = (1..5).map(link).collect();
+    for folder in ["robots", "kit"] {
+        std::fs::create_dir(dir.path(folder)).unwrap();
+    }
+    dir.write("robots/alone.urdf", format!("<robot name=\"alone\">\n<link name=\"l0\"/>\n{links}</robot>"));
+    let bar = "OFF\n4 4 0\n-0.15 0 0\n0.15 0.02 0\n0.15 -0.02 0.02\n0.15 -0.02 -0.02\n3 0 1 2\n3 0 2 3\n3 0 3 1\n3 1 3 2\n";
+    dir.write("kit/bar.off", bar);
+    let file = "robots/alone.urdf";
+    let run = mp(&dir, &["plan", file, "--json", "--out", "p.txt", "--picture", "p.png"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.stderr.contains("note: alone.urdf is a robot alone"), "{run:?}");
+    let report = run.json();
+    assert_eq!((&report["verified"], &report["space"]), (&true.into(), &"4 joints".into()));
+    let path = report["path"].as_array().unwrap();
+    let row = |i: usize| path[i].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect::<Vec<_>>();
+    let (start, goal) = (row(0), row(path.len() - 1));
+    assert!(start.iter().chain(&goal).all(|x| (-0.5..=1.5).contains(x)), "{start:?} {goal:?}");
+    // Half way from each joint of the start to 1.5.
+    assert!(start.iter().zip(&goal).all(|(a, b)| b - a > 0.1), "{start:?} {goal:?}");
+    let again = mp(&dir, &["plan", file, "--json"]);
+    assert_eq!(again.json()["path"], report["path"]);
+    assert_eq!(mp(&dir, &["check", file, "p.txt"]).code, 0);
+    assert_eq!(mp(&dir, &["render", file, "p.txt", "--picture", "r.png"]).code, 0);
+    let info = mp(&dir, &["info", file]);
+    assert!(info.code == 0 && info.stdout.contains("note      alone.urdf is a robot alone"), "{info:?}");
+}
+
+/// A map alone: a disc goes from one end of its free space to the other.
+#[test]
+fn a_map_alone_is_planned_checked_drawn_and_described() {
+    let dir = Dir::new();
+    // Two rooms with a door; a third one that is shut.
+    let rows = [
+        "##############",
+        "#....#....#..#",
+        "#....#....#..#",
+        "#.........#..#",
+        "#....#....#..#",
+        "##############",
+    ];
+    let pixels: String = rows
+        .iter()
+        .flat_map(|row| {
+            row.chars()
+                .flat_map(|c| [c; 4])
+                .map(|c| if c == '#' { "0 " } else { "254 " })
+                .chain(["\n"])
+                .collect::<Vec<_>>()
+                .repeat(4)
+        })
+        .collect();
+    dir.write("rooms.pgm", format!("P2\n56 24\n255\n{pixels}"));
+    dir.write("rooms.yaml", "image: rooms.pgm\nresolution: 0.25\norigin: [-2, 3, 0]\n");
+    for file in ["rooms.yaml", "rooms.pgm"] {
+        let run = mp(&dir, &["plan", file, "--json", "--out", "p.txt", "--picture", "p.svg"]);
+        assert_eq!(run.code, 0, "{run:?}");
+        assert!(run.stderr.contains("a disc with the radius 0.2 m"), "{run:?}");
+        let report = run.json();
+        assert_eq!((&report["verified"], &report["space"]), (&true.into(), &"R2".into()));
+        let path = report["path"].as_array().unwrap();
+        let x = |i: usize| path[i][0].as_f64().unwrap();
+        // In different rooms: the wall between them is at 3 to 4 m.
+        let (a, b) = (x(0).min(x(path.len() - 1)), x(0).max(x(path.len() - 1)));
+        assert!(a < 3.0 && b > 4.0 && b < 8.0, "{a} {b}");
+        assert_eq!(mp(&dir, &["check", file, "p.txt"]).code, 0);
+        let info = mp(&dir, &["info", file]);
+        assert!(info.code == 0 && info.stdout.contains("rooms.yaml is a map alone"), "{info:?}");
+    }
+    // In a small map the disc is smaller.
+    dir.write("small.yaml", "image: rooms.pgm\nresolution: 0.01\norigin: [0, 0, 0]\n");
+    let info = mp(&dir, &["info", "small.yaml"]);
+    assert!(info.code == 0 && info.stdout.contains("half of the widest clearance"), "{info:?}");
+}
+
+/// A free-flying manipulator: a box with two turning links and a sliding one.
+const FLYER: &str = r#"<robot name="flyer">
+<link name="body"><collision><geometry><box size="0.3 0.3 0.2"/></geometry></collision></link>
+<link name="upper"><collision><origin xyz="0.2 0 0"/><geometry><box size="0.3 0.06 0.06"/></geometry></collision></link>
+<link name="lower"><collision><origin xyz="0.15 0 0"/><geometry><box size="0.24 0.05 0.05"/></geometry></collision></link>
+<link name="probe"><collision><origin xyz="0.1 0 0"/><geometry><box size="0.16 0.02 0.02"/></geometry></collision></link>
+<joint name="shoulder" type="revolute"><parent link="body"/><child link="upper"/><origin xyz="0.16 0 0"/><axis xyz="0 1 0"/>
+<limit lower="-1.6" upper="1.6"/></joint>
+<joint name="elbow" type="continuous"><parent link="upper"/><child link="lower"/><origin xyz="0.38 0 0"/><axis xyz="0 0 1"/></joint>
+<joint name="reach" type="prismatic"><parent link="lower"/><child link="probe"/><origin xyz="0.2 0 0"/><axis xyz="1 0 0"/>
+<limit lower="-0.1" upper="0.1"/></joint>
+</robot>"#;
+
+/// From the front of a wall into a hole in it, which only the arm can enter.
+const INSPECT: &str = "[robot]\nurdf = \"flyer.urdf\"\nbase = \"floating\"\nbounds = [[-2, -1, -1], [0.6, 1, 1]]\n\n[motion]\n\
+    start = [-1.2, 0.4, -0.3, 2, 0.4, 0.1, -0.5, 2, 0]\ngoal = [-0.3, 0, 0, 0, 0, 0, 0, 0, 0.1]\n\n\
+    [[obstacle]]\nname = \"upper wall\"\nbox = [0.3, 4, 2]\npose = [0.75, 0, 1.1, 0, 0, 0]\n\n\
+    [[obstacle]]\nname = \"lower wall\"\nbox = [0.3, 4, 2]\npose = [0.75, 0, -1.1, 0, 0, 0]\n";
+
+#[test]
+fn a_floating_arm_is_planned_checked_drawn_and_described() {
+    let dir = Dir::new();
+    dir.write("flyer.urdf", FLYER);
+    dir.write("inspect.toml", INSPECT);
+    let run = mp(&dir, &["plan", "inspect.toml", "--json", "--out", "p.txt", "--picture", "p.png"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let report = run.json();
+    assert_eq!((&report["verified"], &report["space"]), (&true.into(), &"SE3 × 3 joints".into()));
+    let text = dir.read("p.txt");
+    let (first, rows) = text.split_once('\n').unwrap();
+    assert_eq!(first, format!("{} 9", report["path"].as_array().unwrap().len()));
+    assert_eq!(rows.lines().count(), report["path"].as_array().unwrap().len());
+    let again = mp(&dir, &["plan", "inspect.toml", "--json", "--threads", "2", "--out", "q.csv"]);
+    assert_eq!(again.json()["path"], report["path"]);
+    assert!(
+        dir.read("q.csv").starts_with("x [m],y [m],z [m],alpha [rad],beta [rad],gamma [rad],shoulder [rad]")
+    );
+    for file in ["p.txt", "q.csv"] {
+        let check = mp(&dir, &["check", "inspect.toml", file, "--json"]);
+        assert_eq!((check.code, &check.json()["free"]), (0, &true.into()), "{check:?}");
+    }
+    assert_eq!(mp(&dir, &["render", "inspect.toml", "p.txt", "--out", "r.html"]).code, 0);
+    let info = mp(&dir, &["info", "inspect.toml"]);
+    for words in
+        ["x from -2 to 0.6 m", "alpha turns without end", "reach from -0.1 to 0.1 m", "base      floats"]
+    {
+        assert!(info.stdout.contains(words), "{words}: {info:?}");
+    }
+    for metric in ["scaled", "euclidean", "manhattan"] {
+        let run = mp(&dir, &["plan", "inspect.toml", "--metric", metric, "--json"]);
+        assert_eq!((run.code, &run.json()["verified"]), (0, &true.into()), "{metric}: {run:?}");
+    }
+    // The straight way hits the wall, and it is said with what.
+    dir.write(
+        "straight.txt",
+        "2 9\n-1.2 0.4 -0.3 2 0.4 0.1 -0.5 2 0\n-0.3 0 0 0 0 0 0 0 0.1\n".replace("-1.2 0.4", "0.4 0.4"),
+    );
+    let check = mp(&dir, &["check", "inspect.toml", "straight.txt"]);
+    assert!(check.code == 1 && check.stdout.contains("lower wall"), "{check:?}");
+}
+
+#[test]
+fn bad_floating_problems_are_told_what_to_do() {
+    let dir = Dir::new();
+    dir.write("flyer.urdf", FLYER);
+    dir.write("named.urdf", FLYER.replace("\"reach\"", "\"gamma\""));
+    dir.write(
+        "still.urdf",
+        FLYER
+            .replace("type=\"revolute\"", "type=\"fixed\"")
+            .replace("continuous", "fixed")
+            .replace("prismatic", "fixed"),
+    );
+    for (from, to, words) in [
+        ("flyer.urdf", "named.urdf", &["named.urdf", "\"gamma\"", "another name"][..]),
+        ("flyer.urdf", "still.urdf", &["still.urdf", "no joint"]),
+        ("bounds = [[-2, -1, -1], [0.6, 1, 1]]\n", "", &["inspect.toml:3", "bounds = [[x, y, z]"]),
+        ("\"floating\"", "\"planar\"", &["inspect.toml:3", "`planar`", "floating"]),
+        (
+            "-0.5, 2, 0]",
+            "-0.5, 2]",
+            &["inspect.toml:7", "the start has 8 numbers", "gamma, shoulder, elbow, reach"],
+        ),
+        ("[-1.2, 0.4", "[-2.5, 0.4", &["inspect.toml:7", "x may be from -2 to 0.6"]),
+        (
+            "goal = [-0.3, 0, 0",
+            "goal = [0.52, 0, 0.05",
+            &["inspect.toml:8", "in collision", "body in upper wall", "nearest free"],
+        ),
+    ] {
+        assert!(INSPECT.contains(from), "{from}");
+        dir.write("inspect.toml", INSPECT.replacen(from, to, 1));
+        let run = mp(&dir, &["plan", "inspect.toml"]);
+        let told = run.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(run.code == 2 && words.iter().all(|word| told.contains(word)), "{to}: {told}");
+    }
+}

@@ -54,8 +54,13 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
     (&["plan", "window.env", "--picture", "side.off"], &["side.off"]),
     (&["plan", "window.env", "--out", "p.txt", "--planner", "prm", "--roadmap", "./p.txt"], &["same file"]),
     (&["plan", "window.env", "--planner", "prm", "--roadmap", "robot.off"], &["overwrite", "robot.off"]),
-    (&["plan", "arm.urdf"], &["arm.urdf", "robot problem", "[motion]"]),
-    (&["info", "map.yaml"], &["map.yaml", "[world]", "disc"]),
+    (&["plan", "arm.urdf"], &["arm.urdf", "no links"]),
+    (&["plan", "arm.xacro"], &["arm.xacro", "xacro FILE"]),
+    (&["info", "arm.srdf"], &["arm.srdf", "robot problem"]),
+    (&["info", "map.yaml"], &["map.yaml", "resolution"]),
+    (&["info", "photo.png"], &["photo.png", "photo.yaml", "resolution: 0.05"]),
+    (&["plan", "torn.yaml"], &["error: torn.pgm", "neither a PNG"]),
+    (&["plan", "full.yaml"], &["full.yaml", "no free region"]),
     (&["info", "missing.off"], &["missing.off"]),
     (&["info", "."], &["not a file"]),
     (&["render", "window.env", "--picture", "p.bmp"], &["p.bmp", ".png"]),
@@ -94,7 +99,14 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
 fn commands() {
     let dir = Dir::new();
     dir.write("arm.urdf", "<robot name=\"a\"/>");
+    dir.write("arm.xacro", "<robot name=\"a\"/>");
+    dir.write("arm.srdf", "<robot name=\"a\"/>");
     dir.write("map.yaml", "image: map.pgm\n");
+    dir.write("photo.png", "");
+    dir.write("torn.yaml", "image: torn.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n");
+    dir.write("torn.pgm", "not an image");
+    dir.write("full.yaml", "image: full.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n");
+    dir.write("full.pgm", "P2\n3 2\n255\n0 0 0\n0 0 0\n");
     let before = dir.entries(".");
     for (args, words) in COMMANDS {
         let run = mp(&dir, args);

@@ -4,6 +4,10 @@ use crate::{Flow, FlowCheck, Input, InputError, InputSet, SuccessorMotion};
 use mp_cspace::{Direction, Extension, LocalPlanner, Motion, ParameterError, Reach, Rng, Space};
 
 /// In which order successors are tested for collision.
+///
+/// The order decides how many tests are made, and nothing else: under the same [condition](Accept) both
+/// orders take the same successor, bit for bit, since the first free one in the order of distance is the
+/// nearest free one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Order {
     /// Every successor is tested, and of the free ones the nearest to the target is taken: ALG. 4 of
@@ -16,7 +20,9 @@ pub enum Order {
     SortFirst,
 }
 
-/// Which successors may be taken.
+/// Which successors may be taken. This decides the shape of the tree: a node at an obstacle, from which no
+/// free successor comes nearer to the sample, does not grow under [`Nearer`](Self::Nearer), and slides along
+/// the obstacle or backs away from it under [`Any`](Self::Any).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Accept {
     /// Only those nearer to the target than the node itself: `dmin` of ALG. 4.
@@ -45,8 +51,9 @@ pub struct InputCounters {
 
 /// A local planner whose choice among inputs its caller controls: an [`InputPlanner`], or a reference to one.
 pub trait InputChoice {
-    /// Sets the order in which successors are tested.
-    fn set_order(&mut self, order: Order);
+    /// The order in which successors are tested, and which may be taken, where its maker has not
+    /// [chosen](InputPlanner::ordered) these: how a planner says its defaults.
+    fn set_defaults(&mut self, order: Order, accept: Accept);
 
     /// How many inputs there are.
     fn count(&self) -> usize;
@@ -61,8 +68,8 @@ pub trait InputChoice {
 }
 
 impl<L: InputChoice + ?Sized> InputChoice for &mut L {
-    fn set_order(&mut self, order: Order) {
-        (**self).set_order(order);
+    fn set_defaults(&mut self, order: Order, accept: Accept) {
+        (**self).set_defaults(order, accept);
     }
     fn count(&self) -> usize {
         (**self).count()
@@ -97,8 +104,10 @@ pub struct InputPlanner<'c, C: Space, F, U, K> {
     inputs: InputSet<U>,
     duration: f64,
     check: K,
-    order: Order,
+    order: Option<Order>,
     accept: Option<Accept>,
+    /// The order and the condition where none is chosen.
+    defaults: (Order, Accept),
     exact: Exact<C::State>,
     counters: InputCounters,
     /// The inputs tried before, and how many an extension may test.
@@ -139,7 +148,8 @@ where
     K: FlowCheck<C::State, U, F>,
 {
     /// Extends states of `space` by `flow`: each of the `inputs` for `duration` seconds, tested by
-    /// `check`. The order is that of RSRT until another is set.
+    /// `check`. The order and the condition are those of RSRT, unless others are
+    /// [chosen](Self::ordered) or the planner has [defaults](InputChoice::set_defaults) of its own.
     ///
     /// # Errors
     /// When the duration is not positive and finite; when the flow, tried from some states of the space,
@@ -162,22 +172,22 @@ where
             inputs,
             duration,
             check,
-            order: Order::SortFirst,
+            order: None,
             accept: None,
+            defaults: (Order::SortFirst, Accept::Any),
             exact: Exact::Listed(Vec::new()),
             counters: InputCounters::default(),
             tried: None,
         })
     }
 
-    /// The same in another order.
+    /// The same in this order, whatever the planner's default is.
     #[must_use]
     pub fn ordered(self, order: Order) -> Self {
-        Self { order, ..self }
+        Self { order: Some(order), ..self }
     }
 
-    /// The same with this condition on successors. The default depends on the order: [`Accept::Nearer`]
-    /// with [`Order::TestAll`], as in ALG. 4, [`Accept::Any`] with [`Order::SortFirst`].
+    /// The same with this condition on successors, whatever the planner's default is.
     #[must_use]
     pub fn accepting(self, accept: Accept) -> Self {
         Self { accept: Some(accept), ..self }
@@ -274,7 +284,7 @@ where
         within: f64,
     ) -> Option<(usize, (K::Edge, f64))> {
         let most = self.tried.as_ref().map(|(_, most)| *most);
-        match self.order {
+        match self.order.unwrap_or(self.defaults.0) {
             Order::TestAll if most.is_none() => {
                 let (mut least, mut best) = (within, None);
                 for i in 0..self.ranked.len() {
@@ -307,10 +317,7 @@ where
         if self.tried.is_some() {
             return Accept::Any;
         }
-        self.accept.unwrap_or(match self.order {
-            Order::TestAll => Accept::Nearer,
-            Order::SortFirst => Accept::Any,
-        })
+        self.accept.unwrap_or(self.defaults.1)
     }
 
     /// An exact connection, where it is wanted and can be made. `None` to continue with the inputs.
@@ -355,8 +362,8 @@ fn probe<C: Space, U: Input, F: Flow<C::State, U>>(
 }
 
 impl<C: Space, F, U: Input, K> InputChoice for InputPlanner<'_, C, F, U, K> {
-    fn set_order(&mut self, order: Order) {
-        self.order = order;
+    fn set_defaults(&mut self, order: Order, accept: Accept) {
+        self.defaults = (order, accept);
     }
     fn count(&self) -> usize {
         self.inputs.len()

@@ -98,6 +98,19 @@ impl<const N: usize> InputSet<SVector<f64, N>> {
         let vectors = spread(limits.as_slice(), count)?;
         Self::new(vectors.iter().map(|v| SVector::from_column_slice(v)))
     }
+
+    /// The first `count` directions of a sequence that begins with the [`axes`](Self::axes) and goes on
+    /// with those of [`spread`](Self::spread); with fewer directions than the axes have, `spread` alone.
+    /// A larger set contains every smaller one that has all axes, so a comparison of sets of different
+    /// sizes varies nothing but how densely they cover the directions.
+    ///
+    /// # Errors
+    /// As [`spread`](Self::spread).
+    pub fn directions(limits: impl Into<SVector<f64, N>>, count: usize) -> Result<Self, InputError> {
+        let limits = limits.into();
+        let vectors = directions(limits.as_slice(), count)?;
+        Self::new(vectors.iter().map(|v| SVector::from_column_slice(v)))
+    }
 }
 
 /// Uniform sets of inputs whose number of entries is known at run time.
@@ -125,13 +138,21 @@ impl InputSet<DVector<f64>> {
     pub fn spread_dyn(limits: &[f64], count: usize) -> Result<Self, InputError> {
         Self::new(spread(limits, count)?.into_iter().map(DVector::from_vec))
     }
+
+    /// As [`directions`](InputSet::directions) of fixed size.
+    ///
+    /// # Errors
+    /// Those of [`directions`](InputSet::directions).
+    pub fn directions_dyn(limits: &[f64], count: usize) -> Result<Self, InputError> {
+        Self::new(directions(limits, count)?.into_iter().map(DVector::from_vec))
+    }
 }
 
 impl InputSet<Vec<f64>> {
     /// Velocities that move states of `space` by `reach` in one second, in its metric: spread evenly
     /// over its degrees of freedom, translation and rotation alike. `directions` is the number of
-    /// directions, zero for both ways along each degree of freedom; `levels` the number of magnitudes of
-    /// each, every one a quarter of the one before. Turns are limited to about half a turn. Levels beyond
+    /// [directions](InputSet::directions), zero for both ways along each degree of freedom; `levels` the
+    /// number of magnitudes of each, every one a quarter of the one before. Turns are limited to about half a turn. Levels beyond
     /// the hundredth have the magnitude of the hundredth.
     ///
     /// # Errors
@@ -146,7 +167,7 @@ impl InputSet<Vec<f64>> {
             return Err(InputError::Empty { what: "the list of levels" });
         }
         let limits = reaches(space, reach)?;
-        let vectors = if directions == 0 { axes(&limits)? } else { spread(&limits, directions)? };
+        let vectors = if directions == 0 { axes(&limits)? } else { self::directions(&limits, directions)? };
         let scaled = |level: u32| {
             let factor = 0.25_f64.powi(level.min(99) as i32);
             vectors.iter().map(move |v| v.iter().map(|x| x * factor).collect())
@@ -227,6 +248,19 @@ fn grid(limits: &[f64], levels: usize) -> Result<Vec<Vec<f64>>, InputError> {
             .collect()
     };
     Ok((0..count).map(input).filter(|v| v.iter().any(|x| *x != 0.0)).collect())
+}
+
+/// The axes and then spread directions, `count` in all; spread directions alone if there are fewer than axes.
+fn directions(limits: &[f64], count: usize) -> Result<Vec<Vec<f64>>, InputError> {
+    let mut all = axes(limits)?;
+    match count.checked_sub(all.len()) {
+        None => spread(limits, count),
+        Some(0) => Ok(all),
+        Some(more) => {
+            all.extend(spread(limits, more)?);
+            Ok(all)
+        }
+    }
 }
 
 /// Directions on the ellipsoid of the limits, each followed by its opposite: points of a Halton sequence made

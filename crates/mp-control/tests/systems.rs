@@ -439,6 +439,19 @@ fn uniform_inputs_move_by_the_step() {
         assert!(turned <= 1.3 * PI, "{input:?}");
         assert!(space.distance(&middle, &flow.integrate(&middle, input, 1.0)) > 0.5);
     }
+    // Axes first, then the spread directions; every set contains the smaller ones.
+    let limits = [1.0, 2.0, 0.5, 1.0, 1.0, 3.0];
+    let sets = [12, 48, 192].map(|n| InputSet::<DVector<f64>>::directions_dyn(&limits, n).unwrap());
+    assert_eq!(sets[0], InputSet::axes_dyn(&limits).unwrap());
+    assert_eq!(sets[1].len(), 48);
+    assert!(sets.windows(2).all(|pair| pair[1].inputs().starts_with(pair[0].inputs())));
+    for v in sets[2].inputs() {
+        let on_ellipsoid: f64 = v.iter().zip(&limits).map(|(x, limit)| (x / limit).powi(2)).sum();
+        assert!((on_ellipsoid - 1.0).abs() < 1e-12);
+        assert!(sets[2].inputs().iter().any(|w| (v + w).norm() < 1e-12), "the opposite is missing");
+    }
+    assert_eq!(InputSet::directions([1.0, 1.0], 3).unwrap(), InputSet::spread([1.0, 1.0], 3).unwrap());
+    assert!(InputSet::directions([1.0], 0).is_err());
     let all: Vec<DVector<f64>> = InputSet::spread_dyn(&[1.0, 2.0, 3.0], 50).unwrap().inputs().to_vec();
     for (v, w) in all.iter().zip(&all[1..]).step_by(2) {
         assert_eq!(*v, -w);

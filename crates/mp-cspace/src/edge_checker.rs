@@ -64,6 +64,15 @@ impl<'c, C: Space, L: LocalPlanner<C::State>> EdgeChecker<'c, C, L> {
         &mut self.local
     }
 
+    /// The states between the ends of an edge at which it bends, in forward time.
+    #[must_use]
+    pub fn vertices<'e>(&self, edge: &'e L::Edge) -> &'e [C::State]
+    where
+        C::State: 'e,
+    {
+        self.local.vertices(edge)
+    }
+
     /// How many motions the local planner was asked for.
     #[must_use]
     pub fn motions(&self) -> u64 {

@@ -41,7 +41,7 @@
 //!
 //! | to say | use |
 //! |---|---|
-//! | what configurations are | a [`Space`]: [`Rn`], [`So3`], [`Se2`], [`Se3`], [`Joints`], [`Product`], [`SpaceTime`](space_time::SpaceTime) |
+//! | what configurations are | a [`Space`]: [`Rn`], [`So3`], [`Se2`], [`Se3`], [`Joints`], [`FloatingJoints`], [`Product`], [`SpaceTime`](space_time::SpaceTime) |
 //! | how far apart they are | the space's own distance, or a [`Metric`] put on it by [`WithMetric`]: [`Euclidean`], [`ScaledEuclidean`], [`Manhattan`], [`MaxDisplacement`], [`SweptVolume`], [`MetricFn`] |
 //! | which are near | [`NearestNeighbors`]: [`KdTree`], [`MetricTree`], [`Linear`]; [`DefaultNn`] names the best of a space |
 //! | which to try | a [`Sampler`]: [`Uniform`], [`Halton`], [`GoalBias`], [`Gaussian`], [`Bridge`] |
@@ -109,8 +109,8 @@ pub use registry::Demand;
 pub use rng::Rng;
 pub use sampler::{Bridge, Gaussian, GoalBias, Halton, Sampler, Uniform};
 pub use space::{
-    AsVectors, Coordinates, Factored, JointRange, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space,
-    TrueMetric,
+    AsVectors, Coordinates, Factored, FloatingJoints, JointRange, Joints, Product, Rn, Se2, Se2State, Se3,
+    So3, Space, TrueMetric,
 };
 pub use stop::{
     Cancel, Clock, Deadline, Iterations, Motions, Nodes, Or, Progress, SparseClock, Stop, StopReason,

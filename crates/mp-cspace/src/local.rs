@@ -73,6 +73,14 @@ pub trait LocalPlanner<S> {
     fn admits(&mut self, _q: &S) -> bool {
         true
     }
+    /// The states between the ends of an edge at which it bends, in forward time: for pictures. The default is none: such an
+    /// edge is the space's own interpolation, or knows only how to replay it.
+    fn vertices<'e>(&self, _edge: &'e Self::Edge) -> &'e [S]
+    where
+        S: 'e,
+    {
+        &[]
+    }
 }
 
 /// An edge that can be run backward. Roadmaps need this, as their edges have no direction.
@@ -93,6 +101,12 @@ impl<S, L: LocalPlanner<S> + ?Sized> LocalPlanner<S> for &mut L {
     }
     fn admits(&mut self, q: &S) -> bool {
         (**self).admits(q)
+    }
+    fn vertices<'e>(&self, edge: &'e L::Edge) -> &'e [S]
+    where
+        S: 'e,
+    {
+        (**self).vertices(edge)
     }
 }
 

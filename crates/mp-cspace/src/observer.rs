@@ -18,6 +18,8 @@ pub enum Event<'a, S> {
         id: NodeId,
         /// Its state.
         state: &'a S,
+        /// Of a node of a roadmap, the name of its kind; `None` for the root of a tree.
+        kind: Option<&'static str>,
     },
     /// A node was added to tree `tree` under `parent`.
     Added {
@@ -29,6 +31,9 @@ pub enum Event<'a, S> {
         parent: NodeId,
         /// Its state.
         state: &'a S,
+        /// The states at which the edge between them bends, in forward time: from the parent on in tree 0, to the parent in
+        /// tree 1. Empty for a straight edge.
+        through: &'a [S],
     },
     /// A node of tree `tree` got another parent, through which it costs less.
     Rewired {
@@ -38,12 +43,21 @@ pub enum Event<'a, S> {
         id: NodeId,
         /// Its new parent.
         parent: NodeId,
+        /// The states at which the new edge bends, as in [`Added`](Self::Added).
+        through: &'a [S],
     },
     /// An edge was added between two nodes of a roadmap.
     Linked {
         /// The node it leads from.
         from: NodeId,
         /// The node it leads to.
+        to: NodeId,
+    },
+    /// An edge of a roadmap, added before, turned out to be blocked.
+    Unlinked {
+        /// The node it led from.
+        from: NodeId,
+        /// The node it led to.
         to: NodeId,
     },
     /// An extension of `tree` failed.
@@ -133,6 +147,7 @@ impl<S> Observer<S> for EventCounts {
             Event::Iteration(_)
             | Event::Rewired { .. }
             | Event::Linked { .. }
+            | Event::Unlinked { .. }
             | Event::Blocked { .. }
             | Event::Pruned { .. } => {}
             Event::Sampled(_) => self.sampled += 1,
@@ -161,7 +176,7 @@ mod tests {
             }),
         );
         both.on(Event::Sampled(&3.0));
-        both.on(Event::Added { tree: 0, id: 1, parent: 0, state: &3.0 });
+        both.on(Event::Added { tree: 0, id: 1, parent: 0, state: &3.0, through: &[] });
         both.on(Event::Rejected);
         assert_eq!(counts, EventCounts { sampled: 1, added: 1, rejected: 1, ..EventCounts::default() });
         assert_eq!(seen, 3);

@@ -1,6 +1,7 @@
 //! Spaces: the traits, and the spaces one file each.
 
 mod ellipsoid;
+mod floating;
 mod joints;
 mod poses;
 mod product;
@@ -10,6 +11,7 @@ mod se3;
 mod so3;
 mod vectors;
 
+pub use floating::FloatingJoints;
 pub use joints::{Coordinates, JointRange, Joints};
 pub use product::Product;
 pub use rn::Rn;

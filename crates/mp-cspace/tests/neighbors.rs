@@ -3,9 +3,9 @@
 
 use mp_cspace::testkit::check_nearest_neighbors;
 use mp_cspace::{
-    DefaultNn, Euclidean, Hit, JointRange, Joints, KdTree, Linear, Manhattan, MaxDisplacement, Metric,
-    MetricFn, MetricTree, NearestNeighbors, Product, Rn, Rng, ScaledEuclidean, Se2, Se3, So3, Space,
-    TrueMetric, WithMetric,
+    DefaultNn, Euclidean, FloatingJoints, Hit, JointRange, Joints, KdTree, Linear, Manhattan,
+    MaxDisplacement, Metric, MetricFn, MetricTree, NearestNeighbors, Product, Rn, Rng, ScaledEuclidean, Se2,
+    Se3, So3, Space, TrueMetric, WithMetric,
     angle::rotation_angle,
     nn::{Embed, Layout},
 };
@@ -58,6 +58,9 @@ fn default_index_of_every_space() {
     agrees_on(se3());
     agrees_on(se3().with_rotation_weight(1e-3).unwrap());
     agrees_on(Product::new(se3(), 2.0, circles::<2>(), 0.1).unwrap());
+    let floating = FloatingJoints::new(se3(), Joints::new(ranges).unwrap()).unwrap();
+    agrees_on(floating.clone());
+    agrees_on(WithMetric::new(floating, Manhattan));
     agrees_on(Product::new(So3, 1.0, Product::new(So3, 0.3, circles::<1>(), 2.0).unwrap(), 1.0).unwrap());
 }
 

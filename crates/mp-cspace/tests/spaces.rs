@@ -88,6 +88,9 @@ fn joints<Q: Coordinates>() -> Joints<Q> {
     let ranges = [interval(-6.2, 6.2), JointRange::Circle, interval(0.1, 0.4), JointRange::Circle];
     Joints::new(ranges).unwrap()
 }
+fn floating() -> FloatingJoints {
+    FloatingJoints::new(se3(), joints()).unwrap()
+}
 fn se2() -> Se2 {
     Se2::new([-1.0, -2.0], [3.0, 4.0]).unwrap()
 }
@@ -108,6 +111,8 @@ spaces! {
     joints_static: joints::<Vector4<f64>>(), SpaceKit::new(), geodesic_axioms;
     joints_dynamic: joints::<DVector<f64>>(), SpaceKit::new(), geodesic_axioms;
     joints_manhattan: WithMetric::new(joints::<Vector4<f64>>(), Manhattan), SpaceKit::new(), geodesic_axioms;
+    floating_joints: floating(), SpaceKit::new(), geodesic_axioms;
+    floating_scaled: WithMetric::new(floating(), ScaledEuclidean::new(&floating(), [1.0, 2.0, 1.0, 0.3, 0.5, 0.1, 1.0, 2.0]).unwrap()), SpaceKit::new(), geodesic_axioms;
     product: Product::new(se2(), 1.0, circles::<2>(), 0.25).unwrap(), SpaceKit::new(), geodesic_axioms;
     nested: Product::new(Product::new(So3, 0.1, circles::<1>(), 1.0).unwrap(), 2.0, r3(), 1.0).unwrap(), SpaceKit::new(), geodesic_axioms;
     euclidean: WithMetric::new(se3(), Euclidean), SpaceKit::new(), geodesic_axioms;
@@ -211,6 +216,48 @@ fn joints_are_boxes_and_tori() {
     assert!(space.interpolate(&a, &b, 0.5)[1].abs() > 3.13);
     let wrapped = space.wrapped(&Vector4::new(6.5, 6.5, 9.0, -6.5));
     assert!((wrapped - Vector4::new(6.5, 6.5 - short - 6.0, 9.0, 6.0 + short - 6.5)).norm() < 1e-14);
+}
+
+/// A floating base with joints is the product of both spaces, with its states in one list.
+#[test]
+fn floating_joints_are_a_product() {
+    let (list, pair) = (floating(), Product::new(se3(), 1.0, joints::<DVector<f64>>(), 1.0).unwrap());
+    let flat = |q: &(Isometry3<f64>, DVector<f64>)| list.state(&q.0, q.1.as_slice());
+    assert_eq!((list.dim(), list.factors()), (pair.dim(), pair.factors()));
+    assert!((list.extent() - pair.extent()).abs() < 1e-12);
+    for seed in 0..100 {
+        let mut rng = mp_cspace::Rng::seed(seed);
+        let (a, b, c) =
+            (pair.sample_uniform(&mut rng), pair.sample_uniform(&mut rng), pair.sample_uniform(&mut rng));
+        assert_eq!(flat(&a), list.sample_uniform(&mut mp_cspace::Rng::seed(seed)));
+        assert!((pair.distance(&a, &b) - list.distance(&flat(&a), &flat(&b))).abs() < 1e-12);
+        assert_eq!(flat(&pair.interpolate(&a, &b, 0.3)), list.interpolate(&flat(&a), &flat(&b), 0.3));
+        let mut factors = [Vec::new(), Vec::new()];
+        pair.each_factor(&a, &b, &mut |i, d| factors[0].push((i, d)));
+        list.each_factor(&flat(&a), &flat(&b), &mut |i, d| factors[1].push((i, d)));
+        assert_eq!(factors[0], factors[1]);
+        for factor in 0..list.factors() {
+            let (mut out, mut listed) = (c.clone(), flat(&c));
+            pair.interpolate_factor(factor, &a, &b, 0.7, &mut out);
+            list.interpolate_factor(factor, &flat(&a), &flat(&b), 0.7, &mut listed);
+            assert_eq!(flat(&out), listed);
+        }
+        let mut velocity = vec![0.0; list.dim()];
+        assert!(list.velocity_into(&flat(&a), &flat(&b), &mut velocity));
+        let there = list.moved(&flat(&a), &velocity, 1.0).unwrap();
+        assert!(list.distance(&there, &flat(&b)) < 1e-9);
+        // The base goes alone when what turns is the same.
+        let beside = list.with_rotation_of(&flat(&b), &flat(&a));
+        let middle = list.interpolate(&flat(&a), &beside, 0.5);
+        assert_eq!(middle.as_slice()[3..], flat(&a).as_slice()[3..]);
+        assert_eq!(beside.as_slice()[..3], flat(&b).as_slice()[..3]);
+    }
+    let state = flat(&pair.sample_uniform(&mut mp_cspace::Rng::seed(1)));
+    let mut long = state.clone();
+    long[6] += 0.1;
+    let short = DVector::from_column_slice(&state.as_slice()[..10]);
+    assert!(list.contains(&state) && !list.contains(&long) && !list.contains(&short));
+    assert_eq!(FloatingJoints::split(&[0.0; 6]), None);
 }
 
 #[test]

@@ -55,13 +55,15 @@ pub struct RobotFile {
     pub srdf: Option<String>,
     /// The folder that `package://` means.
     pub packages: Option<String>,
-    /// The pose of the root link, six numbers.
+    /// The pose of the root link, six numbers; zeros if the base floats.
     pub base: [f64; 6],
+    /// The lower and the upper corner (m) of the box in which the origin of the root link moves, if the base floats.
+    pub floating: Option<[[f64; 3]; 2]>,
     /// Limits that replace those of the URDF, by joint.
     pub limits: Vec<(String, [f64; 2])>,
     /// How the robot moves, if it moves by inputs.
     pub driven: Option<Driven>,
-    /// The joint values at the start. For a robot with accelerations, its velocities may follow.
+    /// The joint values at the start; first the six numbers of the pose of the base, if it floats. For a robot with accelerations, its velocities may follow.
     pub start: Vec<f64>,
     /// The goals, at least one.
     pub goals: Vec<GoalEntry>,
@@ -80,6 +82,7 @@ struct Places {
     urdf: Range<usize>,
     srdf: Range<usize>,
     robot: Range<usize>,
+    base: Range<usize>,
     motion: MotionPlaces,
     limits: Vec<Range<usize>>,
 }
@@ -93,6 +96,8 @@ pub enum RobotPart {
     Srdf,
     /// The table `robot`.
     Robot,
+    /// The base.
+    Base,
     /// The start.
     Start,
     /// The goal of this index.
@@ -116,13 +121,25 @@ struct RobotTable {
     urdf: Spanned<String>,
     srdf: Option<Spanned<String>>,
     packages: Option<String>,
-    base: Option<Spanned<[f64; 6]>>,
+    base: Option<Spanned<BaseEntry>>,
+    bounds: Option<Spanned<Corners>>,
     #[serde(default)]
     limits: BTreeMap<String, Spanned<[f64; 2]>>,
     kind: Option<Spanned<String>>,
     duration: Option<Spanned<f64>>,
     speeds: Option<Spanned<Vec<f64>>>,
     accelerations: Option<Spanned<Vec<f64>>>,
+}
+
+/// The lower and the upper corner of a box.
+type Corners = [[f64; 3]; 2];
+
+/// Where the base stands, or that it floats.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected six numbers, `[x, y, z, α, β, γ]`, or \"floating\"")]
+enum BaseEntry {
+    Pose([f64; 6]),
+    Word(String),
 }
 
 #[derive(Deserialize)]
@@ -156,7 +173,8 @@ impl RobotFile {
             ..DriveTable::default()
         };
         let driven = table.read(&source, &robot_span, &["velocities", "accelerations"])?;
-        let base = source.six("the base", robot.base)?;
+        let base_span = robot.base.as_ref().map_or(0..0, Spanned::span);
+        let (base, floating) = base_of(&source, robot.base, robot.bounds)?;
         let (mut limits, mut places_of_limits) = (Vec::new(), Vec::new());
         for (joint, range) in robot.limits {
             let (what, span) = (format!("the limits of {}", crate::text::clipped(&joint)), range.span());
@@ -186,6 +204,7 @@ impl RobotFile {
             urdf: robot.urdf.span(),
             srdf: robot.srdf.as_ref().map_or(0..0, Spanned::span),
             robot: robot_span,
+            base: base_span,
             motion: motion.places,
             limits: places_of_limits,
         };
@@ -194,6 +213,7 @@ impl RobotFile {
             srdf: robot.srdf.map(Spanned::into_inner),
             packages: robot.packages,
             base,
+            floating,
             limits,
             driven,
             start: motion.start,
@@ -213,6 +233,7 @@ impl RobotFile {
             RobotPart::Urdf => &self.places.urdf,
             RobotPart::Srdf => &self.places.srdf,
             RobotPart::Robot => &self.places.robot,
+            RobotPart::Base => &self.places.base,
             RobotPart::Start => &self.places.motion.start,
             RobotPart::Goal(i) => self.places.motion.goal(i),
             RobotPart::Limits(i) => self.places.limits.get(i).unwrap_or(&self.places.urdf),
@@ -227,6 +248,59 @@ impl RobotFile {
 
     fn fault_at(&self, span: &Range<usize>, message: &str, help: &str) -> Error {
         self.source().error(span, message).help(help)
+    }
+}
+
+/// The pose of the base, and its bounds if it floats.
+fn base_of(
+    source: &TomlText<'_>,
+    base: Option<Spanned<BaseEntry>>,
+    bounds: Option<Spanned<Corners>>,
+) -> Result<([f64; 6], Option<Corners>), Error> {
+    let span = base.as_ref().map_or(0..0, Spanned::span);
+    let floats = match base.map(Spanned::into_inner) {
+        Some(BaseEntry::Word(word)) if word == "floating" => true,
+        Some(BaseEntry::Word(word)) => {
+            let message = format!("the base is `{}`", crate::text::clipped(&word));
+            return Err(source
+                .error(&span, message)
+                .expected("six numbers, `[x, y, z, α, β, γ]`, or \"floating\""));
+        }
+        Some(BaseEntry::Pose(pose)) => {
+            source.check("the base", &pose, &span)?;
+            if let Some(bounds) = bounds {
+                let message = "the base stands still, but has bounds";
+                return Err(source
+                    .error(&bounds.span(), message)
+                    .expected("`base = \"floating\"` beside them"));
+            }
+            return Ok((pose, None));
+        }
+        None => false,
+    };
+    match (floats, bounds) {
+        (true, Some(bounds)) => {
+            let ([low, high], span) = (*bounds.get_ref(), bounds.span());
+            source.check("the bounds of the base", &[low, high].concat(), &span)?;
+            if (0..3).all(|i| low[i] < high[i]) {
+                return Ok(([0.0; 6], Some([low, high])));
+            }
+            let message = "the bounds of the base enclose nothing";
+            Err(source
+                .error(&span, message)
+                .expected("the lower corner, then the upper: `[[x, y, z], [x, y, z]]`"))
+        }
+        (true, None) => {
+            let message = "the base floats without bounds";
+            Err(source.error(&span, message).expected(
+                "`bounds = [[x, y, z], [x, y, z]]` beside it: the box in which the origin of the root link moves",
+            ))
+        }
+        (false, Some(bounds)) => {
+            let message = "there are bounds of a base that stands still";
+            Err(source.error(&bounds.span(), message).expected("`base = \"floating\"` beside them"))
+        }
+        (false, None) => Ok(([0.0; 6], None)),
     }
 }
 

@@ -58,6 +58,8 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn poses(&self, row: &[f64]) -> Result<Vec<Isometry3<f64>>, Error>;
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
     fn track(&self, path: &PathRows) -> Result<Track, Error>;
+    #[cfg(feature = "planar")]
+    fn field(&self, row: &[f64], range: Option<&str>, cells: usize) -> Result<crate::FieldImage, Error>;
     fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
     fn rigid_problem(&self) -> Option<&RigidProblem>;
     fn is_planar(&self) -> bool;
@@ -158,6 +160,10 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn track(&self, path: &PathRows) -> Result<Track, Error> {
         track(self, path)
+    }
+    #[cfg(feature = "planar")]
+    fn field(&self, row: &[f64], range: Option<&str>, cells: usize) -> Result<crate::FieldImage, Error> {
+        crate::field::field(self, row, range, cells)
     }
     fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
         RobotKind::export(self, folder)

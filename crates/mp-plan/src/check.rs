@@ -37,13 +37,16 @@ impl Verdict {
     #[must_use]
     pub fn summary(&self) -> String {
         if self.free {
+            let clearance = match self.clearance.is_finite() {
+                true => format!("clearance at least {} m", brief(self.clearance)),
+                false => "there is nothing to hit".to_owned(),
+            };
             return format!(
-                "{}: certified free in {}\n  {} configurations, length {}, clearance at least {} m",
+                "{}: certified free in {}\n  {} configurations, length {}, {clearance}",
                 self.path,
                 self.scene,
                 self.configurations,
                 brief(self.path_length),
-                brief(self.clearance)
             );
         }
         format!("{}: not free in {}\n  {}", self.path, self.scene, self.faults.join("\n  "))

@@ -64,8 +64,10 @@ enum FileContent {
 fn content(file: &Path) -> Result<FileContent, Error> {
     let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     match ending.as_str() {
-        "env" | "cfg" | "toml" => return Ok(FileContent::Scene),
-        "urdf" | "xacro" | "yaml" | "yml" | "srdf" => return Err(crate::load::foreign(file)),
+        "env" | "cfg" | "toml" | "urdf" | "yaml" | "yml" | "png" | "pgm" | "pbm" | "ppm" | "xacro"
+        | "srdf" => {
+            return Ok(FileContent::Scene);
+        }
         "csv" => return Ok(FileContent::Path(PathFormat::Joints)),
         "json" => {
             let poses = PathRows::read(file, PathFormat::Poses).is_ok();
@@ -76,7 +78,8 @@ fn content(file: &Path) -> Result<FileContent, Error> {
     }
     let (_, bytes) = mp_io::read_text(file)?;
     if PathFileKind::of(file).is_err() && bytes.starts_with(b"<?xml") {
-        return Err(crate::load::foreign(file));
+        return Err(Error::new(format!("{} is an XML file, not a scene", file.display()))
+            .help("name a scene: .env, .cfg or .toml; or a robot: .urdf"));
     }
     let head = String::from_utf8_lossy(&bytes[..bytes.len().min(1 << 16)]);
     let mut lines = head.lines().map(str::trim).filter(|l| !l.is_empty());

@@ -51,11 +51,13 @@
 //! Units are metres, radians and seconds. The crate prints nothing. It reports through `tracing`, with the spans `load`,
 //! `build`, `plan`, `roadmap`, `query`, `relax`, `shorten`, `verify` and `check`.
 
+mod alone;
 mod any_robot;
 mod check;
 mod counted;
 mod error;
 mod explain;
+mod field;
 #[cfg(feature = "pictures")]
 mod film;
 mod find;
@@ -93,6 +95,7 @@ mod watch;
 pub use check::Verdict;
 pub use error::Error;
 pub use explain::Explanation;
+pub use field::FieldImage;
 #[cfg(feature = "pictures")]
 pub use film::{Film, FilmKind};
 pub use find::find_problem;
@@ -110,9 +113,9 @@ pub use report::{REPORT_VERSION, Report, StoppedBy};
 pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
-    ArmScene, Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, Mismatch, MovingScene,
-    PathFormat, PlanarBody, PlanarScene, Queries, RigidScene, RigidSpace, RobotKind, SpeedBound, Touch,
-    WithMoving,
+    ArmScene, Body, BodyShape, Checker, Column, Counted, DrivenScene, End, FloatingScene, LinkedScene,
+    LinkedSpace, Measured, Mismatch, MovingScene, PathFormat, PlanarBody, PlanarScene, Queries, RigidScene,
+    RigidSpace, RobotKind, SpeedBound, Touch, WithMoving,
 };
 pub use run::{PreparedRun, Run};
 pub use runs::{Medians, Runs, median, medians};

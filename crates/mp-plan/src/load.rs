@@ -1,14 +1,15 @@
 //! Reading scenes from files of any kind.
 
 use crate::inputs::Recording;
-use crate::{Error, Scene};
+use crate::{Error, Scene, alone};
 use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
 use std::path::Path;
 use std::sync::Mutex;
 
 impl Scene {
     /// Reads a scene: a GEMPA environment (`.env`, `.txt`), an OMPL.app problem (`.cfg`), a robot problem, a rigid body or
-    /// a world in the plane (`.toml`), a scene of the editor (`.mp.json`).
+    /// a world in the plane (`.toml`), a scene of the editor (`.mp.json`). Of a robot alone (`.urdf`) or a map alone (`.yaml` with
+    /// its image) a scene is made, and its [notes](Self::notes) say how.
     ///
     /// # Errors
     /// When a file cannot be read or is not valid: with file, line, column and remedy.
@@ -23,27 +24,27 @@ impl Scene {
     pub fn load_from(files: &dyn Files, file: &Path) -> Result<Self, Error> {
         let _span = tracing::info_span!("load", file = %file.display()).entered();
         let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-        if ["urdf", "xacro", "srdf", "yaml", "yml"].contains(&ending.as_str()) {
-            return Err(foreign(file));
-        }
         let of = |e: Error| match e.file() {
             Some(_) => e,
             None => e.context(format!("cannot plan in {}", file.display())),
         };
         let recording = Recording { files, read: Mutex::default() };
         let files: &dyn Files = &recording;
-        let scene = match RobotProblem::is_named(file) {
-            true if PlanarProblem::is_planar_world_in(files, file) => planar(files, file).map_err(of)?,
-            true if RigidTask::is_one(files, file) => {
-                Self::from_task(RigidTask::load_from(files, file)?).map_err(of)?
-            }
-            true => arm(files, file)?,
-            false if ending == "json" => {
+        let scene = match alone::scene(files, file, &ending).map_err(of)? {
+            Some(scene) => scene,
+            None if RobotProblem::is_named(file) => match PlanarProblem::is_planar_world_in(files, file) {
+                true => planar(files, file).map_err(of)?,
+                false if RigidTask::is_one(files, file) => {
+                    Self::from_task(RigidTask::load_from(files, file)?).map_err(of)?
+                }
+                false => arm(files, file)?,
+            },
+            None if ending == "json" => {
                 let folder = file.parent().unwrap_or(Path::new(""));
                 let mesh = |name: &str| mp_io::read_mesh_of(files, &folder.join(name));
                 Self::from_document(SceneDocument::load_from(files, file)?, &mesh).map_err(of)?
             }
-            false => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
+            None => Self::from_problem(RigidProblem::load_from(files, file)?).map_err(of)?,
         };
         tracing::info!(name = scene.name(), space = %scene.space(), "loaded");
         let inputs = recording.read.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -64,11 +65,13 @@ impl Scene {
             _ if begins("[problem]") => "cfg",
             _ if first.eq_ignore_ascii_case("robot") => "env",
             _ if first.starts_with('{') => "json",
+            _ if first.starts_with('<') => "urdf",
+            _ if begins("image:") => "yaml",
             _ if first.starts_with(['[', '#']) || first.contains('=') => "toml",
             _ => "env",
         };
         let file = folder.join(format!("{name}.{ending}"));
-        Self::load_from(&OneText { file: &file, text }, &file)
+        Self::load_from(&OneText { file: &file, text, files: &Disk }, &file)
     }
 }
 
@@ -78,10 +81,14 @@ fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     Scene::from_world(PlanarProblem::load_from(files, file)?)
 }
 
-/// The scene of an arm.
+/// The scene of an arm, whose base stands still or floats.
 #[cfg(feature = "urdf")]
 fn arm(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
-    let scene = crate::ArmScene::from_problem_in(files, mp_io::RobotProblem::load_from(files, file)?)?;
+    let problem = mp_io::RobotProblem::load_from(files, file)?;
+    if problem.file.floating.is_some() {
+        return Ok(Scene::new(crate::FloatingScene::from_problem_in(files, problem)?));
+    }
+    let scene = crate::ArmScene::from_problem_in(files, problem)?;
     Ok(match scene.driven()? {
         Some(driven) => Scene::new(driven),
         None => Scene::new(scene),
@@ -100,49 +107,27 @@ fn arm(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
 
 /// An error for scenes that are left out of this program.
 #[cfg(not(all(feature = "planar", feature = "urdf")))]
-fn left_out(what: &str, feature: &str) -> Error {
+pub(crate) fn left_out(what: &str, feature: &str) -> Error {
     Error::new(format!("this program is made without {what}"))
         .help(format!("take a program made with the feature `{feature}` of mp-plan"))
 }
 
-/// A text in place of one file, among the files of the disk.
+/// A text in place of one file, among other files.
 #[derive(Debug)]
-struct OneText<'a> {
-    file: &'a Path,
-    text: &'a str,
+pub(crate) struct OneText<'a> {
+    pub(crate) file: &'a Path,
+    pub(crate) text: &'a str,
+    pub(crate) files: &'a dyn Files,
 }
 
 impl Files for OneText<'_> {
     fn read(&self, path: &Path, limit: u64) -> Result<Vec<u8>, mp_io::Error> {
-        if path == self.file { Ok(self.text.as_bytes().to_vec()) } else { Disk.read(path, limit) }
+        if path == self.file { Ok(self.text.as_bytes().to_vec()) } else { self.files.read(path, limit) }
     }
-}
-
-/// An error for a file that describes a robot or a map but is not a scene. It says which file to write around it.
-pub(crate) fn foreign(file: &Path) -> Error {
-    let name = file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let ending = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let error = |what: &str, help: String| {
-        Error::new(format!("{} is {what}, not a scene", file.display())).help(help)
-    };
-    match ending.as_str() {
-        "urdf" | "xacro" => error(
-            "a robot description",
-            format!(
-                "write a robot problem around it, a file `problem.toml` beside it:\n    [robot]\n    urdf = \"{name}\"\n    \
-                 [motion]\n    start = [0, 0, …]   # one number for each joint that moves\n    goal = [1, 0, …]\n  \
-                 docs/formats/robot-problem.md has all of it"
-            ),
-        ),
-        "srdf" => error("an SRDF", "name it in a robot problem: docs/formats/robot-problem.md".to_owned()),
-        "yaml" | "yml" => error(
-            "a map of ROS",
-            format!(
-                "write a world around it, a file `world.toml` beside it:\n    [world]\n    map = \"{name}\"\n    \
-                 [robot]\n    disc = 0.2          # radius, metres\n    [motion]\n    start = [0, 0]\n    \
-                 goal = [1, 0]\n  docs/formats/planar-world.md has all of it"
-            ),
-        ),
-        _ => error("an XML file", "name a scene: .env, .cfg or .toml".to_owned()),
+    fn holds(&self, path: &Path) -> bool {
+        path == self.file || self.files.holds(path)
+    }
+    fn absolute(&self, folder: &Path) -> std::io::Result<std::path::PathBuf> {
+        self.files.absolute(folder)
     }
 }

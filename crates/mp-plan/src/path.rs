@@ -113,8 +113,11 @@ impl PathRows {
         Ok(Self { format, columns: Vec::new(), rows })
     }
 
-    /// The path written as text and read again.
-    pub(crate) fn read_back(&self) -> Result<Self, Error> {
+    /// The path written as text and read again: its numbers may differ in the last digits.
+    ///
+    /// # Errors
+    /// When the text is no path: a number is not finite, or a row has not as many numbers as its format.
+    pub fn read_back(&self) -> Result<Self, Error> {
         let read = Self::parse("the path", self.to_text().as_bytes(), PathFileKind::Text, self.format)?;
         Ok(Self { columns: self.columns.clone(), ..read })
     }

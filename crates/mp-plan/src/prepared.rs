@@ -100,7 +100,8 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         let adapter = WatchAdapter::new(control.watch.as_deref_mut(), control.clock);
         let stop = self.stop(spent, control.clock, control.cancel.clone());
         let mut stop = stop.or(control.stop.as_deref_mut()).or(&adapter);
-        run(&mut stop, &mut Events { row: &|q| self.kind.row(q), adapter: &adapter, wanted })
+        let (row, rows) = (&|q: &_| self.kind.row(q), &|path: &_| self.kind.rows(path));
+        run(&mut stop, &mut Events { row, rows, adapter: &adapter, wanted })
     }
 
     /// When a run that has taken the time `spent` stops: by `cancel`, or by the budget of the request.

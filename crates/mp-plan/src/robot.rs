@@ -8,7 +8,7 @@ mod rigid;
 mod tuples;
 mod vectors;
 
-pub use arm::ArmScene;
+pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
 pub use driven::{DrivenScene, SpeedBound};
 pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};
@@ -172,7 +172,7 @@ impl<'c, S> Measured<'c, S> {
 
 /// A robot of some kind among its obstacles, with start and goals: a scene to plan in.
 ///
-/// Implemented by rigid bodies ([`RigidScene`]), arms ([`ArmScene`]) and robots of the plane ([`PlanarScene`]). To add a kind,
+/// Implemented by rigid bodies ([`RigidScene`]), arms ([`ArmScene`], [`FloatingScene`]) and robots of the plane ([`PlanarScene`]). To add a kind,
 /// implement this trait; [`Scene::new`](crate::Scene::new) makes a scene of it, and the rest of
 /// this crate works with it: planning by name, checking, explaining, shortening, relaxing, roadmaps. Planners must be
 /// compiled for its type of configuration; [`compile_for!`](mp_tree::compile_for) of mp-tree and mp-roadmap does that for

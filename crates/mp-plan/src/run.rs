@@ -285,11 +285,11 @@ fn search_on<S: TreeState>(
     events: &mut Events<'_, '_, '_, S>,
     time: &dyn Fn() -> Duration,
 ) {
-    let adapter = events.adapter;
+    let (adapter, rows) = (events.adapter, events.rows);
     let report = |path: &Path<S>| {
         let length = path.length(space);
         if let Some(watch) = &mut *adapter.watch.borrow_mut() {
-            watch.found(length);
+            watch.found(length, &|| rows(path));
         }
         length
     };

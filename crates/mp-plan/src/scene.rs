@@ -37,6 +37,7 @@ pub struct Scene {
     pub(crate) shipped: bool,
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
+    notes: Arc<[String]>,
 }
 
 /// A scene as an editor keeps it: its document, and the meshes that are not written into the document.
@@ -57,7 +58,14 @@ impl fmt::Debug for Scene {
 impl Scene {
     /// A scene with a robot of your own kind, or of one of the kinds of this crate: [`RigidScene`], [`ArmScene`](crate::ArmScene), [`PlanarScene`].
     pub fn new(robot: impl RobotKind + 'static) -> Self {
-        Self { robot: Arc::new(robot), file: None, inputs: Arc::default(), shipped: false, document: None }
+        Self {
+            robot: Arc::new(robot),
+            file: None,
+            inputs: Arc::default(),
+            shipped: false,
+            document: None,
+            notes: Arc::default(),
+        }
     }
 
     /// A scene of a rigid body among meshes.
@@ -192,6 +200,17 @@ impl Scene {
         Self { file: Some(file.into()), ..self }
     }
 
+    #[cfg(any(feature = "planar", feature = "urdf"))]
+    pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {
+        Self { notes: notes.into(), ..self }
+    }
+
+    /// What was chosen for a scene whose file is a robot or a map alone, in sentences. Empty for other scenes.
+    #[must_use]
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
     /// The name of the scene.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -222,10 +241,11 @@ impl Scene {
         self.robot.limits()
     }
 
-    /// Further facts about the robot, for people: name and text.
+    /// Further facts about the scene, for people: name and text. The [notes](Self::notes) are among them.
     #[must_use]
     pub fn details(&self) -> Vec<(String, String)> {
-        self.robot.details()
+        let notes = self.notes.iter().map(|note| ("note".to_owned(), note.clone()));
+        self.robot.details().into_iter().chain(notes).collect()
     }
 
     /// The fraction of the space in which the robot is free, estimated from `samples` samples. The same scene gives the same
@@ -429,6 +449,24 @@ impl Scene {
     /// When the path is of another robot, or has no configurations.
     pub fn track(&self, path: &PathRows) -> Result<Track, Error> {
         self.robot.track(path)
+    }
+
+    /// The field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.
+    /// `range` is that of the planner `rrs`, by default its default. The longer side has so many `cells`, 4,096 at most.
+    ///
+    /// # Errors
+    /// When the scene is no world of the plane, the row is not one of its configurations, or the range is no length.
+    #[cfg_attr(
+        not(feature = "planar"),
+        expect(unused_variables, reason = "there are no worlds of the plane")
+    )]
+    pub fn field(&self, row: &[f64], range: Option<&str>, cells: usize) -> Result<crate::FieldImage, Error> {
+        #[cfg(feature = "planar")]
+        if self.is_planar_world() {
+            return self.robot.field(row, range, cells);
+        }
+        Err(Error::new(format!("the field of {} is not drawn", self.name()))
+            .help("only that of a world of the plane is"))
     }
 
     /// Writes the problem to `folder` as one JSON file and two OFF files for other planners. Returns the JSON file.

@@ -1,6 +1,6 @@
 //! Progress reports of a run, and how to stop it.
 
-use mp_cspace::{Cancel, Clock, Event, NodeId, Observer, Progress, SparseClock, Stop, StopReason};
+use mp_cspace::{Cancel, Clock, Event, NodeId, Observer, Path, Progress, SparseClock, Stop, StopReason};
 use std::time::Duration;
 
 /// The stages of a run.
@@ -21,8 +21,9 @@ pub trait Watch {
     fn stage(&mut self, _stage: Stage) {}
     /// The counts so far; at most ten times a second.
     fn progress(&mut self, _progress: &Progress) {}
-    /// A path of this length in the metric was found. An anytime planner finds several.
-    fn found(&mut self, _length: f64) {}
+    /// A path of this length in the metric was found. An anytime planner finds several. `rows` makes its configurations as they would
+    /// be written: verified by the planner, but not finished.
+    fn found(&mut self, _length: f64, _rows: &dyn Fn() -> Vec<Vec<f64>>) {}
     /// Whether [`event`](Self::event) is to be called, which costs time. Called once, when planning begins.
     fn wants_events(&self) -> bool {
         false
@@ -65,6 +66,8 @@ pub enum SearchEvent<'a> {
         id: NodeId,
         /// Its configuration.
         row: Vec<f64>,
+        /// Of a node of a roadmap, its kind, as in [`GrownRoadmap::kinds`]; `None` for the root of a tree.
+        kind: Option<&'static str>,
     },
     /// A node was added under another.
     Added {
@@ -76,6 +79,8 @@ pub enum SearchEvent<'a> {
         parent: NodeId,
         /// Its configuration.
         row: Vec<f64>,
+        /// The configurations between parent and node at which their edge bends. Empty for a straight edge.
+        through: Vec<Vec<f64>>,
     },
     /// A node got another parent.
     Rewired {
@@ -85,9 +90,18 @@ pub enum SearchEvent<'a> {
         id: NodeId,
         /// Its new parent.
         parent: NodeId,
+        /// The configurations between parent and node at which their edge bends. Empty for a straight edge.
+        through: Vec<Vec<f64>>,
     },
     /// An edge was added to a roadmap.
     Linked {
+        /// One end.
+        from: NodeId,
+        /// The other.
+        to: NodeId,
+    },
+    /// An edge of a roadmap, added before, turned out to be blocked.
+    Unlinked {
         /// One end.
         from: NodeId,
         /// The other.
@@ -192,6 +206,8 @@ impl Stop for &WatchAdapter<'_, '_> {
 /// Passes events to a watch, with states as rows of numbers.
 pub(crate) struct Events<'t, 'w, 'a, S> {
     pub(crate) row: &'t dyn Fn(&S) -> Vec<f64>,
+    /// The rows of a path: maybe more than its states, as [`RobotKind::rows`](crate::RobotKind::rows).
+    pub(crate) rows: &'t dyn Fn(&Path<S>) -> Vec<Vec<f64>>,
     pub(crate) adapter: &'t WatchAdapter<'w, 'a>,
     pub(crate) wanted: bool,
 }
@@ -202,14 +218,27 @@ impl<S> Observer<S> for Events<'_, '_, '_, S> {
             return;
         }
         let row = self.row;
+        // Edges are stored forward in time; a tree from the goal has its parents later.
+        let between = |tree: usize, through: &[S]| {
+            let mut rows: Vec<Vec<f64>> = through.iter().map(row).collect();
+            if tree == 1 {
+                rows.reverse();
+            }
+            rows
+        };
         let event = match event {
             Event::Sampled(state) => SearchEvent::Sampled { row: row(state) },
-            Event::Rooted { tree, id, state } => SearchEvent::Rooted { tree, id, row: row(state) },
-            Event::Added { tree, id, parent, state } => {
-                SearchEvent::Added { tree, id, parent, row: row(state) }
+            Event::Rooted { tree, id, state, kind } => {
+                SearchEvent::Rooted { tree, id, row: row(state), kind }
             }
-            Event::Rewired { tree, id, parent } => SearchEvent::Rewired { tree, id, parent },
+            Event::Added { tree, id, parent, state, through } => {
+                SearchEvent::Added { tree, id, parent, row: row(state), through: between(tree, through) }
+            }
+            Event::Rewired { tree, id, parent, through } => {
+                SearchEvent::Rewired { tree, id, parent, through: between(tree, through) }
+            }
             Event::Linked { from, to } => SearchEvent::Linked { from, to },
+            Event::Unlinked { from, to } => SearchEvent::Unlinked { from, to },
             Event::Blocked { from, toward } => SearchEvent::Blocked { from: row(from), toward: row(toward) },
             Event::Rejected => SearchEvent::Rejected,
             Event::Pruned { tree, survivors } => SearchEvent::Pruned { tree, survivors },

@@ -79,8 +79,8 @@ fn write_gradient<P: Placement>(
     gradient.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
 }
 
-/// From differences of the clearance at `q` and beside it: one more clearance query than there are joints. Zero in
-/// collision, because the depth of an arm is not known.
+/// From differences of the clearance at `q` and beside it: one more clearance query than there are degrees of freedom. Zero
+/// in collision, because the depth of an arm is not known.
 impl<Q: Coordinates> ClearanceGradient<Q> for Arm {
     fn clearance_gradient(&mut self, q: &Q, reach: f64, gradient: &mut [f64]) -> f64 {
         gradient.fill(0.0);
@@ -88,18 +88,16 @@ impl<Q: Coordinates> ClearanceGradient<Q> for Arm {
         if here <= 0.0 || here >= reach {
             return here;
         }
-        let mut beside = q.clone();
-        for (k, slope) in gradient.iter_mut().enumerate().take(q.as_slice().len()) {
+        for (k, slope) in gradient.iter_mut().enumerate().take(self.dof()) {
             // The other direction where a joint is at its limit.
             for step in [1e-5, -1e-5] {
-                beside.as_mut_slice()[k] = q.as_slice()[k] + step;
+                let beside = self.kinematics().nudged(q, k, step);
                 let there = self.clearance(&beside, 2.0 * here + 1.0);
                 if there > 0.0 {
                     *slope = (there - here) / step;
                     break;
                 }
             }
-            beside.as_mut_slice()[k] = q.as_slice()[k];
         }
         here
     }

@@ -71,8 +71,11 @@ pub const FILES: &[File] = files! {
     "meshes/windows/easy_wall.off"
     "meshes/windows/robot.off"
     "meshes/windows/twisty_wall.off"
+    "meshes/wrench/nut.off"
+    "meshes/wrench/wall.off"
     "paths/alpha.txt"
     "robots/six.urdf"
+    "robots/wrench.urdf"
     "scenes/accelerations.toml"
     "scenes/alpha-1.0.env"
     "scenes/alpha-1.1.env"
@@ -103,4 +106,5 @@ pub const FILES: &[File] = files! {
     "scenes/twisty.env"
     "scenes/unicycle.toml"
     "scenes/velocities.toml"
+    "scenes/wrench.toml"
 };

@@ -19,6 +19,7 @@ mod shape;
 #[cfg(test)]
 mod tests;
 mod windows;
+mod wrench;
 
 pub use scene::Files;
 use std::fmt;
@@ -55,6 +56,7 @@ pub fn generate() -> Files {
     alpha::add(&mut files);
     planar::add(&mut files);
     arm::add(&mut files);
+    wrench::add(&mut files);
     disc_scenes::add(&mut files);
     motions::add(&mut files);
     files

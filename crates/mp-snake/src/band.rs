@@ -67,28 +67,49 @@ impl Band {
     pub fn solve(&self, columns: &mut [f64], width: usize) {
         let n = self.len();
         assert_eq!(columns.len(), n * width, "a right-hand side of {n} rows and {width} columns");
-        for i in 0..n {
-            let (done, rest) = columns.split_at_mut(i * width);
-            for (k, x) in rest[..width].iter_mut().enumerate() {
-                if i >= 1 {
-                    *x -= self.below[i - 1][0] * done[(i - 1) * width + k];
-                }
-                if i >= 2 {
-                    *x -= self.below[i - 2][1] * done[(i - 2) * width + k];
-                }
-            }
+        match width {
+            1 => self.solve_columns::<1>(columns),
+            2 => self.solve_columns::<2>(columns),
+            3 => self.solve_columns::<3>(columns),
+            6 => self.solve_columns::<6>(columns),
+            _ => (0..width).for_each(|k| self.solve_column(columns, width, k)),
         }
-        for i in (0..n).rev() {
-            let (row, after) = columns[i * width..].split_at_mut(width);
-            for (k, x) in row.iter_mut().enumerate() {
-                *x *= self.inverse[i];
-                if i + 1 < n {
-                    *x -= self.below[i][0] * after[k];
-                }
-                if i + 2 < n {
-                    *x -= self.below[i][1] * after[width + k];
-                }
+    }
+
+    /// Solves for all columns at once: the compiler unrolls the loops over them.
+    fn solve_columns<const W: usize>(&self, columns: &mut [f64]) {
+        let (rows, _) = columns.as_chunks_mut::<W>();
+        let ([mut last, mut before], mut below) = ([[0.0; W]; 2], [[0.0; 2]; 2]);
+        for (row, &next) in rows.iter_mut().zip(&self.below) {
+            for k in 0..W {
+                row[k] -= below[0][0] * last[k] + below[1][1] * before[k];
             }
+            (before, last) = (last, *row);
+            below = [next, below[0]];
+        }
+        let [mut next, mut after] = [[0.0; W]; 2];
+        for ((row, &inverse), below) in rows.iter_mut().zip(&self.inverse).zip(&self.below).rev() {
+            for k in 0..W {
+                row[k] = row[k] * inverse - below[0] * next[k] - below[1] * after[k];
+            }
+            (after, next) = (next, *row);
+        }
+    }
+
+    /// Solves for column `k` of `width`.
+    fn solve_column(&self, columns: &mut [f64], width: usize, k: usize) {
+        let ([mut last, mut before], mut below) = ([0.0; 2], [[0.0; 2]; 2]);
+        for (row, &next) in columns.chunks_exact_mut(width).zip(&self.below) {
+            row[k] -= below[0][0] * last + below[1][1] * before;
+            (before, last) = (last, row[k]);
+            below = [next, below[0]];
+        }
+        let [mut next, mut after] = [0.0; 2];
+        for ((row, &inverse), below) in
+            columns.chunks_exact_mut(width).zip(&self.inverse).zip(&self.below).rev()
+        {
+            row[k] = row[k] * inverse - below[0] * next - below[1] * after;
+            (after, next) = (next, row[k]);
         }
     }
 }

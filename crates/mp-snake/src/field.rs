@@ -50,6 +50,8 @@ pub struct Repulsion<F> {
     /// The clearance and its gradient.
     pub clearance: F,
     range: f64,
+    /// 1 / range.
+    per_range: f64,
     last: f64,
 }
 
@@ -59,7 +61,8 @@ impl<F> Repulsion<F> {
     /// # Errors
     /// When the range is not positive and finite.
     pub fn new(clearance: F, range: f64) -> Result<Self, ParameterError> {
-        Ok(Self { clearance, range: positive("the range of repulsion", range)?, last: f64::INFINITY })
+        let range = positive("the range of repulsion", range)?;
+        Ok(Self { clearance, range, per_range: 1.0 / range, last: f64::INFINITY })
     }
 
     /// The range of the repulsion (m).
@@ -73,12 +76,13 @@ impl<S, F: ClearanceGradient<S>> Field<S> for Repulsion<F> {
     #[inline(always)]
     fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
         self.last = self.clearance.clearance_gradient(q, self.range, gradient);
-        let near = 1.0 - self.last / self.range;
+        let near = 1.0 - self.last * self.per_range;
         if near <= 0.0 {
             gradient.fill(0.0);
             return 0.0;
         }
-        gradient.iter_mut().for_each(|g| *g *= -near / self.range);
+        let push = -near * self.per_range;
+        gradient.iter_mut().for_each(|g| *g *= push);
         0.5 * near * near
     }
     fn clearance(&self) -> Option<f64> {

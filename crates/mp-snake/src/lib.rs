@@ -11,6 +11,7 @@
 //! | make fields of pictures | [`Grid`], [`outline_energy`] (eq. 3), [`signed_distance`], [`blurred`], [`laplacian`] |
 //! | estimate risk | [`risk`]: motion noise times range noise, a field and a path cost |
 //! | plan with edges that bend | [`SnakePlanner`], whose edges are [`PolylineEdge`](mp_cspace::PolylineEdge)s |
+//! | choose how they bend | [`Bending`]: by snakes, by bulges, by both; or your own [`Bend`] |
 //! | relax a whole path | [`relax`] |
 //!
 //! A snake only guides and does not guarantee freedom of collision: [`SnakePlanner`] and [`relax`] accept curves that the
@@ -47,6 +48,7 @@
 //! ```
 
 mod band;
+mod bend;
 mod bulge;
 mod distance;
 mod field;
@@ -59,6 +61,7 @@ pub mod risk;
 mod snake;
 
 pub use band::Band;
+pub use bend::{Bend, Bending, Bent, UnknownBending};
 pub use bulge::Bulged;
 pub use distance::{signed_distance, squared_distance};
 pub use field::{Field, Nothing, Repulsion, With};

@@ -26,6 +26,7 @@ pub enum SnakeError {
 /// | `pace`: length of an implicit step (m²) | | > 0 | r² |
 /// | `iterations`: most steps | | ≥ 1 | 40 |
 /// | `tolerance`: converged when no node moves by more than this part of the spacing | | > 0 | 0.01 |
+/// | `clearance`: wanted of a motion that is bent (m) | | ≥ 0 | r/2 |
 ///
 /// The external energy has weight 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,6 +46,8 @@ pub struct Params {
     pub iterations: u32,
     /// Converged when no node moves by more than this part of the spacing.
     pub tolerance: f64,
+    /// The clearance (m) at which a snake that bends a motion need not relax further.
+    pub clearance: f64,
 }
 
 impl Params {
@@ -62,17 +65,18 @@ impl Params {
             pace: r * r,
             iterations: 40,
             tolerance: 0.01,
+            clearance: 0.5 * r,
         })
     }
 
-    /// The same for edges of a tree, where a snake must be cheap: nodes a full range apart, at most 4 steps, four times
-    /// the membrane stiffness, and converged at a tenth of the spacing.
+    /// The same for edges of a tree, where a snake must be cheap: nodes a full range apart, four times the membrane
+    /// stiffness, and converged at a tenth of the spacing.
     ///
     /// # Errors
     /// When the range is not positive and finite.
     pub fn for_edges(range: f64) -> Result<Self, ParameterError> {
         let whole = Self::for_range(range)?;
-        Ok(Self { membrane: 4.0 * whole.membrane, spacing: range, iterations: 4, tolerance: 0.1, ..whole })
+        Ok(Self { membrane: 4.0 * whole.membrane, spacing: range, tolerance: 0.1, ..whole })
     }
 
     /// These parameters, if all are within their ranges.
@@ -87,6 +91,7 @@ impl Params {
         positive("the pace", self.pace)?;
         within("the number of iterations", f64::from(self.iterations), 1.0, 1e6, "from 1 to a million")?;
         positive("the tolerance", self.tolerance)?;
+        not_negative("the clearance wanted", self.clearance)?;
         Ok(self)
     }
 

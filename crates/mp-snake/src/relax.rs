@@ -1,7 +1,7 @@
 //! Relaxation of whole paths.
 
-use crate::{Params, Repulsion, Snake, SnakeError};
-use mp_cspace::{MotionValidity, Path, Space, obstacles::ClearanceGradient};
+use crate::{Field, Params, Snake, SnakeError};
+use mp_cspace::{MotionValidity, Path, Space};
 
 /// The result of relaxing a path.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl<S> Relaxed<S> {
 pub fn relax<C: Space>(
     space: &C,
     check: &mut impl MotionValidity<C::State>,
-    field: &mut Repulsion<impl ClearanceGradient<C::State>>,
+    field: &mut impl Field<C::State>,
     path: &Path<C::State>,
     params: Params,
     stretch: f64,

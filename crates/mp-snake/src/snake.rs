@@ -93,6 +93,8 @@ pub struct Snake<'c, C: Space> {
     pub(crate) space: &'c C,
     params: Params,
     pub(crate) scale: Vec<f64>,
+    /// 1 / scale.
+    pub(crate) unscale: Vec<f64>,
     /// By the number of nodes that move.
     bands: Vec<Option<Band>>,
     now: CurveMeasurement,
@@ -105,7 +107,11 @@ pub struct Snake<'c, C: Space> {
     /// The buffers of bulges.
     pub(crate) blockage: Blockage,
     pub(crate) next: Vec<C::State>,
+    /// The buffers of strategies: a bulge, and a contour that begins there.
+    pub(crate) spare: [Vec<C::State>; 2],
     trace: Vec<Energy>,
+    /// Contours without a free bulge to begin with: how many became free, and how many did not.
+    pub(crate) without_bulge: [u64; 2],
 }
 
 /// A curve measured: its energy and the forces on it. Numbers are scaled: lengths in the metric.
@@ -116,6 +122,8 @@ pub(crate) struct CurveMeasurement {
     pub(crate) segments: Vec<f64>,
     /// Their lengths.
     lengths: Vec<f64>,
+    /// The second differences: at each node the segment after it less the one before, and zero at both ends.
+    bends: Vec<f64>,
     /// The gradient of the field at each node between the ends, across the curve.
     pub(crate) gradients: Vec<f64>,
     /// The clearance of those nodes.
@@ -128,6 +136,7 @@ impl CurveMeasurement {
             energy: Energy::default(),
             segments: Vec::with_capacity(NODES * dim),
             lengths: Vec::with_capacity(NODES),
+            bends: Vec::with_capacity(NODES * dim),
             gradients: Vec::with_capacity(NODES * dim),
             clearances: Vec::with_capacity(NODES),
         }
@@ -158,10 +167,13 @@ impl<'c, C: Space> Snake<'c, C> {
     /// When a parameter is out of range, or the space has no velocities.
     pub fn new(space: &'c C, params: Params) -> Result<Self, SnakeError> {
         let dim = space.dim();
+        let scale = scale(space)?;
+        let unscale = scale.iter().map(|s| 1.0 / s).collect();
         Ok(Self {
             space,
             params: params.checked()?,
-            scale: scale(space)?,
+            scale,
+            unscale,
             bands: Vec::new(),
             now: CurveMeasurement::with_room(dim),
             trial: CurveMeasurement::with_room(dim),
@@ -170,7 +182,9 @@ impl<'c, C: Space> Snake<'c, C> {
             unused: Vec::with_capacity(dim),
             blockage: Blockage::with_room(dim),
             next: Vec::with_capacity(NODES),
+            spare: [const { Vec::new() }; 2],
             trace: Vec::new(),
+            without_bulge: [0; 2],
         })
     }
 
@@ -211,6 +225,18 @@ impl<'c, C: Space> Snake<'c, C> {
         curve.push(to.clone());
     }
 
+    /// Lays nodes along a polyline into `curve`, which is cleared first: at its corners, and between them at most the
+    /// spacing apart.
+    pub(crate) fn resample(&self, corners: &[C::State], curve: &mut Vec<C::State>) {
+        curve.clear();
+        for pair in corners.windows(2) {
+            let parts = (self.space.distance(&pair[0], &pair[1]) / self.params.spacing).ceil().max(1.0);
+            let inside = |i: usize| self.space.interpolate(&pair[0], &pair[1], i as f64 / parts);
+            curve.extend((0..parts as usize).map(inside));
+        }
+        curve.extend(corners.last().cloned());
+    }
+
     /// The energy of a curve.
     pub fn energy(&mut self, curve: &[C::State], field: &mut impl Field<C::State>) -> Energy {
         let mut measured = std::mem::take(&mut self.trial);
@@ -247,12 +273,16 @@ impl<'c, C: Space> Snake<'c, C> {
             }
             iteration += 1;
             self.aim(&now);
+            let dim = self.space.dim();
+            let least = self.params.tolerance * self.params.spacing;
+            let farthest = self.step.chunks_exact(dim).map(norm).fold(0.0, f64::max);
+            if farthest <= least {
+                break Rest::Converged;
+            }
             let before = now.energy.total();
             let Some(part) = self.advance(curve, field, &mut now) else { break Rest::Stagnated };
             self.trace.push(now.energy);
-            let dim = self.space.dim();
-            let farthest = self.step.chunks_exact(dim).map(norm).fold(0.0, f64::max) * part;
-            if farthest <= self.params.tolerance * self.params.spacing {
+            if farthest * part <= least {
                 break Rest::Converged;
             }
             if before - now.energy.total() <= LEAST_GAIN * before.abs() {
@@ -272,55 +302,83 @@ impl<'c, C: Space> Snake<'c, C> {
     ) {
         let (dim, h) = (self.space.dim(), self.params.spacing);
         let parts = curve.len().saturating_sub(1);
-        measured.segments.resize(parts * dim, 0.0);
-        measured.lengths.clear();
-        for (pair, segment) in curve.windows(2).zip(measured.segments.chunks_exact_mut(dim)) {
-            self.space.velocity_into(&pair[0], &pair[1], segment);
-            segment.iter_mut().zip(&self.scale).for_each(|(x, s)| *x *= s);
-            measured.lengths.push(norm(segment));
-        }
-        let segments = &measured.segments;
-        let bends: f64 = segments
-            .iter()
-            .zip(segments.iter().skip(dim))
-            .map(|(incoming, outgoing)| (outgoing - incoming).powi(2))
-            .sum();
-        let stretched: f64 = segments.iter().map(|x| x * x).sum();
-        let length: f64 = measured.lengths.iter().sum();
-        let Params { membrane, plate, straighten, .. } = self.params;
-        measured.energy.internal = 0.5 * (membrane * stretched / h + plate * bends / (h * h * h));
-        measured.energy.optimal = straighten * length;
-        measured.energy.external = 0.0;
         let inner = parts.saturating_sub(1);
-        measured.gradients.resize(inner * dim, 0.0);
-        measured.clearances.clear();
-        let pairs = measured.segments.chunks_exact(dim).zip(measured.segments.chunks_exact(dim).skip(1));
-        let gradients = measured.gradients.chunks_exact_mut(dim);
-        for (q, (push, (incoming, outgoing))) in curve.iter().skip(1).zip(gradients.zip(pairs)) {
-            measured.energy.external += h * field.energy(q, push);
-            measured.clearances.push(field.clearance().unwrap_or(f64::INFINITY));
-            push.iter_mut().zip(&self.scale).for_each(|(x, s)| *x /= s);
-            across(push, incoming, outgoing);
+        if measured.lengths.len() != parts {
+            measured.segments.resize(parts * dim, 0.0);
+            measured.lengths.resize(parts, 0.0);
+            measured.bends.clear();
+            measured.bends.resize((inner + 2) * dim, 0.0);
+            measured.gradients.resize(inner * dim, 0.0);
+            measured.clearances.resize(inner, 0.0);
         }
+        let [mut stretched, mut curled, mut length, mut external] = [0.0; 4];
+        let [scale, unscale] = [&self.scale[..dim], &self.unscale[..dim]];
+        let segments = measured.segments.chunks_exact_mut(dim).zip(&mut measured.lengths);
+        for (pair, (segment, far)) in curve.windows(2).zip(segments) {
+            self.space.velocity_into(&pair[0], &pair[1], segment);
+            let mut square = 0.0;
+            for (x, s) in segment.iter_mut().zip(scale) {
+                *x *= s;
+                square += *x * *x;
+            }
+            *far = square.sqrt();
+            stretched += square;
+            length += *far;
+        }
+        let outgoing = measured.segments.get(dim..).unwrap_or_default();
+        let pairs = measured.segments.chunks_exact(dim).zip(outgoing.chunks_exact(dim));
+        let bends = measured.bends.get_mut(dim..).unwrap_or_default().chunks_exact_mut(dim);
+        let nodes = curve.iter().skip(1).zip(&mut measured.clearances).zip(bends);
+        for (((q, clearance), bend), (push, (incoming, outgoing))) in
+            nodes.zip(measured.gradients.chunks_exact_mut(dim).zip(pairs))
+        {
+            let energy = field.energy(q, push);
+            *clearance = field.clearance().unwrap_or(f64::INFINITY);
+            external += energy;
+            for ((bend, c), g) in bend.iter_mut().zip(incoming).zip(outgoing) {
+                *bend = g - c;
+                curled += *bend * *bend;
+            }
+            if energy == 0.0 {
+                continue;
+            }
+            // The part of the push along the curve, the sum of both segments, does not move the curve: it is removed.
+            let [mut along, mut part] = [0.0; 2];
+            for (((c, g), push), s) in incoming.iter().zip(outgoing).zip(push.iter_mut()).zip(unscale) {
+                *push *= s;
+                along += (c + g) * (c + g);
+                part += *push * (c + g);
+            }
+            if along > 0.0 {
+                part /= along;
+                for ((c, g), push) in incoming.iter().zip(outgoing).zip(push) {
+                    *push -= part * (c + g);
+                }
+            }
+        }
+        let Params { membrane, plate, straighten, .. } = self.params;
+        measured.energy.internal = 0.5 * (membrane * stretched / h + plate * curled / (h * h * h));
+        measured.energy.optimal = straighten * length;
+        measured.energy.external = h * external;
     }
 
     /// Computes the implicit step of all nodes, from the forces on the curve.
     fn aim(&mut self, measured: &CurveMeasurement) {
         let (dim, parts) = (self.space.dim(), measured.lengths.len());
         let Params { membrane, plate, straighten, spacing: h, pace, .. } = self.params;
-        let bent = |i: usize, k: usize| {
-            if i == 0 || i >= parts { 0.0 } else { bend(&measured.segments, dim, i, k) }
-        };
-        self.step.clear();
-        for i in 1..parts {
-            let [before, after] = [i - 1, i].map(|j| (j * dim, straighten / measured.lengths[j].max(1e-300)));
+        // Forces: β/h³ times the fourth difference, with ends that are free to turn, and the rest.
+        let (curl, stretch) = (plate / (h * h * h), membrane / h);
+        self.step.resize((parts - 1) * dim, 0.0);
+        let pairs = measured.segments.windows(2 * dim).step_by(dim).zip(measured.lengths.windows(2));
+        let forces = measured.bends.windows(3 * dim).step_by(dim).zip(measured.gradients.chunks_exact(dim));
+        for (step, ((pair, lengths), (bends, push))) in self.step.chunks_exact_mut(dim).zip(pairs.zip(forces))
+        {
+            let [before, after] =
+                [lengths[0], lengths[1]].map(|length| stretch + straighten / length.max(1e-300));
             for k in 0..dim {
-                let (incoming, outgoing) = (measured.segments[before.0 + k], measured.segments[after.0 + k]);
-                let stretch = membrane / h * (incoming - outgoing);
-                let curl = plate / (h * h * h) * (bent(i - 1, k) - 2.0 * bent(i, k) + bent(i + 1, k));
-                let slack = before.1 * incoming - after.1 * outgoing;
-                let push = h * measured.gradients[(i - 1) * dim + k];
-                self.step.push(-pace / h * (stretch + curl + slack + push));
+                let curl = curl * (bends[k] - 2.0 * bends[k + dim] + bends[k + 2 * dim]);
+                let inner = before * pair[k] - after * pair[k + dim] + curl;
+                step[k] = -pace * (inner / h + push[k]);
             }
         }
         let rows = parts - 1;
@@ -360,17 +418,19 @@ impl<'c, C: Space> Snake<'c, C> {
 
     /// The curve with each node between the ends moved by a part of the step.
     fn displaced(&mut self, curve: &[C::State], part: f64, out: &mut Vec<C::State>) {
-        out.clear();
-        out.extend_from_slice(curve);
         let dim = self.space.dim();
-        for (step, q) in self.step.chunks_exact(dim).zip(&mut out[1..]) {
-            self.velocity.clear();
-            self.velocity.extend(step.iter().zip(&self.scale).map(|(x, s)| x / s));
-            match self.space.moved(q, &self.velocity, part) {
-                Some(moved) if self.space.contains(&moved) => *q = moved,
-                _ => {}
+        let Self { space, step, velocity, unscale, .. } = self;
+        velocity.resize(dim, 0.0);
+        out.clear();
+        out.extend(curve.first().cloned());
+        for (step, q) in step.chunks_exact(dim).zip(&curve[1..]) {
+            for ((v, x), s) in velocity.iter_mut().zip(step).zip(unscale.iter()) {
+                *v = x * s;
             }
+            let moved = space.moved(q, velocity, part).filter(|moved| space.contains(moved));
+            out.push(moved.unwrap_or_else(|| q.clone()));
         }
+        out.extend(curve.last().cloned());
     }
 
     /// The number of degrees of freedom.
@@ -379,24 +439,7 @@ impl<'c, C: Space> Snake<'c, C> {
     }
 }
 
-/// The second difference of a curve at node `i`.
-#[inline]
-fn bend(segments: &[f64], dim: usize, i: usize, k: usize) -> f64 {
-    segments[i * dim + k] - segments[(i - 1) * dim + k]
-}
-
 #[inline]
 pub(crate) fn norm(v: &[f64]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
-}
-
-/// Removes from `push` its component along the curve, which is the sum of the segments before and after the node.
-#[inline]
-fn across(push: &mut [f64], incoming: &[f64], outgoing: &[f64]) {
-    let along = || incoming.iter().zip(outgoing).map(|(c, g)| c + g);
-    let square: f64 = along().map(|a| a * a).sum();
-    if square > 0.0 {
-        let part: f64 = push.iter().zip(along()).map(|(p, a)| p * a).sum::<f64>() / square;
-        push.iter_mut().zip(along()).for_each(|(p, a)| *p -= part * a);
-    }
 }

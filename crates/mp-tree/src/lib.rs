@@ -145,7 +145,7 @@ pub use algo::or_parallel::OrParallel;
 pub use algo::restarts::{Lengths, Restarts, Schedule};
 pub use algo::shared_tree::SharedTree;
 pub use algo::types::*;
-pub use by_name::{AnyPlanner, INPUTS, LEVELS};
+pub use by_name::{ACCEPT, AnyPlanner, INPUTS, LEVELS, ORDER};
 pub use engine::{
     Acceptable, Append, AppendApart, AppendDistinct, Connect, Core, Extend, Extender, GOAL_BIAS, Growing,
     Grown, Improving, Inserted, Inserter, NEEDS_BOTH_ENDS, Near, NearestSelector, PATIENCE, Purpose, Rewire,

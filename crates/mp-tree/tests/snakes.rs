@@ -74,6 +74,7 @@ fn bending<'c, C: Space, L: LocalPlanner<C::State>>(
 }
 
 const SNAKES: [&str; 2] = ["rrs", "rrs-connect"];
+const BENDS: [&str; 3] = ["bend=snake", "bend=bulge", "bend=hybrid"];
 
 fn solve(
     name: &str,
@@ -105,11 +106,12 @@ fn passages_are_passed_and_paths_are_free() {
         (trap, [[0.5, 0.5], [0.05, 0.5]]),
         (orchard(), ENDS),
     ];
-    for name in SNAKES {
+    for (name, bend) in SNAKES.into_iter().flat_map(|name| BENDS.map(|bend| (name, bend))) {
         for (boxes, ends) in &worlds {
             for seed in 0..10 {
-                let (path, _) = solve(name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
-                let path = path.unwrap_or_else(|| panic!("{} seed {seed}", name));
+                let settings = ["step=0.25", "range=0.03", bend];
+                let (path, _) = solve(name, boxes, *ends, &settings, seed, 40_000);
+                let path = path.unwrap_or_else(|| panic!("{name} {bend} seed {seed}"));
                 assert_path(
                     &space,
                     &path,
@@ -118,7 +120,7 @@ fn passages_are_passed_and_paths_are_free() {
                     |q| boxes.distance(q) > 0.0,
                 );
                 assert!(!path.states.windows(2).any(|w| boxes.hit(&w[0], &w[1])), "{} seed {seed}", name);
-                let again = solve(name, boxes, *ends, &["step=0.25", "range=0.03"], seed, 40_000);
+                let again = solve(name, boxes, *ends, &settings, seed, 40_000);
                 assert_eq!(again.0, Some(path), "the same seed gives the same path");
             }
         }
@@ -143,8 +145,11 @@ fn rescued_samples_save_iterations() {
         let total = |name: &str, settings: &[&str]| {
             (0..20).map(|seed| solve(name, &orchard(), ENDS, settings, seed, 40_000).1).sum::<u64>() as f64
         };
-        let (plain, bent) = (total(plain, &["step=0.4"]), total(bending, &["step=0.4", "range=0.03"]));
-        assert!(bent < most * plain, "{bending}: {bent} iterations instead of {plain}");
+        let plain = total(plain, &["step=0.4"]);
+        for bend in BENDS {
+            let bent = total(bending, &["step=0.4", "range=0.03", bend]);
+            assert!(bent < most * plain, "{bending} {bend}: {bent} iterations instead of {plain}");
+        }
     }
 }
 
@@ -208,10 +213,45 @@ fn bad_settings_are_refused() {
         ("range=0", "range"),
         ("range=150%", "range"),
         ("snake-steps=0", "iterations"),
+        ("bend=straight", "snake, bulge or hybrid"),
         ("rnage=1", "did you mean `range`"),
     ] {
         let message = refused("rrs", text);
         assert!(message.contains(word), "{text}: {message}");
     }
     assert!(planner("rss").unwrap_err().to_string().contains("`rrs`"));
+}
+
+/// Observers learn how edges bend: every piece of every edge is free, in forward time, in the trees from the start and from the goal.
+#[test]
+fn events_tell_how_edges_bend() {
+    let (space, boxes) = (square(), orchard());
+    for name in SNAKES {
+        let (mut bent, mut check) = ([0; 2], Exact(boxes.clone()));
+        for seed in 0..20 {
+            let settings = Settings::parse(["step=0.2", "range=0.05"]).unwrap();
+            let problem = problem(&space, &boxes, [[0.02, 0.02], [0.98, 0.98]]);
+            let mut planner = build(name, problem, &settings).unwrap();
+            let mut trees = [Vec::new(), Vec::new()];
+            let mut note = OnEvent(|event: Event<'_, Point>| match event {
+                Event::Rooted { tree, state, .. } => trees[tree].push(*state),
+                Event::Added { tree, parent, state, through, .. } => {
+                    let parent = trees[tree][parent as usize];
+                    let (from, to) = if tree == 0 { (parent, *state) } else { (*state, parent) };
+                    let line: Vec<Point> =
+                        [from].into_iter().chain(through.iter().copied()).chain([to]).collect();
+                    for ends in line.windows(2) {
+                        let free = check.check_motion(&ends[0], &ends[1]).is_free();
+                        assert!(free, "{name}, tree {tree}: {line:?}");
+                    }
+                    bent[tree] += usize::from(through.len() > 1);
+                    trees[tree].push(*state);
+                }
+                Event::Pruned { .. } => panic!("no edge of this scene fails"),
+                _ => {}
+            });
+            let _ = planner.solve(&mut Rng::seed(seed), &mut Iterations(300), &mut note);
+        }
+        assert!(bent[0] > 0 && (name == "rrs" || bent[1] > 0), "{name}: {bent:?}");
+    }
 }

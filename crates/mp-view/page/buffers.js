@@ -72,8 +72,8 @@ class ColoredRows {
     this.vao = gl.createVertexArray();
   }
   get count() { return this.rows.size / this.stride; }
-  /** Adds rows at the end. @param {Float32Array} coordinates @param {(row: number) => Rgba} color */
-  append(coordinates, color) {
+  /** The bytes of rows. @param {Float32Array} coordinates @param {(row: number) => Rgba} color */
+  packed(coordinates, color) {
     const count = coordinates.length / this.floats;
     const bytes = new Uint8Array(count * this.stride);
     const numbers = new Float32Array(bytes.buffer);
@@ -83,9 +83,18 @@ class ColoredRows {
       const rgba = color(i);
       for (let k = 0; k < 4; k++) bytes[i * this.stride + 4 * this.floats + k] = Math.round(255 * rgba[k]);
     }
-    if (!count) return;
-    this.rows.append(bytes);
+    return bytes;
+  }
+  /** Adds rows at the end. @param {Float32Array} coordinates @param {(row: number) => Rgba} color of the row with this number among the new ones */
+  append(coordinates, color) {
+    if (!coordinates.length) return;
+    this.rows.append(this.packed(coordinates, color));
     this.bind();
+  }
+  /** Writes rows again, from this one on. @param {number} first @param {Float32Array} coordinates @param {(row: number) => Rgba} color as in `append` */
+  rewrite(first, coordinates, color) {
+    this.gl.bindBuffer(this.gl.ARRAY_BUFFER, this.rows.buffer);
+    this.gl.bufferSubData(this.gl.ARRAY_BUFFER, first * this.stride, this.packed(coordinates, color));
   }
   /** Gives a row other coordinates. @param {number} row @param {Float32Array} coordinates */
   replace(row, coordinates) {
@@ -195,5 +204,23 @@ export class ShapeBuffers {
     for (const [at, size, offset] of [[1, 3, 0], [2, 4, 3], [3, 4, 7], [4, 1, 11], [5, 3, 12]]) {
       gl.vertexAttribPointer(at, size, gl.FLOAT, false, 4 * COPY, 4 * (first * COPY + offset));
     }
+  }
+}
+
+/** An image: a rectangle of cells, each of one colour. */
+export class ImageSet {
+  constructor(/** @type {WebGL2RenderingContext} */ gl) {
+    this.gl = gl;
+    this.texture = gl.createTexture();
+    /** What it was written for. @type {object | null} */ this.owner = null;
+  }
+  /** @param {object} owner @param {number} width @param {number} height @param {Uint8Array} pixels red, green, blue, opacity of each cell, the lowest row first */
+  write(owner, width, height, pixels) {
+    const gl = this.gl;
+    this.owner = owner;
+    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+    for (const axis of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, axis, gl.CLAMP_TO_EDGE);
   }
 }

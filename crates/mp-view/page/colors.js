@@ -2,7 +2,7 @@
 
 /** @typedef {[number, number, number]} Color red, green, blue between 0 and 1 */
 /** @typedef {{background: Color, obstacle: Color, cut: Color, robot: Color, start: Color, goal: Color, path: Color, compared: Color, rejected: Color, refused: Color,
- *  fromStart: Color, fromGoal: Color, wire: Color, edge: Color, picked: Color, other: Color}} Palette */
+ *  covered: Color, pushed: Color, fromStart: Color, fromGoal: Color, wire: Color, edge: Color, picked: Color, other: Color}} Palette */
 
 /** @param {string} hex as #rrggbb @returns {Color} */
 export const hexColor = (hex) => /** @type {Color} */ ([1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255));
@@ -19,6 +19,8 @@ const COLORS = {
   compared: ["#0b7d8a", "#3fd0de"],
   rejected: ["#d02020", "#ff5a50"],
   refused: ["#a3148c", "#ff6be6"],
+  covered: ["#1d8f86", "#2fc4b8"],
+  pushed: ["#b2182b", "#e0485a"],
   fromStart: ["#3a66c4", "#76a9ff"],
   fromGoal: ["#c0453f", "#ff8b84"],
   wire: ["#857763", "#b9b0a2"],
@@ -36,9 +38,9 @@ const OBSTACLES = ["#b4bdc9", "#c9bda9", "#acbfb3", "#c2b2bd", "#a9bcc4", "#cdc7
 /** @param {number} obstacle its number @returns {Color} */
 export const obstacleColor = (obstacle) => OBSTACLES[obstacle % OBSTACLES.length];
 
-/** A colour for a component of a roadmap; neighbouring numbers differ clearly. @param {number} component @returns {Color} */
-export function componentColor(component) {
-  const hue = (0.58 + component * 0.381966) % 1;
+/** A colour for a component of a roadmap; neighbouring numbers differ clearly. @param {number} first its first milestone @returns {Color} */
+export function componentColor(first) {
+  const hue = (0.58 + first * 0.381966) % 1;
   const channel = (/** @type {number} */ shift) => 0.47 + 0.3 * Math.cos(2 * Math.PI * (hue + shift));
   return [channel(0), channel(-1 / 3), channel(-2 / 3)];
 }

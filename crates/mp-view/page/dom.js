@@ -70,6 +70,14 @@ export const factList = (facts) => el("dl", {}, ...facts.flatMap(([name, value])
 /** A part of the panel that can be folded. @param {string} title @param {boolean} open @param {HTMLElement[]} content */
 export const section = (title, open, content) => el("details", { open }, el("summary", {}, title), el("div", { class: "content" }, ...content));
 
+/** A legend: a scale from clear to a colour, and what it means. @param {[number, number, number]} color @param {string} words */
+export function legendOf(color, words) {
+  const scale = el("span", { class: "scale", "aria-hidden": "true" });
+  const rgb = color.map((x) => Math.round(255 * x)).join(" ");
+  scale.style.background = `linear-gradient(to right, transparent, rgb(${rgb}))`;
+  return [scale, words];
+}
+
 /** A number as a person reads it. @param {number} x @returns {string} */
 export function brief(x) {
   if (!Number.isFinite(x)) return x > 0 ? "∞" : "–";

@@ -3,6 +3,7 @@
 import { showError } from "mp/dom.js";
 import { Editor } from "mp/editor.js";
 import { EndsPanel } from "mp/endspanel.js";
+import { FieldLayer } from "mp/field.js";
 import { Gallery } from "mp/gallery.js";
 import { Inspector } from "mp/inspector.js";
 import { decode } from "mp/message.js";
@@ -54,6 +55,7 @@ async function connect(session, viewer) {
   new Inspector(editor, () => opening.chooseMesh());
   new PlanningPanel(workbench);
   new EndsPanel(workbench);
+  new FieldLayer(workbench);
   const { opened } = workbench.hello;
   if (opened) workbench.take(opened, "open");
   else if (viewer.scene.bodies.length) await openInside(workbench);

@@ -23,7 +23,7 @@ const HELP = [
   ["Click", "say what is there"], ["Double click", "look at this place"],
   ["W A S D, Q E", "fly: forwards, left, backwards, right; down, up"], ["Shift + arrow keys", "turn the view"],
   ["1 … 7", "front, back, left, right, top, bottom, iso"], ["F", "fit everything"],
-  ["O", "perspective or parallel view"], ["M", "solid, transparent or wire"], ["X", "section: none, x, y, z"],
+  ["O", "perspective or parallel view"], ["M", "solid, transparent or wire"], ["X", "section: none, x, y, z"], ["L", "where the search has nodes: not shown, seen along z, y, x"],
   ["← →", "step by step along the path"], ["Home, End", "first and last configuration"], ["Space", "play and pause"],
   ["C", "all configurations at once"], ["P", "show or hide the panel"], ["Esc", "forget what was picked"],
   ["?", "this help"],
@@ -37,6 +37,7 @@ export class Panels {
     this.triangles = 0;
     this.picked = el("div", { role: "status", class: "picked" });
     this.row = el("dl", {});
+    /** Controls of other modules. @type {HTMLElement[]} */ this.more = [];
     this.shown = section("Shown", true, []);
     this.paths = section("Paths", true, []);
     this.configuration = section("Configuration", false, [this.row]);
@@ -60,10 +61,15 @@ export class Panels {
     if (scene.report) parts.push(section("Report", true, [factList(reportFacts(scene.report))]));
     this.facts.replaceChildren(...parts);
   }
+  /** Adds controls below those of what is shown; they stay when another scene is shown. @param {HTMLElement[]} controls */
+  addShown(...controls) {
+    this.more.push(...controls);
+    this.shown.lastElementChild?.append(...controls);
+  }
   /** Shows what can be shown of the scene, and its paths. */
   showPaths() {
     const { paths, columns } = this.scene;
-    this.shown.lastElementChild?.replaceChildren(...this.shownControls());
+    this.shown.lastElementChild?.replaceChildren(...this.shownControls(), ...this.more);
     this.paths.lastElementChild?.replaceChildren(...this.pathList());
     this.shown.hidden = !columns.length;
     this.paths.hidden = paths.every((path) => path.ofRun);

@@ -14,6 +14,11 @@ import { add, dot, place, pointAt, scale, sub, unplace, unrotate } from "mp/math
  *  `time` is set for a configuration of the path; `item` for a body. */
 /** @typedef {{points: Float32Array, count: number, describe: (i: number) => Omit<Picked, "point">}} Cloud points to click on */
 
+/** The kinds of milestones, by the numbers of docs/formats/viewer.md. */
+export const KIND_NAMES = ["sampled", "guard", "connection", "other"];
+/** How large milestones of each kind are drawn, as parts of 16 pixels. */
+export const KIND_SIZES = [0.3, 0.65, 0.4, 0.3];
+
 /** How near to a point or line a click must be, pixels. */
 const NEAR = 8;
 
@@ -155,10 +160,9 @@ export class Picker {
   describeMilestone(i) {
     const { nodes, component, kind, edges } = /** @type {NonNullable<Scene["roadmap"]>} */ (this.scene.roadmap);
     const degree = edges.reduce((sum, e) => sum + (e === i ? 1 : 0), 0);
-    const kinds = ["sampled", "guard", "connection", "other"];
     return {
       title: `Milestone ${brief(i)} of the roadmap`,
-      facts: [placeFact(pointAt(nodes, i)), ["kind", kinds[Math.min(kind[i], 3)]], ["component", brief(component[i])], ["edges", brief(degree)]],
+      facts: [placeFact(pointAt(nodes, i)), ["kind", KIND_NAMES[Math.min(kind[i], 3)]], ["component", brief(component[i])], ["edges", brief(degree)]],
       time: null,
       marked: true,
     };

@@ -3,6 +3,7 @@
 import { componentColor, obstacleColor, palette } from "mp/colors.js";
 import { GrowingTree } from "mp/growing.js";
 import { lerpPose } from "mp/math.js";
+import { KIND_SIZES } from "mp/picking.js";
 import { segmentsOf } from "mp/shapes.js";
 
 /** @import { Color, Palette } from "mp/colors.js" */
@@ -58,9 +59,9 @@ export class PictureMaker {
     this.roadmap = scene.roadmap ? this.roadmapLines() : null;
     this.marker = renderer.pointSet();
   }
-  treeLines(/** @type {Tree} */ { name, nodes, parents }) {
+  treeLines(/** @type {Tree} */ { name, nodes, parents, bends }) {
     const tree = new GrowingTree(this.renderer, name);
-    tree.append(nodes, parents);
+    tree.append(nodes, parents, bends);
     return tree;
   }
   addPath(/** @type {Path} */ path) { this.traces.push(this.traceLines(path)); }
@@ -80,10 +81,14 @@ export class PictureMaker {
     const { nodes, edges, component, kind } = /** @type {NonNullable<Scene["roadmap"]>} */ (this.scene.roadmap);
     const segments = new Float32Array(3 * edges.length);
     edges.forEach((node, i) => segments.set(nodes.subarray(3 * node, 3 * node + 3), 3 * i));
+    // The colour of a component is that of its first milestone, as while a roadmap grows.
+    /** @type {Map<number, number>} */ const first = new Map();
+    component.forEach((c, i) => { if (!first.has(c)) first.set(c, i); });
+    const color = (/** @type {number} */ i) => componentColor(first.get(component[i]) ?? 0);
     const lines = this.renderer.lineSet();
-    lines.append(segments, (i) => [...componentColor(component[edges[2 * i]]), 1]);
+    lines.append(segments, (i) => [...color(edges[2 * i]), 1]);
     const points = this.renderer.pointSet();
-    points.append(nodes, (i) => [...componentColor(component[i]), [0.3, 0.65, 0.4, 0.3][Math.min(kind[i], 3)]]);
+    points.append(nodes, (i) => [...color(i), KIND_SIZES[Math.min(kind[i], 3)]]);
     return { lines, points };
   }
   /** @param {Settings} s @returns {Picture} */
@@ -92,12 +97,14 @@ export class PictureMaker {
     const items = [...this.obstacles(s, colors), ...this.ends(s, colors), ...this.moving(s, colors)];
     const lines = this.lines(s, colors);
     const points = this.points(s, colors);
+    /** @type {Picture["images"]} */ const images = [];
     for (const layer of this.layers) {
+      images.push(...(layer.images?.(s, colors) ?? []));
       items.push(...(layer.items?.(s, colors) ?? []));
       lines.push(...(layer.lines?.(s, colors) ?? []));
       points.push(...(layer.points?.(s, colors) ?? []));
     }
-    return { items, lines, points, plane: this.plane(s), edges: s.edges, flat: this.scene.planar };
+    return { items, images, lines, points, plane: this.plane(s), edges: s.edges, flat: this.scene.planar };
   }
   /** @param {number} body */
   linesOnly(body) { return this.scene.bodies[body].mesh < 0 && this.scene.bodies[body].area < 0; }
@@ -156,8 +163,8 @@ export class PictureMaker {
   }
   /** @param {Settings} s @param {Palette} colors @returns {Picture["lines"]} */
   lines(s, colors) {
-    const trees = this.trees.flatMap(({ name, lines, count }, i) =>
-      s.trees[i] ? [{ set: lines, count: Math.round(s.growth * count), width: 1, color: treeColor(name, i, colors), alpha: 0.6, over: false }] : []);
+    const trees = this.trees.flatMap((tree, i) =>
+      s.trees[i] ? tree.drawn(s.growth).map((part) => ({ ...part, width: 1, color: treeColor(tree.name, i, colors), alpha: 0.6, over: false })) : []);
     const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.lines, count: this.roadmap.lines.count, width: 1, color: null, alpha: 1, over: false }] : [];
     const traces = this.traces.flatMap((set, i) => {
       const chosen = i === s.path || i === s.other;
@@ -170,7 +177,7 @@ export class PictureMaker {
   }
   /** @param {Settings} s @param {Palette} colors @returns {Picture["points"]} */
   points(s, colors) {
-    const marks = this.trees.flatMap(({ name, roots }, i) => (s.trees[i] ? [{ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }] : []));
+    const marks = this.trees.flatMap(({ name, roots }, i) => (s.trees[i] && roots ? [{ set: roots, count: roots.count, color: treeColor(name, i, colors), over: false }] : []));
     const roadmap = this.roadmap && s.roadmap ? [{ set: this.roadmap.points, count: this.roadmap.points.count, color: null, over: false }] : [];
     this.marker.clear();
     if (s.marked) this.marker.append(new Float32Array(s.marked), () => [1, 1, 1, 1]);

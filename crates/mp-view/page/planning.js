@@ -7,6 +7,7 @@ import { readPath } from "mp/scene.js";
 
 /** @import { Message } from "mp/message.js" */
 /** @import { Run } from "mp/runs.js" */
+/** @import { Path } from "mp/scene.js" */
 /** @import { Workbench } from "mp/workbench.js" */
 /** @typedef {{name: string, range: string, default: string, summary: string}} Parameter */
 /** @typedef {{name: string, aliases: string[], summary: string, family: "tree" | "roadmap",
@@ -157,14 +158,15 @@ export class PlanningPanel {
   async plan(paused) {
     if (this.going || !this.workbench.open) return;
     const request = this.request();
-    const run = this.runs.begin(++this.count, request.planner, request.seed);
+    const ends = this.workbench.ends.request();
+    const run = this.runs.begin(++this.count, request.planner, request.seed, ends);
     this.run = run;
     this.viewer.settings.growth = 1;
     if (this.growth) this.growth.value = "1";
     showError("");
     this.showState();
     try {
-      await this.workbench.session.request({ do: "plan", run: run.id, request, ...this.workbench.ends.request(), paused });
+      await this.workbench.session.request({ do: "plan", run: run.id, request, ...ends, paused });
     } catch (error) {
       // A run that has ended meanwhile has said why.
       if (!ended(run)) this.fail(run, error instanceof Error ? error.message : String(error), error);
@@ -197,25 +199,56 @@ export class PlanningPanel {
       run.progress = { ...run.progress, ...event };
       run.state = event.state;
     }
-    if (event.event === "found") run.progress.length = event.length;
+    if (event.event === "found") {
+      run.progress.length = event.length;
+      run.found = event.rows;
+    }
     if (event.event === "done") this.finished(run, event);
-    if (event.event === "failed") this.fail(run, event.message, event.cancelled ? null : Object.assign(new Error(event.message), { help: event.help }));
-    this.runs.update(run);
-    this.showState();
-    this.viewer.changed();
+    if (event.event === "failed") {
+      this.fail(run, event.message, event.cancelled ? null : Object.assign(new Error(event.message), { help: event.help }));
+      if (run.found) this.keep(run, run.found);
+    }
+    this.update(run);
   }
   /** @param {Run} run @param {Message} event */
   finished(run, { report, path }) {
     const { scene } = this.viewer;
     run.state = "done";
     run.report = report;
-    if (path) {
-      run.path = this.viewer.addPath({ ...readPath(path, scene.columns.length, scene.robot), name: `run ${run.id}: ${run.planner}`, ofRun: true, written: report.path ?? null });
-      if (this.runs.chosen === run) this.runs.choose(run);
-    }
+    if (path) this.addPath(run, readPath(path, scene.columns.length, scene.robot), report.path ?? null);
     const seed = this.seed;
     if (seed && isOn(this.next)) seed.valueAsNumber = (numberIn(seed) ?? 0) + 1;
     if (!report.solved) this.explain();
+  }
+  /** Shows the path of a run. @param {Run} run @param {Path} path @param {number[][] | null} written */
+  addPath(run, path, written) {
+    run.path = this.viewer.addPath({ ...path, name: `run ${run.id}: ${run.planner}`, ofRun: true, written });
+    if (this.runs.chosen === run) this.runs.choose(run);
+  }
+  /** Keeps the path of a run that was ended before it had finished it, if the planner's verifier passes it as it would be written.
+   * @param {Run} run @param {Float64Array} found its configurations, one after the other */
+  async keep(run, found) {
+    const { columns, robot } = this.viewer.scene;
+    const why = run.note;
+    const rows = Array.from({ length: found.length / columns.length }, (_, i) => [...found.subarray(i * columns.length, (i + 1) * columns.length)]);
+    run.note = `${why} The path that it had found is checked.`;
+    this.update(run);
+    try {
+      const { path, faults, written } = await this.workbench.session.request({ do: "path", name: run.planner, rows, ...run.ends });
+      if (!this.runs.all.includes(run)) return;
+      run.note = faults.length ? `${why} The path that it had found is not free: ${faults[0]}.` : `${why} A verified path stays, as it was found.`;
+      if (!faults.length) this.addPath(run, readPath(path, columns.length, robot), written);
+    } catch (error) {
+      run.note = why;
+      showError(error);
+    }
+    this.update(run);
+  }
+  /** Shows what a run is doing. @param {Run} run */
+  update(run) {
+    this.runs.update(run);
+    this.showState();
+    this.viewer.changed();
   }
   /** @param {Run} run @param {string} message @param {unknown} error shown at the top, unless null */
   fail(run, message, error) {

@@ -1,8 +1,8 @@
 // Draws a picture with WebGL2: first what is opaque, then lines and points, then what is transparent, far to near.
 
-import { COPY, LineSet, PointSet, ShapeBuffers, program, uniforms } from "mp/buffers.js";
+import { COPY, ImageSet, LineSet, PointSet, ShapeBuffers, program, uniforms } from "mp/buffers.js";
 import { dot, normalize, place } from "mp/math.js";
-import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGMENT, SURFACE_VERTEX } from "mp/shaders.js";
+import { IMAGE_FRAGMENT, IMAGE_VERTEX, LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGMENT, SURFACE_VERTEX } from "mp/shaders.js";
 
 /** @import { Camera } from "mp/camera.js" */
 /** @import { Color, Palette } from "mp/colors.js" */
@@ -16,7 +16,8 @@ import { LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX, SURFACE_FRAGM
 /** @typedef {{set: LineSet, count: number, width: number, color: Color | null, alpha: number, over: boolean}} Lines */
 /** @typedef {{set: PointSet, count: number, color: Color | null, over: boolean}} Points
  *  What is `over` is drawn over transparent things. */
-/** @typedef {{items: Item[], lines: Lines[], points: Points[], plane: [number, number, number, number] | null, edges: boolean,
+/** @typedef {{image: ImageSet, corner: Vec3, right: Vec3, up: Vec3}} Image an image of cells on a rectangle, below a scene of the plane */
+/** @typedef {{items: Item[], images: Image[], lines: Lines[], points: Points[], plane: [number, number, number, number] | null, edges: boolean,
  *  flat: boolean}} Picture  `flat`: a planar scene, where later things hide earlier ones. */
 /** @typedef {{first: number, count: number, item: Item, items: Item[]}} Batch copies that are drawn by one call */
 
@@ -30,6 +31,8 @@ export class Renderer {
     this.surface = program(gl, SURFACE_VERTEX, SURFACE_FRAGMENT);
     this.line = program(gl, LINE_VERTEX, LINE_FRAGMENT);
     this.point = program(gl, POINT_VERTEX, POINT_FRAGMENT);
+    this.imageProgram = program(gl, IMAGE_VERTEX, IMAGE_FRAGMENT);
+    this.imageAt = uniforms(gl, this.imageProgram);
     this.surfaceAt = uniforms(gl, this.surface);
     this.lineAt = uniforms(gl, this.line);
     this.pointAt = uniforms(gl, this.point);
@@ -56,6 +59,9 @@ export class Renderer {
   lineSet() { return new LineSet(this.gl, this.strip); }
 
   pointSet() { return new PointSet(this.gl); }
+
+  image() { return new ImageSet(this.gl); }
+
   /** @param {Picture} picture @param {Camera} camera @param {Palette} palette @param {number} ratio device pixels per pixel */
   draw(picture, camera, palette, ratio) {
     const gl = this.gl;
@@ -71,7 +77,9 @@ export class Renderer {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
     const [low, middle, high] = picture.flat ? layered(picture.items) : this.byDepth(picture.items);
     this.upload([...low, ...middle, ...high]);
+    if (picture.flat) this.drawImages(picture);
     this.drawSurfaces(low, 0, picture);
+    if (!picture.flat) this.drawImages(picture);
     this.drawLines(picture, false);
     this.drawPoints(picture, false);
     this.drawSurfaces(middle, low.length, picture);
@@ -208,6 +216,26 @@ export class Renderer {
     gl.bindVertexArray(set.vao);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, count);
     this.counted(2 * count);
+  }
+  /** @param {Picture} picture */
+  drawImages({ images }) {
+    if (!images.length) return;
+    const gl = this.gl;
+    gl.useProgram(this.imageProgram);
+    gl.uniformMatrix4fv(this.imageAt.both, false, this.now.both);
+    gl.bindVertexArray(null);
+    gl.enable(gl.BLEND);
+    gl.depthMask(false);
+    for (const { image, corner, right, up } of images) {
+      gl.uniform3fv(this.imageAt.corner, corner);
+      gl.uniform3fv(this.imageAt.right, right);
+      gl.uniform3fv(this.imageAt.up, up);
+      gl.bindTexture(gl.TEXTURE_2D, image.texture);
+      gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);
+      this.counted(2);
+    }
+    gl.depthMask(true);
+    gl.disable(gl.BLEND);
   }
   /** Trees, roadmap and traces. @param {Picture} picture @param {boolean} over */
   drawLines(picture, over) {

@@ -7,8 +7,9 @@ import { reportFacts } from "mp/panels.js";
 /** @import { Message } from "mp/message.js" */
 /** @import { Viewer } from "mp/viewer.js" */
 /** @typedef {{id: number, planner: string, seed: number, state: string, progress: Message, report: Message | null, path: number,
- *  picture: RunPicture | null, note: string, cells: HTMLElement[], row: HTMLElement, choose: HTMLInputElement, compare: HTMLInputElement}} Run
- *  `path` is −1 where there is none; `picture` is null for the searches of older runs. */
+ *  picture: RunPicture | null, note: string, ends: Message, found: Float64Array | null, cells: HTMLElement[], row: HTMLElement, choose: HTMLInputElement, compare: HTMLInputElement}} Run
+ *  `path` is −1 where there is none; `picture` is null for the searches of older runs; `ends` are start and goals of its request, and
+ *  `found` the configurations of the last path found, before it is finished. */
 
 /** Of how many runs the searches are kept. */
 const KEPT = 3;
@@ -57,15 +58,15 @@ export class Runs {
     run.picture.free();
     run.picture = null;
   }
-  /** A run begins, and is shown. @param {number} id @param {string} planner @param {number} seed @returns {Run} */
-  begin(id, planner, seed) {
+  /** A run begins, and is shown. @param {number} id @param {string} planner @param {number} seed @param {Message} ends @returns {Run} */
+  begin(id, planner, seed, ends) {
     const choose = el("input", { type: "radio", name: "path", "aria-label": `Show run ${id}`, onchange: () => this.choose(run) });
     const compare = el("input", { type: "checkbox", "aria-label": `Compare with run ${id}`, onchange: () => this.compare(compare.checked ? run : null) });
     const cells = HEADS.slice(2).map(() => el("td", {}));
     const row = el("tr", {}, el("td", {}, choose), el("td", {}, compare), ...cells);
     const { renderer } = this.viewer;
     const picture = renderer ? new RunPicture(renderer) : null;
-    /** @type {Run} */ const run = { id, planner, seed, state: "starting", progress: {}, report: null, path: -1, picture, note: "", cells, row, choose, compare };
+    /** @type {Run} */ const run = { id, planner, seed, state: "starting", progress: {}, report: null, path: -1, picture, note: "", ends, found: null, cells, row, choose, compare };
     if (picture) this.layer.all.add(picture);
     this.all.push(run);
     for (const old of this.all.filter((r) => r.picture).slice(0, -KEPT)) this.drop(old);

@@ -4,6 +4,7 @@ import { hexColor } from "mp/colors.js";
 import { decode } from "mp/message.js";
 
 /** @import { Color } from "mp/colors.js" */
+/** @import { Bends } from "mp/growing.js" */
 /** @import { Vec3 } from "mp/math.js" */
 /** @typedef {{name: string, unit: string}} Column */
 /** @typedef {{positions: Float32Array, triangles: Uint32Array}} Mesh */
@@ -13,10 +14,10 @@ import { decode } from "mp/message.js";
  *  `mesh` and `area` are -1 where the body has none. `stretch` is 1, 1, 1 but while handles scale the body. */
 /** @typedef {{row: number[], poses: number[], refused?: boolean}} Configuration  `refused`: the planner said that it is not free */
 /** @typedef {{name: string, count: number, rows: Float64Array, poses: Float32Array, trace: Float32Array,
- *  clearance: Float32Array | null, verified: boolean, length: number, ofRun: boolean,
+ *  clearance: Float32Array | null, travel: Float32Array | null, verified: boolean, length: number, ofRun: boolean,
  *  written: number[][] | null}} Path  `ofRun`: made by a run of this page; `written`: the path's own configurations, where they are
- *  known: `rows` are more, for the animation */
-/** @typedef {{name: string, nodes: Float32Array, parents: Int32Array}} Tree */
+ *  known: `rows` are more, for the animation; `travel`: how far the robot has moved until each, metres */
+/** @typedef {{name: string, nodes: Float32Array, parents: Int32Array, bends: Bends | null}} Tree */
 /** @typedef {{nodes: Float32Array, edges: Uint32Array, component: Uint32Array, kind: Uint8Array}} Roadmap */
 /** @typedef {{name: string, space: string, planar: boolean, columns: Column[], limits: ([number, number] | null)[],
  *  bounds: [number[], number[]], meshes: Mesh[], areas: Area[], lines: Float32Array[], bodies: Body[], robot: number,
@@ -142,11 +143,12 @@ export function readPath(entry, columns, robot) {
   const poses = finite(path.poses, "f32", `poses of the path “${name}”`, 7);
   const trace = finite(path.trace, "f32", `trace of the path “${name}”`, 3);
   const clearance = path.clearance == null ? null : array(path.clearance, "f32", `clearance of the path “${name}”`);
+  const travel = path.travel == null ? null : finite(path.travel, "f32", `travel of the path “${name}”`, 1);
   const count = trace.length / 3;
-  const equal = rows.length === count * columns && poses.length === count * robot * 7 && (!clearance || clearance.length === count);
+  const equal = rows.length === count * columns && poses.length === count * robot * 7 && [clearance, travel].every((known) => !known || known.length === count);
   check(equal, `In the scene file, the arrays of the path “${name}” do not have the same number of configurations.`);
   const length = typeof path.length === "number" ? path.length : NaN;
-  return { name, count, rows, poses, trace, clearance, verified: path.verified === true, length, ofRun: false, written: null };
+  return { name, count, rows, poses, trace, clearance, travel, verified: path.verified === true, length, ofRun: false, written: null };
 }
 
 /** @param {unknown} entry @returns {Tree} */
@@ -157,7 +159,18 @@ function readTree(entry) {
   const parents = array(tree.parents, "i32", `parents of the tree “${name}”`);
   check(parents.length === nodes.length / 3, `In the scene file, the tree “${name}” must have one parent for each node.`);
   checkIndices(parents, parents.length, `a parent in the tree “${name}”`, -1);
-  return { name, nodes, parents };
+  return { name, nodes, parents, bends: tree.bent == null ? null : readBends(tree, parents.length, name) };
+}
+
+/** @param {Json} tree @param {number} count of nodes @param {string} name @returns {Bends} */
+function readBends(tree, count, name) {
+  const bent = array(tree.bent, "u32", `bent edges of the tree “${name}”`, 2);
+  const through = finite(tree.through, "f32", `bends of the tree “${name}”`, 3);
+  checkIndices(bent.filter((_, i) => i % 2 === 0), count, `a bent edge of the tree “${name}”`);
+  const points = bent.reduce((sum, n, i) => sum + (i % 2 ? n : 0), 0);
+  const some = bent.every((n, i) => i % 2 === 0 || n > 0);
+  check(some && through.length === 3 * points, `In the scene file, the tree “${name}” must have as many bends as its bent edges say.`);
+  return { bent, through };
 }
 
 /** @param {unknown} entry @returns {Roadmap | null} */

@@ -10,7 +10,7 @@ import { PlannerWorker } from "mp/worker.js";
 /** @typedef {{send: (bytes: Uint8Array<ArrayBuffer>, request: Message) => Promise<Uint8Array>, close: () => void,
  *  reconnect: () => Promise<void>}} Link  messages to the planner and back */
 
-/** How long a worker may take to answer a cancel before it is ended, milliseconds: a cancel has an effect within 100. */
+/** How long a run may take to end after a cancel before its worker is ended, milliseconds: a cancel has an effect within 100. */
 const PATIENCE = 90;
 /** Requests about one run. */
 const OF_RUN = ["pause", "resume", "step", "cancel"];
@@ -119,6 +119,7 @@ class WorkerLink {
     this.module = module; this.owner = owner;
     /** @type {Promise<PlannerWorker> | null} */ this.main = null;
     /** @type {Map<number, PlannerWorker>} */ this.runs = new Map();
+    /** Called when a run ends. @type {Map<number, () => void>} */ this.ended = new Map();
   }
   /** A worker in the state of the session. @param {(bytes: Uint8Array) => void} onevent @param {(text: string) => void} onfault
    * @param {(worker: PlannerWorker) => void} made is called at once, before the state is there */
@@ -144,6 +145,8 @@ class WorkerLink {
   async plan(bytes, run) {
     const end = (/** @type {Message} */ event) => {
       if (this.runs.delete(run)) this.owner.onevent(event);
+      this.ended.get(run)?.();
+      this.ended.delete(run);
     };
     const onevent = (/** @type {Uint8Array} */ message) => {
       const event = decode(message, "message");
@@ -169,9 +172,12 @@ class WorkerLink {
     const worker = this.runs.get(run);
     if (!worker) throw new SessionError("This run has ended.");
     if (what !== "cancel") return worker.send(bytes);
-    const late = new Promise((resolve) => setTimeout(resolve, PATIENCE, null));
-    const reply = await Promise.race([worker.send(bytes).catch(() => null), late]);
-    if (reply) return reply;
+    // A search is interrupted at once, but what finishes a path may be long.
+    const end = new Promise((resolve) => this.ended.set(run, () => resolve(true)));
+    const late = new Promise((resolve) => setTimeout(resolve, PATIENCE, false));
+    worker.send(bytes).catch(() => {});
+    if (await Promise.race([end, late])) return encode({});
+    this.ended.delete(run);
     if (this.runs.delete(run)) this.owner.onevent({ event: "failed", run, cancelled: true, message: "The run was cancelled.", help: null });
     worker.end("The run was cancelled.");
     return encode({});

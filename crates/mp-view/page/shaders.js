@@ -1,4 +1,4 @@
-// The three programs of the picture: surfaces (and their edges), wide lines, and points.
+// The programs of the picture: surfaces (and their edges), wide lines, points, and images.
 
 const HEAD = `#version 300 es
 precision highp float;
@@ -128,4 +128,25 @@ void main() {
   float far = length(gl_PointCoord - 0.5);
   if (far > 0.5 || (ring > 0.0 && far < 0.34)) discard;
   result = vec4(tint, 1.0);
+}`;
+
+/** A rectangle with an image. */
+export const IMAGE_VERTEX = `${HEAD}
+uniform mat4 both;
+uniform vec3 corner, right, up;
+out vec2 at;
+void main() {
+  at = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  gl_Position = both * vec4(corner + at.x * right + at.y * up, 1.0);
+  // A floor may be at the same place.
+  gl_Position.z -= 0.0002 * gl_Position.w;
+}`;
+
+export const IMAGE_FRAGMENT = `${HEAD}
+uniform sampler2D cells;
+in vec2 at;
+out vec4 result;
+void main() {
+  result = texture(cells, at);
+  if (result.a == 0.0) discard;
 }`;

@@ -2,7 +2,7 @@
 // backwards, and automatically.
 
 import { brief, button, byId, el, labelled, select, slider } from "mp/dom.js";
-import { ClearancePlot } from "mp/plot.js";
+import { PathPlot } from "mp/plot.js";
 
 /** @import { Animation, Settings } from "mp/picture.js" */
 /** @import { Mode } from "mp/renderer.js" */
@@ -38,7 +38,7 @@ export class Timeline {
     this.playButton = button("Play", () => this.toggle(), { class: "wide" });
     this.slider = slider({ low: 0, high: 1, step: 1, value: 0 }, (t) => this.scrub(t), { "aria-label": "Configuration" });
     this.output = el("output", { class: "count" });
-    this.plot = new ClearancePlot(el("canvas", { class: "plot", role: "img" }), (t) => this.scrub(t));
+    this.plot = new PathPlot(el("canvas", { class: "plot", role: "img" }), (t) => this.scrub(t), () => this.changed());
     this.autoControls = el("span", { class: "group" },
       labelled("Speed", select([["0.25", "¼×"], ["0.5", "½×"], ["1", "1×"], ["2", "2×"], ["4", "4×"]], "1", (v) => (this.speed = Number(v)))),
       labelled("At the end", select([["loop", "again"], ["return", "back"], ["stop", "stop"]], "loop", (v) => (this.atEnd = /** @type {AtEnd} */ (v)))));
@@ -57,7 +57,7 @@ export class Timeline {
           this.playButton,
           button("›", () => this.step(1), { "aria-label": "Next configuration", title: "Next (→)" }),
           button("»", () => this.scrub(this.last), { "aria-label": "Last configuration", title: "Last (End)" })),
-        this.autoControls, this.allControls, this.output),
+        this.autoControls, this.allControls, this.plot.control, this.output),
       this.slider, this.plot.canvas);
   }
   set(/** @type {() => void} */ change) {
@@ -72,7 +72,7 @@ export class Timeline {
     this.settings.time = Math.min(this.settings.time, this.last);
     const { copies } = this;
     if (copies) copies.max = String(Math.min(400, Math.max(2, this.last + 1)));
-    this.plot?.show(this.path);
+    this.plot?.show(this.scene, [this.path, this.scene?.paths[this.settings.other]]);
     this.update();
   }
   /** Shows the settings in the controls. */

@@ -3,6 +3,7 @@
 import { Camera } from "mp/camera.js";
 import { palette } from "mp/colors.js";
 import { Controls, isTyping } from "mp/controls.js";
+import { Coverage } from "mp/coverage.js";
 import { byId, showError } from "mp/dom.js";
 import { Frames } from "mp/frames.js";
 import { Panels, VIEWS } from "mp/panels.js";
@@ -15,6 +16,7 @@ import { Timeline } from "mp/timeline.js";
 
 /** @import { ViewName } from "mp/camera.js" */
 /** @import { Palette } from "mp/colors.js" */
+/** @import { Nodes } from "mp/coverage.js" */
 /** @import { Cloud } from "mp/picking.js" */
 /** @import { Animation, Settings } from "mp/picture.js" */
 /** @import { Item, Mode, Picture, Role } from "mp/renderer.js" */
@@ -23,10 +25,11 @@ import { Timeline } from "mp/timeline.js";
 /** @typedef {{drawCalls: number, triangles: number, milliseconds: number, frames: number}} Stats
  *  `milliseconds`: the time that scripts took for the last frame. */
 /** @typedef {{start?: (renderer: Renderer) => void, items?: (settings: Settings, colors: Palette) => Item[],
+ *  images?: (settings: Settings, colors: Palette) => Picture["images"],
  *  lines?: (settings: Settings, colors: Palette) => Picture["lines"], points?: (settings: Settings, colors: Palette) => Picture["points"],
- *  clouds?: (settings: Settings) => Cloud[]}} Layer
+ *  clouds?: (settings: Settings) => Cloud[], searched?: (settings: Settings) => Nodes[]}} Layer
  *  What another module draws over the scene. `start` is called when the layer is added, and after the graphics card was lost: its
- *  buffers are gone then. `clouds` are points that can be clicked. */
+ *  buffers are gone then. `clouds` are points that can be clicked, and `searched` the nodes of a search that is shown instead of the scene's own. */
 
 /** What belongs to one scene only. @param {Scene} scene */
 const settingsOf = (scene) => ({
@@ -72,10 +75,14 @@ export class Viewer {
     /** @type {Shape[]} */ this.shapes = [];
     /** The shape of each body. @type {number[]} */ this.ofBody = [];
     this.addLayer(new Frames(this));
+    this.coverage = new Coverage(this);
+    this.addLayer(this.coverage);
     this.prepare();
     const changed = () => this.changed();
     this.controls = new Controls(this.canvas, this.camera, { changed, clicked: (x, y) => this.click(x, y), centered: (x, y) => this.center(x, y) });
     this.panels = new Panels(this.settings, this);
+    this.panels.addShown(...this.coverage.elements);
+    this.coverage.show();
     this.timeline = new Timeline(this.settings, changed);
     this.listen();
     this.resize();
@@ -220,6 +227,7 @@ export class Viewer {
   /** Shows a second path beside the chosen one. @param {number} path −1 for none */
   compare(path) {
     this.settings.other = path;
+    this.timeline?.showPath();
     this.changed();
   }
   /** Says what is at a pixel. @param {number} x @param {number} y */
@@ -258,6 +266,7 @@ export class Viewer {
     else if (e.key === "o") this.setPerspective(!this.camera.perspective);
     else if (e.key === "m") this.panels?.setMode(s.mode === "solid" ? "transparent" : s.mode === "transparent" ? "wire" : "solid");
     else if (e.key === "x") this.panels?.setSection(s.section.axis >= 2 ? -1 : s.section.axis + 1);
+    else if (e.key === "l") this.coverage.next();
     else if (e.key === "c") this.timeline?.setAnimation("all");
     else if (e.key === "p") this.panels?.togglePanel();
     else if (e.key === "?") byId("help-button").click();

@@ -2,7 +2,8 @@
 
 use crate::arrays::{ArrayRef, Entry, append, extract};
 use crate::{
-    Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree, ViewError,
+    Area, Bends, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
+    ViewError,
 };
 use mp_plan::Column;
 use serde::{Deserialize, Serialize};
@@ -92,6 +93,8 @@ pub(crate) struct PathHead {
     poses: ArrayRef,
     trace: ArrayRef,
     clearance: Option<ArrayRef>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    travel: Option<ArrayRef>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -99,6 +102,10 @@ struct TreeHead {
     name: String,
     nodes: ArrayRef,
     parents: ArrayRef,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    bent: Option<ArrayRef>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    through: Option<ArrayRef>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -139,6 +146,7 @@ pub(crate) fn path_head(path: &PathTrack, data: &mut Vec<u8>) -> PathHead {
         poses: append(data, &path.poses),
         trace: append(data, &path.trace),
         clearance: path.clearance.as_ref().map(|clearance| append(data, clearance)),
+        travel: path.travel.as_ref().map(|travel| append(data, travel)),
     }
 }
 
@@ -171,6 +179,7 @@ impl SceneFile {
             pose: body.pose,
             color: body.color.map(|[r, g, b]| format!("#{r:02x}{g:02x}{b:02x}")),
         };
+        let bent = |tree: &Tree| !tree.bends.nodes.is_empty();
         Head {
             version: VERSION,
             name: self.name.clone(),
@@ -198,6 +207,8 @@ impl SceneFile {
                     name: tree.name.clone(),
                     nodes: append(data, &tree.nodes),
                     parents: append(data, &tree.parents),
+                    bent: bent(tree).then(|| append(data, &tree.bends.nodes)),
+                    through: bent(tree).then(|| append(data, &tree.bends.through)),
                 })
                 .collect(),
             roadmap: self.roadmap.as_ref().map(|map| RoadmapHead {
@@ -270,7 +281,8 @@ impl SceneFile {
         }
         for path in &self.paths {
             let count = path.trace.len() / 3;
-            let clearance = path.clearance.as_ref().is_none_or(|clearance| clearance.len() == count);
+            let fitting = |known: &Option<Vec<f32>>| known.as_ref().is_none_or(|known| known.len() == count);
+            let clearance = fitting(&path.clearance) && fitting(&path.travel);
             let all = path.trace.len() == 3 * count && path.rows.len() == count * self.columns.len();
             fits(all && path.poses.len() == 7 * robots * count && clearance, "paths", LENGTH)?;
         }
@@ -278,6 +290,11 @@ impl SceneFile {
             let count = tree.parents.len();
             fits(tree.nodes.len() == 3 * count, "trees", LENGTH)?;
             fits(tree.parents.iter().all(|&p| (-1..count as i64).contains(&i64::from(p))), "trees", INDEX)?;
+            let (pairs, rest) = tree.bends.nodes.as_chunks::<2>();
+            let points: u64 = pairs.iter().map(|[_, points]| u64::from(*points)).sum();
+            let all = rest.is_empty() && tree.bends.through.len() as u64 == 3 * points;
+            fits(all && pairs.iter().all(|[_, points]| *points > 0), "bent edges", LENGTH)?;
+            fits(pairs.iter().all(|[node, _]| (*node as usize) < count), "bent edges", INDEX)?;
         }
         if let Some(map) = &self.roadmap {
             let count = map.nodes.len() / 3;
@@ -328,6 +345,7 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
             poses: get(data, &path.poses, "poses")?,
             trace: get(data, &path.trace, "trace")?,
             clearance: path.clearance.map(|clearance| get(data, &clearance, "clearance")).transpose()?,
+            travel: path.travel.map(|travel| get(data, &travel, "travel")).transpose()?,
         })
     };
     let tree = |tree: TreeHead| {
@@ -335,6 +353,10 @@ fn read(head: Head, data: &[u8]) -> Result<SceneFile, ViewError> {
             name: tree.name,
             nodes: get(data, &tree.nodes, "nodes")?,
             parents: get(data, &tree.parents, "parents")?,
+            bends: Bends {
+                nodes: tree.bent.map(|bent| get(data, &bent, "bent")).transpose()?.unwrap_or_default(),
+                through: tree.through.map(|t| get(data, &t, "through")).transpose()?.unwrap_or_default(),
+            },
         })
     };
     let roadmap = |map: RoadmapHead| {

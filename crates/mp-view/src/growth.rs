@@ -1,11 +1,11 @@
 //! The trees or the roadmap that a run grows: what the page has not been told yet, and all of them for a scene file.
 
 use crate::message::Message;
-use crate::{Roadmap, SceneFile, Tree};
+use crate::{Bends, Roadmap, SceneFile, Tree};
 use mp_cspace::NodeId;
 use mp_plan::{GrownRoadmap, Request, Scene, SearchEvent, Watch};
 use serde_json::{Value, json};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// At most this many motions that were not free are kept until the page takes them; the oldest are dropped first.
 const MAX_REJECTED: usize = 20_000;
@@ -18,7 +18,10 @@ pub(crate) struct Growth {
     /// Whether the planner builds a roadmap.
     roadmap: bool,
     trees: Vec<GrowingTree>,
+    /// Edges of a roadmap that the page does not have.
     edges: Vec<u32>,
+    /// Edges that turned out to be blocked, and that the page does not know of.
+    unlinked: Vec<u32>,
     rejected: Vec<f32>,
 }
 
@@ -29,6 +32,10 @@ struct GrowingTree {
     nodes: Vec<f32>,
     /// The parent of each node, −1 for roots.
     parents: Vec<i32>,
+    /// What each node of a roadmap is, as in [`Roadmap`]; empty for a tree.
+    kinds: Vec<u8>,
+    /// Of each node whose edge bends, x y z of the points between its parent and itself.
+    bends: BTreeMap<usize, Vec<f32>>,
     /// How many nodes the page has.
     sent: usize,
     /// Nodes that the page has with another parent.
@@ -40,19 +47,34 @@ struct GrowingTree {
 impl Growth {
     pub(crate) fn new(scene: Scene, request: &Request) -> Self {
         let roadmap = mp_plan::roadmap_planners().iter().any(|info| info.is_called(&request.planner));
-        Self { scene, roadmap, trees: Vec::new(), edges: Vec::new(), rejected: Vec::new() }
+        Self {
+            scene,
+            roadmap,
+            trees: Vec::new(),
+            edges: Vec::new(),
+            unlinked: Vec::new(),
+            rejected: Vec::new(),
+        }
     }
 
     /// Notes an event.
     pub(crate) fn note(&mut self, event: &SearchEvent<'_>) {
         match event {
-            SearchEvent::Rooted { tree, id, row } => self.add(*tree, *id, -1, row),
-            SearchEvent::Added { tree, id, parent, row } => self.add(*tree, *id, number(*parent), row),
-            SearchEvent::Rewired { tree, id, parent } => {
-                self.tree(*tree).rewire(*id as usize, number(*parent))
+            SearchEvent::Rooted { tree, id, row, kind } => {
+                self.add(*tree, *id, -1, row);
+                self.tree(*tree).kinds.extend(kind.map(number_of_kind));
+            }
+            SearchEvent::Added { tree, id, parent, row, through } => {
+                self.add(*tree, *id, number(*parent), row);
+                self.bend(*tree, *id, through);
+            }
+            SearchEvent::Rewired { tree, id, parent, through } => {
+                self.tree(*tree).rewire(*id as usize, number(*parent));
+                self.bend(*tree, *id, through);
             }
             SearchEvent::Pruned { tree, survivors } => self.tree(*tree).prune(survivors),
             SearchEvent::Linked { from, to } => self.edges.extend([*from, *to]),
+            SearchEvent::Unlinked { from, to } => self.unlinked.extend([*from, *to]),
             SearchEvent::Blocked { from, toward } => {
                 if self.rejected.len() >= 6 * MAX_REJECTED {
                     self.rejected.drain(..3 * MAX_REJECTED);
@@ -73,6 +95,12 @@ impl Growth {
         tree.parents.push(parent);
     }
 
+    /// Notes the points at which the edge to a node bends.
+    fn bend(&mut self, tree: usize, id: NodeId, through: &[Vec<f64>]) {
+        let points = through.iter().flat_map(|row| self.place(row)).collect();
+        self.tree(tree).bend(id as usize, points);
+    }
+
     fn tree(&mut self, tree: usize) -> &mut GrowingTree {
         if self.trees.len() <= tree {
             self.trees.resize_with(tree + 1, GrowingTree::default);
@@ -82,17 +110,11 @@ impl Growth {
 
     /// A roadmap as it is drawn.
     fn drawn(&self, map: GrownRoadmap) -> Roadmap {
-        let kind = |name: &&str| match *name {
-            "plain" => 0,
-            "guard" => 1,
-            "connection" => 2,
-            _ => 3,
-        };
         Roadmap {
             nodes: map.rows.iter().flat_map(|row| self.place(row)).collect(),
             edges: map.edges.into_flattened(),
             component: map.components,
-            kind: map.kinds.iter().map(kind).collect(),
+            kind: map.kinds.iter().map(|kind| number_of_kind(kind)).collect(),
         }
     }
 
@@ -104,7 +126,8 @@ impl Growth {
     /// The event `grown` with all that the page does not have, if there is anything; afterwards the page has it.
     pub(crate) fn take(&mut self, run: u64) -> Option<Message> {
         let news = self.trees.iter().any(GrowingTree::has_news);
-        if !news && self.edges.is_empty() && self.rejected.is_empty() {
+        let links = [&self.edges, &self.unlinked].iter().any(|edges| !edges.is_empty());
+        if !news && !links && self.rejected.is_empty() {
             return None;
         }
         let mut message = Message::event("grown", run);
@@ -116,20 +139,29 @@ impl Growth {
             let nodes = message.array(&tree.nodes[3 * tree.sent..]);
             if self.roadmap {
                 let edges = message.array(&std::mem::take(&mut self.edges));
-                roadmap = json!({"from": tree.sent, "nodes": nodes, "edges": edges});
+                let unlinked = message.array(&std::mem::take(&mut self.unlinked));
+                let kinds = message.array(&tree.kinds[tree.sent..]);
+                roadmap = json!({
+                    "from": tree.sent, "nodes": nodes, "edges": edges, "unlinked": unlinked, "kind": kinds,
+                });
             } else if tree.sent < tree.parents.len() {
                 let parents = message.array(&tree.parents[tree.sent..]);
-                trees.push(
-                    json!({"tree": i, "name": name_of(i), "from": tree.sent, "nodes": nodes, "parents": parents}),
-                );
+                let bends = tree.bends_of(tree.sent..tree.parents.len());
+                let (bent, through) = (message.array(&bends.nodes), message.array(&bends.through));
+                trees.push(json!({
+                    "tree": i, "name": name_of(i), "from": tree.sent, "nodes": nodes, "parents": parents,
+                    "bent": bent, "through": through,
+                }));
             }
             if !tree.rewired.is_empty() {
                 let ids: Vec<u32> = tree.rewired.iter().map(|&id| id as u32).collect();
                 let parents: Vec<i32> = tree.rewired.iter().map(|&id| tree.parents[id]).collect();
-                tree.rewired.clear();
-                rewired.push(
-                    json!({"tree": i, "nodes": message.array(&ids), "parents": message.array(&parents)}),
-                );
+                let changed = std::mem::take(&mut tree.rewired);
+                let bends = tree.bends_of(changed);
+                rewired.push(json!({
+                    "tree": i, "nodes": message.array(&ids), "parents": message.array(&parents),
+                    "bent": message.array(&bends.nodes), "through": message.array(&bends.through),
+                }));
             }
             tree.sent = tree.parents.len();
         }
@@ -159,6 +191,26 @@ impl GrowingTree {
         }
     }
 
+    /// Notes x y z of the points at which the edge to a node bends.
+    fn bend(&mut self, id: usize, points: Vec<f32>) {
+        match points.is_empty() {
+            true => self.bends.remove(&id),
+            false => self.bends.insert(id, points),
+        };
+    }
+
+    /// The bent edges of some nodes.
+    fn bends_of(&self, nodes: impl IntoIterator<Item = usize>) -> Bends {
+        let mut bends = Bends::default();
+        for id in nodes {
+            if let Some(points) = self.bends.get(&id) {
+                bends.nodes.extend([id as u32, points.len() as u32 / 3]);
+                bends.through.extend(points);
+            }
+        }
+        bends
+    }
+
     /// Keeps the nodes with these numbers, which rise.
     fn prune(&mut self, survivors: &[NodeId]) {
         let mut new = vec![-1; self.parents.len()];
@@ -169,6 +221,8 @@ impl GrowingTree {
         let sent: Vec<u32> = survivors.iter().copied().filter(|&id| (id as usize) < self.sent).collect();
         self.nodes = survivors.iter().flat_map(|&id| self.nodes[3 * id as usize..][..3].to_vec()).collect();
         self.parents = survivors.iter().map(|&id| renumbered(self.parents[id as usize])).collect();
+        let bends = std::mem::take(&mut self.bends).into_iter();
+        self.bends = bends.filter_map(|(id, b)| Some((usize::try_from(new[id]).ok()?, b))).collect();
         self.rewired = self.rewired.iter().filter_map(|&id| usize::try_from(new[id]).ok()).collect();
         self.sent = sent.len();
         self.survivors = Some(match self.survivors.take() {
@@ -214,10 +268,11 @@ impl GrownTrees {
         let Self { growth, roadmap } = self;
         file.roadmap = roadmap.map(|map| growth.drawn(map));
         let trees = growth.trees.into_iter().enumerate().filter(|(_, tree)| !tree.parents.is_empty());
-        file.trees.extend(trees.map(|(i, GrowingTree { nodes, parents, .. })| Tree {
+        file.trees.extend(trees.map(|(i, tree)| Tree {
             name: name_of(i).to_owned(),
-            nodes,
-            parents,
+            bends: tree.bends_of(0..tree.parents.len()),
+            nodes: tree.nodes,
+            parents: tree.parents,
         }));
     }
 }
@@ -239,6 +294,16 @@ impl Watch for GrownTrees {
     }
 }
 
+/// What a node of a roadmap is, as in [`Roadmap`].
+fn number_of_kind(name: &str) -> u8 {
+    match name {
+        "plain" => 0,
+        "guard" => 1,
+        "connection" => 2,
+        _ => 3,
+    }
+}
+
 /// A node as a parent.
 fn number(id: NodeId) -> i32 {
     i32::try_from(id).unwrap_or(i32::MAX)
@@ -254,11 +319,14 @@ mod tests {
         for period in [1, 2, 3, 7, 100] {
             let mut tree = GrowingTree::default();
             let (mut page, mut taken) = (Vec::<i32>::new(), 0);
+            // Each node's edge bends at points that say the step in which it was made.
+            let mut bends = BTreeMap::new();
             for step in 0..60_usize {
                 match step % 6 {
                     4 => {
                         let id = tree.parents.len() / 2;
                         tree.rewire(id, (id / 2) as i32 - 1);
+                        tree.bend(id, vec![step as f32; 3 * (step % 3)]);
                     }
                     5 => {
                         // One of the last leaves is removed.
@@ -269,9 +337,10 @@ mod tests {
                         tree.prune(&survivors);
                     }
                     _ => {
+                        let id = tree.parents.len();
                         tree.nodes.extend([step as f32; 3]);
-                        tree.parents
-                            .push(tree.parents.len() as i32 - 1 - (step % 3).min(tree.parents.len()) as i32);
+                        tree.parents.push(id as i32 - 1 - (step % 3).min(id) as i32);
+                        tree.bend(id, vec![step as f32; 3 * (step % 4)]);
                     }
                 }
                 if step % period == 0 {
@@ -281,13 +350,29 @@ mod tests {
                             survivors.iter().position(|&s| s as i32 == parent).map_or(-1, |p| p as i32)
                         };
                         page = survivors.iter().map(|&s| new(page[s as usize])).collect();
+                        let kept = survivors.iter().enumerate();
+                        bends = kept.filter_map(|(i, &s)| Some((i, bends.remove(&(s as usize))?))).collect();
                     }
+                    let mut bend = |told: Bends| {
+                        let mut points = told.through.as_slice();
+                        for [node, count] in told.nodes.as_chunks::<2>().0 {
+                            let (own, rest) = points.split_at(3 * *count as usize);
+                            bends.insert(*node as usize, own.to_vec());
+                            points = rest;
+                        }
+                    };
+                    bend(tree.bends_of(tree.sent..tree.parents.len()));
                     page.extend(&tree.parents[tree.sent..]);
-                    for id in std::mem::take(&mut tree.rewired) {
+                    let changed = std::mem::take(&mut tree.rewired);
+                    bend(tree.bends_of(changed.clone()));
+                    let straight = |id: &&usize| !tree.bends.contains_key(id);
+                    changed.iter().filter(straight).for_each(|id| drop(bends.remove(id)));
+                    for id in changed {
                         page[id] = tree.parents[id];
                     }
                     tree.sent = tree.parents.len();
                     assert_eq!(page, tree.parents, "period {period}, step {step}");
+                    assert_eq!(bends, tree.bends, "period {period}, step {step}");
                 }
             }
             assert!(taken > 0);

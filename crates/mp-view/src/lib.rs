@@ -32,7 +32,7 @@ mod session;
 pub use error::ViewError;
 pub use growth::GrownTrees;
 pub use model::{
-    Area, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
+    Area, Bends, Body, Configuration, Mesh, PathTrack, Polyline, Roadmap, Role, SceneFile, Shape, Tree,
 };
 pub use page::{Planner, page, page_with_files};
 #[cfg(not(target_family = "wasm"))]

@@ -124,6 +124,8 @@ pub struct PathTrack {
     pub trace: Vec<f32>,
     /// A lower bound on the clearance (m) at each configuration, where it is known.
     pub clearance: Option<Vec<f32>>,
+    /// How far (m) the robot has moved from the start to each configuration, an upper bound for its points, where it is known.
+    pub travel: Option<Vec<f32>>,
 }
 
 /// A search tree, drawn by one point of the robot.
@@ -135,6 +137,17 @@ pub struct Tree {
     pub nodes: Vec<f32>,
     /// The parent of each node; −1 for a root.
     pub parents: Vec<i32>,
+    /// The edges that are not straight.
+    pub bends: Bends,
+}
+
+/// Edges of a tree that are not straight where they are drawn, such as those that snakes bend around obstacles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bends {
+    /// For each edge that bends: the node at its end, and how many points lie between the parent and that node.
+    pub nodes: Vec<u32>,
+    /// x y z (m) of these points from the parent to the node, edge by edge.
+    pub through: Vec<f32>,
 }
 
 /// A roadmap, drawn by one point of the robot.

@@ -133,6 +133,7 @@ impl PathTrack {
             poses: track.poses.iter().flatten().flat_map(seven).map(|x| x as f32).collect(),
             trace: track.trace.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect(),
             clearance: Some(track.clearance.into_iter().map(|c| c as f32).collect()),
+            travel: Some(track.travel.into_iter().map(|s| s as f32).collect()),
         }
     }
 }

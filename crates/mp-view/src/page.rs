@@ -16,16 +16,18 @@ macro_rules! modules {
     };
 }
 
-const MODULES: [(&str, &str); 40] = modules!(
+const MODULES: [(&str, &str); 43] = modules!(
     "buffers",
     "camera",
     "colors",
     "controls",
+    "coverage",
     "document",
     "dom",
     "editor",
     "ends",
     "endspanel",
+    "field",
     "files",
     "frames",
     "gallery",
@@ -37,6 +39,7 @@ const MODULES: [(&str, &str); 40] = modules!(
     "main",
     "math",
     "message",
+    "milestones",
     "opening",
     "packed",
     "panels",

@@ -1,7 +1,7 @@
 //! Scene files of every kind of scene: written, read, animated, and broken on purpose.
 
 use mp_plan::{Request, Scene};
-use mp_view::{PathTrack, Roadmap, Role, SceneFile, Tree, ViewError};
+use mp_view::{Bends, PathTrack, Roadmap, Role, SceneFile, Tree, ViewError};
 use proptest::prelude::*;
 use std::sync::OnceLock;
 
@@ -24,6 +24,7 @@ fn full() -> &'static SceneFile {
             name: "start".into(),
             nodes: vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0],
             parents: vec![-1, 0],
+            bends: Bends { nodes: vec![1, 2], through: vec![0.0, 1.5, 2.0, 1.0, 4.0, 5.0] },
         });
         file.bodies[1].color = Some([0, 127, 255]);
         file.roadmap = Some(Roadmap {
@@ -110,11 +111,16 @@ fn files_that_do_not_fit_are_refused_with_a_reason() {
 #[test]
 fn indices_and_counts_are_checked() {
     type Break = fn(&mut SceneFile);
-    let breaks: [Break; 8] = [
+    let breaks: [Break; 13] = [
         |file| file.meshes[0].triangles[0] = u32::MAX,
         |file| file.meshes[0].positions.truncate(4),
         |file| file.trees[0].parents[1] = 2,
         |file| file.trees[0].parents[1] = -2,
+        |file| file.trees[0].bends.nodes[0] = 2,
+        |file| file.trees[0].bends.nodes[1] = u32::MAX,
+        |file| file.trees[0].bends.nodes.truncate(1),
+        |file| file.trees[0].bends.nodes.extend([0, 0]),
+        |file| file.paths[0].travel = Some(vec![0.0; 3]),
         |file| file.roadmap.as_mut().unwrap().edges[0] = 3,
         |file| file.start.row.clear(),
         |file| file.paths[0] = PathTrack { trace: vec![0.0; 3], ..PathTrack::default() },

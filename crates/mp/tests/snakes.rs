@@ -42,7 +42,7 @@ fn a_snake_bends_edges_around_columns() {
     }
     let done = local.counters();
     assert!(bent >= 3, "{bent} bent: {done:?}");
-    assert_eq!(done.bent, bent);
+    assert_eq!(done.bent(), bent);
 }
 
 /// A planner's path, relaxed: proved free, no longer, of less energy.

@@ -169,6 +169,19 @@ impl Lab {
         charts.into_iter().try_for_each(|(file, chart)| self.write(&format!("{name}-{file}.svg"), &chart?))
     }
 
+    /// Prints `text`, and writes it with charts and, as comma-separated values, the runs of `log` that `shown` selects.
+    pub(crate) fn publish_runs<K: CaseKey, R: RunRecord>(
+        &self,
+        name: &str,
+        text: &str,
+        log: &Log<K, R>,
+        shown: impl Fn(&K) -> bool,
+        charts: Vec<(String, Result<String>)>,
+    ) -> Result<()> {
+        self.report_text(name, text, &log.table(shown)?)?;
+        charts.into_iter().try_for_each(|(file, chart)| self.write(&format!("{name}-{file}.svg"), &chart?))
+    }
+
     /// Prints `summary` and writes it with `each`, one line per run.
     pub(crate) fn report(&self, name: &str, summary: &Table, each: &Table) -> Result<()> {
         self.report_text(name, &(summary.markdown() + "\n"), each)

@@ -1,9 +1,11 @@
 //! The log of finished runs, one line of JSON each, so that an interrupted measurement can be continued.
 
+use super::table::{Table, bit};
 use crate::error::{IntoError, Result};
 use mp_plan::{Error, write_file};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::HashMap;
 use std::fs::File;
 use std::hash::Hash;
@@ -139,6 +141,32 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
         cases.iter().filter_map(|case| Some((case, self.get(case)?)))
     }
 
+    /// The runs whose cases `shown` selects, sorted, a row for each: the members of the case and of its result, numbers with six
+    /// digits.
+    pub(crate) fn table(&self, shown: impl Fn(&K) -> bool) -> Result<Table> {
+        let members = |value: Value| match value {
+            Value::Object(members) => members.into_iter().collect(),
+            other => vec![("case".to_owned(), other)],
+        };
+        let cell = |value: Value| match value {
+            Value::String(text) => text,
+            Value::Bool(yes) => bit(yes),
+            Value::Number(number) if number.is_f64() => number.as_f64().map_or(String::new(), six_digits),
+            Value::Null => String::new(),
+            other => other.to_string(),
+        };
+        let mut table = Table::new(Vec::<String>::new());
+        for (case, run) in self.all().into_iter().filter(|(case, _)| shown(case)) {
+            let mut row = members(serde_json::to_value(case).into_error()?);
+            row.extend(members(serde_json::to_value(run).into_error()?));
+            if table.head.is_empty() {
+                table.head = row.iter().map(|(name, _)| name.clone()).collect();
+            }
+            table.rows.push(row.into_iter().map(|(_, value)| cell(value)).collect());
+        }
+        Ok(table)
+    }
+
     /// All runs, sorted.
     pub(crate) fn all(&self) -> Vec<(&K, &R)> {
         let mut all: Vec<_> = self.runs.iter().collect();
@@ -147,9 +175,48 @@ impl<K: CaseKey, R: RunRecord> Log<K, R> {
     }
 }
 
+/// The number with at most six significant digits.
+fn six_digits(v: f64) -> String {
+    format!("{v:.5e}").parse::<f64>().unwrap_or(v).to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+    struct Named {
+        scene: String,
+        seed: u64,
+    }
+
+    #[derive(Clone, Serialize, Deserialize)]
+    struct Took {
+        solved: bool,
+        seconds: f64,
+        first: Option<f64>,
+    }
+
+    #[test]
+    fn a_log_is_a_table_of_its_members() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut log = Log::open(&folder.path().join("runs.jsonl"), 1.0, false).unwrap();
+        for (seed, seconds) in [(2, 0.123_456_789), (1, 1234.5), (3, 1.0)] {
+            let case = Named { scene: "maze, small".into(), seed };
+            log.learn([(case, Took { solved: seed < 2, seconds, first: None })]);
+        }
+        let table = log.table(|case| case.seed < 3).unwrap();
+        let mut head = table.head.clone();
+        head.sort();
+        assert_eq!(head, ["first", "scene", "seconds", "seed", "solved"]);
+        let at = |name: &str| table.head.iter().position(|h| h == name).unwrap();
+        let of = |row: usize| {
+            ["scene", "seed", "solved", "seconds", "first"].map(|n| table.rows[row][at(n)].as_str())
+        };
+        assert_eq!(of(0), ["maze, small", "1", "1", "1234.5", ""]);
+        assert_eq!(of(1), ["maze, small", "2", "0", "0.123457", ""]);
+        assert_eq!(table.rows.len(), 2);
+    }
 
     fn case(obstacles: usize) -> (String, usize) {
         ("rsrt".to_owned(), obstacles)

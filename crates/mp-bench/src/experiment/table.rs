@@ -65,9 +65,9 @@ pub(crate) fn bit(yes: bool) -> String {
 }
 
 /// The tables in Markdown, under headings of this level.
-pub(crate) fn sections(level: usize, parts: &[(&str, Table)]) -> String {
+pub(crate) fn sections<T: std::fmt::Display>(level: usize, parts: &[(T, Table)]) -> String {
     let part =
-        |(title, table): &(&str, Table)| format!("{} {title}\n\n{}\n", "#".repeat(level), table.markdown());
+        |(title, table): &(T, Table)| format!("{} {title}\n\n{}\n", "#".repeat(level), table.markdown());
     parts.iter().map(part).collect::<Vec<_>>().join("\n")
 }
 

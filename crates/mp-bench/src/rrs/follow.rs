@@ -5,13 +5,16 @@
 //! Fox 2005, *Probabilistic robotics*, tables 5.3, 6.1 and 8.2). Safety is measured at its true position.
 
 use super::noisy_robot::{ParticleFilter, Pose, TICK};
-use super::solve::{Case, PreparedWorld, planned};
+use super::solve::{Case, Point, PreparedWorld, RANGE, planned};
 use crate::error::{IntoError, Result};
 use mp_cspace::shorten::{Effort, simplify};
 use mp_cspace::{Cancel, Path, Rn, Rng, least_clearance};
 use mp_robot::DiscRobot;
 use mp_scenes::source::disc_scenes::DiscScene;
+use mp_snake::risk::{MotionNoise, RangeNoise, landscape};
+use mp_snake::{Grid, Params, Repulsion, With, relax};
 use nalgebra::{Point2, Vector2};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
 /// Greatest speed (m/s) and greatest turn rate (rad/s).
@@ -22,16 +25,28 @@ const LOOKAHEAD: f64 = 0.12;
 /// The robot has arrived when its estimated position is this near to the end, metres.
 const ARRIVED: f64 = 0.03;
 
-/// The result of following one path.
+/// A path, and the line that the robot drove when it followed it.
 #[derive(Clone, Debug)]
 pub(super) struct Followed {
     pub(super) path: Vec<Point2<f64>>,
     pub(super) driven: Vec<Point2<f64>>,
-    /// The least clearances of the path, and of the robot that followed it, metres; negative in collision.
+    pub(super) run: Run,
+}
+
+/// The result of following one path; lengths in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Run {
+    /// Whether a path was found. Without one there is nothing else.
+    pub(super) found: bool,
+    /// The least clearances of the path, and of the robot that followed it; negative in collision.
     pub(super) planned: f64,
     pub(super) executed: f64,
-    /// The length of the path, metres.
+    /// The length of the path.
     pub(super) length: f64,
+    /// The mean distance of the robot from the path.
+    pub(super) error: f64,
+    /// The uncertainty of its position at the end.
+    pub(super) uncertainty: f64,
     pub(super) arrived: bool,
 }
 
@@ -64,6 +79,7 @@ pub(super) fn follow(
     let mut filter = ParticleFilter::about(pose, &mut rng);
     let (mut driven, mut executed, mut gone, mut arrived) =
         (vec![Point2::from(pose.at)], f64::INFINITY, 0.0, false);
+    let (mut off_path, mut places) = (0.0, 0);
     // Twice the nominal time.
     let ticks = (2.0 * length / SPEED / TICK) as usize + 100;
     for _ in 0..ticks {
@@ -84,6 +100,10 @@ pub(super) fn follow(
         pose = pose.driven(command, &mut rng);
         driven.push(Point2::from(pose.at));
         executed = executed.min(robot.signed_clearance(&pose.at));
+        off_path += (-10..=10)
+            .map(|i| (along(points, gone + 0.02 * f64::from(i)) - pose.at).norm())
+            .fold(f64::MAX, f64::min);
+        places += 1;
         if executed <= 0.0 {
             break;
         }
@@ -91,25 +111,75 @@ pub(super) fn follow(
         filter.update(command, &seen, world, &mut rng);
     }
     let path = points.iter().map(|p| Point2::from(*p)).collect();
-    Some(Followed { path, driven, planned, executed, length, arrived })
+    let (error, uncertainty) = (off_path / f64::from(places.max(1)), filter.uncertainty());
+    let run = Run { found: true, planned, executed, length, error, uncertainty, arrived };
+    Some(Followed { path, driven, run })
 }
 
-/// The kinds of path that are followed.
-pub(super) const KINDS: [&str; 3] = ["rrt", "rrt smoothed", "rrs"];
+/// The kinds of path that are followed: of RRT and of RRS, as they are found, made shorter, and then relaxed on the
+/// landscape of risk.
+pub(super) const KINDS: [&str; 6] =
+    ["rrt", "rrt shortened", "rrt relaxed", "rrs", "rrs shortened", "rrs relaxed"];
+
+/// All paths are planned, shortened and relaxed for a robot larger by this, metres.
+pub(super) const MARGIN: f64 = 0.01;
+/// The longest step, centimetres.
+const STEP: u32 = 50;
 
 /// Plans a path of a kind and follows it; `None` when no path was found.
 pub(super) fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) -> Result<Option<Followed>> {
-    let prepared = PreparedWorld::new(scene.clone())?;
-    let robot = &prepared.robot;
+    let prepared = PreparedWorld::with_margin(scene.clone(), MARGIN)?;
     let space = Rn::<2>::new([0.0; 2], scene.size).into_error()?;
-    let planner = if kind == "rrs" { "rrs-upto" } else { "rrt-upto" };
-    let case = Case { world: "follow".into(), planner: planner.into(), step: 50, trial };
+    let (planner, after) = kind.split_once(' ').unwrap_or((kind, ""));
+    let case = Case { world: "follow".into(), planner: format!("{planner}-upto"), step: STEP, trial };
     let Some((_, Some(mut path))) = planned(&prepared, &case, &Cancel::new())? else { return Ok(None) };
-    if kind == "rrt smoothed" {
+    if !after.is_empty() {
         let mut rng = Rng::stream(trial, 7);
-        path = simplify(&space, &mut robot.clone(), &path, Effort::default(), &mut rng);
+        path = simplify(&space, &mut prepared.robot.clone(), &path, Effort::default(), &mut rng);
     }
-    Ok(follow(robot, &space, &path, trial))
+    if after == "relaxed" {
+        path = relaxed(&prepared, &space, &path)?;
+    }
+    Ok(follow(&scene.robot().into_error()?, &space, &path, trial))
+}
+
+/// The noise of the wheels of a step, as the landscape of risk has it, and that of the laser.
+const MOTION: MotionNoise = MotionNoise { turn: 0.05, turn_per_turn: 0.2, way: 0.01, way_per_way: 0.08 };
+const LASER: RangeNoise = RangeNoise { constant: 0.02, per_metre: 0.01 };
+/// The size of a cell of the landscape, and the length of the steps of the path in it, metres.
+const CELL: f64 = 0.02;
+const STRIDE: f64 = 0.25;
+/// The greatest energy of the risk, beside that of repulsion, which is ½ where the robot touches an obstacle; and how much
+/// longer a path may become.
+const WEIGHT: f64 = 1.0;
+const STRETCH: f64 = 1.15;
+/// The length of an implicit step (m²), and the most steps. The risk changes over two or three cells: steps as long as the
+/// range of repulsion overshoot.
+const PACE: f64 = 1e-3;
+const STEPS: u32 = 400;
+
+/// The landscape of risk of a path (Fig. 1): the probability of passing each place, times that of hitting an obstacle there.
+pub(super) fn risk_of(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<[Grid; 3]> {
+    let cells = prepared.scene.size.map(|s| (s / CELL).round() as usize).into();
+    let seen = Grid::from_fn([0.0; 2], CELL, cells, |p| {
+        f64::from(u8::from(prepared.robot.signed_clearance(&p) <= 0.0))
+    });
+    let occupied = LASER.occupancy(&seen.into_error()?, 1.0).into_error()?;
+    let steps = path.resampled(space, STRIDE).into_error()?;
+    let passing = MOTION.checked().into_error()?.envelope(&steps, &occupied);
+    let risk = landscape(&passing, &occupied).into_error()?;
+    Ok([passing, occupied, risk])
+}
+
+/// The path, relaxed by a snake that obstacles and risk push.
+fn relaxed(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<Path<Point>> {
+    let [.., risk] = risk_of(prepared, space, path)?;
+    let most = risk.values().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let repulsion = Repulsion::new(&prepared.map, RANGE).into_error()?;
+    let mut field = With::new(repulsion, risk.map(|v| v / most), WEIGHT).into_error()?;
+    let params = Params { iterations: STEPS, pace: PACE, ..Params::for_range(RANGE).into_error()? };
+    let relaxed = relax(space, &mut prepared.robot.clone(), &mut field, path, params, STRETCH);
+    Ok(relaxed.into_error()?.path)
 }
 
 #[cfg(test)]
@@ -132,11 +202,16 @@ mod tests {
         let done = follow(&robot, &space, &at(0.45), 1).unwrap();
         // The corner (1, 0.9) is nearest, seen from the line through (0.5, 0.5) and (1, 0.45).
         let corner = 0.225 / 0.5_f64.hypot(0.05) - RADIUS;
-        assert!(done.arrived && done.executed > 0.25 && (done.planned - corner).abs() < 1e-3, "{done:?}");
+        assert!(
+            done.run.arrived && done.run.executed > 0.25 && (done.run.planned - corner).abs() < 1e-3,
+            "{done:?}"
+        );
         let again = follow(&robot, &space, &at(0.45), 1).unwrap();
         assert_eq!(done.driven, again.driven);
         let near = 0.9 - RADIUS - 0.002;
-        let hits = (0..10).filter(|i| follow(&robot, &space, &at(near), *i).unwrap().executed <= 0.0).count();
+        let hits =
+            (0..10).filter(|i| follow(&robot, &space, &at(near), *i).unwrap().run.executed <= 0.0).count();
         assert!(hits > 2, "{hits} of 10");
+        assert!(done.run.error < 0.03 && done.run.uncertainty < 0.05, "{done:?}");
     }
 }

@@ -1,71 +1,93 @@
 //! The experiment of §6: trials, tables and pictures.
 
-use super::follow::{Followed, KINDS, planned_and_followed};
+use super::follow::{Followed, KINDS, MARGIN, Run, planned_and_followed};
+use super::tables::interval;
 use crate::error::{IntoError, Result};
-use crate::experiment::{Lab, Table, bit, mean};
+use crate::experiment::{Lab, Table, bit, wilson};
 use crate::options::Common;
 use crate::plot::save_drawing;
 use mp_render::{Drawing, Item};
-use mp_scenes::source::disc_scenes::{DiscScene, RADIUS, follow};
+use mp_scenes::source::disc_scenes::{DiscScene, RADIUS, tight};
 use nalgebra::Point2;
+use serde::{Deserialize, Serialize};
 
 /// The numbers of trials in full and short runs.
-const TRIALS: u32 = 100;
+const TRIALS: u32 = 300;
 const QUICK: u32 = 10;
-const COLOURS: [u32; 3] = [0xb0598a, 0x1f77b4, 0x2c8a2c];
+const COLOURS: [u32; 6] = [0xb0598a, 0xb0598a, 0xb0598a, 0x1f77b4, 0x1f77b4, 0x1f77b4];
+
+/// A case.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+struct Case {
+    path: String,
+    trial: u64,
+}
 
 /// Plans and follows paths of each kind. False when it was interrupted.
 pub(super) fn run(lab: &Lab, common: &Common) -> Result<bool> {
-    let trials = common.runs_or(QUICK, TRIALS);
-    let scene = follow();
-    let jobs: Vec<(&str, u64)> =
-        KINDS.iter().flat_map(|kind| (0..u64::from(trials)).map(move |trial| (*kind, trial))).collect();
-    let done = lab.all("rrs, following", &jobs, |&(kind, trial)| {
-        Ok(Some(planned_and_followed(&scene, kind, trial)?))
-    })?;
-    let Some(done) = done else { return Ok(false) };
-    let of = |kind: usize| &done[kind * trials as usize..(kind + 1) * trials as usize];
-    let trial = |i: usize| (KINDS[i / trials as usize], i % trials as usize);
-    let each = Table::of(
-        done.iter().enumerate().filter_map(|(i, f)| Some((trial(i), f.as_ref()?))),
-        &[
-            ("path", &|((kind, _), _)| (*kind).to_owned()),
-            ("trial", &|((_, trial), _)| trial.to_string()),
-            ("arrived", &|(_, f)| bit(f.arrived)),
-            ("length_m", &|(_, f)| format!("{:.4}", f.length)),
-            ("planned_m", &|(_, f)| format!("{:.4}", f.planned)),
-            ("executed_m", &|(_, f)| format!("{:.4}", f.executed)),
-        ],
-    );
-    let centimetres = |all: &[&Followed], value: fn(&Followed) -> f64| {
-        format!("{:.2}", 100.0 * mean(all.iter().map(|f| value(f))).unwrap_or(0.0))
-    };
-    let summary = Table::of(
-        KINDS.iter().enumerate().map(|(k, kind)| (*kind, of(k).iter().flatten().collect())),
-        &[
-            ("path", &|(kind, _): &(&str, Vec<&Followed>)| (*kind).to_owned()),
-            ("followed", &|(_, all)| all.len().to_string()),
-            ("collisions", &|(_, all)| all.iter().filter(|f| f.executed <= 0.0).count().to_string()),
-            ("arrived", &|(_, all)| all.iter().filter(|f| f.arrived).count().to_string()),
-            ("length, cm", &|(_, all)| centimetres(all, |f| f.length)),
-            ("clearance planned, cm", &|(_, all)| centimetres(all, |f| f.planned)),
-            ("executed, cm", &|(_, all)| centimetres(all, |f| f.executed.max(0.0))),
-            ("least tenth below, cm", &|(_, all)| {
-                let mut executed: Vec<f64> = all.iter().map(|f| f.executed).collect();
-                executed.sort_by(f64::total_cmp);
-                let tenth = executed.get(executed.len() / 10).copied().unwrap_or(f64::NAN);
-                format!("{:.2}", 100.0 * tenth.max(0.0))
-            }),
-        ],
-    );
+    let trials = u64::from(common.runs_or(QUICK, TRIALS));
+    let scene = tight();
     let name = lab.name("rrs-follow");
+    let mut log = lab.log(&name, MARGIN)?;
+    let cases: Vec<Case> = (KINDS.iter())
+        .flat_map(|kind| (0..trials).map(|trial| Case { path: (*kind).to_owned(), trial }))
+        .collect();
+    let complete = lab.measure(&mut log, "rrs, following", &cases, |case| {
+        let followed = planned_and_followed(&scene, &case.path, case.trial)?;
+        Ok(Some(followed.map_or(Run::default(), |f| f.run)))
+    })?;
+    if !complete {
+        return Ok(false);
+    }
+    let found = || log.each(&cases).filter(|(_, run)| run.found);
+    let length = |v: f64| format!("{v:.4}");
+    let each = Table::of(
+        found(),
+        &[
+            ("path", &|(case, _)| case.path.clone()),
+            ("trial", &|(case, _)| case.trial.to_string()),
+            ("arrived", &|(_, run)| bit(run.arrived)),
+            ("length_m", &|(_, run)| length(run.length)),
+            ("planned_m", &|(_, run)| length(run.planned)),
+            ("executed_m", &|(_, run)| length(run.executed)),
+            ("error_m", &|(_, run)| length(run.error)),
+            ("uncertainty_m", &|(_, run)| length(run.uncertainty)),
+        ],
+    );
+    let centimetres = |all: &[&Run], value: fn(&Run) -> f64| {
+        let values: Vec<f64> = all.iter().map(|run| 100.0 * value(run)).collect();
+        interval(&values)
+    };
+    let groups = KINDS.map(|kind| {
+        let runs = found().filter(|(case, _)| case.path == kind).map(|(_, run)| run).collect::<Vec<_>>();
+        (kind, runs)
+    });
+    let summary = Table::of(
+        groups,
+        &[
+            ("path", &|(kind, _): &(&str, Vec<&Run>)| (*kind).to_owned()),
+            ("followed", &|(_, all)| all.len().to_string()),
+            ("collisions, %", &|(_, all)| {
+                let hits = all.iter().filter(|run| run.executed <= 0.0).count();
+                let (low, high) = wilson(hits, all.len().max(1));
+                let part = 100.0 * hits as f64 / all.len().max(1) as f64;
+                format!("{part:.1} ({:.1} – {:.1})", 100.0 * low, 100.0 * high)
+            }),
+            ("arrived", &|(_, all)| all.iter().filter(|run| run.arrived).count().to_string()),
+            ("length, cm", &|(_, all)| centimetres(all, |run| run.length)),
+            ("clearance planned, cm", &|(_, all)| centimetres(all, |run| run.planned)),
+            ("driven, cm", &|(_, all)| centimetres(all, |run| run.executed.max(0.0))),
+            ("tracking error, cm", &|(_, all)| centimetres(all, |run| run.error)),
+            ("uncertainty at the end, cm", &|(_, all)| centimetres(all, |run| run.uncertainty)),
+        ],
+    );
     lab.report(&name, &summary, &each)?;
     // The first trial in which all paths were found.
-    let shown = (0..trials as usize).find(|&t| (0..KINDS.len()).all(|k| of(k)[t].is_some()));
-    if let Some(trial) = shown {
-        for (k, kind) in KINDS.iter().enumerate() {
-            let Some(followed) = &of(k)[trial] else { continue };
-            let drawing = picture(&scene, kind, followed, COLOURS[k])?;
+    let all = |trial: &u64| found().filter(|(case, _)| case.trial == *trial).count() == KINDS.len();
+    if let Some(trial) = (0..trials).find(all) {
+        for (kind, colour) in KINDS.iter().zip(COLOURS) {
+            let Some(followed) = planned_and_followed(&scene, kind, trial)? else { continue };
+            let drawing = picture(&scene, kind, &followed, colour)?;
             let stem = lab.file(&format!("{name}-{}", kind.replace(' ', "-")));
             save_drawing(&stem, &drawing, (1100, 520))?;
         }
@@ -78,8 +100,8 @@ fn picture(scene: &DiscScene, kind: &str, followed: &Followed, colour: u32) -> R
     let robot = scene.robot().into_error()?;
     let subtitle = format!(
         "least distance from an obstacle: {:.1} cm planned, {:.1} cm driven",
-        100.0 * followed.planned,
-        100.0 * followed.executed.max(0.0)
+        100.0 * followed.run.planned,
+        100.0 * followed.run.executed.max(0.0)
     );
     let title = format!("A robot follows a path of {}", kind.to_uppercase());
     let corners = [[0.0; 2], scene.size].map(Point2::from);

@@ -97,6 +97,13 @@ impl ParticleFilter {
         Pose { at, angle: toward.y.atan2(toward.x) }
     }
 
+    /// The uncertainty of the position: the root of the mean squared distance of the particles from their mean, metres.
+    pub(super) fn uncertainty(&self) -> f64 {
+        let mean = self.mean().at;
+        let squares: f64 = self.poses.iter().map(|p| (p.at - mean).norm_squared()).sum();
+        (squares / self.poses.len() as f64).sqrt()
+    }
+
     /// Moves all particles by the motion model, and resamples them by how well they explain the laser ranges.
     pub(super) fn update(&mut self, command: [f64; 2], seen: &[f64], world: &PlanarWorld, rng: &mut Rng) {
         let mut weights = Vec::with_capacity(self.poses.len());
@@ -129,6 +136,22 @@ impl ParticleFilter {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Particles about a known place are as uncertain as the place; seeing the walls makes them less so.
+    #[test]
+    fn seeing_walls_lessens_uncertainty() {
+        let world = PlanarWorld::new(vec![], Some([[0.0, 0.0], [3.0, 2.0]])).unwrap();
+        let pose = Pose { at: Vector2::new(1.0, 1.0), angle: 0.3 };
+        let mut rng = Rng::seed(1);
+        let mut filter = ParticleFilter::about(pose, &mut rng);
+        let before = filter.uncertainty();
+        assert!((0.010..0.018).contains(&before), "{before}");
+        for _ in 0..5 {
+            let seen = pose.scan(&world, &mut rng);
+            filter.update([0.0, 0.0], &seen, &world, &mut rng);
+        }
+        assert!(filter.uncertainty() < 0.7 * before, "{} {before}", filter.uncertainty());
+    }
 
     #[test]
     fn beams_end_at_walls() {

@@ -3,17 +3,17 @@
 use crate::clock::{nanoseconds, seconds_since};
 use crate::error::{IntoError, Result};
 use mp_cspace::{
-    Cancel, DefaultNn, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner, Reach, Rn,
-    Rng, Space, Stop, StopReason, Straight, least_clearance,
+    Cancel, DefaultNn, Direction, Extension, Iterations, LocalPlanner, Outcome, Path, Planner, PolylineEdge,
+    Reach, Rn, Rng, Space, Stop, StopReason, Straight, least_clearance,
 };
 use mp_plan::Error;
 use mp_robot::{DiscRobot, DiscVerifier};
 use mp_scenes::source::disc_scenes::DiscScene;
-use mp_snake::{Grid, SnakePlanner};
+use mp_snake::{Bending, Field, Grid, Params, Repulsion, SnakeCounters, SnakePlanner, outline_energy};
 use mp_tree::{BuildError, Problem, Rrt, RrtConnect, Step, Tuning};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
+use std::cell::Cell;
 
 /// The most iterations of a trial (§4).
 pub(super) const ITERATIONS: u64 = 5000;
@@ -21,10 +21,14 @@ pub(super) const ITERATIONS: u64 = 5000;
 pub(super) const RANGE: f64 = 0.15;
 /// The size of a cell of the clearance map, metres.
 const CELL: f64 = 0.06;
+/// The size of a cell of the image of eq. 3, the deviation σ of its blur, metres, and its weight. The paper gives none.
+const PIXEL: f64 = 0.02;
+const SIGMA: f64 = 0.05;
+const WEIGHT: f64 = 1.0;
 /// The accuracy of the safety of a path, metres.
 const ACCURACY: f64 = 1e-4;
 
-type Point = Vector2<f64>;
+pub(super) type Point = Vector2<f64>;
 
 /// A case.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -37,7 +41,7 @@ pub(super) struct Case {
 }
 
 /// The result of a case.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Run {
     pub(super) solved: bool,
     /// Processor time, including the verification of candidate paths.
@@ -48,6 +52,13 @@ pub(super) struct Run {
     pub(super) length: f64,
     /// Its least distance from an obstacle, metres.
     pub(super) safety: f64,
+    /// Edges of the tree that are straight, that a bulge bent, that a snake relaxed from a bulge, and that only a snake
+    /// bent; edges that could not be bent.
+    pub(super) straight: u64,
+    pub(super) bulged: u64,
+    pub(super) relaxed: u64,
+    pub(super) by_snake: u64,
+    pub(super) not_bent: u64,
 }
 
 /// Steps of Δq, as in NEW_CONF of the paper: exactly that long, whether the sample is nearer or farther, except
@@ -94,21 +105,61 @@ impl<L: LocalPlanner<Point>> LocalPlanner<Point> for Steps<'_, L> {
     }
 }
 
-/// A world prepared for all its cases: the scene, the robot and the map that guides snakes.
+/// A local planner whose counts are seen from outside.
+#[derive(Clone, Debug)]
+pub(super) struct Counted<'c, L>(L, &'c Cell<SnakeCounters>);
+
+impl<F: Field<Point>> LocalPlanner<Point> for Counted<'_, Snakes<'_, F>> {
+    type Edge = PolylineEdge<Point>;
+
+    fn extend(
+        &mut self,
+        from: &Point,
+        toward: &Point,
+        direction: Direction,
+        reach: Reach,
+    ) -> Extension<Point, Self::Edge> {
+        let extension = self.0.extend(from, toward, direction, reach);
+        self.1.set(self.0.counters());
+        extension
+    }
+
+    fn admits(&mut self, q: &Point) -> bool {
+        self.0.admits(q)
+    }
+}
+
+type Snakes<'a, F> = SnakePlanner<'a, Rn<2>, DiscRobot, F>;
+
+/// A world prepared for all its cases: the scene, the robot and the maps that guide snakes.
 #[derive(Clone, Debug)]
 pub(super) struct PreparedWorld {
     pub(super) scene: DiscScene,
     pub(super) robot: DiscRobot,
     /// The signed clearance of the robot, on a grid; it alone guides the snakes.
-    pub(super) map: Arc<Grid>,
+    pub(super) map: Grid,
+    /// The energy of eq. 3, of the image of the places where the robot is in collision.
+    outlines: Grid,
 }
 
 impl PreparedWorld {
     pub(super) fn new(scene: DiscScene) -> Result<Self> {
+        Self::with_margin(scene, 0.0)
+    }
+
+    /// The same for a robot whose radius is larger by `margin` metres.
+    pub(super) fn with_margin(scene: DiscScene, margin: f64) -> Result<Self> {
         let robot = scene.robot().into_error()?;
-        let cells = scene.size.map(|s| (s / CELL).round() as usize);
-        let map = Grid::from_fn([0.0; 2], CELL, cells.into(), |p| robot.signed_clearance(&p));
-        Ok(Self { scene, robot, map: Arc::new(map.into_error()?) })
+        let robot = match margin > 0.0 {
+            true => DiscRobot::new(robot.world().clone(), robot.radius() + margin).into_error()?,
+            false => robot,
+        };
+        let cells = |cell: f64| scene.size.map(|s| (s / cell).round() as usize).into();
+        let map = Grid::from_fn([0.0; 2], CELL, cells(CELL), |p| robot.signed_clearance(&p)).into_error()?;
+        let image =
+            Grid::from_fn([0.0; 2], PIXEL, cells(PIXEL), |p| f64::from(u8::from(map.at(&p).0 <= 0.0)));
+        let outlines = outline_energy(&image.into_error()?, SIGMA, WEIGHT).into_error()?;
+        Ok(Self { scene, robot, map, outlines })
     }
 }
 
@@ -129,7 +180,7 @@ pub(super) fn planned(world: &PreparedWorld, case: &Case, cancel: &Cancel) -> Re
     let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
     let verifier = DiscVerifier::new(robot);
     let settings = TrialSettings { seed: case.trial + 1, cancel, space: &space, robot };
-    let exactly = matches!(case.planner.as_str(), "rrt" | "rrs");
+    let exactly = !matches!(case.planner.as_str(), "rrt-upto" | "rrs-upto" | "rrt-connect");
     match case.planner.as_str() {
         "rrt" | "rrt-upto" | "rrt-connect" => {
             let local = Straight::new(&space, robot.clone());
@@ -140,29 +191,55 @@ pub(super) fn planned(world: &PreparedWorld, case: &Case, cancel: &Cancel) -> Re
                 _ => settings.run(Rrt::new(problem, tuning), |path| path),
             }
         }
-        "rrs" | "rrs-upto" => settings.run(rrs(world, &space, step, exactly), |path| path.flattened()),
-        other => Err(Error::new(format!("there is no planner `{other}` here"))),
+        "rrs-eq3" => {
+            let counters = Cell::default();
+            let planner =
+                rrs(world, &space, step, exactly, world.outlines.clone(), Bending::Snake, &counters);
+            Ok(settings.run(planner, |path| path.flattened())?.map(|run| counted(run, counters.get())))
+        }
+        name => {
+            let bend = match name {
+                "rrs" | "rrs-upto" => Bending::default(),
+                other => match other.strip_prefix("rrs-").and_then(|bend| bend.parse().ok()) {
+                    Some(bend) => bend,
+                    None => return Err(Error::new(format!("there is no planner `{other}` here"))),
+                },
+            };
+            let counters = Cell::default();
+            let field = Repulsion::new(&world.map, RANGE).into_error()?;
+            let planner = rrs(world, &space, step, exactly, field, bend, &counters);
+            Ok(settings.run(planner, |path| path.flattened())?.map(|run| counted(run, counters.get())))
+        }
     }
 }
 
-/// The RRS planner that is measured.
-pub(super) fn rrs<'a>(
+fn counted((run, path): Planned, counters: SnakeCounters) -> Planned {
+    let SnakeCounters { straight, bulged, relaxed, by_snake, not_bent, .. } = counters;
+    (Run { straight, bulged, relaxed, by_snake, not_bent, ..run }, path)
+}
+
+/// An RRS planner that is measured, with snakes in `field`.
+pub(super) fn rrs<'a, F: Field<Point>>(
     world: &'a PreparedWorld,
     space: &'a Rn<2>,
     step: f64,
     exactly: bool,
-) -> std::result::Result<Rrs<'a>, BuildError> {
-    let PreparedWorld { scene, robot, map } = world;
+    field: F,
+    bend: Bending,
+    counters: &'a Cell<SnakeCounters>,
+) -> std::result::Result<Rrs<'a, F>, BuildError> {
+    let PreparedWorld { scene, robot, .. } = world;
     let (start, goal) = (Point::from(scene.start), Point::from(scene.goal));
-    let snakes = SnakePlanner::new(space, robot.clone(), &**map, RANGE);
-    let local = snakes.map_err(|e| BuildError::Unmade { reason: e.to_string() })?;
+    let unmade = |reason: String| BuildError::Unmade { reason };
+    let params = Params::for_edges(RANGE).map_err(|e| unmade(e.to_string()))?;
+    let snakes = SnakePlanner::with_bend(space, robot.clone(), field, params, bend);
+    let local = Counted(snakes.map_err(|e| unmade(e.to_string()))?, counters);
     let local = Steps { space, goal, step, exactly, local };
     let problem = Problem::new(space, local, DiscVerifier::new(robot), start, goal)?;
     Rrt::new(problem, Tuning { step: Step::Length(step), ..Tuning::default() })
 }
 
-pub(super) type Rrs<'a> =
-    Rrt<'a, Rn<2>, Steps<'a, SnakePlanner<'a, Rn<2>, DiscRobot, &'a Grid>>, <Rn<2> as DefaultNn>::Nn>;
+pub(super) type Rrs<'a, F> = Rrt<'a, Rn<2>, Steps<'a, Counted<'a, Snakes<'a, F>>>, <Rn<2> as DefaultNn>::Nn>;
 
 struct TrialSettings<'a> {
     seed: u64,
@@ -184,7 +261,7 @@ impl TrialSettings<'_> {
         let seconds = seconds_since(began);
         let progress = planner.progress();
         let (iterations, nodes) = (progress.iterations, progress.nodes);
-        let none = Run { solved: false, seconds, iterations, nodes, length: 0.0, safety: 0.0 };
+        let none = Run { seconds, iterations, nodes, ..Run::default() };
         let path = match outcome {
             Outcome::Solved(path) => plain(path),
             Outcome::Stopped(StopReason::Cancelled) => return Ok(None),

@@ -32,6 +32,44 @@ struct Measures {
     per_iteration: f64,
     /// Iterations of all trials.
     all_iterations: f64,
+    /// Edges per thousand iterations: straight, bulged, relaxed from a bulge, bent only by a snake, not bent.
+    edges: [f64; 5],
+}
+
+impl Measures {
+    /// The measures of some runs of a planner; `None` without runs.
+    fn of(planner: &str, runs: &[&Run]) -> Option<Self> {
+        if runs.is_empty() {
+            return None;
+        }
+        let solved = || runs.iter().filter(|r| r.solved);
+        let total = |value: &dyn Fn(&Run) -> f64| runs.iter().map(|r| value(r)).sum::<f64>();
+        let iterations = total(&|r| r.iterations as f64);
+        // The root is a node that is not a sample; RRT-Connect has two of them, and may add many nodes for one sample.
+        let roots = if planner == "rrt-connect" { 2.0 } else { 1.0 };
+        Some(Measures {
+            accepted: 100.0 * total(&|r| r.nodes as f64 - roots) / iterations.max(1.0),
+            iterations: 100.0
+                * finite_mean(
+                    runs.iter().map(|r| if r.solved { r.iterations as f64 } else { ITERATIONS as f64 }),
+                )
+                / ITERATIONS as f64,
+            converged: 100.0 * solved().count() as f64 / runs.len() as f64,
+            length: 100.0 * finite_mean(solved().map(|r| r.length)),
+            time: 1e3 * finite_mean(runs.iter().map(|r| r.seconds)),
+            safety: 100.0 * finite_mean(solved().map(|r| r.safety)),
+            per_iteration: 1e6 * total(&|r| r.seconds) / iterations.max(1.0),
+            all_iterations: iterations,
+            edges: [
+                total(&|r| r.straight as f64),
+                total(&|r| r.bulged as f64),
+                total(&|r| r.relaxed as f64),
+                total(&|r| r.by_snake as f64),
+                total(&|r| r.not_bent as f64),
+            ]
+            .map(|n| 1e3 * n / iterations.max(1.0)),
+        })
+    }
 }
 
 /// The name in files, title, axis label and value of a measure.
@@ -58,28 +96,7 @@ impl<'a> Results<'a> {
     fn measures(&self, world: &str, planner: &str, step: u32) -> Option<Measures> {
         let case = |trial| Case { world: world.into(), planner: planner.into(), step, trial };
         let runs = self.log.runs((0..self.plan.trials).map(case));
-        if runs.is_empty() {
-            return None;
-        }
-        let solved = || runs.iter().filter(|r| r.solved);
-        let total = |value: &dyn Fn(&Run) -> f64| runs.iter().map(|r| value(r)).sum::<f64>();
-        let iterations = total(&|r| r.iterations as f64);
-        // The root is a node that is not a sample; RRT-Connect has two of them, and may add many nodes for one sample.
-        let roots = if planner == "rrt-connect" { 2.0 } else { 1.0 };
-        Some(Measures {
-            accepted: 100.0 * total(&|r| r.nodes as f64 - roots) / iterations.max(1.0),
-            iterations: 100.0
-                * finite_mean(
-                    runs.iter().map(|r| if r.solved { r.iterations as f64 } else { ITERATIONS as f64 }),
-                )
-                / ITERATIONS as f64,
-            converged: 100.0 * solved().count() as f64 / runs.len() as f64,
-            length: 100.0 * finite_mean(solved().map(|r| r.length)),
-            time: 1e3 * finite_mean(runs.iter().map(|r| r.seconds)),
-            safety: 100.0 * finite_mean(solved().map(|r| r.safety)),
-            per_iteration: 1e6 * total(&|r| r.seconds) / iterations.max(1.0),
-            all_iterations: iterations,
-        })
+        Measures::of(planner, &runs)
     }
 
     /// A measure at all steps in some worlds.
@@ -92,6 +109,12 @@ impl<'a> Results<'a> {
     fn per_iteration(&self, worlds: &[&str], planner: &str) -> f64 {
         let sum = |of: fn(&Measures) -> f64| self.over(worlds, planner, of).iter().sum::<f64>();
         sum(|s| s.per_iteration * s.all_iterations) / sum(|s| s.all_iterations)
+    }
+
+    /// Milliseconds of all trials at all steps in these worlds together, for each that was solved.
+    fn per_solution(&self, worlds: &[&str], planner: &str) -> f64 {
+        let sum = |of: fn(&Measures) -> f64| self.over(worlds, planner, of).iter().sum::<f64>();
+        sum(|s| s.time) / sum(|s| 0.01 * s.converged)
     }
 
     /// A row for each world and planner: means over all steps, with the least and greatest values.
@@ -114,7 +137,7 @@ impl<'a> Results<'a> {
     /// A row for each world, step and planner.
     pub(super) fn each(&self) -> Table {
         let heads = ["world", "planner", "step_cm"].into_iter().chain(MEASURES.iter().map(|m| m.0));
-        let mut table = Table::new(heads.chain(["us_per_iteration"]));
+        let mut table = Table::new(heads.chain(["us_per_iteration"]).chain(EDGES));
         for world in WORLDS {
             for planner in PLANNERS {
                 for &step in &self.plan.steps {
@@ -122,6 +145,7 @@ impl<'a> Results<'a> {
                     let mut row = vec![world.to_owned(), planner.to_owned(), step.to_string()];
                     row.extend(MEASURES.iter().map(|m| format!("{:.4}", (m.3)(&measures))));
                     row.push(format!("{:.4}", measures.per_iteration));
+                    row.extend(measures.edges.map(|n| format!("{n:.2}")));
                     table.rows.push(row);
                 }
             }
@@ -131,8 +155,19 @@ impl<'a> Results<'a> {
 
     /// The values in the paper, and those measured.
     pub(super) fn markdown(&self) -> String {
-        let heads =
-            ["world", "measure", "paper: RRS", "RRS", "RRS up to Δq", "paper: RRT", "RRT", "RRT up to Δq"];
+        let heads = [
+            "world",
+            "measure",
+            "paper: RRS",
+            "RRS",
+            "by snakes",
+            "by bulges",
+            "in eq. 3",
+            "up to Δq",
+            "paper: RRT",
+            "RRT",
+            "RRT up to Δq",
+        ];
         let mut table = Table::new(heads.into_iter().chain(["RRT-Connect"]));
         for (world, measure, rrs, rrt) in PAPER {
             let Some(m) = MEASURES.iter().find(|m| m.0 == *measure) else { continue };
@@ -142,6 +177,9 @@ impl<'a> Results<'a> {
                 format!("{}, {}", m.1, m.2),
                 (*rrs).into(),
                 cell("rrs"),
+                cell("rrs-snake"),
+                cell("rrs-bulge"),
+                cell("rrs-eq3"),
                 cell("rrs-upto"),
                 (*rrt).into(),
                 cell("rrt"),
@@ -149,7 +187,8 @@ impl<'a> Results<'a> {
                 cell("rrt-connect"),
             ]);
         }
-        let heads = ["time of an iteration", "mean of those at each Δq", "time of a trial"];
+        let heads =
+            ["time of an iteration", "mean of those at each Δq", "time of a trial", "time for a solution"];
         let heads = heads.iter().flat_map(|h| [format!("{h}, RRS : RRT"), format!("{h}, up to Δq")]);
         let mut ratios = Table::new(["world".to_owned()].into_iter().chain(heads));
         let each = WORLDS.iter().map(|world| (*world, std::slice::from_ref(world)));
@@ -164,9 +203,54 @@ impl<'a> Results<'a> {
             put(&|p| self.per_iteration(worlds, p));
             put(&mean_of(|s| s.per_iteration));
             put(&mean_of(|s| s.time));
+            put(&|p| self.per_solution(worlds, p));
             ratios.rows.push(row);
         }
-        format!("{}\n\n{}\n", table.markdown(), ratios.markdown())
+        let tables = [table, ratios, self.differences(), self.edges()].map(|table| table.markdown());
+        tables.join("\n\n") + "\n"
+    }
+
+    /// What RRS gains over RRT with the same steps: the difference of each measure of a trial, paired by step and seed, with
+    /// its 95% interval. Lengths and safety are those of trials that both solved.
+    fn differences(&self) -> Table {
+        let heads = MEASURES.iter().map(|m| format!("{}, {}", m.1, m.2));
+        let mut table = Table::new(["world".into(), "RRS – RRT".into()].into_iter().chain(heads));
+        for world in WORLDS {
+            for (planner, other) in PAIRS {
+                let mut row = vec![world.to_owned(), name(planner).to_owned()];
+                row.extend(MEASURES.iter().map(|m| {
+                    let mut differences = Vec::new();
+                    for &step in &self.plan.steps {
+                        for trial in 0..self.plan.trials {
+                            let [a, b] = [planner, other].map(|planner| {
+                                let case = Case { world: world.into(), planner: planner.into(), step, trial };
+                                Measures::of(planner, &[self.log.get(&case)?])
+                                    .filter(|one| (m.3)(one).is_finite())
+                            });
+                            differences.extend(a.zip(b).map(|(a, b)| (m.3)(&a) - (m.3)(&b)));
+                        }
+                    }
+                    interval(&differences)
+                }));
+                table.rows.push(row);
+            }
+        }
+        table
+    }
+
+    /// How the edges of trees came about, per thousand samples, and the most and the least at any step that only a snake
+    /// bent.
+    fn edges(&self) -> Table {
+        let heads = ["world", "planner", "straight", "bulge", "bulge, relaxed", "only a snake", "not bent"];
+        let mut table = Table::new(heads);
+        for world in WORLDS {
+            for planner in PLANNERS.into_iter().filter(|planner| planner.starts_with("rrs")) {
+                let mut row = vec![world.to_owned(), name(planner).to_owned()];
+                row.extend([0, 1, 2, 3, 4].map(|k| spread(&self.over(&[world], planner, |s| s.edges[k]))));
+                table.rows.push(row);
+            }
+        }
+        table
     }
 
     /// Figures 5 to 9: each measure against the step, for each world.
@@ -202,10 +286,41 @@ fn name(planner: &str) -> &'static str {
     match planner {
         "rrt" => "RRT",
         "rrs" => "RRS",
+        "rrs-snake" => "RRS by snakes",
+        "rrs-bulge" => "RRS by bulges",
+        "rrs-eq3" => "RRS in eq. 3 alone",
         "rrt-upto" => "RRT, up to Δq",
         "rrs-upto" => "RRS, up to Δq",
         _ => "RRT-Connect, up to Δq",
     }
+}
+
+/// The columns of edges per thousand samples.
+const EDGES: [&str; 5] = ["straight", "bulge", "relaxed_bulge", "only_snake", "not_bent"];
+
+/// The planners whose trials are compared one by one: RRS, and RRT with the same steps.
+const PAIRS: [(&str, &str); 5] = [
+    ("rrs", "rrt"),
+    ("rrs-snake", "rrt"),
+    ("rrs-bulge", "rrt"),
+    ("rrs-eq3", "rrt"),
+    ("rrs-upto", "rrt-upto"),
+];
+
+/// The mean with its 95% interval, by the normal distribution: there are thousands of values.
+pub(super) fn interval(values: &[f64]) -> String {
+    let n = values.len() as f64;
+    let Some(mean) = mean(values.iter().copied()) else { return "–".into() };
+    let spread = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0).max(1.0);
+    let half = 1.96 * (spread / n).sqrt();
+    let digits = if half < 0.0995 {
+        3
+    } else if half < 0.995 {
+        2
+    } else {
+        1
+    };
+    format!("{mean:.digits$} ± {half:.digits$}")
 }
 
 /// The mean, with the least and the greatest value.
@@ -272,7 +387,8 @@ mod tests {
             let solved = case.trial == 0 || case.planner == "rrs";
             let iterations = if solved { 1000 } else { 5000 };
             let seconds = if case.planner == "rrs" { 2e-3 } else { 4e-3 };
-            let run = Run { solved, seconds, iterations, nodes: 501, length: 5.0, safety: 0.02 };
+            let run =
+                Run { solved, seconds, iterations, nodes: 501, length: 5.0, safety: 0.02, ..Run::default() };
             log.learn([(case, run)]);
         }
         let results = Results::new(&log, &plan);
@@ -285,8 +401,8 @@ mod tests {
         let measures = results.measures("low", "rrt", 30).unwrap();
         assert_eq!((measures.iterations, measures.converged), (60.0, 50.0));
         assert!((measures.accepted - 100.0 / 6.0).abs() < 1e-9);
-        assert_eq!(results.summary().rows.len(), 4 * 5);
-        assert_eq!(results.each().rows.len(), 4 * 5 * 2);
+        assert_eq!(results.summary().rows.len(), 4 * 8);
+        assert_eq!(results.each().rows.len(), 4 * 8 * 2);
         let text = results.markdown();
         // 2 µs by 4 ms in 3,000 iterations.
         assert!((results.per_iteration(&["low"], "rrt") - 8.0 / 6.0).abs() < 1e-9);

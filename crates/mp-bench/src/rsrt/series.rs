@@ -34,6 +34,9 @@ pub(super) const MODELS: [&str; 2] = ["positions", "velocities"];
 pub(super) const METRICS: [&str; 3] = ["euclidean", "scaled", "manhattan"];
 pub(super) const PLANNERS: [&str; 3] = ["rrt", "rsrt", "rrt-connect"];
 
+/// The number of inputs: one each way along each degree of freedom.
+const INPUTS: usize = 12;
+
 /// A robot, a model, a metric and a planner, measured over numbers of obstacles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Series {
@@ -107,23 +110,34 @@ fn one<M: TestRobot>(
     cancel: &Cancel,
 ) -> Result<Option<Run>> {
     let planner = match case.planner.as_str() {
-        "rrt" => ComparedPlanner::Rrt,
-        "rsrt" => ComparedPlanner::Rsrt,
+        "rrt" => ComparedPlanner::RRT,
+        "rsrt" => ComparedPlanner::RSRT,
         "rrt-connect" => ComparedPlanner::Connect,
         other => return Err(Error::new(format!("there is no planner `{other}` here"))),
     };
-    let settings = RunSettings { planner, seed: case.instance + 1, cap, cancel: cancel.clone() };
+    let settings =
+        RunSettings { planner, inputs: INPUTS, seed: case.instance + 1, cap, cancel: cancel.clone() };
+    among_boxes(test_robot, obstacles, [&case.model, &case.metric], &settings)
+}
+
+/// Plans among obstacles with states that are positions, or have velocities, under a metric. `None` when it was cancelled.
+pub(super) fn among_boxes<M: TestRobot>(
+    test_robot: &M,
+    obstacles: &[Obstacle],
+    [model, metric]: [&str; 2],
+    settings: &RunSettings,
+) -> Result<Option<Run>> {
     let robot = test_robot.among(obstacles)?;
     let weights = test_robot.weights();
-    match (case.model.as_str(), case.metric.as_str()) {
-        ("positions", "euclidean") => positions(test_robot, robot, Euclidean, &settings),
-        ("positions", "manhattan") => positions(test_robot, robot, Manhattan, &settings),
+    match (model, metric) {
+        ("positions", "euclidean") => positions(test_robot, robot, Euclidean, settings),
+        ("positions", "manhattan") => positions(test_robot, robot, Manhattan, settings),
         ("positions", _) => {
             let scaled = ScaledEuclidean::new(test_robot.space(), weights).into_error()?;
-            positions(test_robot, robot, scaled, &settings)
+            positions(test_robot, robot, scaled, settings)
         }
-        (_, "euclidean") => velocities(test_robot, robot, Euclidean, &settings),
-        (_, "manhattan") => velocities(test_robot, robot, Manhattan, &settings),
+        (_, "euclidean") => velocities(test_robot, robot, Euclidean, settings),
+        (_, "manhattan") => velocities(test_robot, robot, Manhattan, settings),
         _ => {
             let (most, _) = test_robot.limits();
             let space = Product::with_velocity(test_robot.space().clone(), most).into_error()?;
@@ -132,7 +146,7 @@ fn one<M: TestRobot>(
             let six = weights.iter().copied().chain(std::iter::repeat(last)).take(6);
             let moving: Vec<f64> = weights.iter().copied().chain(six).collect();
             let scaled = ScaledEuclidean::new(&space, moving).into_error()?;
-            velocities(test_robot, robot, scaled, &settings)
+            velocities(test_robot, robot, scaled, settings)
         }
     }
 }

@@ -1,16 +1,17 @@
 //! One run of one planner on one problem.
 
 use super::robots::{Six, TestRobot};
-use crate::clock::{ProcessorTime, nanoseconds, seconds_since};
+use crate::clock::{ProcessorTime, nanoseconds, processor_clock, seconds_since};
 use crate::error::{IntoError, Result};
 use mp_control::{
-    DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, LocalFlowCheck, OnPosition,
-    ReplayFinely,
+    Accept, DiscreteFlowCheck, DoubleIntegrator, InputPlanner, InputSet, Kinematic, LocalFlowCheck,
+    OnPosition, Order, ReplayFinely,
 };
 use mp_cspace::{
     Cancel, Discrete, Exactly, Metric, MotionValidity, Outcome, Planner, Product, Resolution, Rn, Rng, Space,
     Stop, StopReason, Straight, Validity, WithMetric,
 };
+use mp_plan::{Control, Error, Request, Scene, StoppedBy};
 use mp_tree::{BuildError, Goals, Problem, RrtConnect, RrtInputs, Rsrt, Step, Tuning};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -37,22 +38,33 @@ pub(super) struct Run {
 /// The planners compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ComparedPlanner {
-    /// ALG. 4.
-    Rrt,
-    Rsrt,
+    /// A tree that moves by inputs: ALG. 4, RSRT, or what is between them.
+    Inputs(Order, Accept),
     /// RRT-Connect with straight motions, for comparison.
     Connect,
+}
+
+impl ComparedPlanner {
+    /// ALG. 4.
+    pub(super) const RRT: Self = Self::Inputs(Order::TestAll, Accept::Nearer);
+    pub(super) const RSRT: Self = Self::Inputs(Order::SortFirst, Accept::Any);
 }
 
 /// The settings of a run.
 #[derive(Clone, Debug)]
 pub(super) struct RunSettings {
     pub(super) planner: ComparedPlanner,
+    /// The number of inputs: [`InputSet::directions`].
+    pub(super) inputs: usize,
     pub(super) seed: u64,
     /// The limit of processor time, seconds.
     pub(super) cap: f64,
     pub(super) cancel: Cancel,
 }
+
+/// How long an input is applied: a velocity, and an acceleration, seconds.
+const MOVED: f64 = 1.0;
+const ACCELERATED: f64 = 0.5;
 
 type State<M> = <<M as TestRobot>::Space as Space>::State;
 /// A configuration and its velocity.
@@ -100,6 +112,26 @@ fn run<S, E: Clone>(
     }))
 }
 
+/// Plans in a shipped scene, by name. `None` when it was cancelled. The time is that of the planner, which verifies its
+/// candidates; the path is neither shortened nor timed beyond that.
+pub(super) fn in_scene(scene: &Scene, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
+    let mut control = Control { cancel: cancel.clone(), clock: processor_clock(), ..Control::default() };
+    let report = scene.plan_with(request, &mut control)?;
+    if report.stopped_by == Some(StoppedBy::Interrupted) {
+        return Ok(None);
+    }
+    Ok(Some(Run {
+        solved: report.solved,
+        seconds: report.time_s,
+        iterations: report.iterations,
+        nodes: report.nodes,
+        checks: report.collision_checks,
+        expansions: report.motion_checks,
+        rejected: report.rejected,
+        edges: report.path.map_or(0, |path| path.len().saturating_sub(1)),
+    }))
+}
+
 /// Plans with states that are positions, under `metric`. `None` when it was cancelled.
 pub(super) fn positions<M, D>(
     test_robot: &M,
@@ -120,19 +152,23 @@ where
     let check = Discrete::new(test_robot.space(), valid, resolution).into_error()?;
     let straight = Straight::new(&space, check);
     let (start, goal, tuning) = (test_robot.start().clone(), test_robot.goal().clone(), tuning());
-    let done = if settings.planner == ComparedPlanner::Connect {
-        let problem = Problem::new(&space, straight, verifier, start, goal).into_error()?;
-        run(RrtConnect::new(problem, tuning), settings, began)
-    } else {
-        let flow = Kinematic::new(&space).into_error()?;
-        let inputs = InputSet::axes(test_robot.speeds()).into_error()?;
-        let local = InputPlanner::new(&space, flow, inputs, 1.0, LocalFlowCheck(straight)).into_error()?;
-        let near = |q: &State<M>| test_robot.arrived(q);
-        let goals = Goals::region(near).with_sampler(Exactly(goal));
-        let problem = Problem::new(&space, local, verifier, start, goals).into_error()?;
-        match settings.planner {
-            ComparedPlanner::Rrt => run(RrtInputs::new(problem, tuning), settings, began),
-            _ => run(Rsrt::new(problem, tuning), settings, began),
+    let done = match settings.planner {
+        ComparedPlanner::Connect => {
+            let problem = Problem::new(&space, straight, verifier, start, goal).into_error()?;
+            run(RrtConnect::new(problem, tuning), settings, began)
+        }
+        ComparedPlanner::Inputs(order, accept) => {
+            let flow = Kinematic::new(&space).into_error()?;
+            let inputs = InputSet::directions(test_robot.speeds(), settings.inputs).into_error()?;
+            let local =
+                InputPlanner::new(&space, flow, inputs, MOVED, LocalFlowCheck(straight)).into_error()?;
+            let near = |q: &State<M>| test_robot.arrived(q, false);
+            let goals = Goals::region(near).with_sampler(Exactly(goal));
+            let problem = Problem::new(&space, local.ordered(order), verifier, start, goals).into_error()?;
+            match accept {
+                Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),
+                Accept::Any => run(Rsrt::new(problem, tuning), settings, began),
+            }
         }
     }?;
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
@@ -171,17 +207,20 @@ where
     let valid = OnPosition(CountingValidity { valid: robot, count: count.clone() });
     let resolution = Resolution::Length(test_robot.resolution());
     let check = DiscreteFlowCheck::new(&places, valid, resolution).into_error()?;
-    let inputs = InputSet::axes(accelerations).into_error()?;
-    let local = InputPlanner::new(&space, flow, inputs, 1.0, check).into_error()?;
+    let ComparedPlanner::Inputs(order, accept) = settings.planner else {
+        return Err(Error::new("two trees grown by accelerations do not meet"));
+    };
+    let inputs = InputSet::directions(accelerations, settings.inputs).into_error()?;
+    let local = InputPlanner::new(&space, flow, inputs, ACCELERATED, check).into_error()?.ordered(order);
     let rest = Six::zeros();
-    let goals = Goals::region(|q: &Moving<M>| test_robot.arrived(&q.0))
+    let goals = Goals::region(|q: &Moving<M>| test_robot.arrived(&q.0, true))
         .with_sampler(Exactly((test_robot.goal().clone(), rest)));
     let start = (test_robot.start().clone(), rest);
     let problem = Problem::new(&space, local, verifier, start, goals).into_error()?;
     let tuning = tuning();
-    let done = match settings.planner {
-        ComparedPlanner::Rrt => run(RrtInputs::new(problem, tuning), settings, began),
-        _ => run(Rsrt::new(problem, tuning), settings, began),
+    let done = match accept {
+        Accept::Nearer => run(RrtInputs::new(problem, tuning), settings, began),
+        Accept::Any => run(Rsrt::new(problem, tuning), settings, began),
     }?;
     Ok(done.map(|run| Run { checks: count.load(Ordering::Relaxed), ..run }))
 }

@@ -248,14 +248,14 @@ impl<'a> Results<'a> {
         }
     }
 
-    /// Figure 5 for each robot and model: time against the number of obstacles.
+    /// Figure 5 for each robot and model of which there are runs: time against the number of obstacles.
     pub(super) fn charts(&self) -> Vec<(String, Result<String>)> {
         let mut charts = Vec::new();
         for mover in MOVERS {
             for model in MODELS {
                 let mut curves = Vec::new();
                 for (p, planner) in PLANNERS.into_iter().enumerate() {
-                    for metric in METRICS {
+                    for (m, metric) in METRICS.into_iter().enumerate() {
                         let series = Series { mover, model, metric, planner };
                         let groups: Vec<(f64, Median)> = self
                             .plan
@@ -273,13 +273,17 @@ impl<'a> Results<'a> {
                         );
                         curve.ranges =
                             groups.iter().map(|(l, m)| (*l, m.low, m.high.min(self.plan.cap))).collect();
-                        curve.thin = metric != "euclidean";
-                        curves.push(curve);
+                        curves.push(curve.pattern(m));
                     }
+                }
+                if curves.is_empty() {
+                    continue;
                 }
                 let title = format!("{mover}, {model}: time to a path");
                 let labels = Labels { title: &title, x: "obstacles", y: "s of processor time" };
-                let marks: Vec<f64> = self.plan.levels.iter().map(|l| *l as f64).collect();
+                let levels = self.plan.levels.iter().map(|l| *l as f64);
+                let marks: Vec<f64> =
+                    levels.filter(|l| curves.iter().any(|c| c.points.iter().any(|p| p.0 == *l))).collect();
                 let name = format!("{}-{model}", mover.replace(' ', "-").to_lowercase());
                 charts.push((name, chart(labels, [Axis::LogAt(&marks), Axis::Log], &curves)));
             }

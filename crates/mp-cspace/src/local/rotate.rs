@@ -112,6 +112,12 @@ impl<C: Space, M: MotionValidity<C::State>> LocalPlanner<C::State> for RotateAtS
     fn admits(&mut self, q: &C::State) -> bool {
         self.check.check_motion(q, q).is_free()
     }
+    fn vertices<'e>(&self, edge: &'e PolylineEdge<C::State>) -> &'e [C::State]
+    where
+        C::State: 'e,
+    {
+        edge.vertices()
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use super::{DefaultNn, Embed, KdTree};
 use crate::space::twice;
 use crate::{
-    Coordinates, Factored, Joints, Product, Rn, Se2, Se2State, Se3, So3, angle::wrap_angle, nn::Layout,
+    Coordinates, Factored, FloatingJoints, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space,
+    angle::wrap_angle, nn::Layout,
 };
 use nalgebra::{DVector, Isometry3, SVector, UnitQuaternion};
 
@@ -37,6 +38,24 @@ impl<const N: usize> DefaultNn for Joints<SVector<f64, N>> {
     type Nn = KdTree<N>;
 }
 impl DefaultNn for Joints<DVector<f64>> {
+    type Nn = KdTree;
+}
+
+impl Embed for FloatingJoints {
+    fn layout(&self) -> Layout {
+        self.base().layout().beside(self.joints().layout())
+    }
+    #[inline]
+    fn embed(&self, state: &DVector<f64>, out: &mut [f64]) -> usize {
+        let Some((base, joints)) = Self::split(state.as_slice()) else { return 0 };
+        let n = self.base().embed(&base, out);
+        let m = self.joints().dim();
+        let each = out[n..n + m].iter_mut().zip(joints).enumerate();
+        each.for_each(|(i, (o, x))| *o = self.joints().coordinate(i, *x));
+        n + m
+    }
+}
+impl DefaultNn for FloatingJoints {
     type Nn = KdTree;
 }
 

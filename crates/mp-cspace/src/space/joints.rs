@@ -183,7 +183,7 @@ impl<Q: Coordinates> Joints<Q> {
 
     /// The signed difference of joint `i`, on circles along the shorter arc.
     #[inline]
-    fn difference(&self, i: usize, from: f64, to: f64) -> f64 {
+    pub(super) fn difference(&self, i: usize, from: f64, to: f64) -> f64 {
         let d = to - from;
         if d.abs() <= self.unwrapped.as_slice()[i] { d } else { angle_difference(from, to) }
     }
@@ -204,8 +204,17 @@ impl<Q: Coordinates> Joints<Q> {
         }
     }
 
+    /// Whether there is a value for each joint, within its range.
+    pub(super) fn holds(&self, q: &[f64]) -> bool {
+        q.len() == self.ranges.len()
+            && self.ranges.iter().zip(q).all(|(range, x)| match *range {
+                JointRange::Interval { low, high } => low <= *x && *x <= high,
+                JointRange::Circle => -PI < *x && *x <= PI,
+            })
+    }
+
     #[inline]
-    fn joint_between(&self, i: usize, from: f64, to: f64, t: f64) -> f64 {
+    pub(super) fn joint_between(&self, i: usize, from: f64, to: f64, t: f64) -> f64 {
         match self.ranges[i] {
             JointRange::Interval { .. } => lerp(from, to, t),
             JointRange::Circle => angle_lerp(from, to, t),
@@ -250,12 +259,7 @@ impl<Q: Coordinates> Space for Joints<Q> {
         self.state(|_| rng.random())
     }
     fn contains(&self, q: &Q) -> bool {
-        let q = q.as_slice();
-        q.len() == self.ranges.len()
-            && self.ranges.iter().zip(q).all(|(range, x)| match *range {
-                JointRange::Interval { low, high } => low <= *x && *x <= high,
-                JointRange::Circle => -PI < *x && *x <= PI,
-            })
+        self.holds(q.as_slice())
     }
     #[inline]
     fn moved(&self, from: &Q, velocity: &[f64], time: f64) -> Option<Q> {

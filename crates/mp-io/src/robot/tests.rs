@@ -68,6 +68,30 @@ fn faults_have_their_place() {
 }
 
 #[test]
+fn a_base_floats_within_bounds() {
+    let at = |text: &str| {
+        let (_dir, path) = folder(&GOOD.replace("base = [0, 0, 0.5, 0, 0, 0]", text));
+        RobotProblem::load(path)
+    };
+    let problem = at("base = \"floating\"\nbounds = [[-1, -2, 0], [1, 2, 3.5]]").unwrap();
+    assert_eq!(problem.file.floating, Some([[-1.0, -2.0, 0.0], [1.0, 2.0, 3.5]]));
+    assert_eq!(problem.file.fault(RobotPart::Base, "no", "").line(), Some(3));
+    assert_eq!(at("").unwrap().file.floating, None);
+    for (text, line, words) in [
+        ("base = \"floating\"", 3, "without bounds"),
+        ("base = \"planar\"", 3, "`planar`"),
+        ("base = [0, 0, 1]", 3, "floating"),
+        ("bounds = [[0, 0, 0], [1, 1, 1]]", 3, "stands still"),
+        ("base = [0, 0, 0, 0, 0, 0]\nbounds = [[0, 0, 0], [1, 1, 1]]", 4, "stands still"),
+        ("base = \"floating\"\nbounds = [[0, 0, 0], [1, 0, 1]]", 4, "enclose nothing"),
+        ("base = \"floating\"\nbounds = [[0, 0, 0], [1, inf, 1]]", 4, "bounds of the base"),
+    ] {
+        let error = at(text).unwrap_err();
+        assert!(is_clear(&error, line, words), "{text}: {error}");
+    }
+}
+
+#[test]
 fn meshes_are_found() {
     let (dir, path) = folder(GOOD);
     let package = dir.path().join("parts/meshes");

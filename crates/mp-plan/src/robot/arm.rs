@@ -1,4 +1,4 @@
-//! Arms, and other trees of links, among meshes.
+//! Arms, and other trees of links, among meshes; their base stands still or floats.
 
 use super::{
     Body, BodyShape, Column, Counted, DrivenScene, End, Measured, Queries, RobotKind, SpeedBound, Touch,
@@ -6,25 +6,102 @@ use super::{
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::{Error, MetricName, brief};
-use mp_cspace::{JointRange, Joints, Manhattan, MotionClearance, ObstacleKnowledge, Space, WithMetric};
-use mp_geom::TriMesh;
-use mp_io::{Disk, Files, PlacedBody, RobotPart, RobotProblem};
-use mp_robot::{Arm, ArmModel, ArmVerifier, JointKind};
+use mp_cspace::{
+    Clearance, Euclidean, Factored, FloatingJoints, Halton, JointRange, Joints, Manhattan, MotionClearance,
+    ObstacleKnowledge, Rng, Sampler, ScaledEuclidean, Space, TrueMetric, WithMetric,
+};
+use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
+use mp_io::{Disk, Files, GoalEntry, PlacedBody, RobotPart, RobotProblem};
+use mp_robot::{Arm, ArmModel, ArmVerifier, Coordinate, JointKind};
 use nalgebra::{DVector, Isometry3};
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Debug;
 
-/// Between two copies of the arm in a picture no point moves farther than this fraction of its reach.
-const PICTURE_SPACING: f64 = 0.12;
-
-/// The joint values of an arm.
+/// The joint values of an arm; the pose of the base comes first if it floats.
 type Configuration = DVector<f64>;
 
+/// The space of a robot made of links and joints: [`Joints`] if its base stands still, [`FloatingJoints`] if it floats.
+pub trait LinkedSpace: Factored<State = Configuration> + TrueMetric + Clone + Debug + Send + 'static {
+    /// Name and unit of each number of the pose of the base in a row.
+    const BASE: &'static [(&'static str, &'static str)];
+    /// Between two copies of the robot in a picture no point moves farther than this fraction of its reach.
+    const PICTURE_SPACING: f64;
+
+    /// The space of a robot.
+    ///
+    /// # Errors
+    /// When its base is of the other kind.
+    fn of(arm: &Arm) -> Result<Self, Error>;
+    /// The space under its own metric.
+    fn measured(&self) -> Measured<'_, Configuration>;
+    /// The configuration of a row.
+    fn state(&self, row: &[f64]) -> Configuration;
+    /// The row of a configuration.
+    fn row(q: &Configuration) -> Vec<f64>;
+    /// The pose of the base at a configuration, if it floats.
+    fn base(q: &Configuration) -> Option<Isometry3<f64>>;
+}
+
+impl LinkedSpace for Joints<Configuration> {
+    const BASE: &'static [(&'static str, &'static str)] = &[];
+    const PICTURE_SPACING: f64 = 0.12;
+
+    fn of(arm: &Arm) -> Result<Self, Error> {
+        Ok(arm.space()?)
+    }
+    fn measured(&self) -> Measured<'_, Configuration> {
+        Measured::compiled(self)
+    }
+    fn state(&self, row: &[f64]) -> Configuration {
+        self.wrapped(&DVector::from_column_slice(row))
+    }
+    fn row(q: &Configuration) -> Vec<f64> {
+        q.as_slice().to_vec()
+    }
+    fn base(_: &Configuration) -> Option<Isometry3<f64>> {
+        None
+    }
+}
+
+impl LinkedSpace for FloatingJoints {
+    const BASE: &'static [(&'static str, &'static str)] =
+        &[("x", "m"), ("y", "m"), ("z", "m"), ("alpha", "rad"), ("beta", "rad"), ("gamma", "rad")];
+    const PICTURE_SPACING: f64 = 0.4;
+
+    fn of(arm: &Arm) -> Result<Self, Error> {
+        Ok(arm.floating_space()?)
+    }
+    fn measured(&self) -> Measured<'_, Configuration> {
+        Measured::by_coordinates(self)
+    }
+    fn state(&self, row: &[f64]) -> Configuration {
+        let (pose, joints) = row.split_at(Self::BASE.len().min(row.len()));
+        let six = std::array::from_fn(|i| pose.get(i).copied().unwrap_or(0.0));
+        FloatingJoints::state(self, &pose_from_six(six), joints)
+    }
+    fn row(q: &Configuration) -> Vec<f64> {
+        let Some((base, joints)) = Self::split(q.as_slice()) else { return Vec::new() };
+        // Adding zero removes the sign of negative zeros.
+        six_from_pose(&base).into_iter().map(|v| v + 0.0).chain(joints.iter().copied()).collect()
+    }
+    fn base(q: &Configuration) -> Option<Isometry3<f64>> {
+        Self::split(q.as_slice()).map(|(base, _)| base)
+    }
+}
+
 /// An arm among meshes, with a start and goals.
+pub type ArmScene = LinkedScene<Joints<Configuration>>;
+
+/// A robot made of links and joints whose base moves freely, among meshes, with a start and goals.
+pub type FloatingScene = LinkedScene<FloatingJoints>;
+
+/// A robot made of links and joints among meshes, with a start and goals: [`ArmScene`] or [`FloatingScene`].
 #[derive(Clone, Debug)]
-pub struct ArmScene {
+pub struct LinkedScene<C> {
     name: String,
     arm: Arm,
     obstacles: Vec<PlacedBody>,
-    space: Joints<Configuration>,
+    space: C,
     start: Configuration,
     goals: Vec<Configuration>,
     /// What the goals ask of each number, if they are not configurations.
@@ -33,13 +110,13 @@ pub struct ArmScene {
     source: Option<Box<RobotProblem>>,
 }
 
-impl ArmScene {
-    /// The arm of `model` among obstacles. Configurations have one number for each coordinate: radians, or metres for a
-    /// prismatic joint.
+impl<C: LinkedSpace> LinkedScene<C> {
+    /// The robot of `model` among obstacles. Configurations have one number for each coordinate: radians, or metres for a
+    /// prismatic joint. If the base floats, the six numbers of its pose come first: x, y, z, α, β, γ.
     ///
     /// # Errors
-    /// When the model is not valid, an obstacle cannot be placed, there is no goal, or the length of a configuration does not
-    /// fit the arm.
+    /// When the model is not valid or its base is of the other kind, an obstacle cannot be placed, there is no goal, or the
+    /// length of a configuration does not fit the robot.
     pub fn new(
         name: impl Into<String>,
         model: &ArmModel,
@@ -48,7 +125,7 @@ impl ArmScene {
         goals: &[Vec<f64>],
     ) -> Result<Self, Error> {
         let arm = Self::among(model, &obstacles)?;
-        let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.clone()).collect();
+        let names = Self::names(&arm);
         let check = |what: &str, values: &Vec<f64>| match wrong_count(what, values, &names) {
             Some([message, help]) => Err(Error::new(message).help(help)),
             None => Ok(()),
@@ -56,6 +133,12 @@ impl ArmScene {
         check("the start", &start.to_vec())?;
         goals.iter().try_for_each(|goal| check("the goal", goal))?;
         Self::assembled(name.into(), arm, obstacles, start, goals)
+    }
+
+    /// The names of the numbers of a row.
+    fn names(arm: &Arm) -> Vec<String> {
+        let base = C::BASE.iter().map(|(name, _)| (*name).to_owned());
+        base.chain(arm.coordinates().iter().map(|c| c.name.clone())).collect()
     }
 
     fn among(model: &ArmModel, obstacles: &[PlacedBody]) -> Result<Arm, Error> {
@@ -71,8 +154,8 @@ impl ArmScene {
         start: &[f64],
         goals: &[Vec<f64>],
     ) -> Result<Self, Error> {
-        let space: Joints<Configuration> = arm.space()?;
-        let state = |values: &[f64]| space.wrapped(&DVector::from_column_slice(values));
+        let space = C::of(&arm)?;
+        let state = |values: &[f64]| space.state(values);
         if goals.is_empty() {
             return Err(Error::new("there is no goal"));
         }
@@ -94,26 +177,9 @@ impl ArmScene {
     /// # Errors
     /// As [`from_problem`](Self::from_problem).
     pub fn from_problem_in(files: &dyn Files, problem: RobotProblem) -> Result<Self, Error> {
-        let what = format!("cannot make a robot of {}", problem.urdf_file.display());
-        let of = &|e: Error| e.context(what.clone());
-        let mut mesh = |name: &str| problem.mesh_from(files, name);
-        let mut model = from_urdf(&problem.urdf, &mut mesh).map_err(of)?;
-        for note in &model.notes {
-            tracing::info!("{}: {note}", problem.urdf_file.display());
-        }
-        model.base = problem.base();
-        if let Some(srdf) = &problem.srdf {
-            model = model.with_srdf(srdf).map_err(|e| {
-                problem.file.fault(RobotPart::Srdf, &e.to_string(), "name an SRDF of this robot, or none")
-            })?;
-        }
-        for (i, (joint, [low, high])) in problem.file.limits.iter().enumerate() {
-            model = model.with_limits(joint, *low, *high).map_err(|e| {
-                problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
-            })?;
-        }
-        let arm = Self::among(&model, &problem.obstacles).map_err(of)?;
-        let names: Vec<_> = arm.coordinates().iter().map(|c| c.name.clone()).collect();
+        let of = &|e: Error| e.context(what(&problem));
+        let arm = Self::arm_of(files, &problem)?;
+        let names = Self::names(&arm);
         let file = &problem.file;
         let driven = file.driven.as_ref();
         let state_names = driven.map_or_else(|| names.clone(), |driven| driven.state_names(&names));
@@ -123,6 +189,12 @@ impl ArmScene {
         {
             return Err(fault(RobotPart::Start, wrong));
         }
+        let floats = arm.kinematics().floats();
+        if floats && driven.is_some() {
+            let message = "a robot whose base floats cannot move by inputs here".to_owned();
+            let help = "leave `kind` out, or give the base a place: `base = [x, y, z, α, β, γ]`".to_owned();
+            return Err(fault(RobotPart::Robot, [message, help]));
+        }
         let mut parts = Vec::new();
         for (i, goal) in file.goals.iter().enumerate() {
             if let Some(values) = goal.values()
@@ -130,6 +202,11 @@ impl ArmScene {
                 && let Some(wrong) = wrong_count("the goal", values, &names)
             {
                 return Err(fault(RobotPart::Goal(i), wrong));
+            }
+            if floats && goal.values().is_none() {
+                let message = "the goal of a robot whose base floats leaves numbers open".to_owned();
+                let help = "list all of them: x, y, z, α, β, γ of the base, then the joints".to_owned();
+                return Err(fault(RobotPart::Goal(i), [message, help]));
             }
             let goal = goal.parts("the goal", &state_names, names.len(), file.tolerance);
             parts.push(goal.map_err(|wrong| fault(RobotPart::Goal(i), wrong))?);
@@ -148,7 +225,8 @@ impl ArmScene {
         let goals = rows(&parts);
         let given = goals.as_ref().unwrap_or(&first);
         let scene = Self::assembled(problem.name.clone(), arm, problem.obstacles.clone(), &start, given);
-        let mut scene = Self { source: Some(Box::new(problem)), ..scene.map_err(of)? };
+        let scene = scene.map_err(of)?;
+        let mut scene = Self { source: Some(Box::new(problem)), ..scene };
         if goals.is_none() {
             scene.goals = examples(&scene, &parts);
             scene.goal_parts = Some(parts);
@@ -156,21 +234,27 @@ impl ArmScene {
         Ok(scene)
     }
 
-    /// The same arm, moved by inputs as its file says; `None` when the file says nothing of it.
-    ///
-    /// # Errors
-    /// When the arm cannot move so.
-    pub fn driven(&self) -> Result<Option<DrivenScene<Self>>, Error> {
-        let Some(file) = self.source.as_ref().map(|problem| &problem.file) else { return Ok(None) };
-        let Some(driven) = &file.driven else { return Ok(None) };
-        let names: Vec<_> = self.arm.coordinates().iter().map(|c| c.name.clone()).collect();
-        let state_names = driven.state_names(&names);
-        let parts =
-            file.goals.iter().map(|goal| goal.parts("the goal", &state_names, names.len(), file.tolerance));
-        let parts =
-            parts.collect::<Result<_, _>>().map_err(|[message, help]| Error::new(message).help(help))?;
-        let velocity = file.start[names.len()..].to_vec();
-        DrivenScene::new(self.clone(), driven, &velocity, parts).map(Some)
+    /// The arm of a problem among its obstacles.
+    fn arm_of(files: &dyn Files, problem: &RobotProblem) -> Result<Arm, Error> {
+        let of = &|e: Error| e.context(what(problem));
+        let mut mesh = |name: &str| problem.mesh_from(files, name);
+        let mut model = from_urdf(&problem.urdf, &mut mesh).map_err(of)?;
+        for note in &model.notes {
+            tracing::info!("{}: {note}", problem.urdf_file.display());
+        }
+        model.base = problem.base();
+        model.floating = problem.file.floating.map(|[low, high]| Aabb::new(low.into(), high.into()));
+        if let Some(srdf) = &problem.srdf {
+            model = model.with_srdf(srdf).map_err(|e| {
+                problem.file.fault(RobotPart::Srdf, &e.to_string(), "name an SRDF of this robot, or none")
+            })?;
+        }
+        for (i, (joint, [low, high])) in problem.file.limits.iter().enumerate() {
+            model = model.with_limits(joint, *low, *high).map_err(|e| {
+                problem.file.fault(RobotPart::Limits(i), &e.to_string(), "name joints as the URDF does")
+            })?;
+        }
+        Self::among(&model, &problem.obstacles).map_err(of)
     }
 
     /// The arm among its obstacles.
@@ -191,11 +275,114 @@ impl ArmScene {
         self.source.as_deref()
     }
 
+    /// How far (m) a unit of each factor of the space moves a point of the robot at most.
+    fn weights(&self) -> Vec<f64> {
+        let reach = if self.arm.reach() > 0.0 { self.arm.reach() } else { 1.0 };
+        let base = if self.arm.kinematics().floats() { vec![1.0, 1.0, 1.0, reach] } else { Vec::new() };
+        // A joint that moves nothing solid still has a weight.
+        let joints = self.arm.coordinate_reaches().into_iter().map(|r| r.max(1e-3 * reach));
+        base.into_iter().chain(joints).collect()
+    }
+
     /// The links that have a shape: index in the model, and mesh.
     fn solid_links(&self) -> impl Iterator<Item = (usize, TriMesh)> {
         let links = self.arm.model().links.iter().enumerate();
         links.filter_map(|(i, link)| Some((i, TriMesh::merged(link.shapes.iter())?)))
     }
+}
+
+impl ArmScene {
+    /// The same arm, moved by inputs as its file says; `None` when the file says nothing of it.
+    ///
+    /// # Errors
+    /// When the arm cannot move so.
+    pub fn driven(&self) -> Result<Option<DrivenScene<Self>>, Error> {
+        let Some(file) = self.source.as_ref().map(|problem| &problem.file) else { return Ok(None) };
+        let Some(driven) = &file.driven else { return Ok(None) };
+        let names: Vec<_> = self.arm.coordinates().iter().map(|c| c.name.clone()).collect();
+        let state_names = driven.state_names(&names);
+        let parts =
+            file.goals.iter().map(|goal| goal.parts("the goal", &state_names, names.len(), file.tolerance));
+        let parts =
+            parts.collect::<Result<_, _>>().map_err(|[message, help]| Error::new(message).help(help))?;
+        let velocity = file.start[names.len()..].to_vec();
+        DrivenScene::new(self.clone(), driven, &velocity, parts).map(Some)
+    }
+
+    /// The scene of a problem without start and goal, and what was chosen, in sentences.
+    ///
+    /// The start is the free configuration nearest to zero within the limits; the goal has each joint half way from there to
+    /// its farther limit, or is the free configuration nearest to that.
+    ///
+    /// # Errors
+    /// As [`from_problem`](Self::from_problem), and when no free configuration is found.
+    #[cfg_attr(not(feature = "urdf"), expect(dead_code, reason = "there are no robots to read"))]
+    pub(crate) fn from_robot_alone(
+        files: &dyn Files,
+        mut problem: RobotProblem,
+    ) -> Result<(Self, Vec<String>), Error> {
+        let arm = Self::arm_of(files, &problem)?;
+        let space = arm.space()?;
+        let none = || {
+            Error::new("the links of this robot touch each other in every configuration that was tried")
+                .help("say in an SRDF which links may touch, and name it in a robot problem: docs/formats/robot-problem.md")
+                .context(what(&problem))
+        };
+        let wanted = DVector::from(arm.kinematics().neutral());
+        let start = free_near(&arm, &space, &wanted).ok_or_else(none)?;
+        let half_way = |(joint, at): (&Coordinate, &f64)| match joint.range {
+            JointRange::Interval { low, high } if high - at >= at - low => 0.5 * (at + high),
+            JointRange::Interval { low, .. } => 0.5 * (at + low),
+            JointRange::Circle => at + FRAC_PI_2,
+        };
+        let far: Vec<f64> = arm.coordinates().iter().zip(start.iter()).map(half_way).collect();
+        let far = space.wrapped(&DVector::from(far));
+        let goal = free_near(&arm, &space, &far).ok_or_else(none)?;
+        let nearest = |chosen: &Configuration, wanted: &Configuration| match chosen == wanted {
+            true => "",
+            false => ", or rather the nearest configuration found at which no links touch",
+        };
+        let file = problem.urdf_file.file_name().map(|name| name.to_string_lossy().into_owned());
+        let notes = vec![
+            format!(
+                "{} is a robot alone. Every joint starts at zero, or at the limit nearest to zero{}",
+                file.unwrap_or_default(),
+                nearest(&start, &wanted)
+            ),
+            format!(
+                "the goal is half way from there to the farther limit of each joint{}. A robot problem sets these, and \
+                 obstacles: docs/formats/robot-problem.md",
+                nearest(&goal, &far)
+            ),
+        ];
+        problem.file.start = start.as_slice().to_vec();
+        let goals = [goal.as_slice().to_vec()];
+        problem.file.goals = vec![GoalEntry::All(goals[0].clone())];
+        let (name, obstacles) = (problem.name.clone(), problem.obstacles.clone());
+        let scene = Self::assembled(name, arm, obstacles, &problem.file.start, &goals)?;
+        Ok((Self { source: Some(Box::new(problem)), ..scene }, notes))
+    }
+}
+
+/// What fails when the robot of a problem cannot be made.
+fn what(problem: &RobotProblem) -> String {
+    format!("cannot make a robot of {}", problem.urdf_file.display())
+}
+
+/// How many samples are tried where no free configuration is found near the one that is wanted.
+const TRIED: usize = 2_000;
+
+/// The free configuration nearest to `q` that is found: `q` itself, else one of those around it, else the nearest of some
+/// thousand samples. The same every time.
+fn free_near(arm: &Arm, space: &Joints<Configuration>, q: &Configuration) -> Option<Configuration> {
+    let (mut arm, margin) = (arm.clone(), 2.0 * arm.tolerance());
+    let near = arm.nearest_free(q, space, margin);
+    near.or_else(|| {
+        let (mut halton, mut rng) = (Halton::new(space), Rng::seed(0));
+        let samples = (0..TRIED).map(|_| halton.sample(&mut rng));
+        let free = samples.filter(|p| arm.clearance(p, margin) >= margin);
+        free.min_by(|a, b| space.distance(q, a).total_cmp(&space.distance(q, b)))
+    })
 }
 
 /// The model of a URDF. `mesh` finds its meshes.
@@ -214,7 +401,7 @@ fn from_urdf(_: &str, _: impl FnMut(&str) -> Result<TriMesh, String>) -> Result<
 fn wrong_count(what: &str, values: &[f64], names: &[String]) -> Option<[String; 2]> {
     let (found, joints) = (values.len(), names.len());
     (found != joints).then(|| {
-        let message = format!("{what} has {found} numbers; the robot has {joints} joints");
+        let message = format!("{what} has {found} numbers; a configuration of this robot has {joints}");
         [message, format!("in order: {}", names.join(", "))]
     })
 }
@@ -240,19 +427,23 @@ impl Queries for Arm {
     }
 }
 
-impl RobotKind for ArmScene {
+impl<C: LinkedSpace> RobotKind for LinkedScene<C> {
     type State = Configuration;
-    type Space = Joints<Configuration>;
+    type Space = C;
     type Checker = Arm;
-    type Verifier<'c> = ArmVerifier<'c, Joints<Configuration>>;
+    type Verifier<'c> = ArmVerifier<'c, C>;
 
     fn name(&self) -> &str {
         &self.name
     }
     fn space_name(&self) -> String {
-        format!("{} joints", self.arm.dof())
+        let joints = self.arm.coordinates().len();
+        match self.arm.kinematics().floats() {
+            true => format!("SE3 × {}", crate::count(joints, "joint")),
+            false => format!("{joints} joints"),
+        }
     }
-    fn space(&self) -> &Joints<Configuration> {
+    fn space(&self) -> &C {
         &self.space
     }
     fn start(&self) -> &Configuration {
@@ -286,15 +477,23 @@ impl RobotKind for ArmScene {
     }
     fn measured(&self, metric: MetricName) -> Result<Measured<'_, Configuration>, Error> {
         match metric {
-            // The default metric of the space is the Euclidean metric.
-            MetricName::Default | MetricName::Euclidean => Ok(Measured::compiled(&self.space)),
+            MetricName::Default => Ok(self.space.measured()),
+            // That of the joints alone is their Euclidean metric already.
+            MetricName::Euclidean if !self.arm.kinematics().floats() => Ok(self.space.measured()),
+            MetricName::Euclidean => {
+                Ok(Measured::by_coordinates(&WithMetric::new(self.space.clone(), Euclidean)))
+            }
+            MetricName::Scaled => {
+                let metric = ScaledEuclidean::new(&self.space, self.weights())?;
+                Ok(Measured::by_coordinates(&WithMetric::new(self.space.clone(), metric)))
+            }
             MetricName::Manhattan => {
                 Ok(Measured::by_coordinates(&WithMetric::new(self.space.clone(), Manhattan)))
             }
             _ => Err(no_metric(
                 metric,
                 "an arm",
-                &[MetricName::Default, MetricName::Euclidean, MetricName::Manhattan],
+                &[MetricName::Default, MetricName::Euclidean, MetricName::Scaled, MetricName::Manhattan],
             )),
         }
     }
@@ -313,11 +512,12 @@ impl RobotKind for ArmScene {
         self.arm.clone().nearest_free(q, &self.space, 2.0 * self.tolerance())
     }
     fn out_of_bounds(&self, q: &Configuration) -> String {
-        for (coordinate, x) in self.arm.coordinates().iter().zip(q.iter()) {
-            if let JointRange::Interval { low, high } = coordinate.range
-                && !(low..=high).contains(x)
+        let numbers = self.columns().into_iter().zip(self.limits()).zip(self.row(q));
+        for ((column, limits), x) in numbers {
+            if let Some([low, high]) = limits
+                && !(low..=high).contains(&x)
             {
-                let limits = format!("{} may be from {} to {}", coordinate.name, brief(low), brief(high));
+                let limits = format!("{} may be from {} to {}", column.name, brief(low), brief(high));
                 return format!("out of the limits: {x}, but {limits}");
             }
         }
@@ -350,18 +550,26 @@ impl RobotKind for ArmScene {
             joint.is_some_and(|joint| matches!(joint.kind, JointKind::Prismatic { .. }))
         };
         let names = self.arm.coordinates().iter().map(|c| c.name.as_str());
-        names.map(|name| Column::new(name, if slides(name) { "m" } else { "rad" })).collect()
+        let base = C::BASE.iter().map(|(name, unit)| Column::new(*name, *unit));
+        base.chain(names.map(|name| Column::new(name, if slides(name) { "m" } else { "rad" }))).collect()
     }
     fn limits(&self) -> Vec<Option<[f64; 2]>> {
         let limits = |range: JointRange| match range {
             JointRange::Interval { low, high } => Some([low, high]),
             JointRange::Circle => None,
         };
-        self.arm.coordinates().iter().map(|c| limits(c.range)).collect()
+        let base = self.arm.model().floating.iter().flat_map(|bounds| {
+            let side = |i: usize| (i < 3).then(|| [bounds.min[i], bounds.max[i]]);
+            (0..C::BASE.len()).map(side)
+        });
+        base.chain(self.arm.coordinates().iter().map(|c| limits(c.range))).collect()
     }
     fn details(&self) -> Vec<(String, String)> {
         let links = crate::count(self.arm.model().links.len(), "link");
-        let base = mp_geom::six_from_pose(&self.arm.model().base).map(brief).join(" ");
+        let base = match self.arm.kinematics().floats() {
+            true => "floats: its pose is part of a configuration".to_owned(),
+            false => six_from_pose(&self.arm.model().base).map(brief).join(" "),
+        };
         let pairs = crate::count(self.arm.checked_pairs().len(), "pair");
         let mut details = vec![
             ("arm".to_owned(), format!("{links}, at most {} m long", brief(self.arm.reach()))),
@@ -377,10 +585,10 @@ impl RobotKind for ArmScene {
         details
     }
     fn row(&self, q: &Configuration) -> Vec<f64> {
-        q.as_slice().to_vec()
+        C::row(q)
     }
     fn state(&self, row: &[f64]) -> Configuration {
-        self.space.wrapped(&DVector::from_column_slice(row))
+        self.space.state(row)
     }
 
     fn bodies(&self) -> Vec<Body> {
@@ -394,11 +602,17 @@ impl RobotKind for ArmScene {
         self.solid_links().filter_map(|(i, _)| all.get(i).copied()).collect()
     }
     fn traced(&self, q: &Configuration) -> nalgebra::Point3<f64> {
+        if let Some(base) = C::base(q) {
+            return base.translation.vector.into();
+        }
         // In most files the last link is the one farthest down the tree.
         let all = self.arm.kinematics().link_poses(q.as_slice()).unwrap_or_default();
         all.last().map_or(nalgebra::Point3::origin(), |pose| pose.translation.vector.into())
     }
     fn picture_spacing(&self) -> f64 {
-        PICTURE_SPACING * self.arm.reach()
+        C::PICTURE_SPACING * self.arm.reach()
+    }
+    fn picture_bounds(&self) -> Option<Aabb> {
+        self.arm.model().floating
     }
 }

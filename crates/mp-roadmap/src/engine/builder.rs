@@ -84,7 +84,8 @@ where
         self.map.append(other);
         for id in before..self.map.len() as NodeId {
             self.index.inserted(self.checker.space(), self.map.states(), id);
-            observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
+            let kind = Some(self.map.tag(id).kind.name());
+            observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id), kind });
         }
         let mut near = Vec::new();
         let (_, mut growing) = self.growing(Vec::new(), observer);

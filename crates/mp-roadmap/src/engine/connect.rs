@@ -73,7 +73,8 @@ where
         let tag = Tag { kind: candidate.kind, obstacle: candidate.obstacle, ..Tag::default() };
         let id = self.map.add(candidate.state, tag);
         self.index.inserted(self.checker.space(), self.map.states(), id);
-        self.observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id) });
+        let kind = Some(candidate.kind.name());
+        self.observer.on(Event::Rooted { tree: 0, id, state: self.map.state(id), kind });
         if let Some(ParentMotion { from: Some(from), motion }) = candidate.parent {
             self.link(from, id, motion);
         }

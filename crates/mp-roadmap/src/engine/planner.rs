@@ -126,8 +126,18 @@ where
         }
     }
 
-    /// A verified path from the start to a goal, if the roadmap has one.
+    /// A verified path from the start to a goal, if the roadmap has one. Tells of edges that turn out to be blocked.
     fn answer(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
+        let before = self.builder.map.blocked();
+        let path = self.find_path(observer);
+        let map = &self.builder.map;
+        for [from, to] in map.blocked_after(before).iter().map(|&edge| map.ends(edge)) {
+            observer.on(Event::Unlinked { from, to });
+        }
+        path
+    }
+
+    fn find_path(&mut self, observer: &mut dyn Observer<C::State>) -> Option<Path<C::State, L::Edge>> {
         let (start, goals) = self.ends.as_ref()?;
         let (start, goals) = (*start, goals.clone());
         self.looked = self.builder.map.len();

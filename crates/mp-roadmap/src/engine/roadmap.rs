@@ -122,14 +122,15 @@ pub struct Roadmap<S, E = ()> {
     graph: UnGraph<Tag, Link<E>>,
     sets: UnionFind<u32>,
     components: usize,
-    blocked: usize,
+    /// In the order in which they were blocked.
+    blocked: Vec<EdgeId>,
     stale: bool,
 }
 
 impl<S, E> Default for Roadmap<S, E> {
     fn default() -> Self {
         let (graph, sets) = (UnGraph::default(), UnionFind::new_empty());
-        Self { states: Vec::new(), graph, sets, components: 0, blocked: 0, stale: false }
+        Self { states: Vec::new(), graph, sets, components: 0, blocked: Vec::new(), stale: false }
     }
 }
 
@@ -199,13 +200,18 @@ impl<S, E> Roadmap<S, E> {
     /// How many edges there are that are not blocked.
     #[must_use]
     pub fn edges(&self) -> usize {
-        self.graph.edge_count() - self.blocked
+        self.graph.edge_count() - self.blocked.len()
     }
 
     /// How many edges are blocked.
     #[must_use]
     pub fn blocked(&self) -> usize {
-        self.blocked
+        self.blocked.len()
+    }
+
+    /// The edges that were blocked after so many others.
+    pub(crate) fn blocked_after(&self, others: usize) -> &[EdgeId] {
+        self.blocked.get(others..).unwrap_or_default()
     }
 
     /// The edges of a node that are not blocked, each with its other end.
@@ -238,11 +244,13 @@ impl<S, E> Roadmap<S, E> {
     pub(crate) fn insert(&mut self, from: NodeId, to: NodeId, link: Link<E>) -> EdgeId {
         let joins = link.state != LinkState::Blocked;
         let edge = self.graph.add_edge(NodeIndex::from(from), NodeIndex::from(to), link);
-        self.blocked += usize::from(!joins);
-        if joins && !self.stale && self.sets.union(from, to) {
+        let edge = EdgeId::of(edge);
+        if !joins {
+            self.blocked.push(edge);
+        } else if !self.stale && self.sets.union(from, to) {
             self.components -= 1;
         }
-        EdgeId::of(edge)
+        edge
     }
 
     /// Whether there is an edge between two nodes, blocked or not.
@@ -264,7 +272,7 @@ impl<S, E> Roadmap<S, E> {
         if link.state != LinkState::Blocked {
             link.state = LinkState::Blocked;
             self.stale = true;
-            self.blocked += 1;
+            self.blocked.push(edge);
         }
     }
 

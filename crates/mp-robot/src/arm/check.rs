@@ -1,11 +1,13 @@
 //! The checks of an arm that planners use: validity, clearance and motions.
 
 use super::Arm;
+use super::robot::LinkBody;
 use super::travel::axes_into;
 use mp_cspace::{
     Clearance, Coordinates, IntervalClearance, MotionClearance, MotionInterval, Rng, Validity,
     obstacles::ObstacleHints,
 };
+use nalgebra::Point3;
 
 impl Arm {
     /// Whether `q`, a configuration, is in collision.
@@ -17,9 +19,7 @@ impl Arm {
         }
         let frames = &mut scratch.frames;
         robot.kinematics.frames_into(q, frames);
-        // The last links move most and are most likely to collide.
-        let moving = robot.bodies.iter().rev().filter(|body| body.frame > 0);
-        for body in moving {
+        for body in robot.moving() {
             if obstacles.scene.collides(query, &body.tree, &frames[body.frame]) {
                 return true;
             }
@@ -55,7 +55,7 @@ impl<Q: Coordinates> Clearance<Q> for Arm {
         robot.kinematics.frames_into(q.as_slice(), frames);
         let enough = if enough.is_nan() { f64::INFINITY } else { enough };
         let mut least = f64::INFINITY;
-        for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
+        for body in robot.moving() {
             let limit = enough.min(least);
             least = least.min(obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0);
             if least <= 0.0 {
@@ -122,19 +122,24 @@ impl ProvenPart {
 impl<Q: Coordinates> MotionClearance<Q> for Arm {
     /// The largest travel of any link, or of two links relative to each other, along the interpolation of the
     /// [space](Arm::space) of the arm. For a link this is a sum over the joints above it: how far the joint goes, times the
-    /// largest distance of a point of the link from the joint's axis. For configurations within the limits.
+    /// largest distance of a point of the link from the joint's axis. A base that floats adds how far its origin goes, and its
+    /// turn times the largest distance of a point of the link from it. For configurations within the limits.
     fn motion_bound(&self, from: &Q, to: &Q) -> f64 {
         let (robot, from, to) = (&*self.robot, from.as_slice(), to.as_slice());
         let kinematics = &robot.kinematics;
-        if from.len() != kinematics.dof() || to.len() != kinematics.dof() {
+        let (joints, numbers) =
+            (kinematics.coordinates.len(), kinematics.first() + kinematics.coordinates.len());
+        if from.len() != numbers || to.len() != numbers {
             return f64::INFINITY;
         }
         let travels = |i: usize| kinematics.travel(i, from, to);
+        let base = kinematics.base_travel(from, to);
         // `max` would drop NaN.
-        if !(0..kinematics.dof()).all(|i| travels(i).is_finite()) {
+        if !((0..joints).all(|i| travels(i).is_finite()) && base.far(1.0).is_finite()) {
             return f64::INFINITY;
         }
-        let links = robot.bodies.iter().map(|body| body.chain.whole(travels)).fold(0.0, f64::max);
+        let whole = |body: &LinkBody| body.chain.whole(travels) + base.far(body.chain.from_base);
+        let links = robot.bodies.iter().map(whole).fold(0.0, f64::max);
         let pairs = robot.pairs.iter().filter(|pair| pair.steps.iter().all(|steps| *steps > 0)).map(|pair| {
             let [a, b] = pair.bodies.map(|i| &robot.bodies[i].chain);
             a.part(pair.steps[0], travels) + b.part(pair.steps[1], travels)
@@ -158,6 +163,7 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         scratch.far.clear();
         scratch.near.clear();
         let travels = |i: usize| kinematics.travel(i, from, to);
+        let base = kinematics.base_travel(from, to);
         for body in &robot.bodies {
             let ball = body.ball_at(&scratch.frames);
             body.chain.far(travels, &mut scratch.far);
@@ -166,9 +172,13 @@ impl<Q: Coordinates> MotionClearance<Q> for Arm {
         }
         let frames = &scratch.frames;
         let mut proven = ProvenPart { margin: interval.margin, half: interval.half, part: f64::INFINITY };
-        for body in robot.bodies.iter().rev().filter(|body| body.frame > 0) {
+        let origin = Point3::from(frames[0].translation.vector);
+        for body in robot.moving() {
             let last = body.first + body.chain.steps.len();
-            let (near, far) = (scratch.near[last], scratch.far[last]);
+            let (by_joints, reach) = (scratch.near[last], body.chain.from_base);
+            let ball = body.ball_at(frames);
+            let near = by_joints + base.near(interval.half, reach, &ball, &origin, by_joints);
+            let far = scratch.far[last] + base.far(reach);
             let clearance =
                 |limit| obstacles.scene.clearance(query, &body.tree, &frames[body.frame], limit).0;
             if let Some(answer) = proven.add(near, far, f64::NEG_INFINITY, clearance) {
@@ -202,9 +212,9 @@ impl<Q: Coordinates> ObstacleHints<Q> for Arm {
         None
     }
 
-    /// `q` with each joint moved by as much as from `from` to `to`; by the shorter way where the joint is continuous.
+    /// `q` with each joint moved by as much as from `from` to `to`, by the shorter way where the joint is continuous; a base
+    /// that floats by the same translation and turn.
     fn moved_by(&self, q: &Q, from: &Q, to: &Q) -> Q {
-        let (q, from, to) = (q.as_slice(), from.as_slice(), to.as_slice());
-        Q::from_fn(q.len(), |i| q[i] + self.robot.kinematics.displacement(i, from, to))
+        self.robot.kinematics.moved_by(q, from, to)
     }
 }

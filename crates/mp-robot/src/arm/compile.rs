@@ -1,8 +1,9 @@
 //! Compiles a model, whose links and joints refer to each other by name, to a checked kinematic tree.
 
-use super::kinematics::{AttachedLink, Coordinate, Frame, Kinematics, is_pose, range};
+use super::kinematics::{AttachedLink, BASE_NUMBERS, Coordinate, Frame, Kinematics, is_pose, range};
 use super::{ArmError, ArmModel, Joint, JointKind};
-use mp_cspace::JointRange;
+use mp_cspace::{JointRange, Se3};
+use mp_geom::Aabb;
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion};
 use std::collections::HashMap;
 
@@ -37,9 +38,14 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
     model.joints.iter().try_for_each(check)?;
     let tree = Tree::new(model, &links)?;
     let (coordinates, values) = coordinates(model, &joints)?;
+    let floating = match &model.floating {
+        Some(bounds) => Some(floating(bounds, &coordinates)?),
+        None => None,
+    };
 
     let mut out = Kinematics {
         base: model.base,
+        floating,
         frames: Vec::new(),
         coordinates,
         attached: Vec::new(),
@@ -72,6 +78,21 @@ pub(crate) fn kinematics(model: &ArmModel) -> Result<Kinematics, ArmError> {
     }
     out.attached = attached.into_iter().flatten().collect();
     Ok(out)
+}
+
+/// The space of a root that floats.
+fn floating(bounds: &Aabb, coordinates: &[Coordinate]) -> Result<Se3, ArmError> {
+    let taken = coordinates.iter().find(|c| BASE_NUMBERS.contains(&c.name.as_str()));
+    if let Some(Coordinate { name, .. }) = taken {
+        return Err(ArmError::BaseName { joint: name.clone() });
+    }
+    let far = bounds.min.coords.amax().max(bounds.max.coords.amax());
+    // Written so that NaN is refused.
+    let near = far <= MAX_LENGTH;
+    if !near {
+        return Err(ArmError::Origin { what: "bounds", name: "of the base".to_owned(), max: MAX_LENGTH });
+    }
+    Ok(Se3::new(bounds.min.coords, bounds.max.coords)?)
 }
 
 /// The index of each name.

@@ -55,6 +55,21 @@ pub enum ArmError {
         /// The joints.
         joints: String,
     },
+    /// A joint of a floating robot is called like a number of the pose of the base.
+    #[error(
+        "joint \"{joint}\" is called like a number of the pose of the base, which floats: x, y, z, alpha, beta and gamma are \
+         taken, so give the joint another name"
+    )]
+    BaseName {
+        /// The joint.
+        joint: String,
+    },
+    /// The space of the joints alone was asked for, but the base floats.
+    #[error("the base of this robot floats: its space is that of `Arm::floating_space`")]
+    Floats,
+    /// The space of a floating base was asked for, but the base stands still.
+    #[error("the base of this robot stands still: its space is that of `Arm::space`")]
+    StandsStill,
     /// A link is the child of two joints.
     #[error(
         "link \"{link}\" is the child of joint \"{first}\" and of joint \"{second}\": chains must be trees, so \
@@ -185,8 +200,8 @@ pub enum UrdfError {
     },
     /// A joint has a kind that is not handled.
     #[error(
-        "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; a floating \
-         base can be placed by the base pose and a fixed joint"
+        "line {line}: joint \"{joint}\" is {kind}: only revolute, continuous, prismatic and fixed joints are handled; for a base \
+         that floats make it fixed, and write `base = \"floating\"` in the robot problem"
     )]
     Kind {
         /// Where it is in the text.

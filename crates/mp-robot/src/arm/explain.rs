@@ -37,7 +37,8 @@ impl Arm {
         }
         robot.kinematics.frames_into(q, &mut scratch.frames);
         let frames = &scratch.frames;
-        for (i, body) in robot.bodies.iter().enumerate().filter(|(_, body)| body.frame > 0) {
+        let floats = robot.kinematics.floats();
+        for (i, body) in robot.bodies.iter().enumerate().filter(|(_, body)| floats || body.frame > 0) {
             for found in obstacles.scene.contacts(query, &body.tree, &frames[body.frame]) {
                 contacts.push(ArmContact {
                     link: robot.name(i).to_owned(),
@@ -62,7 +63,8 @@ impl Arm {
     /// A configuration of `space` near `q` with a clearance of at least `margin` (m; the
     /// [tolerance](Arm::tolerance) is a good value): `q` itself if it has that clearance, else the nearest found, or `None`.
     ///
-    /// The search moves along each coordinate and in many other directions by growing amounts, then goes back toward `q`.
+    /// The search moves along each degree of freedom and in many other directions by growing amounts, then goes back toward
+    /// `q`.
     /// The same input gives the same result. Some thousands of clearance queries: meant for messages.
     pub fn nearest_free<C>(&mut self, q: &C::State, space: &C, margin: f64) -> Option<C::State>
     where
@@ -70,26 +72,26 @@ impl Arm {
         C::State: Coordinates,
     {
         let start = q.as_slice();
-        if !self.kinematics().is_configuration(start) || space.dim() != start.len() {
+        let dim = self.kinematics().dof();
+        if !self.kinematics().is_configuration(start) || space.dim() != dim {
             return None;
         }
         let margin = margin.max(f64::MIN_POSITIVE);
         let shells = Shells { first: FIRST_SHELL * space.extent(), growth: GROWTH, most: MAX_SHELLS };
         let mut rng = Rng::seed(0);
         let candidates = |_, radius: f64| {
-            let along = (0..2 * start.len()).map(|k| {
-                let mut direction = vec![0.0; start.len()];
+            let along = (0..2 * dim).map(|k| {
+                let mut direction = vec![0.0; dim];
                 direction[k / 2] = if k % 2 == 0 { 1.0 } else { -1.0 };
                 direction
             });
             let others = (0..DIRECTIONS).map(|_| {
-                let direction: Vec<f64> = start.iter().map(|_| rng.random_range(-1.0..1.0)).collect();
+                let direction: Vec<f64> = (0..dim).map(|_| rng.random_range(-1.0..1.0)).collect();
                 let norm = direction.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-9);
                 direction.into_iter().map(|x| x / norm).collect()
             });
-            let moved =
-                |direction: Vec<f64>| C::State::from_fn(start.len(), |i| start[i] + radius * direction[i]);
-            along.chain(others).map(moved).collect()
+            let moved = |direction: Vec<f64>| space.moved(q, &direction, radius);
+            along.chain(others).filter_map(moved).collect()
         };
         let suits = |p: &C::State| space.contains(p) && self.clearance(p, margin) >= margin;
         search_shells(space, q, &shells, candidates, suits)

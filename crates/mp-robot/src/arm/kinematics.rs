@@ -2,8 +2,13 @@
 
 use super::{ArmError, ArmModel, JointKind};
 use crate::arm::compile;
-use mp_cspace::{Coordinates, JointRange, Joints, angle::wrap_angle};
-use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
+use crate::arm::travel::ROUND_UP;
+use mp_cspace::{Coordinates, FloatingJoints, JointRange, Joints, Se3, Space, angle::wrap_angle};
+use mp_geom::Sphere;
+use nalgebra::{Isometry3, Point3, Translation3, Unit, UnitQuaternion, Vector3};
+
+/// The names of the numbers of the pose of a floating base, as six-tuples have them.
+pub(crate) const BASE_NUMBERS: [&str; 6] = ["x", "y", "z", "alpha", "beta", "gamma"];
 
 /// A joint that moves, and the frame behind it.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,10 +47,13 @@ pub(crate) struct AttachedLink {
 
 /// The checked kinematic tree of an arm. Parents come before children.
 ///
-/// Configurations are lists of joint values, one for each [`Coordinate`], in radians and metres.
+/// Configurations are lists of joint values, one for each [`Coordinate`], in radians and metres. If the base floats, its pose
+/// comes first, as seven numbers: see [`FloatingJoints`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinematics {
     pub(crate) base: Isometry3<f64>,
+    /// The space of the base, if it floats.
+    pub(crate) floating: Option<Se3>,
     pub(crate) frames: Vec<Frame>,
     pub(crate) coordinates: Vec<Coordinate>,
     /// In the order of the model.
@@ -69,10 +77,22 @@ impl Kinematics {
         &self.coordinates
     }
 
-    /// How many coordinates a configuration has.
+    /// The number of degrees of freedom: one for each coordinate, and six more if the base floats.
     #[must_use]
     pub fn dof(&self) -> usize {
-        self.coordinates.len()
+        self.coordinates.len() + if self.floats() { 6 } else { 0 }
+    }
+
+    /// Whether the base floats.
+    #[must_use]
+    pub fn floats(&self) -> bool {
+        self.floating.is_some()
+    }
+
+    /// The number of the first joint in a configuration.
+    #[inline]
+    pub(crate) fn first(&self) -> usize {
+        if self.floats() { FloatingJoints::POSE } else { 0 }
     }
 
     /// The names of the links, in the order of the model.
@@ -83,18 +103,37 @@ impl Kinematics {
     /// The space of configurations: an interval for each coordinate with limits, a circle for each without.
     ///
     /// # Errors
-    /// When `Q` has another number of coordinates.
+    /// When `Q` has another number of coordinates, or the base floats.
     pub fn space<Q: Coordinates>(&self) -> Result<Joints<Q>, ArmError> {
+        if self.floats() { Err(ArmError::Floats) } else { self.joints() }
+    }
+
+    /// The space of configurations of a robot whose base floats.
+    ///
+    /// # Errors
+    /// When the base stands still.
+    pub fn floating_space(&self) -> Result<FloatingJoints, ArmError> {
+        match &self.floating {
+            Some(base) => Ok(FloatingJoints::new(base.clone(), self.joints()?)?),
+            None => Err(ArmError::StandsStill),
+        }
+    }
+
+    /// The space of the joints.
+    pub(crate) fn joints<Q: Coordinates>(&self) -> Result<Joints<Q>, ArmError> {
         Ok(Joints::new(self.coordinates.iter().map(|c| c.range).collect::<Vec<_>>())?)
     }
 
-    /// Whether `q` is a configuration: as many numbers as there are coordinates, all finite.
+    /// Whether `q` is a configuration: as many numbers as needed, all finite. The quaternion of a floating base must be of unit
+    /// length.
     #[must_use]
     pub fn is_configuration(&self, q: &[f64]) -> bool {
-        q.len() == self.dof() && q.iter().all(|x| x.is_finite())
+        q.len() == self.first() + self.coordinates.len()
+            && q.iter().all(|x| x.is_finite())
+            && (!self.floats() || FloatingJoints::split(q).is_some_and(|(pose, _)| is_unit(&pose.rotation)))
     }
 
-    /// The configuration nearest to zero in the ranges of the joints.
+    /// The values of the joints nearest to zero in their ranges.
     #[must_use]
     pub fn neutral(&self) -> Vec<f64> {
         let nearest = |range: JointRange| match range {
@@ -116,10 +155,25 @@ impl Kinematics {
         })
     }
 
+    /// The pose of the base and the values of the joints of `q`, a configuration.
+    #[inline]
+    pub(crate) fn parts<'q>(&self, q: &'q [f64]) -> (Isometry3<f64>, &'q [f64]) {
+        match FloatingJoints::split(q).filter(|_| self.floats()) {
+            Some(parts) => parts,
+            None => (self.base, q),
+        }
+    }
+
     /// The poses of the base and of the frames behind the joints that move. `q` must be a configuration.
     pub(crate) fn frames_into(&self, q: &[f64], out: &mut Vec<Isometry3<f64>>) {
+        let (base, joints) = self.parts(q);
+        self.frames_from(&base, joints, out);
+    }
+
+    /// As [`frames_into`](Self::frames_into), from the pose of the base and the values of the joints.
+    pub(crate) fn frames_from(&self, base: &Isometry3<f64>, q: &[f64], out: &mut Vec<Isometry3<f64>>) {
         out.clear();
-        out.push(self.base);
+        out.push(*base);
         for frame in &self.frames {
             let mut pose = out[frame.parent] * frame.origin;
             let value = q[frame.coordinate] * frame.scale + frame.offset;
@@ -141,13 +195,111 @@ impl Kinematics {
     /// How far the coordinate `i` goes, with its sign.
     #[inline]
     pub(crate) fn displacement(&self, i: usize, from: &[f64], to: &[f64]) -> f64 {
-        let d = to[i] - from[i];
+        let d = to[self.first() + i] - from[self.first() + i];
         match self.coordinates[i].range {
             JointRange::Circle if !(-std::f64::consts::PI..=std::f64::consts::PI).contains(&d) => {
                 wrap_angle(d)
             }
             _ => d,
         }
+    }
+
+    /// How far the base goes from `from` to `to`; not at all unless it floats.
+    #[inline]
+    pub(crate) fn base_travel(&self, from: &[f64], to: &[f64]) -> BaseTravel {
+        let ends = self.floating.as_ref().zip(FloatingJoints::split(from)).zip(FloatingJoints::split(to));
+        let Some(((space, (from, _)), (to, _))) = ends else { return BaseTravel::default() };
+        let mut velocity = [0.0; 6];
+        space.velocity_into(&from, &to, &mut velocity);
+        let [x, y, z, a, b, c] = velocity;
+        let turn = Vector3::new(a, b, c);
+        BaseTravel { slide: Vector3::new(x, y, z).norm(), turn: turn.norm(), axis: turn }
+    }
+
+    /// `q` moved by `by` in the degree of freedom `k`: along and about world axes for a floating base, then the joints.
+    pub(crate) fn nudged<Q: Coordinates>(&self, q: &Q, k: usize, by: f64) -> Q {
+        let mut out = q.clone();
+        let base = if self.floats() { 6 } else { 0 };
+        if let Some(joint) = k.checked_sub(base) {
+            if let Some(x) = out.as_mut_slice().get_mut(self.first() + joint) {
+                *x += by;
+            }
+        } else if let (Some(space), Some((pose, _))) = (&self.floating, FloatingJoints::split(q.as_slice())) {
+            let velocity: [f64; 6] = std::array::from_fn(|i| if i == k { by } else { 0.0 });
+            if let Some(moved) = space.moved(&pose, &velocity, 1.0) {
+                put_pose(&moved, out.as_mut_slice());
+            }
+        }
+        out
+    }
+
+    /// `q` moved by as much as from `from` to `to`: a floating base by its translation and its turn in the world, the joints
+    /// by the shorter way.
+    pub(crate) fn moved_by<Q: Coordinates>(&self, q: &Q, from: &Q, to: &Q) -> Q {
+        let (at, from, to) = (q.as_slice(), from.as_slice(), to.as_slice());
+        let first = self.first();
+        let joint = |i: usize| match i.checked_sub(first) {
+            Some(joint) => at[i] + self.displacement(joint, from, to),
+            None => at[i],
+        };
+        let mut out = Q::from_fn(at.len(), joint);
+        if let (true, Some((pose, _)), Some((a, _)), Some((b, _))) =
+            (self.floats(), FloatingJoints::split(at), FloatingJoints::split(from), FloatingJoints::split(to))
+        {
+            let place = pose.translation.vector + b.translation.vector - a.translation.vector;
+            let mut rotation = b.rotation * a.rotation.inverse() * pose.rotation;
+            rotation.renormalize();
+            put_pose(&Isometry3::from_parts(place.into(), rotation), out.as_mut_slice());
+        }
+        out
+    }
+}
+
+/// Writes the pose of a floating base to the front of a configuration.
+fn put_pose(pose: &Isometry3<f64>, out: &mut [f64]) {
+    let (p, r) = (&pose.translation.vector, &pose.rotation.as_ref().coords);
+    let numbers = [p.x, p.y, p.z, r.x, r.y, r.z, r.w];
+    out.iter_mut().zip(numbers).for_each(|(slot, number)| *slot = number);
+}
+
+/// How far a floating base goes over a motion: its origin on a straight line, turning about an axis of constant direction
+/// through the origin, both at constant speed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BaseTravel {
+    /// How far the origin goes, metres.
+    pub(crate) slide: f64,
+    /// By which angle it turns, radians.
+    pub(crate) turn: f64,
+    /// The axis of the turn in the world, of any length; zero without a turn.
+    axis: Vector3<f64>,
+}
+
+impl BaseTravel {
+    /// A bound (m) on how far a point of a link is moved by the base if it is never farther than `reach` from the origin of the
+    /// base.
+    #[inline]
+    pub(crate) fn far(&self, reach: f64) -> f64 {
+        (self.slide + self.turn * reach) * ROUND_UP
+    }
+
+    /// As [`far`](Self::far), over the fraction `half` of the motion to either side of a configuration at which the base is at
+    /// `origin` and the link within `ball`. The joints move the points of the link by at most `by_joints` metres meanwhile.
+    ///
+    /// Turning about an axis does not change the distance from it, so only the joints do.
+    #[inline]
+    pub(crate) fn near(
+        &self,
+        half: f64,
+        reach: f64,
+        ball: &Sphere,
+        origin: &Point3<f64>,
+        by_joints: f64,
+    ) -> f64 {
+        let from_axis = match self.turn > 0.0 {
+            true => (ball.center - origin).cross(&self.axis).norm() / self.turn,
+            false => 0.0,
+        };
+        half * (self.slide + self.turn * reach.min(from_axis + ball.radius + by_joints)) * ROUND_UP
     }
 }
 
@@ -160,6 +312,11 @@ pub(crate) fn range(kind: JointKind) -> Option<JointRange> {
             Some(JointRange::Interval { low, high })
         }
     }
+}
+
+/// Whether a quaternion is of unit length.
+fn is_unit(rotation: &UnitQuaternion<f64>) -> bool {
+    (rotation.quaternion().norm() - 1.0).abs() < 1e-8
 }
 
 /// Whether a pose is finite, with no coordinate above `max` and a rotation of unit length.

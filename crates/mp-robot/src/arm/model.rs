@@ -1,7 +1,7 @@
 //! The description of an arm: plain data, in which links and joints refer to each other by name.
 
 use super::ArmError;
-use mp_geom::TriMesh;
+use mp_geom::{Aabb, TriMesh};
 use nalgebra::{Isometry3, Vector3};
 
 /// A rigid part of an arm.
@@ -165,13 +165,16 @@ impl Joint {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ArmModel {
-    /// The links. Exactly one has no parent: the root, which stands still.
+    /// The links. Exactly one has no parent: the root, which stands still unless it floats.
     pub links: Vec<Link>,
     /// The joints. Those that move and mimic no other are the coordinates, in this order. Joints whose limits are
     /// equal do not move.
     pub joints: Vec<Joint>,
-    /// The pose of the root in the world.
+    /// The pose of the root in the world. Without use if the root floats.
     pub base: Isometry3<f64>,
+    /// The box (m) in which the origin of the root moves, if the root floats: it moves and turns freely, and its pose is part
+    /// of a configuration. With `None` the root stands still.
+    pub floating: Option<Aabb>,
     /// Pairs of links that may touch and overlap, besides those joined by a joint. With `None`, the pairs that always
     /// touch are found by sampling.
     pub may_touch: Option<Vec<(String, String)>>,
@@ -185,6 +188,7 @@ impl Default for ArmModel {
             links: Vec::new(),
             joints: Vec::new(),
             base: Isometry3::identity(),
+            floating: None,
             may_touch: None,
             notes: Vec::new(),
         }

@@ -65,7 +65,7 @@ fn leave_out_what_always_touches(
     bodies: &[LinkBody],
     pairs: &mut Vec<LinkPair>,
 ) -> Result<(), ArmError> {
-    let space: Joints<DVector<f64>> = kinematics.space()?;
+    let space: Joints<DVector<f64>> = kinematics.joints()?;
     let (mut halton, mut rng) = (Halton::new(&space), Rng::seed(0));
     let (mut query, mut frames) = (Query::default(), Vec::new());
     let mut always = vec![true; pairs.len()];
@@ -74,7 +74,7 @@ fn leave_out_what_always_touches(
         if !always.contains(&true) {
             break;
         }
-        kinematics.frames_into(q.as_slice(), &mut frames);
+        kinematics.frames_from(&kinematics.base, q.as_slice(), &mut frames);
         for (pair, always) in pairs.iter().zip(&mut always) {
             let [a, b] = pair.bodies.map(|i| &bodies[i]);
             *always = *always && query.intersects(&a.tree, &frames[a.frame], &b.tree, &frames[b.frame]);

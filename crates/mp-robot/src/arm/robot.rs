@@ -8,7 +8,7 @@ use super::{ArmError, ArmModel};
 use crate::CheckCounters;
 use crate::obstacles::{MAX_TRIANGLES, Obstacles, resolved_tolerance};
 use mp_collide::{BodyId, CollisionMesh, Query, Scene};
-use mp_cspace::{Coordinates, Joints};
+use mp_cspace::{Coordinates, FloatingJoints, Joints};
 use mp_geom::{Aabb, Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
 use std::sync::{Arc, OnceLock};
@@ -99,6 +99,13 @@ impl SharedArm {
         Obstacles::new(obstacles, triangles, too_many, None)
     }
 
+    /// The links that can collide with obstacles: those that move. The last ones move most, so they come first.
+    #[inline]
+    pub(super) fn moving(&self) -> impl Iterator<Item = &LinkBody> {
+        let floats = self.kinematics.floats();
+        self.bodies.iter().rev().filter(move |body| floats || body.frame > 0)
+    }
+
     pub(super) fn name(&self, body: usize) -> &str {
         &self.kinematics.attached[self.bodies[body].link].name
     }
@@ -132,7 +139,8 @@ pub(super) struct Scratch {
 /// An arm, or any tree of links, among named obstacles that stand still.
 ///
 /// A configuration is a list of joint values (`SVector<f64, N>` or `DVector<f64>`), one for each
-/// [coordinate](Arm::coordinates); its space is [`space`](Arm::space). It is free when
+/// [coordinate](Arm::coordinates); its space is [`space`](Arm::space). If the [root floats](ArmModel::floating), the pose
+/// of the root comes first, as seven numbers, and the space is [`floating_space`](Arm::floating_space). It is free when
 ///
 /// - no link that can move has a point in common with an obstacle. Links that stand still are not tested against
 ///   obstacles, which stand still too: a table may touch the base that it carries;
@@ -209,7 +217,7 @@ impl Arm {
         self.kinematics().coordinates()
     }
 
-    /// How many coordinates a configuration has.
+    /// The number of degrees of freedom: one for each coordinate, and six more if the base floats.
     #[must_use]
     pub fn dof(&self) -> usize {
         self.kinematics().dof()
@@ -218,9 +226,17 @@ impl Arm {
     /// The space of its configurations: see [`Kinematics::space`].
     ///
     /// # Errors
-    /// When `Q` has another number of coordinates.
+    /// When `Q` has another number of coordinates, or the base floats.
     pub fn space<Q: Coordinates>(&self) -> Result<Joints<Q>, ArmError> {
         self.kinematics().space()
+    }
+
+    /// The space of its configurations if the base floats: poses of the base in its box, and the joints.
+    ///
+    /// # Errors
+    /// When the base stands still.
+    pub fn floating_space(&self) -> Result<FloatingJoints, ArmError> {
+        self.kinematics().floating_space()
     }
 
     /// The name of each link that can collide, and its mesh in the world at `q`. Empty when `q` is not a configuration.
@@ -249,6 +265,18 @@ impl Arm {
         self.robot.reach
     }
 
+    /// For each coordinate, how far (m) a unit of it moves any point of the robot, at most: the largest distance of a point
+    /// from the axis of a joint, 1 for a joint that slides. Zero where it moves nothing that can collide.
+    #[must_use]
+    pub fn coordinate_reaches(&self) -> Vec<f64> {
+        let mut reaches = vec![0.0_f64; self.coordinates().len()];
+        for step in self.robot.bodies.iter().flat_map(|body| &body.chain.steps) {
+            let (i, reach) = step.unit_reach();
+            reaches[i] = reaches[i].max(reach);
+        }
+        reaches
+    }
+
     /// The obstacles, by name.
     #[must_use]
     pub fn scene(&self) -> &Scene {
@@ -271,7 +299,10 @@ impl Arm {
     /// coordinates can resolve. An [`ArmVerifier`](crate::ArmVerifier) uses a tenth of it.
     #[must_use]
     pub fn tolerance(&self) -> f64 {
-        let base = self.kinematics().base.translation.vector.amax();
+        let base = match &self.model().floating {
+            Some(bounds) => bounds.min.coords.amax().max(bounds.max.coords.amax()),
+            None => self.kinematics().base.translation.vector.amax(),
+        };
         resolved_tolerance(1e-4 * self.reach(), base + self.obstacles.farthest() + self.reach())
     }
 

@@ -8,18 +8,23 @@
 //!   [`Chain::near`].
 //!
 //! The second is smaller where the arm is folded. The smaller of the two is used.
+//!
+//! A base that floats moves all links, as one more joint above all others would:
+//! [`BaseTravel`](super::kinematics::BaseTravel).
 
 use super::kinematics::Kinematics;
 use mp_geom::{Sphere, TriMesh};
 use nalgebra::{Isometry3, Point3, Vector3};
 
 /// Bounds are enlarged by this factor against rounding.
-const ROUND_UP: f64 = 1.0 + 1e-12;
+pub(super) const ROUND_UP: f64 = 1.0 + 1e-12;
 
 /// The joints above a link, nearest to the link first.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
     pub(super) steps: Vec<Step>,
+    /// An upper bound (m) on the distance of a point of the link from the origin of the base in any configuration.
+    pub(super) from_base: f64,
 }
 
 /// A joint of a chain.
@@ -33,6 +38,13 @@ pub(super) struct Step {
     /// An upper bound on the distance of a point of the link from the axis in any configuration; 1 for a prismatic joint.
     reach: f64,
     slides: bool,
+}
+
+impl Step {
+    /// The coordinate, and how far (m) a unit of it moves a point of the link at most.
+    pub(super) fn unit_reach(&self) -> (usize, f64) {
+        (self.coordinate, self.rate * self.reach)
+    }
 }
 
 impl Chain {
@@ -68,7 +80,7 @@ impl Chain {
             from_origin = joint.origin.translation.vector.norm() + beyond;
             at = joint.parent;
         }
-        Self { steps }
+        Self { steps, from_base: from_origin * ROUND_UP }
     }
 
     /// Appends bounds (m) on how far the first k joints of the chain move a point of the link over a whole motion, for
@@ -232,5 +244,72 @@ mod tests {
             }
         }
         assert!(best_far > 0.9 && best_near > 0.9, "{best_far} {best_near}");
+    }
+
+    /// The same on a base that floats: what the base adds is a bound too, and close to what is measured.
+    #[test]
+    fn no_vertex_moves_farther_than_the_bounds_on_a_floating_base() {
+        let mut rng = Rng::seed(2);
+        let (mut best_far, mut best_near) = (0.0_f64, 0.0_f64);
+        for _ in 0..20 {
+            let bounds = mp_geom::Aabb::new([-1.0; 3].into(), [1.0, 2.0, 0.5].into());
+            let model = ArmModel { floating: Some(bounds), ..chain(&mut rng) };
+            let kinematics = Kinematics::new(&model).unwrap();
+            let space = kinematics.floating_space().unwrap();
+            for size in [1.0, 0.1, 0.01] {
+                let (a, mut b) = (space.sample_uniform(&mut rng), space.sample_uniform(&mut rng));
+                // At times the base or the joints do not move.
+                match rng.random_range(0..3) {
+                    0 => b.as_mut_slice()[..7].copy_from_slice(&a.as_slice()[..7]),
+                    1 => b.as_mut_slice()[7..].copy_from_slice(&a.as_slice()[7..]),
+                    _ => {}
+                }
+                let b = space.interpolate(&a, &b, size);
+                let half = rng.random_range(0.05..0.5);
+                let at = |t: f64| {
+                    let mut frames = Vec::new();
+                    kinematics.frames_into(space.interpolate(&a, &b, t).as_slice(), &mut frames);
+                    frames
+                };
+                let travels = |i: usize| kinematics.travel(i, a.as_slice(), b.as_slice());
+                let base = kinematics.base_travel(a.as_slice(), b.as_slice());
+                let middle = at(0.5);
+                let mut axes = Vec::new();
+                axes_into(&kinematics, &middle, &mut axes);
+                for (link, place) in model.links.iter().zip(&kinematics.attached).skip(1) {
+                    let mesh = link.shapes[0].transformed(&place.pose);
+                    let chain = Chain::new(&kinematics, &mesh, place.frame);
+                    let ball = mesh.bounding_sphere();
+                    let ball = Sphere { center: middle[place.frame] * ball.center, ..ball };
+                    let mut near = Vec::new();
+                    chain.near(|i| travels(i) * half, &ball, &axes, &mut near);
+                    let by_joints = *near.last().unwrap();
+                    let origin = Point3::from(middle[0].translation.vector);
+                    let near = by_joints + base.near(half, chain.from_base, &ball, &origin, by_joints);
+                    let far = chain.whole(travels) + base.far(chain.from_base);
+                    let longest = |from: f64, to: f64| {
+                        let steps = 200;
+                        let place = |k: i32| {
+                            let pose = at(from + (to - from) * f64::from(k) / f64::from(steps))[place.frame];
+                            mesh.vertices().iter().map(|v| pose * v).collect::<Vec<_>>()
+                        };
+                        let mut travels = vec![0.0; mesh.vertices().len()];
+                        let mut last = place(0);
+                        for k in 1..=steps {
+                            let next = place(k);
+                            let moved = last.iter().zip(&next).map(|(p, q)| (q - p).norm());
+                            travels.iter_mut().zip(moved).for_each(|(sum, moved)| *sum += moved);
+                            last = next;
+                        }
+                        travels.into_iter().fold(0.0, f64::max)
+                    };
+                    let whole = longest(0.0, 1.0);
+                    let sides = longest(0.5, 0.5 + half).max(longest(0.5, 0.5 - half));
+                    assert!(whole <= far + 1e-12 && sides <= near + 1e-12, "{whole} {far}, {sides} {near}");
+                    (best_far, best_near) = (best_far.max(whole / far), best_near.max(sides / near));
+                }
+            }
+        }
+        assert!(best_far > 0.8 && best_near > 0.9, "{best_far} {best_near}");
     }
 }

@@ -16,7 +16,12 @@ pub(super) struct ReferenceArm {
     links: Vec<ReferenceLink>,
     coordinates: Vec<bool>,
     base: Matrix4<f64>,
+    /// How many numbers of a configuration are the pose of the base.
+    pose: usize,
 }
+
+/// How many numbers of a configuration are the pose of a base that floats: place, then quaternion.
+const POSE: usize = 7;
 
 /// A link and the joint above it.
 #[derive(Debug)]
@@ -48,6 +53,7 @@ impl ReferenceArm {
             links: Vec::new(),
             coordinates: own.iter().map(|j| j.kind == JointKind::Continuous).collect(),
             base: model.base.to_homogeneous(),
+            pose: if model.floating.is_some() { POSE } else { 0 },
         };
         let coordinate = |name: &str| own.iter().position(|j| j.name == name);
         // Follows mimics to the end. The model has been checked: there are no loops.
@@ -110,8 +116,10 @@ impl ReferenceArm {
     /// The poses of the links in the world, as homogeneous matrices.
     fn poses_into(&self, q: &[f64], out: &mut Vec<Matrix4<f64>>) {
         out.clear();
+        let (pose, q) = q.split_at(self.pose);
+        let base = if self.pose == 0 { self.base } else { base_matrix(pose) };
         for link in &self.links {
-            let above = link.parent.map_or(self.base, |p| out[p]);
+            let above = link.parent.map_or(base, |p| out[p]);
             let value = q[link.value.0] * link.value.1 + link.value.2;
             let mut motion = Matrix4::identity();
             match link.motion {
@@ -132,9 +140,11 @@ impl ReferenceArm {
     /// when it is `None`), while every coordinate goes as far as `travels` says and the links start at `poses`.
     ///
     /// A joint that turns by w moves a point no farther than w times its distance from the origin of the joint.
-    /// That distance is at most the one at `poses` plus how far the joints nearer to the link have moved the point.
-    fn travel(&self, link: usize, stop: Option<usize>, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
+    /// That distance is at most the one at `poses` plus how far the joints nearer to the link have moved the point. A base
+    /// that floats is one more such joint above the root, for pairs that do not `stop` below it.
+    fn travel(&self, link: usize, stop: Option<usize>, travels: &Travels, poses: &[Matrix4<f64>]) -> f64 {
         let origin = |i: usize| Vector3::from(poses[i].fixed_view::<3, 1>(0, 3));
+        let Travels { joints: travels, base } = travels;
         let tip = origin(link);
         let mut moved = 0.0;
         let mut at = Some(link);
@@ -151,6 +161,10 @@ impl ReferenceArm {
                 }
             }
             at = part.parent;
+        }
+        if let (None, Some([slide, turn]), Some(root)) = (stop, base, self.above(link).last()) {
+            let now = (tip - origin(*root)).norm() + self.links[link].radius;
+            moved += turn * (now + moved) + slide;
         }
         // Enlarged against rounding.
         moved * (1.0 + 1e-9)
@@ -169,6 +183,59 @@ impl ReferenceArm {
     fn is_moved(&self, link: usize) -> bool {
         self.above(link).into_iter().any(|i| self.links[i].motion != JointMotion::Fixed)
     }
+}
+
+/// How far each coordinate goes over a part of a motion (rad or m), and how far (m) and by which angle (rad) a base that
+/// floats does.
+struct Travels {
+    joints: Vec<f64>,
+    base: Option<[f64; 2]>,
+}
+
+impl Travels {
+    /// The larger of each.
+    fn max(&self, other: &Self) -> Self {
+        let joints = self.joints.iter().zip(&other.joints).map(|(x, y)| x.max(*y)).collect();
+        let base = self.base.zip(other.base).map(|([s, t], [u, v])| [s.max(u), t.max(v)]);
+        Self { joints, base }
+    }
+}
+
+/// The homogeneous matrix of a place and a quaternion.
+fn base_matrix(pose: &[f64]) -> Matrix4<f64> {
+    let &[x, y, z, i, j, k, w] = pose else { return Matrix4::identity() };
+    Matrix4::new(
+        1.0 - 2.0 * (j * j + k * k),
+        2.0 * (i * j - w * k),
+        2.0 * (i * k + w * j),
+        x,
+        2.0 * (i * j + w * k),
+        1.0 - 2.0 * (i * i + k * k),
+        2.0 * (j * k - w * i),
+        y,
+        2.0 * (i * k - w * j),
+        2.0 * (j * k + w * i),
+        1.0 - 2.0 * (i * i + j * j),
+        z,
+        0.0,
+        0.0,
+        0.0,
+        1.0,
+    )
+}
+
+/// How far the place of a base goes between two configurations, and the angle of its turn.
+fn base_travel(a: &[f64], b: &[f64]) -> [f64; 2] {
+    let (&[ax, ay, az, ai, aj, ak, aw], &[bx, by, bz, bi, bj, bk, bw]) = (a, b) else { return [f64::NAN; 2] };
+    let slide = (bx - ax).hypot(by - ay).hypot(bz - az);
+    // The quaternion of the turn: the conjugate of one times the other.
+    let real = aw * bw + ai * bi + aj * bj + ak * bk;
+    let [i, j, k] = [
+        aw * bi - ai * bw - aj * bk + ak * bj,
+        aw * bj - aj * bw - ak * bi + ai * bk,
+        aw * bk - ak * bw - ai * bj + aj * bi,
+    ];
+    [slide, 2.0 * i.hypot(j).hypot(k).atan2(real.abs())]
 }
 
 /// A link and another link, or a link and the obstacles: they must not touch.
@@ -190,7 +257,8 @@ struct CheckedPair {
 /// - a motion with a tested state of less than twice the tolerance is [`Unproven`](MotionCheck::Unproven), as
 ///   are motions that take more than a million parts, and motions of a million radians or metres.
 ///
-/// Coordinates must go at constant speed, and by no more than a turn, as in [`Arm::space`].
+/// Coordinates must go at constant speed, and by no more than a turn, as in [`Arm::space`]; a base that floats as in
+/// [`Arm::floating_space`].
 #[derive(Clone, Debug)]
 pub struct ArmVerifier<'c, C> {
     space: &'c C,
@@ -233,7 +301,8 @@ where
             Arc::clone(arm.robot.reference.get_or_init(|| Arc::new(ReferenceArm::new(&arm.robot.model))));
         let world = arm.obstacles.reference();
         let mut pairs = Vec::new();
-        for link in (0..tree.links.len()).filter(|&i| tree.links[i].mesh.is_some() && tree.is_moved(i)) {
+        let solid = |i: &usize| tree.links[*i].mesh.is_some() && (tree.pose > 0 || tree.is_moved(*i));
+        for link in (0..tree.links.len()).filter(solid) {
             if world.is_some() {
                 pairs.push(CheckedPair { link, other: None, meet: None });
             }
@@ -260,14 +329,18 @@ where
         self.parts
     }
 
-    /// How far each coordinate goes between two configurations. Continuous joints turn by the shorter way.
-    fn travels(&self, a: &C::State, b: &C::State) -> Vec<f64> {
-        let (a, b) = (a.as_slice(), b.as_slice());
+    /// How far each coordinate and the base go between two configurations. Continuous joints turn by the shorter way.
+    fn travels(&self, a: &C::State, b: &C::State) -> Travels {
+        let (base_a, a) = a.as_slice().split_at(self.tree.pose);
+        let (base_b, b) = b.as_slice().split_at(self.tree.pose);
         let travel = |(i, endless): (usize, &bool)| {
             let d = (b[i] - a[i]).abs();
             if *endless && d > PI { (d % TAU).min(TAU - d % TAU) } else { d }
         };
-        self.tree.coordinates.iter().enumerate().map(travel).collect()
+        Travels {
+            joints: self.tree.coordinates.iter().enumerate().map(travel).collect(),
+            base: (self.tree.pose > 0).then(|| base_travel(base_a, base_b)),
+        }
     }
 
     /// A lower bound on the distance of a pair that is at least `enough`; else, as an error, the distance of two of their
@@ -287,7 +360,7 @@ where
     }
 
     /// How much nearer to each other the two of a pair can come.
-    fn approach(&self, pair: &CheckedPair, travels: &[f64], poses: &[Matrix4<f64>]) -> f64 {
+    fn approach(&self, pair: &CheckedPair, travels: &Travels, poses: &[Matrix4<f64>]) -> f64 {
         let moved = |link| self.tree.travel(link, pair.meet, travels, poses);
         moved(pair.link) + pair.other.map_or(0.0, moved)
     }
@@ -307,7 +380,7 @@ where
             }
             let [qa, qm, qb] = [a, at, b].map(|t| self.space.interpolate(from, to, t));
             let (before, after) = (self.travels(&qa, &qm), self.travels(&qm, &qb));
-            let travels: Vec<f64> = before.iter().zip(&after).map(|(x, y)| x.max(*y)).collect();
+            let travels = before.max(&after);
             self.tree.poses_into(qm.as_slice(), &mut poses);
             let mut near = Vec::new();
             for i in pairs {
@@ -354,8 +427,11 @@ where
     C::State: Coordinates,
 {
     fn check_motion(&mut self, from: &C::State, to: &C::State) -> MotionCheck {
-        let count = self.tree.coordinates.len();
-        let is_sound = |q: &[f64]| q.len() == count && q.iter().all(|x| x.is_finite());
+        let count = self.tree.pose + self.tree.coordinates.len();
+        let is_turn = |q: &[f64]| (q[3..POSE].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-8;
+        let is_sound = |q: &[f64]| {
+            q.len() == count && q.iter().all(|x| x.is_finite()) && (self.tree.pose == 0 || is_turn(q))
+        };
         if !(is_sound(from.as_slice()) && is_sound(to.as_slice())) {
             return MotionCheck::Unproven { at: 0.0 };
         }

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod common;
+mod floating;
 mod kinematics;
 mod motions;
 #[cfg(feature = "urdf")]

@@ -108,7 +108,14 @@ fn limits_can_be_set_and_pairs_given() {
     let unknown = model.clone().with_srdf(&srdf.replace("\"base\"", "\"foot\"")).unwrap();
     let Err(error) = Arm::new(&unknown, []) else { panic!() };
     assert!(error.to_string().contains("\"foot\""));
-    assert!(model.with_srdf("<srdf/>").is_err());
+    assert!(model.clone().with_srdf("<srdf/>").is_err());
+    // A base that should move by a virtual joint.
+    let moving = r#"<robot><virtual_joint name="world" type="floating" parent_frame="map" child_link="base"/></robot>"#;
+    let noted = |model: ArmModel| {
+        model.with_srdf(moving).unwrap().notes.iter().any(|n| n.contains("base = \"floating\""))
+    };
+    let bounds = mp_geom::Aabb::new([0.0; 3].into(), [1.0; 3].into());
+    assert!(noted(model.clone()) && !noted(ArmModel { floating: Some(bounds), ..model }));
 }
 
 #[test]
@@ -126,7 +133,7 @@ fn faults_are_named() {
     };
     says("</robot>", "", &["not a URDF"]);
     says("<robot name", "<model name", &["not a URDF"]);
-    says("type=\"continuous\"", "type=\"floating\"", &["turn", "floating", "base pose"]);
+    says("type=\"continuous\"", "type=\"floating\"", &["turn", "floating", "base = \"floating\""]);
     says("type=\"continuous\"", "type=\"planar\"", &["turn", "planar"]);
     says("type=\"continuous\"", "type=\"screw\"", &["not a URDF", "line 29", "turn", "screw", "prismatic"]);
     says("finger.stl", "thumb.stl", &["line 18", "left", "shape 1", "thumb.stl"]);

@@ -9,7 +9,11 @@ use mp_robot::{Arm, ArmVerifier};
 use nalgebra::DVector;
 
 /// The verifier proves what is certified, finds what sampling finds, and claims no more clearance than there is.
-fn agree<C: Space<State = DVector<f64>> + TrueMetric>(arm: &Arm, space: &C, motions: usize) -> [usize; 2] {
+pub(crate) fn agree<C: Space<State = DVector<f64>> + TrueMetric>(
+    arm: &Arm,
+    space: &C,
+    motions: usize,
+) -> [usize; 2] {
     let tolerance = arm.tolerance();
     let mut certified = Certified::new(space, arm.clone(), tolerance).unwrap();
     let mut verifier = ArmVerifier::new(space, arm).unwrap();

@@ -105,6 +105,12 @@ pub fn follow() -> DiscScene {
     scattered(scene, 9, [0.15, 0.35], 4.0 * RADIUS, 13)
 }
 
+/// The same room, full of obstacles: passages of 1.3 to 2 widths of the robot tell paths apart.
+pub fn tight() -> DiscScene {
+    let scene = DiscScene { size: [5.0, 2.0], obstacles: vec![], start: [0.3, 1.0], goal: [4.7, 1.0] };
+    scattered(scene, 34, [0.12, 0.24], 2.6 * RADIUS, 21)
+}
+
 /// 50 to 80 obstacles, which may touch each other; start and goal are free, connected, and at least 3 m apart.
 fn random(trial: u64) -> DiscScene {
     let mut attempt = 0;

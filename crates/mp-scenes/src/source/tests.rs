@@ -1,12 +1,13 @@
 //! The shipped files are the generated ones, and every scene is a sound problem.
 
 use super::{files_rs, generate, stale};
-use mp_cspace::{Clearance, MotionValidity, Se2, Se2State, Se3, Space, Validity};
+use mp_cspace::{Clearance, MotionValidity, Rng, Se2, Se2State, Se3, Space, Validity};
 use mp_geom::six_from_pose;
 use mp_io::{PathFile, RigidProblem, RobotProblem, SpaceKind};
-use mp_plan::{ArmScene, RobotKind};
+use mp_plan::{ArmScene, FloatingScene, RobotKind};
 use mp_robot::{FreeFlyer, PlanarFlyer, Verifier};
 use nalgebra::Isometry3;
+use std::f64::consts::PI;
 use std::path::PathBuf;
 
 fn assets() -> PathBuf {
@@ -144,6 +145,46 @@ fn the_arm_has_something_to_do() {
         assert!(verifier.check_motion(goal, goal).is_free());
         assert!(!verifier.check_motion(scene.start(), goal).is_free());
     }
+}
+
+/// The wrench passes the slot with its jaw shut and not with its jaw as wide as the nut needs it, and takes the nut with its
+/// jaw open only.
+#[test]
+fn the_wrench_must_shut_to_pass_and_open_to_arrive() {
+    let problem = RobotProblem::load(assets().join("scenes/wrench.toml")).unwrap();
+    let scene = FloatingScene::from_problem(problem).unwrap();
+    assert!(scene.lint().is_empty() && scene.arm().dof() == 7);
+    let mut verifier = scene.verifier().unwrap();
+    let (start, goal) = (scene.start().clone(), scene.goals()[0].clone());
+    let (shut, wide) = (0.05, scene.row(&goal)[6]);
+    assert!(verifier.check_motion(&start, &start).is_free() && verifier.check_motion(&goal, &goal).is_free());
+    let with_jaw = |q: &[f64], width: f64| scene.state(&[&q[..6], &[width]].concat());
+    // Straight through the slot, the jaws first.
+    let (before, behind) = ([-1.0, -0.03, 0.0, 0.0, 0.0, 0.0], [0.6, -0.03, 0.0, 0.0, 0.0, 0.0]);
+    let through = |width| [with_jaw(&before, width), with_jaw(&behind, width)];
+    let [from, to] = through(shut);
+    assert!(verifier.check_motion(&from, &to).is_free());
+    let [from, to] = through(wide);
+    assert!(!verifier.check_motion(&from, &to).is_free());
+    // At the nut.
+    let at_nut = scene.row(&goal);
+    for width in [0.04, 0.1, 0.2, 0.3] {
+        let q = with_jaw(&at_nut, width);
+        assert!(!verifier.check_motion(&q, &q).is_free(), "{width}");
+    }
+    // With the jaws in the slot, the wrench lengthwise and a little askew, either way round and either side up.
+    let (mut checker, mut rng) = (scene.checker().clone(), Rng::seed(1));
+    let mut free = [0; 2];
+    for i in 0..40_000 {
+        let mut near = |middle: f64, off: f64| middle + off * (2.0 * rng.unit() - 1.0);
+        let (back, over) = (PI * f64::from(i & 1), PI * f64::from((i >> 1) & 1));
+        let place = [near(-0.1 * back.cos(), 0.07), near(0.0, 0.2), near(0.0, 0.1)];
+        let row = [place, [near(back, 0.35), near(0.0, 0.35), near(over, 0.6)]].concat();
+        for (free, width) in free.iter_mut().zip([shut, wide]) {
+            *free += usize::from(checker.is_valid(&with_jaw(&row, width)));
+        }
+    }
+    assert!(free[0] > 50 && free[1] == 0, "{free:?}");
 }
 
 #[test]

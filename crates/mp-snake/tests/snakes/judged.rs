@@ -3,40 +3,113 @@
 use crate::worlds::{Judge, Point, World, square};
 use mp_cspace::testkit::check_local_planner;
 use mp_cspace::{Direction, Extension, KnownFree, LocalPlanner, MotionValidity, Path, Reach, Rng, Space};
-use mp_snake::{Bulged, Params, Repulsion, Snake, SnakePlanner, relax};
+use mp_snake::{
+    Bending, Bulged, Grid, Params, Repulsion, Snake, SnakeCounters, SnakePlanner, blurred, relax,
+};
 use rand::RngExt;
 
-/// Both ways round, steps and all the way, in ten thousand worlds.
+/// Both ways round, steps and all the way, bent in each way, in ten thousand worlds. Snakes bend motions that no bulge
+/// bends, and hybrid bends more than either alone; where it relaxes what a bulge has bent, it keeps farther away.
 #[test]
 fn bent_edges_are_free() {
     let space = square();
-    let (mut bent, mut blocked) = (0, 0);
+    let mut counters = [SnakeCounters::default(); 3];
+    let [mut nearer, mut farther] = [0.0; 2];
     for seed in 0..10_000 {
         let mut rng = Rng::seed(seed);
         let world = World::random(&mut rng);
-        let mut local = SnakePlanner::new(&space, world.check(&space), world.field(), 0.1).unwrap();
         let mut judge = Judge(&world);
         let from = space.sample_uniform(&mut rng);
         let toward = space.sample_uniform(&mut rng);
-        if !local.admits(&from) {
-            continue;
-        }
         let direction = if seed % 2 == 0 { Direction::Forward } else { Direction::Backward };
         let reach = if seed % 3 == 0 { Reach::Step(0.5) } else { Reach::Full };
-        let extension = local.extend(&from, &toward, direction, reach);
-        let (Extension::Reached(motion) | Extension::Advanced(motion)) = extension else {
-            blocked += u32::from(local.admits(&toward));
-            continue;
-        };
-        let (a, b) =
-            if direction == Direction::Forward { (&from, &motion.end) } else { (&motion.end, &from) };
-        assert!(motion.edge.check(a, b, &mut judge).is_free(), "seed {seed}");
-        let path = Path { states: vec![*a, *b], edges: vec![motion.edge.clone()] }.flattened();
-        assert!(path.clearance(&mut judge).is_some(), "seed {seed}");
-        assert!((path.length(&space) - motion.cost).abs() < 1e-9);
-        bent += u32::from(!motion.edge.vertices().is_empty());
+        let mut clearances = [None; 3];
+        for (k, bend) in Bending::ALL.into_iter().enumerate() {
+            let (check, field) = (world.check(&space), Repulsion::new(world.field(), 0.1).unwrap());
+            let params = Params::for_edges(0.1).unwrap();
+            let mut local = SnakePlanner::with_bend(&space, check, field, params, bend).unwrap();
+            if !local.admits(&from) {
+                continue;
+            }
+            let extension = local.extend(&from, &toward, direction, reach);
+            counters[k] = sum(counters[k], local.counters());
+            let (Extension::Reached(motion) | Extension::Advanced(motion)) = extension else { continue };
+            let (a, b) =
+                if direction == Direction::Forward { (&from, &motion.end) } else { (&motion.end, &from) };
+            assert!(motion.edge.check(a, b, &mut judge).is_free(), "seed {seed}, {bend}");
+            let path = Path { states: vec![*a, *b], edges: vec![motion.edge.clone()] }.flattened();
+            let clearance = path.clearance(&mut judge);
+            assert!(clearance.is_some(), "seed {seed}, {bend}");
+            assert!((path.length(&space) - motion.cost).abs() < 1e-9);
+            let along =
+                path.states.windows(2).flat_map(|w| (0..20).map(|i| w[0].lerp(&w[1], f64::from(i) / 20.0)));
+            let least = along.map(|q| world.distance(&q).0).fold(f64::INFINITY, f64::min);
+            let compared = local.counters().bent() > 0 && local.counters().by_snake == 0;
+            clearances[k] = compared.then_some(least);
+        }
+        if let [_, Some(bulge), Some(hybrid)] = clearances {
+            nearer += bulge;
+            farther += hybrid;
+        }
     }
-    assert!(bent > 1000 && bent > 2 * blocked, "{bent} bent, {blocked} lost");
+    let [snake, bulge, hybrid] = counters;
+    assert!(bulge.bent() > 1000 && bulge.bent() > 2 * bulge.not_bent, "{bulge:?}");
+    assert!(snake.by_snake == snake.bent() && snake.by_snake > 1000, "{snake:?}");
+    assert!(hybrid.relaxed > 1000 && hybrid.by_snake > 30, "{hybrid:?}");
+    assert!(hybrid.bent() > bulge.bent().max(snake.bent()), "{counters:?}");
+    assert!(farther > 1.05 * nearer, "{nearer} {farther}");
+}
+
+fn sum(a: SnakeCounters, b: SnakeCounters) -> SnakeCounters {
+    SnakeCounters {
+        straight: a.straight + b.straight,
+        bulged: a.bulged + b.bulged,
+        relaxed: a.relaxed + b.relaxed,
+        by_snake: a.by_snake + b.by_snake,
+        not_tried: a.not_tried + b.not_tried,
+        not_bent: a.not_bent + b.not_bent,
+        iterations: a.iterations + b.iterations,
+    }
+}
+
+/// A field that has no clearance bends motions too: an image of the world, blurred.
+#[test]
+fn any_field_bends() {
+    let space = square();
+    let mut bent = 0;
+    for seed in 0..200 {
+        let mut rng = Rng::seed(seed);
+        let world = World::random(&mut rng);
+        let image = Grid::from_fn([-1.0, -1.0], 0.02, (100, 100), |q| {
+            f64::from(u8::from(world.distance(&q).0 < 0.0))
+        });
+        let energy = blurred(&image.unwrap(), 0.05).unwrap().map(|x| 5.0 * x);
+        let [from, to] = [(); 2].map(|()| space.sample_uniform(&mut rng));
+        let params = Params::for_edges(0.1).unwrap();
+        for bend in Bending::ALL {
+            let check = world.check(&space);
+            let mut local = SnakePlanner::with_bend(&space, check, energy.clone(), params, bend).unwrap();
+            if !local.admits(&from) {
+                continue;
+            }
+            let Extension::Reached(motion) = local.extend(&from, &to, Direction::Forward, Reach::Full) else {
+                continue;
+            };
+            assert!(motion.edge.check(&from, &to, &mut Judge(&world)).is_free(), "seed {seed}, {bend}");
+            bent += local.counters().bent();
+            assert!(bend != Bending::Bulge || motion.edge.vertices().is_empty(), "no clearance, no bulge");
+        }
+    }
+    assert!(bent > 20, "{bent} bent");
+}
+
+#[test]
+fn ways_to_bend_have_names() {
+    for bend in Bending::ALL {
+        assert_eq!(bend.name().parse(), Ok(bend));
+    }
+    let error = "Snake".parse::<Bending>().unwrap_err().to_string();
+    assert_eq!(error, "`Snake` is no way to bend a motion: expected snake, bulge or hybrid");
 }
 
 /// Each piece of a bulge that fits was asked about, told an end that was known to be free; also where corners were
@@ -123,5 +196,5 @@ fn the_local_planner_keeps_the_contract() {
     let mut local = SnakePlanner::new(&space, world.check(&space), world.field(), 0.1).unwrap();
     check_local_planner(&space, &mut local, 0.6, 1);
     let done = local.counters();
-    assert!(done.bent > 0 && done.straight > 0 && done.not_tried > 0 && done.iterations > 0, "{done:?}");
+    assert!(done.bent() > 0 && done.straight > 0 && done.not_tried > 0 && done.iterations > 0, "{done:?}");
 }

@@ -8,7 +8,7 @@ use mp_cspace::{
     Discrete, EventCounts, FineDiscrete, Iterations, KdTree, Outcome, ParameterError, Planner, Product,
     Resolution, Rn, Rng, Straight,
 };
-use mp_snake::SnakePlanner;
+use mp_snake::{Repulsion, SnakePlanner};
 use mp_tree::{BuildError, Goals, Problem, RrtConnect, Step, Tuning, improve};
 use nalgebra::Vector2;
 
@@ -59,7 +59,7 @@ pub fn through_gap(
 }
 
 type Field = fn(&Point, f64, &mut [f64]) -> f64;
-type Bending<'c> = SnakePlanner<'c, Rn<2>, Discrete<'c, Rn<2>, fn(&Point) -> bool>, Field>;
+type Bending<'c> = SnakePlanner<'c, Rn<2>, Discrete<'c, Rn<2>, fn(&Point) -> bool>, Repulsion<Field>>;
 
 /// The same with edges that bend: out of the ring of walls by the nearer side, its opening left out.
 pub fn bending_trap(space: &Rn<2>) -> Result<Problem<'_, Rn<2>, Bending<'_>>> {

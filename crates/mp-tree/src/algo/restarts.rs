@@ -14,11 +14,14 @@
 //!   `zeta`, but deterministic.
 //! - `zeta`: the ζ(2) search of the same two papers. Each run length t is drawn with probability
 //!   6/(π·t)².
+//! - `wide`: in the manner of the wide search of the second paper. No run is ever dropped: all are paused and continued,
+//!   the k-th run at 1/k of the speed of the first. At each count n = 1, 2, 3, … every run k that divides n makes one unit more, and
+//!   run n begins. It keeps the trees of all its runs, n of them after about n·ln n units.
 //!
 //! Repeat:
 //! 1. make a planner for attempt k = 1, 2, …, which draws from stream (seed, k);
 //! 2. let it make as many iterations as the schedule says, times `unit`;
-//! 3. when it finds a path, return the path; otherwise drop the planner.
+//! 3. when it finds a path, return the path; otherwise drop the planner (`wide`: pause it).
 //!
 //! The seed is the first number drawn from the generator of the first step. Stepping on after a
 //! path continues the same attempt.
@@ -34,11 +37,12 @@
 //! | 10% | 1.40 | 14 793, 65 904 | 2077, 12 131 | 3213, 14 197 | 5154, 28 602 |
 //! | 20% | 1.15 | 46 443, 129 811 | | 58 000, 285 000 | 71 000, 367 000 |
 //!
-//! With steps of 20% no unit is better than no restarts, as resampling those 100 runs shows.
+//! With steps of 20% no unit is better than no restarts, as resampling those 100 runs shows. All four schedules on three
+//! problems with heavy tails are measured in `docs/results/rsrt.md`: `counter` and `luby` are the best on each.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
-//! | `schedule`: which run lengths | `luby`, `counter`, `zeta` | `luby` |
+//! | `schedule`: which run lengths | `luby`, `counter`, `zeta`, `wide` | `luby` |
 //! | `unit`: iterations of a run of length 1 | 1, 2, … 10¹² | 1000 |
 //!
 //! and those of the planner that is restarted. By name it is `restart-` and the name of that, as in
@@ -72,7 +76,7 @@ use std::fmt;
 /// Which schedule.
 pub const SCHEDULE: Parameter = Parameter {
     name: "schedule",
-    range: "luby, counter or zeta",
+    range: "luby, counter, zeta or wide",
     default: "luby",
     doc: "how long the runs are, in units",
 };
@@ -95,6 +99,8 @@ pub enum Schedule {
     Counter,
     /// Length t with probability 6/(π·t)².
     Zeta,
+    /// All runs by turns of one unit, run k in one of k rounds; none is dropped.
+    Wide,
 }
 
 impl Schedule {
@@ -107,12 +113,14 @@ impl Schedule {
             "luby" => Some(Self::Luby),
             "counter" => Some(Self::Counter),
             "zeta" => Some(Self::Zeta),
+            "wide" => Some(Self::Wide),
             _ => None,
         };
         Ok(settings.choice(SCHEDULE.name, SCHEDULE.range, named)?.unwrap_or_default())
     }
 
-    /// The run lengths, in units; `rng` is used by [`Zeta`](Self::Zeta) alone.
+    /// The run lengths, in units; `rng` is used by [`Zeta`](Self::Zeta) alone. For [`Wide`](Self::Wide) these are the
+    /// turns, one unit each; [`Lengths::run`] says whose turn it is.
     ///
     /// ```
     /// use mp_cspace::Rng;
@@ -136,6 +144,15 @@ pub struct Lengths {
     length: u64,
 }
 
+impl Lengths {
+    /// Which run, counted from 1, the last length belongs to, where runs take turns ([`Schedule::Wide`]). `None` where each
+    /// length is that of a new run.
+    #[must_use]
+    pub fn run(&self) -> Option<u64> {
+        (self.schedule == Schedule::Wide).then_some(self.length)
+    }
+}
+
 impl Iterator for Lengths {
     type Item = u64;
 
@@ -157,6 +174,18 @@ impl Iterator for Lengths {
                     break self.length;
                 }
             },
+            Schedule::Wide => {
+                // `length` is the run: the divisors of the count, ascending; the count itself is the new run.
+                loop {
+                    (self.count, self.length) = match self.length >= self.count {
+                        true => (self.count + 1, 1),
+                        false => (self.count, self.length + 1),
+                    };
+                    if self.count.is_multiple_of(self.length) {
+                        break 1;
+                    }
+                }
+            }
             // Rejection sampling from ⌊1/u⌋, which is t with probability 1/(t(t + 1)).
             Schedule::Zeta => loop {
                 let t = (1.0 / (1.0 - self.rng.random::<f64>())).floor();
@@ -168,18 +197,28 @@ impl Iterator for Lengths {
     }
 }
 
+/// A planner under way, with its random numbers.
+#[derive(Debug)]
+struct Attempt<P> {
+    number: u64,
+    planner: P,
+    rng: Rng,
+    /// How many iterations it may have made at the end of its turn.
+    allowed: u64,
+}
+
 /// Restarts: see the [module](self).
 pub struct Restarts<'c, P> {
     make: Box<dyn FnMut(u64) -> Result<P, BuildError> + Send + 'c>,
     schedule: Schedule,
     unit: u64,
     begun: Option<(u64, Lengths)>,
-    planner: P,
-    rng: Rng,
-    attempt: u64,
-    /// How many iterations the attempt may take.
-    allowed: u64,
-    /// The progress of earlier attempts.
+    current: Attempt<P>,
+    /// Where attempts take turns, those that wait.
+    paused: Vec<Attempt<P>>,
+    /// How many attempts were made.
+    made: u64,
+    /// The progress of attempts that were dropped.
     past: Progress,
 }
 
@@ -199,16 +238,15 @@ impl<'c, P> Restarts<'c, P> {
             let range = UNIT.range.to_owned();
             return Err(BuildError::OutOfRange { name: UNIT.name, value: unit as f64, range });
         }
-        let planner = make(1)?;
+        let current = Attempt { number: 1, planner: make(1)?, rng: Rng::seed(0), allowed: 0 };
         Ok(Self {
             make: Box::new(make),
             schedule,
             unit,
             begun: None,
-            planner,
-            rng: Rng::seed(0),
-            attempt: 1,
-            allowed: 0,
+            current,
+            paused: Vec::new(),
+            made: 1,
             past: Progress::default(),
         })
     }
@@ -216,55 +254,84 @@ impl<'c, P> Restarts<'c, P> {
     /// The number of the current attempt, from 1.
     #[must_use]
     pub fn attempt(&self) -> u64 {
-        self.attempt
+        self.current.number
     }
 
     /// The planner of the current attempt.
     #[must_use]
     pub fn planner(&self) -> &P {
-        &self.planner
+        &self.current.planner
+    }
+}
+
+impl<P> Restarts<'_, P> {
+    /// Gives the turn to the attempt whose it is, a new one or a paused one.
+    fn next_turn<S>(&mut self, observer: &mut dyn Observer<S>)
+    where
+        P: Planner<S>,
+    {
+        let Some((seed, lengths)) = &mut self.begun else { return };
+        let units = lengths.next().unwrap_or(1).saturating_mul(self.unit);
+        let run = lengths.run();
+        if let Some(waiting) = self.paused.iter().position(|attempt| Some(attempt.number) == run) {
+            std::mem::swap(&mut self.current, &mut self.paused[waiting]);
+        } else if run.is_none_or(|run| run > self.made) {
+            match (self.make)(self.made + 1) {
+                // The present attempt goes on for the length of the new one.
+                Err(_) => {}
+                Ok(planner) => {
+                    self.made += 1;
+                    let rng = Rng::stream(*seed, self.made);
+                    let new = Attempt { number: self.made, planner, rng, allowed: 0 };
+                    let before = std::mem::replace(&mut self.current, new);
+                    if run.is_some() {
+                        self.paused.push(before);
+                    } else {
+                        let done = before.planner.progress();
+                        self.past.iterations += done.iterations;
+                        self.past.motions += done.motions;
+                        self.past.rejected += done.rejected;
+                        (0..2).for_each(|tree| observer.on(Event::Pruned { tree, survivors: &[] }));
+                    }
+                }
+            }
+        }
+        self.current.allowed = self.current.planner.progress().iterations.saturating_add(units);
     }
 }
 
 impl<S, P: Planner<S>> Planner<S> for Restarts<'_, P> {
     type Edge = P::Edge;
 
+    /// With [`Schedule::Wide`] the observer sees the first attempt alone, which is under way all the time.
     fn step(&mut self, rng: &mut Rng, observer: &mut dyn Observer<S>) -> Option<Path<S, P::Edge>> {
-        let (seed, lengths) = self.begun.get_or_insert_with(|| {
+        if self.begun.is_none() {
             let seed = rng.random();
-            (seed, self.schedule.lengths(Rng::stream(seed, 0)))
-        });
-        let done = self.planner.progress();
-        if self.allowed == 0 {
-            self.rng = Rng::stream(*seed, 1);
-            self.allowed = lengths.next().unwrap_or(1).saturating_mul(self.unit);
-        } else if done.iterations >= self.allowed {
-            // If no new planner can be made, the present one runs as long again.
-            match (self.make)(self.attempt + 1) {
-                Err(_) => self.allowed = self.allowed.saturating_mul(2),
-                Ok(planner) => {
-                    self.planner = planner;
-                    self.attempt += 1;
-                    self.rng = Rng::stream(*seed, self.attempt);
-                    self.allowed = lengths.next().unwrap_or(1).saturating_mul(self.unit);
-                    self.past.iterations += done.iterations;
-                    self.past.motions += done.motions;
-                    self.past.rejected += done.rejected;
-                    for tree in 0..2 {
-                        observer.on(Event::Pruned { tree, survivors: &[] });
-                    }
-                }
-            }
+            let mut lengths = self.schedule.lengths(Rng::stream(seed, 0));
+            self.current.allowed = lengths.next().unwrap_or(1).saturating_mul(self.unit);
+            self.current.rng = Rng::stream(seed, 1);
+            self.begun = Some((seed, lengths));
+        } else if self.current.planner.progress().iterations >= self.current.allowed {
+            self.next_turn(observer);
         }
-        self.planner.step(&mut self.rng, observer)
+        let seen = self.schedule != Schedule::Wide || self.current.number == 1;
+        let observer: &mut dyn Observer<S> = if seen { observer } else { &mut () };
+        self.current.planner.step(&mut self.current.rng, observer)
     }
 
-    /// Nodes are those of the current attempt; the rest are sums over all attempts.
+    /// Nodes are those of the attempts that are kept; the rest are sums over all attempts.
     fn progress(&self) -> Progress {
-        let mut progress = self.planner.progress();
+        let mut progress = self.current.planner.progress();
         progress.iterations += self.past.iterations;
         progress.motions += self.past.motions;
         progress.rejected += self.past.rejected;
+        for attempt in &self.paused {
+            let paused = attempt.planner.progress();
+            progress.iterations += paused.iterations;
+            progress.motions += paused.motions;
+            progress.rejected += paused.rejected;
+            progress.nodes += paused.nodes;
+        }
         progress
     }
 }
@@ -274,8 +341,8 @@ impl<P: fmt::Debug> fmt::Debug for Restarts<'_, P> {
         f.debug_struct("Restarts")
             .field("schedule", &self.schedule)
             .field("unit", &self.unit)
-            .field("attempt", &self.attempt)
-            .field("planner", &self.planner)
+            .field("current", &self.current)
+            .field("paused", &self.paused.len())
             .finish_non_exhaustive()
     }
 }
@@ -293,6 +360,25 @@ mod tests {
         }
         let lengths: Vec<u64> = Schedule::Luby.lengths(Rng::seed(0)).take(2000).collect();
         assert_eq!(lengths, (1..=2000).map(luby).collect::<Vec<_>>());
+    }
+
+    /// Run k has had ⌊n/k⌋ turns after count n, and is begun at count k.
+    #[test]
+    fn wide_runs_are_slower_by_their_number() {
+        let mut lengths = Schedule::Wide.lengths(Rng::seed(0));
+        let runs: Vec<u64> = std::iter::from_fn(|| (lengths.next(), lengths.run()).1).take(10).collect();
+        assert_eq!(runs, [1, 1, 2, 1, 3, 1, 2, 4, 1, 5]);
+        let mut turns = vec![0; 61];
+        let mut lengths = Schedule::Wide.lengths(Rng::seed(0));
+        loop {
+            assert_eq!(lengths.next(), Some(1));
+            let run = lengths.run().unwrap() as usize;
+            turns[run] += 1;
+            if run == 60 {
+                break;
+            }
+        }
+        (1..=60).for_each(|k| assert_eq!(turns[k], 60 / k, "run {k}"));
     }
 
     #[test]

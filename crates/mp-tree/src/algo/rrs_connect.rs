@@ -46,18 +46,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use super::rrs::{Flattened, RANGE, SNAKE_STEPS, with_bending_edges};
+use super::rrs::{BEND, Flattened, RANGE, SNAKE_STEPS, with_bending_edges};
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::{GOAL_BIAS, NEEDS_BOTH_ENDS, PATIENCE, STEP};
 use crate::{BuildError, PlannerInfo, RrtConnect};
-use mp_snake::SnakePlanner;
+use mp_snake::{Bending, SnakePlanner};
 
 /// The entry of [`planners`](crate::planners).
 pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrs-connect",
     summary: "RRT-Connect whose blocked edges are bent around obstacles by snakes",
     citation: "Baizid et al. 2014; Kuffner and LaValle 2000",
-    parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, SNAKE_STEPS],
+    parameters: &[STEP, GOAL_BIAS, PATIENCE, RANGE, BEND, SNAKE_STEPS],
     aliases: &[],
     cannot: NEEDS_BOTH_ENDS,
 };
@@ -72,4 +72,4 @@ pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<
 }
 
 /// RRS-Connect: see the [module](self). Made by [`RrtConnect::new`] of a problem with a [`SnakePlanner`].
-pub type RrsConnect<'c, C, M, F, N> = RrtConnect<'c, C, SnakePlanner<'c, C, M, F>, N>;
+pub type RrsConnect<'c, C, M, F, N, B = Bending> = RrtConnect<'c, C, SnakePlanner<'c, C, M, F, B>, N>;

@@ -16,15 +16,24 @@
 //! The listing in the paper does not lower `dmin` in step 5, and would keep the last of the nearer
 //! successors; its text asks for the closest, which is what is done here.
 //!
-//! **When to use it.** For comparison: [RSRT](super::rsrt) finds the same successors with fewer collision tests.
+//! [RSRT](super::rsrt) changes two things: it sorts the successors before it tests any (`order`), and takes any of them,
+//! nearer or not (`accept`). Each can be set here alone: with `order=sort-first` the tree is the same, bit for bit, for fewer
+//! tests; with `accept=any` it is another tree. With both this planner is RSRT. Types set them by
+//! [`InputPlanner::ordered`](mp_control::InputPlanner::ordered) and
+//! [`accepting`](mp_control::InputPlanner::accepting); with [`Accept::Any`] use the type [`Rsrt`](crate::Rsrt), which refuses
+//! states that a node of the tree resembles: an input and its opposite lead back, but for rounding.
+//!
+//! **When to use it.** For comparison: [RSRT](super::rsrt) needs fewer collision tests.
 //!
 //! | parameter | range | default |
 //! |---|---|---|
 //! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_control::InputPlanner) | |
+//! | `order`: test all successors, or sort them and take the first free one | `test-all`, `sort-first` | `test-all` |
+//! | `accept`: successors nearer to the sample than the node extended, or any | `nearer`, `any` | `nearer` |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 5% of the extent |
-//! | `inputs` (by name): directions of motion, 0 for both ways along each degree of freedom | 0, 1, 2, … | 0 |
+//! | `inputs` (by name): directions of motion, both ways along each degree of freedom first; 0 for those alone | 0, 1, 2, … | 0 |
 //! | `levels` (by name): lengths of motion, each a quarter of the one before | 1 to 20 | 3 |
 //!
 //! [By name](crate::build) it moves by a uniform set of inputs over the degrees of freedom, translation
@@ -56,13 +65,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{BuildArgs, BuildResult, INPUTS, LEVELS, Types, moved_by_inputs};
+use crate::by_name::{ACCEPT, BuildArgs, BuildResult, INPUTS, LEVELS, ORDER, Types, make_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
     AppendDistinct, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning,
 };
-use mp_control::{InputChoice, Order};
+use mp_control::{Accept, InputChoice, Order};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -70,15 +79,14 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "rrt-inputs",
     summary: "one tree moved by a set of inputs, all of them tested for collision; RSRT needs fewer tests",
     citation: "LaValle and Kuffner 1999",
-    parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
+    parameters: &[STEP, INPUTS, LEVELS, ORDER, ACCEPT, GOAL_BIAS, PATIENCE],
     aliases: &[],
     cannot: &[],
 };
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
-    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
-    Ok(Box::new(RrtInputs::with_index(problem, args.index, args.tuning)?))
+    make_by_inputs(args, (Order::TestAll, Accept::Nearer))
 }
 
 /// RRT by inputs: see the [module](self).
@@ -89,7 +97,7 @@ constructors! {
     "RRT by inputs" RrtInputs<C, L, N> where [L: InputChoice],
     |problem, index, tuning: Tuning| {
         let mut problem = problem;
-        problem.local_mut().set_order(Order::TestAll);
+        problem.local_mut().set_defaults(Order::TestAll, Accept::Nearer);
         let target_sampler = Samples(Uniform(problem.space()));
         let inserter = AppendDistinct::default();
         Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })

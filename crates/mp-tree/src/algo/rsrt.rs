@@ -13,9 +13,16 @@
 //!    unless a node is there already, and no more are tested;
 //! 6. where that is in the goal, verify the path: return it, or prune from the edge that failed.
 //!
-//! As in the paper's listing the child need not be nearer to the sample than `q_prox` is: a node near
-//! obstacles grows as often as any other. [`InputPlanner::accepting`](mp_control::InputPlanner::accepting) asks for
-//! [`Nearer`](mp_control::Accept::Nearer) ones, as ALG. 4 does.
+//! These are two changes to ALG. 4, which the paper makes at once and calls one inversion:
+//! - The tests are subordinate to the metric (`order`). The paper says that this reduces "the number of calls to the
+//!   collision detector proportionally to the nature and the dimension of U". It changes the number of tests and
+//!   nothing else: under the same condition both orders grow the same tree.
+//! - The listing has no `dmin` any more (`accept`): the child need not be nearer to the sample than `q_prox` is. From this
+//!   comes the paper's "equiprobability expansion of each node independently of their relationship with obstacles". It
+//!   changes the tree.
+//!
+//! [`InputPlanner::ordered`](mp_control::InputPlanner::ordered) and
+//! [`accepting`](mp_control::InputPlanner::accepting) set each of them.
 //!
 //! **When to use it.** For systems that move by a set of inputs: velocities, accelerations, wheels. Under the same
 //! condition it takes the same successors as ALG. 4, with fewer collision tests. For bodies that can move in any direction
@@ -24,10 +31,12 @@
 //! | parameter | range | default |
 //! |---|---|---|
 //! | local planner: flow, inputs, duration | an [`InputPlanner`](mp_control::InputPlanner) | |
+//! | `order`: test all successors, or sort them and take the first free one | `test-all`, `sort-first` | `sort-first` |
+//! | `accept`: successors nearer to the sample than the node extended, or any | `nearer`, `any` | `any` |
 //! | `goal-bias`: probability of aiming at a goal state, where there is one to aim at | \[0, 1\] | 0.05 |
 //! | `patience`: rejected paths after which each new edge is verified | 0, 1, 2, … | 10 |
 //! | `step`: within it goals are connected to exactly; by name, also the longest motion | (0, extent of the space] | 5% of the extent |
-//! | `inputs` (by name): directions of motion, 0 for both ways along each degree of freedom | 0, 1, 2, … | 0 |
+//! | `inputs` (by name): directions of motion, both ways along each degree of freedom first; 0 for those alone | 0, 1, 2, … | 0 |
 //! | `levels` (by name): lengths of motion, each a quarter of the one before | 1 to 20 | 3 |
 //!
 //! [By name](crate::build) it moves by a uniform set of inputs over the degrees of freedom, translation
@@ -57,13 +66,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::by_name::{BuildArgs, BuildResult, INPUTS, LEVELS, Types, moved_by_inputs};
+use crate::by_name::{ACCEPT, BuildArgs, BuildResult, INPUTS, LEVELS, ORDER, Types, make_by_inputs};
 use crate::engine::constructors;
 use crate::engine::{GOAL_BIAS, PATIENCE, STEP};
 use crate::{
-    AppendApart, Extend, NearestSelector, PlannerInfo, Samples, SingleTree, TreePlannerParts, Tuning,
+    AppendApart, Extend, NearestSelector, Parameter, PlannerInfo, Samples, SingleTree, TreePlannerParts,
+    Tuning,
 };
-use mp_control::{InputChoice, Order};
+use mp_control::{Accept, InputChoice, Order};
 use mp_cspace::Uniform;
 
 /// The entry of [`planners`](crate::planners).
@@ -71,15 +81,22 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "rsrt",
     summary: "one tree moved by a set of inputs, sorted by distance before any is tested for collision",
     citation: "Jouandeau, Touati and Ali Cherif 2008",
-    parameters: &[STEP, INPUTS, LEVELS, GOAL_BIAS, PATIENCE],
+    parameters: &[
+        STEP,
+        INPUTS,
+        LEVELS,
+        Parameter { default: "sort-first", ..ORDER },
+        Parameter { default: "any", ..ACCEPT },
+        GOAL_BIAS,
+        PATIENCE,
+    ],
     aliases: &[],
     cannot: &[],
 };
 
 /// Makes it by name.
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
-    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
-    Ok(Box::new(Rsrt::with_index(problem, args.index, args.tuning)?))
+    make_by_inputs(args, (Order::SortFirst, Accept::Any))
 }
 
 /// RSRT: see the [module](self).
@@ -90,7 +107,7 @@ constructors! {
     "RSRT" Rsrt<C, L, N> where [L: InputChoice],
     |problem, index, tuning: Tuning| {
         let mut problem = problem;
-        problem.local_mut().set_order(Order::SortFirst);
+        problem.local_mut().set_defaults(Order::SortFirst, Accept::Any);
         let target_sampler = Samples(Uniform(problem.space()));
         let inserter = AppendApart::default();
         Self::assemble(problem, TreePlannerParts { target_sampler, selector: NearestSelector(index), extender: Extend, inserter, tuning })

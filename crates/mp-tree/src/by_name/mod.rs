@@ -2,8 +2,8 @@
 
 mod uniform;
 
-pub(crate) use uniform::moved_by_inputs;
-pub use uniform::{INPUTS, LEVELS};
+pub use uniform::{ACCEPT, INPUTS, LEVELS, ORDER};
+pub(crate) use uniform::{make_by_inputs, moved_by_inputs};
 
 use crate::{BuildError, Problem, Settings, Tuning};
 use mp_cspace::{MotionValidity, NearestNeighbors, Planner, Space, Straight};

@@ -1,7 +1,8 @@
 //! Problems whose local planner moves by a uniform set of inputs, for planners made by name.
 
-use crate::{BuildError, Parameter, Problem, Settings, Tuning};
-use mp_control::{Flow, InputPlanner, InputSet, Kinematic, LocalFlowCheck};
+use super::{BuildArgs, BuildResult, Types};
+use crate::{BuildError, Parameter, Problem, RrtInputs, Rsrt, Settings, Tuning};
+use mp_control::{Accept, Flow, InputPlanner, InputSet, Kinematic, LocalFlowCheck, Order};
 use mp_cspace::{AnyFlow, LocalPlanner, Space};
 
 /// The number of directions of a set of inputs.
@@ -9,7 +10,7 @@ pub const INPUTS: Parameter = Parameter {
     name: "inputs",
     range: "a whole number",
     default: "0",
-    doc: "directions of motion, spread over translation and rotation; 0: both ways along each axis",
+    doc: "directions of motion, both ways along each axis first, the rest spread evenly; 0: the axes alone",
 };
 
 /// The number of lengths of motion per direction of a set of inputs.
@@ -19,6 +20,54 @@ pub const LEVELS: Parameter = Parameter {
     default: "3",
     doc: "lengths of motion: the step, a quarter of it, a quarter of that, and so on",
 };
+
+/// The order in which successors are tested for collision; the default is the planner's.
+pub const ORDER: Parameter = Parameter {
+    name: "order",
+    range: "test-all or sort-first",
+    default: "test-all",
+    doc: "test all successors for collision and take the nearest free one, or sort them and take the first",
+};
+
+/// Which successors may be taken; the default is the planner's.
+pub const ACCEPT: Parameter = Parameter {
+    name: "accept",
+    range: "nearer or any",
+    default: "nearer",
+    doc: "take only successors nearer to the sample than the node that is extended, or any",
+};
+
+/// The order and the condition on successors that are set, if any.
+pub(crate) fn order_and_accept(settings: &Settings) -> Result<(Option<Order>, Option<Accept>), BuildError> {
+    let order = settings.choice(ORDER.name, ORDER.range, |name| match name {
+        "test-all" => Some(Order::TestAll),
+        "sort-first" => Some(Order::SortFirst),
+        _ => None,
+    })?;
+    let accept = settings.choice(ACCEPT.name, ACCEPT.range, |name| match name {
+        "nearer" => Some(Accept::Nearer),
+        "any" => Some(Accept::Any),
+        _ => None,
+    })?;
+    Ok((order, accept))
+}
+
+/// Makes RRT by inputs or RSRT, with the order and the condition that are set, or these. The condition decides which of
+/// the two types it is: where any successor may be taken, those that a node of the tree resembles must be refused.
+pub(crate) fn make_by_inputs<'c, T: Types<'c>>(
+    args: BuildArgs<'c, '_, T>,
+    (order, accept): (Order, Accept),
+) -> BuildResult<'c, T> {
+    let set = order_and_accept(args.settings)?;
+    let (order, accept) = (set.0.unwrap_or(order), set.1.unwrap_or(accept));
+    let problem = moved_by_inputs(args.problem, &args.tuning, args.settings)?;
+    let problem =
+        problem.try_map_local(|local| Ok::<_, BuildError>(local.ordered(order).accepting(accept)))?;
+    Ok(match accept {
+        Accept::Nearer => Box::new(RrtInputs::with_index(problem, args.index, args.tuning)?),
+        Accept::Any => Box::new(Rsrt::with_index(problem, args.index, args.tuning)?),
+    })
+}
 
 /// How planners made by name move by inputs.
 pub(crate) enum NamedFlow<'c, C: Space> {

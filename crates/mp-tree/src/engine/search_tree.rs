@@ -51,7 +51,7 @@ impl<C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>> Se
     pub fn add_root(&mut self, space: &C, state: C::State, observer: &mut dyn Observer<C::State>) -> NodeId {
         let id = self.tree.add_root(state);
         self.selector.inserted(space, self.tree.states(), id, None);
-        observer.on(Event::Rooted { tree: self.index, id, state: self.tree.state(id) });
+        observer.on(Event::Rooted { tree: self.index, id, state: self.tree.state(id), kind: None });
         id
     }
 
@@ -278,15 +278,26 @@ impl<'c, C: Space, L: LocalPlanner<C::State>, Se: Selector<C>, A: Inserter<C, L>
                 }
                 self.selector.inserted(self.checker.space(), self.tree.states(), id, parent);
                 let (tree, state) = (self.index, self.tree.state(id));
-                self.observer.on(Event::Added { tree, id, parent: parent.unwrap_or(from), state });
+                let (parent, through) = (parent.unwrap_or(from), bends(self.checker, self.tree, id));
+                self.observer.on(Event::Added { tree, id, parent, state, through });
                 for &id in self.inserter.rewired() {
                     let Some(parent) = self.tree.parent(id) else { continue };
-                    self.observer.on(Event::Rewired { tree, id, parent });
+                    let through = bends(self.checker, self.tree, id);
+                    self.observer.on(Event::Rewired { tree, id, parent, through });
                 }
                 if reached { Grown::Reached(id) } else { Grown::Advanced(id) }
             }
         }
     }
+}
+
+/// The states at which the edge between a node and its parent bends, in forward time.
+fn bends<'t, C: Space, L: LocalPlanner<C::State>>(
+    checker: &EdgeChecker<'_, C, L>,
+    tree: &'t Tree<C::State, L::Edge>,
+    id: NodeId,
+) -> &'t [C::State] {
+    tree.edge(id).map_or(&[], |edge| checker.vertices(edge))
 }
 
 impl<C: Space, L: LocalPlanner<C::State>, Se, A> fmt::Debug for Growing<'_, '_, C, L, Se, A> {

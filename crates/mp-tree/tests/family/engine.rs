@@ -107,11 +107,11 @@ impl Observer<Point> for Copycat {
     fn on(&mut self, event: Event<'_, Point>) {
         self.0.resize(2, Vec::new());
         match event {
-            Event::Rooted { tree, id, state } => {
+            Event::Rooted { tree, id, state, .. } => {
                 assert_eq!(id as usize, self.0[tree].len());
                 self.0[tree].push((*state, None));
             }
-            Event::Added { tree, id, parent, state } => {
+            Event::Added { tree, id, parent, state, .. } => {
                 assert_eq!(id as usize, self.0[tree].len());
                 self.0[tree].push((*state, Some(parent)));
             }

@@ -108,6 +108,40 @@ fn velocities_by_accelerations() {
     }
 }
 
+/// The order changes the number of tests and nothing else; the condition changes the tree; both names have all four corners.
+#[test]
+fn four_corners() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
+    let mut other_trees = 0;
+    for seed in 0..6 {
+        let come = |name: &str, settings: &[&str]| {
+            let all = ["step=0.1", "inputs=12"].iter().chain(settings).copied();
+            let check = Certified::new(&space, boxes.clone(), 1e-3).unwrap();
+            let local = Straight::new(&space, check);
+            let (start, goal) = (Point::new(0.1, 0.2), Point::new(0.93, 0.27));
+            let problem = Problem::new(&space, local, Exact(boxes.clone()), start, goal).unwrap();
+            let mut planner = build(name, problem, &Settings::parse(all).unwrap()).unwrap();
+            let outcome = planner.solve(&mut Rng::seed(seed), &mut Iterations(50_000), &mut ());
+            assert!(matches!(outcome, Outcome::Solved(_)), "{name} {settings:?}");
+            let mut progress = planner.progress();
+            // How many motions were tested is what differs.
+            progress.motions = 0;
+            (outcome, progress)
+        };
+        for accept in ["accept=nearer", "accept=any"] {
+            let all = come("rrt-inputs", &["order=test-all", accept]);
+            for name in ["rrt-inputs", "rsrt"] {
+                assert_eq!(come(name, &["order=sort-first", accept]), all, "{accept}");
+            }
+        }
+        let corners = [come("rrt-inputs", &[]), come("rsrt", &[])];
+        assert_eq!(corners[0], come("rsrt", &["order=test-all", "accept=nearer"]));
+        assert_eq!(corners[1], come("rrt-inputs", &["order=sort-first", "accept=any"]));
+        other_trees += u32::from(corners[0] != corners[1]);
+    }
+    assert!(other_trees > 0, "the condition changed nothing");
+}
+
 /// No two nodes are on top of each other, though inputs lead back and forth.
 #[test]
 fn nodes_are_not_stacked() {
@@ -156,7 +190,9 @@ fn by_name_goals_are_reached_exactly_and_settings_checked() {
             let error = build(name, problem(), &Settings::parse([bad]).unwrap()).map(drop).unwrap_err();
             assert!(matches!(error, BuildError::OutOfRange { .. }), "{bad}: {error}");
         }
-        assert!(build(name, problem(), &Settings::parse(["inputs=some"]).unwrap()).is_err());
+        for bad in ["inputs=some", "order=any", "accept=all"] {
+            assert!(build(name, problem(), &Settings::parse([bad]).unwrap()).is_err(), "{bad}");
+        }
     }
     assert!(build("rrt", problem(), &Settings::parse(["inputs=3"]).unwrap()).is_err());
 }

@@ -182,6 +182,39 @@ fn attempts_draw_from_streams_of_their_own() {
     }
 }
 
+/// The wide search: run k makes a unit more at every count that k divides, and none is dropped.
+#[test]
+fn wide_attempts_take_turns() {
+    let (space, boxes) = (square(), narrow());
+    let unit = 20;
+    let mut others = 0;
+    for seed in 0..6 {
+        let make = |_| RrtConnect::new(problem(&space, &boxes)?, tuning());
+        let mut planner = Restarts::new(Schedule::Wide, unit, make).unwrap();
+        let (outcome, progress) = solve(&mut planner, seed, 100_000);
+        let stream_seed = Rng::seed(seed).random();
+        let (mut runs, mut by_hand) = (Vec::new(), None);
+        for count in 1.. {
+            runs.push((make(count).unwrap(), Rng::stream(stream_seed, count)));
+            by_hand = (1..=count).filter(|k| count.is_multiple_of(*k)).find_map(|k| {
+                let (planner, rng) = &mut runs[k as usize - 1];
+                let outcome = planner.solve(rng, &mut Iterations(unit * (count / k)), &mut ());
+                matches!(outcome, Outcome::Solved(_)).then_some((k, outcome))
+            });
+            if by_hand.is_some() {
+                break;
+            }
+        }
+        assert_eq!(Some((planner.attempt(), outcome)), by_hand, "seed {seed}");
+        let sum = |of: &dyn Fn(Progress) -> u64| runs.iter().map(|(p, _)| of(p.progress())).sum::<u64>();
+        assert_eq!(progress.iterations, sum(&|p| p.iterations));
+        // The last count may have ended before its new run began, whose trees are empty.
+        assert_eq!(progress.nodes as u64, sum(&|p| p.nodes as u64));
+        others += u64::from(planner.attempt() > 1);
+    }
+    assert!(others > 0, "the first run was always the fastest");
+}
+
 #[test]
 fn restarts_keep_budgets_and_can_be_interrupted() {
     let (space, boxes) = (square(), closed());

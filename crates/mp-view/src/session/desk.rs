@@ -2,7 +2,7 @@
 
 use super::files::{Named, Written, plain_name, written};
 use super::mesh::{is_mesh, scene_of_mesh};
-use super::text_of;
+use super::{number_of, text_of};
 use crate::bytes::path_head;
 use crate::message::{Message, json};
 use crate::{PathTrack, SceneFile};
@@ -66,6 +66,7 @@ impl Desk {
             "mesh" => self.mesh(request),
             "path" => self.path(request),
             "check" => self.check(request),
+            "field" => self.field(request),
             "save" => self.save(request),
             "save_path" => self.save_path(request),
             "export" => self.export(request),
@@ -209,7 +210,8 @@ impl Desk {
         let mut members = serde_json::Map::new();
         members.insert("scene".to_owned(), message.array(&file.to_bytes()));
         members.insert("document".to_owned(), json(&open.document));
-        members.insert("notes".to_owned(), open.scene.lint().into());
+        let notes: Vec<String> = open.scene.notes().iter().cloned().chain(open.scene.lint()).collect();
+        members.insert("notes".to_owned(), notes.into());
         Ok(members)
     }
 
@@ -236,18 +238,48 @@ impl Desk {
             .with("bounds", json(&[<[f64; 3]>::from(bounds.min.coords), bounds.max.coords.into()])))
     }
 
-    /// Reads a path through the scene.
+    /// Reads a path through the scene from a file, or takes its configurations from the request, and checks it.
     fn path(&mut self, request: &Message) -> Answer {
-        let scene = &self.opened()?.scene;
-        let files = Named::of(request)?;
-        let name = files.only("path")?;
-        let kind = PathFileKind::of(Path::new(name)).unwrap_or(PathFileKind::Text);
-        let rows = PathRows::parse(name, files.content(name), kind, scene.path_format())?;
+        let scene = &self.scene_to_plan(request)?;
+        let files;
+        let (name, rows) = if request.head.contains_key("rows") {
+            let rows = rows_of(&request.head, "rows")?;
+            rows.iter().try_for_each(|row| scene.traced(row).map(drop))?;
+            let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
+            // As it will be written: only that is checked.
+            (text_of(&request.head, "name")?, path.read_back()?)
+        } else {
+            files = Named::of(request)?;
+            let name = files.only("path")?;
+            let kind = PathFileKind::of(Path::new(name)).unwrap_or(PathFileKind::Text);
+            (name, PathRows::parse(name, files.content(name), kind, scene.path_format())?)
+        };
         let verdict = scene.check(&rows)?;
         let track = PathTrack::of(name, verdict.free, Some(verdict.path_length), scene.track(&rows)?);
         let mut reply = Message::default();
         let path = json(&path_head(&track, &mut reply.data));
-        Ok(reply.with("path", path).with("faults", verdict.faults))
+        let written = json(&rows.rows);
+        Ok(reply.with("path", path).with("faults", verdict.faults).with("written", written))
+    }
+
+    /// The field that pushes snakes.
+    fn field(&self, request: &Message) -> Answer {
+        let scene = &self.opened()?.scene;
+        let row = match request.head.get("row") {
+            None | Some(Value::Null) => scene.start(),
+            Some(_) => row_of(&request.head, "row")?,
+        };
+        let range = request.head.get("range").and_then(Value::as_str);
+        let image = scene.field(&row, range, number_of(&request.head, "cells")? as usize)?;
+        let energy: Vec<f32> = image.energy.iter().map(|energy| *energy as f32).collect();
+        let mut reply = Message::default();
+        let energy = reply.array(&energy);
+        Ok(reply
+            .with("origin", json(&image.origin))
+            .with("cell", image.cell)
+            .with("width", image.width)
+            .with("energy", energy)
+            .with("range", image.range))
     }
 
     fn check(&self, request: &Message) -> Answer {

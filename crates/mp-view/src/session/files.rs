@@ -8,8 +8,9 @@ use serde_json::Value;
 use std::fmt;
 use std::path::Path;
 
-/// Endings of scene files, those that are surely scenes first.
-const SCENES: [&str; 5] = [".mp.json", ".env", ".cfg", ".toml", ".txt"];
+/// Endings of scene files, those that are surely scenes first, last what a scene may name.
+const SCENES: [&str; 10] =
+    [".mp.json", ".env", ".cfg", ".toml", ".txt", ".urdf", ".yaml", ".yml", ".png", ".pgm"];
 
 /// Files by name.
 pub(crate) struct Named(Vec<(String, Vec<u8>)>);
@@ -55,7 +56,7 @@ impl Named {
         match (scene, self.0.as_slice()) {
             (Some((name, _)), _) | (None, [(name, _)]) => Ok(name),
             _ => Err(Error::new("none of these files is a scene")
-                .help("add the scene itself: .env, .txt, .cfg, .toml or .mp.json")),
+                .help("add the scene itself: .env, .txt, .cfg, .toml or .mp.json; or a robot (.urdf) or a map (.yaml)")),
         }
     }
 }

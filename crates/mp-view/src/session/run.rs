@@ -27,6 +27,8 @@ pub(crate) struct Outbox {
     run: u64,
     growth: Growth,
     progress: Option<Message>,
+    /// The last path found, that the page does not have.
+    found: Option<Message>,
     /// Whether it is time to tell of growth again.
     ready: bool,
     /// What is told as it is, in order.
@@ -44,13 +46,21 @@ pub(crate) fn locked(outbox: &Mutex<Outbox>) -> MutexGuard<'_, Outbox> {
 impl Outbox {
     pub(crate) fn new(run: u64, scene: Scene, request: &Request) -> SharedOutbox {
         let growth = Growth::new(scene, request);
-        Arc::new(Mutex::new(Self { run, growth, progress: None, ready: false, rest: VecDeque::new() }))
+        Arc::new(Mutex::new(Self {
+            run,
+            growth,
+            progress: None,
+            found: None,
+            ready: false,
+            rest: VecDeque::new(),
+        }))
     }
 
-    /// The next event: growth before all that came later.
+    /// The next event: growth before all that came later. Of several paths found since the last call only the last is told.
     pub(crate) fn take(&mut self) -> Option<Message> {
         let growth = if std::mem::take(&mut self.ready) { self.growth.take(self.run) } else { None };
-        growth.or_else(|| self.progress.take()).or_else(|| self.rest.pop_front())
+        let state = growth.or_else(|| self.progress.take()).or_else(|| self.found.take());
+        state.or_else(|| self.rest.pop_front())
     }
 
     /// Tells that the run failed.
@@ -123,10 +133,11 @@ impl Watch for Recorder<'_> {
     fn progress(&mut self, progress: &Progress) {
         self.tell(word(self.stage), Some(progress));
     }
-    fn found(&mut self, length: f64) {
+    fn found(&mut self, length: f64, rows: &dyn Fn() -> Vec<Vec<f64>>) {
         let mut outbox = locked(self.outbox);
-        let message = Message::event("found", outbox.run).with("length", length);
-        outbox.rest.push_back(message);
+        let mut message = Message::event("found", outbox.run).with("length", length);
+        let rows = message.array(&rows().concat());
+        outbox.found = Some(message.with("rows", rows));
         outbox.ready = true;
         drop(outbox);
         (self.wake)();

@@ -145,6 +145,176 @@ fn plans_as_the_library_does() {
     }
 }
 
+/// An array of an event.
+fn numbers_of<T: crate::arrays::Entry>(event: &Message, array: &Value) -> Vec<T> {
+    let array: crate::arrays::ArrayRef = serde_json::from_value(array.clone()).unwrap();
+    crate::arrays::extract(&event.data, &array, "array").unwrap()
+}
+
+/// The scene file of a run, with what it has grown.
+fn file_of_run(scene: &Scene, request: &mp_plan::Request) -> SceneFile {
+    let mut grown = crate::GrownTrees::new(scene, request);
+    scene.plan_with(request, &mut mp_plan::Control::new(mp_cspace::Cancel::default(), &mut grown)).unwrap();
+    let mut file = SceneFile::of(scene).unwrap();
+    grown.add_to(&mut file);
+    file
+}
+
+/// Edges that snakes bend are drawn as they are: in a world of the plane the drawn points are the configurations, so the whole path
+/// as found is made of edges of the events.
+#[test]
+fn events_have_bent_edges() {
+    for planner in ["rrs", "rrs-connect"] {
+        let page = opened("rrs-high");
+        let request = json!({"planner": planner, "seed": 2, "finish": "as-found", "settings": {"step": "1"}});
+        page.ask(json!({"do": "plan", "run": 1, "request": request}));
+        let events = page.until("done");
+        let (mut bent, mut lines) = (0, Vec::new());
+        let mut nodes = vec![Vec::<[f32; 3]>::new(); 2];
+        for event in events.iter().filter(|e| e.head["event"] == "grown") {
+            for tree in event.head["trees"].as_array().unwrap() {
+                let own = &mut nodes[tree["tree"].as_u64().unwrap() as usize];
+                let from = own.len();
+                own.extend(numbers_of::<f32>(event, &tree["nodes"]).as_chunks::<3>().0);
+                let bends: Vec<u32> = numbers_of(event, &tree["bent"]);
+                let through: Vec<f32> = numbers_of(event, &tree["through"]);
+                let (mut through, mut bends) = (through.as_chunks::<3>().0.iter(), bends.into_iter());
+                let mut next = bends.next();
+                for (id, &parent) in (from..).zip(&numbers_of::<i32>(event, &tree["parents"])) {
+                    let Ok(parent) = usize::try_from(parent) else { continue };
+                    let mut line = vec![own[parent]];
+                    if next == Some(id as u32) {
+                        line.extend(through.by_ref().take(bends.next().unwrap() as usize));
+                        (bent, next) = (bent + 1, bends.next());
+                    }
+                    line.push(own[id]);
+                    lines.push(line);
+                }
+                assert!(next.is_none() && through.next().is_none());
+            }
+        }
+        assert!(bent > 5, "{planner}: {bent} edges bend");
+        // A file of the same run has them too.
+        let (scene, request) = (Scene::find("rrs-high").unwrap(), serde_json::from_value(request).unwrap());
+        let file = file_of_run(&scene, &request);
+        assert_eq!(file.trees.iter().map(|tree| tree.bends.nodes.len() / 2).sum::<usize>(), bent);
+        assert_eq!(SceneFile::parse(&file.to_bytes()).unwrap(), file);
+        let done = events.last().unwrap();
+        let path: Vec<Vec<f64>> = serde_json::from_value(done.head["report"]["path"].clone()).unwrap();
+        let near = |p: &[f32; 3], q: &[f64]| (0..2).all(|k| (f64::from(p[k]) - q[k]).abs() < 1e-5);
+        let pieces: Vec<_> = lines.iter().flat_map(|line| line.windows(2)).collect();
+        for ends in path.windows(2) {
+            let is =
+                |a: &[f64], b: &[f64]| pieces.iter().any(|piece| near(&piece[0], a) && near(&piece[1], b));
+            assert!(
+                is(&ends[0], &ends[1]) || is(&ends[1], &ends[0]),
+                "{planner}: {ends:?} is no piece of an edge"
+            );
+        }
+    }
+}
+
+/// Events say what the milestones are, as the roadmap of the run says at its end.
+#[test]
+fn events_have_kinds_of_milestones() {
+    let page = opened("rrs-low");
+    let request = mp_plan::Request::new("visibility-prm").seed(4).iterations(20_000);
+    page.ask(json!({"do": "plan", "run": 1, "request": request}));
+    let mut kinds = Vec::<u8>::new();
+    for event in page.until("done").iter().filter(|e| e.head.get("roadmap").is_some_and(Value::is_object)) {
+        kinds.extend(numbers_of::<u8>(event, &event.head["roadmap"]["kind"]));
+    }
+    let scene = Scene::find("rrs-low").unwrap();
+    let file = file_of_run(&scene, &request);
+    assert_eq!(kinds, file.roadmap.unwrap().kind);
+    for kind in [1, 2] {
+        assert!(kinds.contains(&kind), "{kind}");
+    }
+}
+
+/// Edges of a lazy roadmap that turn out to be blocked are taken away: what is left is the roadmap of the run at its end.
+#[test]
+fn events_take_blocked_edges_away() {
+    let page = opened("rrs-high");
+    let request = mp_plan::Request::new("lazy-prm").seed(4).iterations(20_000);
+    page.ask(json!({"do": "plan", "run": 1, "request": request}));
+    let (mut edges, mut gone) = (Vec::<[u32; 2]>::new(), 0);
+    for event in page.until("done").iter().filter(|e| e.head.get("roadmap").is_some_and(Value::is_object)) {
+        let map = &event.head["roadmap"];
+        edges.extend(numbers_of::<u32>(event, &map["edges"]).as_chunks::<2>().0);
+        for ends in numbers_of::<u32>(event, &map["unlinked"]).as_chunks::<2>().0 {
+            edges.remove(edges.iter().position(|edge| edge == ends).expect("the page has this edge"));
+            gone += 1;
+        }
+    }
+    assert!(gone > 10, "{gone}");
+    let scene = Scene::find("rrs-high").unwrap();
+    let file = file_of_run(&scene, &request);
+    let mut kept: Vec<_> = file.roadmap.unwrap().edges.as_chunks::<2>().0.to_vec();
+    kept.sort_unstable();
+    edges.sort_unstable();
+    assert_eq!(edges, kept);
+}
+
+/// The path as found is told before it is finished, and a session checks it: a page that loses its planner keeps the path.
+#[test]
+fn paths_as_found_are_told_and_checked() {
+    for scene in ["easy", "arm", "rrs-low"] {
+        let mut worker = Worker::new(Clock::default());
+        let mut ask = |request: Value| {
+            worker.send(&message(request).to_bytes());
+            Message::parse(&worker.take().unwrap()).unwrap()
+        };
+        ask(json!({"do": "open", "scene": scene}));
+        let request = mp_plan::Request::new("rrt-connect").seed(5).iterations(100_000);
+        assert!(ask(json!({"do": "plan", "run": 1, "request": request})).head.is_empty());
+        let (mut found, mut finishing) = (None, false);
+        while worker.advance(Duration::from_millis(5)) && !finishing {
+            while let Some(event) = worker.take().map(|event| Message::parse(&event).unwrap()) {
+                finishing |= event.head.get("state").is_some_and(|state| state == "finishing");
+                if event.head["event"] == "found" {
+                    found = Some(event);
+                }
+            }
+        }
+        // What is told by now is all that a page has when it ends its worker here.
+        let found = found.expect("a path is told before finishing begins");
+        let opened = Scene::find(scene).unwrap();
+        let rows: Vec<f64> = numbers_of(&found, &found.head["rows"]);
+        let rows: Vec<_> = rows.chunks(opened.columns().len()).collect();
+        let as_found = mp_plan::Request { finish: mp_plan::Finish::AsFound, ..request };
+        assert_eq!(json!(opened.plan(&as_found).unwrap().path.unwrap().len()), rows.len());
+        let page = Page::new(Opening { scene: Some(opened), ..Opening::default() });
+        let checked = page.ask(json!({"do": "path", "name": "as found", "rows": rows}));
+        assert_eq!((&checked.head["faults"], &checked.head["path"]["verified"]), (&json!([]), &json!(true)));
+        assert_eq!(checked.head["written"].as_array().unwrap().len(), rows.len());
+        // A path from other ends is one only with these ends.
+        let backward: Vec<_> = rows.iter().rev().collect();
+        let request = json!({"do": "path", "name": "back", "rows": backward});
+        assert_eq!(page.ask(request.clone()).head["path"]["verified"], false);
+        let mut with_ends = request;
+        (with_ends["start"], with_ends["goals"]) = (json!(backward[0]), json!([backward[rows.len() - 1]]));
+        assert_eq!(page.ask(with_ends).head["faults"], json!([]), "{scene}");
+        let refused = page.refused(json!({"do": "path", "name": "short", "rows": [[1]]}));
+        assert!(refused.contains("finite numbers"), "{refused}");
+    }
+}
+
+/// The field is that of the library.
+#[test]
+fn fields_are_sent() {
+    let page = opened("rrs-low");
+    let reply = page.ask(json!({"do": "field", "cells": 50, "range": "5%"}));
+    let scene = Scene::find("rrs-low").unwrap();
+    let image = scene.field(&scene.start(), Some("5%"), 50).unwrap();
+    let energy: Vec<f32> = numbers_of(&reply, &reply.head["energy"]);
+    assert!(energy.iter().zip(&image.energy).all(|(a, b)| *a == *b as f32));
+    assert_eq!((energy.len(), &reply.head["width"]), (image.energy.len(), &json!(image.width)));
+    assert_eq!(reply.head["range"], json!(image.range));
+    assert!(page.refused(json!({"do": "field", "cells": 50, "range": "much"})).contains("much"));
+    assert!(opened("easy").refused(json!({"do": "field", "cells": 50})).contains("not drawn"));
+}
+
 /// A run waits, does as many iterations as it is told, goes on, and gives the same result.
 #[test]
 fn runs_are_paused_stepped_and_resumed() {
@@ -405,4 +575,33 @@ fn workers_plan_the_same() {
     let alone = Scene::find("cubicles").unwrap().plan(&request).unwrap();
     assert_eq!(done.head["report"]["fingerprint"], json!(alone.fingerprint));
     assert_eq!(done.head["report"]["iterations"], json!(alone.iterations));
+}
+
+/// A robot or a map alone becomes a scene, and the page is told what was chosen.
+#[test]
+fn robots_and_maps_alone_are_opened() {
+    let page = Page::new(Opening::default());
+    let urdf = "<robot name=\"one\"><link name=\"base\"/>\n<link name=\"arm\"><collision><geometry>\
+                <mesh filename=\"package://kit/meshes/bar.off\"/></geometry></collision></link>\n\
+                <joint name=\"turn\" type=\"revolute\"><parent link=\"base\"/><child link=\"arm\"/>\
+                <limit lower=\"-1\" upper=\"2\"/></joint></robot>";
+    let bar = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n";
+    let files: [(&str, &[u8]); 2] = [("bar.off", bar.as_bytes()), ("one.urdf", urdf.as_bytes())];
+    let reply = page.reply(with_files(json!({"do": "open"}), &files));
+    let notes = reply.head["notes"].to_string();
+    assert!(notes.contains("one.urdf is a robot alone"), "{:?}", reply.head);
+    let scene = scene_of(&reply);
+    assert_eq!((&*scene.start.row, &*scene.goals[0].row), (&[0.0][..], &[1.0][..]));
+
+    let map = "image: room.pgm\nresolution: 0.5\norigin: [0, 0, 0]\n";
+    let room = "P2\n4 3\n255\n0 0 0 0\n0 254 254 0\n0 0 0 0\n";
+    let files: [(&str, &[u8]); 2] = [("room.pgm", room.as_bytes()), ("room.yaml", map.as_bytes())];
+    let reply = page.reply(with_files(json!({"do": "open"}), &files));
+    assert!(reply.head["notes"].to_string().contains("room.yaml is a map alone"), "{:?}", reply.head);
+    let scene = scene_of(&reply);
+    assert!((scene.goals[0].row[0] - scene.start.row[0]).abs() > 0.4, "{:?}", scene.start.row);
+    // An image without its map says what is missing.
+    let alone: [(&str, &[u8]); 1] = [("room.pgm", room.as_bytes())];
+    let refused = page.reply(with_files(json!({"do": "open"}), &alone));
+    assert!(refused.head["error"]["help"].as_str().unwrap().contains("room.yaml"), "{:?}", refused.head);
 }

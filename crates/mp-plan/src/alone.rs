@@ -1,0 +1,216 @@
+//! Files that hold only a robot or only a map, opened as scenes: the rest of the problem is chosen here.
+//!
+//! A problem that names the file is made as text and read by the ordinary reader, so that a robot or a map means the same
+//! with and without a problem around it. Then its ends are chosen, and what was chosen is said in the notes of the scene.
+
+#[cfg(any(feature = "planar", feature = "urdf"))]
+use crate::load::OneText;
+use crate::{Error, Scene};
+use mp_io::Files;
+use std::path::{Path, PathBuf};
+
+/// The scene of a file that is no scene but can be made one; `None` for all other files. `ending` is the ending of its name,
+/// in small letters.
+///
+/// # Errors
+/// When the file is such a file and cannot be read, or there is no free configuration.
+pub(crate) fn scene(files: &dyn Files, file: &Path, ending: &str) -> Result<Option<Scene>, Error> {
+    match ending {
+        "urdf" => robot(files, file).map(Some),
+        "yaml" | "yml" => map(files, file).map(Some),
+        "png" | "pgm" | "pbm" | "ppm" => map(files, &beside(files, file)?).map(Some),
+        "xacro" => Err(Error::new(format!("{} is a robot description with macros", file.display()))
+            .help("expand it first: `xacro FILE > robot.urdf`")),
+        "srdf" => Err(Error::new(format!("{} is an SRDF, not a scene", file.display()))
+            .help("name it in a robot problem: docs/formats/robot-problem.md")),
+        _ => Ok(None),
+    }
+}
+
+/// The map file of ROS that gives the image `file` its scale.
+fn beside(files: &dyn Files, file: &Path) -> Result<PathBuf, Error> {
+    let places = ["yaml", "yml"].map(|ending| file.with_extension(ending));
+    places.into_iter().find(|place| files.holds(place)).ok_or_else(|| {
+        let name = name_of(file).unwrap_or_default();
+        let stem = file.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        Error::new(format!("{} is an image: nothing says how large its pixels are", file.display())).help(format!(
+            "write `{stem}.yaml` beside it:\n    image: {name}\n    resolution: 0.05   # metres per pixel\n    \
+             origin: [0, 0, 0]\n  or name it in a world: docs/formats/planar-world.md"
+        ))
+    })
+}
+
+/// The name of a file without folders, quoted as TOML quotes it. JSON quotes such names in the same way.
+#[cfg(any(feature = "planar", feature = "urdf"))]
+fn quoted(file: &Path) -> Result<String, Error> {
+    Ok(serde_json::Value::from(name_of(file)?).to_string())
+}
+
+fn name_of(file: &Path) -> Result<String, Error> {
+    let name = file.file_name().and_then(|name| name.to_str());
+    name.map(str::to_owned).ok_or_else(|| {
+        Error::new(format!("{} has a name that is not Unicode", file.display())).help("rename the file")
+    })
+}
+
+/// The name that the problem around `file` has in errors, in the same folder.
+#[cfg(any(feature = "planar", feature = "urdf"))]
+fn around(file: &Path) -> PathBuf {
+    file.with_extension("toml")
+}
+
+#[cfg(feature = "urdf")]
+fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
+    let place = around(file);
+    let text = format!("[robot]\nurdf = {}\n[motion]\nstart = []\ngoal = []\n", quoted(file)?);
+    // Read first, so that an error about it names the file itself.
+    files.read(file, mp_io::MAX_TEXT_BYTES)?;
+    let problem = mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
+    crate::ArmScene::from_robot_alone(files, problem)
+        .map(|(scene, notes)| Scene::new(scene).with_notes(notes))
+}
+
+#[cfg(not(feature = "urdf"))]
+fn robot(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
+    Err(crate::load::left_out("arms", "urdf"))
+}
+
+/// The radius (m) of the disc that moves on a map alone: that of common mobile robots.
+#[cfg(feature = "planar")]
+const RADIUS: f64 = 0.2;
+
+#[cfg(feature = "planar")]
+fn map(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
+    use mp_io::{GoalPart, PlanarProblem, PlanarShape};
+    let place = around(file);
+    let map = quoted(file)?;
+    let text =
+        format!("[world]\nmap = {map}\n[robot]\ndisc = {RADIUS}\n[motion]\nstart = [0, 0]\ngoal = [0, 0]\n");
+    // Read first, so that errors about them name the files themselves.
+    let ros = mp_io::RosMap::parse(&file.display().to_string(), &files.read(file, mp_io::MAX_TEXT_BYTES)?)?;
+    let image = file.parent().unwrap_or(Path::new("")).join(&ros.image);
+    mp_io::GridMap::parse(&image.display().to_string(), &files.read(&image, mp_io::MAX_MESH_BYTES)?)?;
+    let mut problem = PlanarProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
+    let polygons = problem.obstacles.iter().map(|o| o.polygon.clone()).collect();
+    let world = mp_geom::planar::PlanarWorld::new(polygons, None).map_err(|e| Error::new(e.to_string()))?;
+    let grid = Grid::new(&world, problem.bounds);
+    let widest = grid.clearances.iter().copied().fold(0.0, f64::max);
+    let radius = RADIUS.min(0.5 * widest);
+    let (start, goal) = grid.far_apart(radius).ok_or_else(|| {
+        Error::new(format!("{} has no free region to plan in", file.display()))
+            .help("free pixels are light, unless the map says `negate: 1`; unknown pixels count as obstacles")
+    })?;
+    problem.file.robot = PlanarShape::Disc(radius);
+    let goal = goal.iter().map(|&number| GoalPart::Exactly(number)).collect();
+    (problem.file.start, problem.file.goals) = (start.to_vec(), vec![goal]);
+    let size = match radius < RADIUS {
+        true => format!("{} m, half of the widest clearance of the map", crate::brief(radius)),
+        false => format!("{} m, as common mobile robots have", crate::brief(radius)),
+    };
+    let notes = vec![
+        format!("{} is a map alone. The robot is a disc with the radius {size}", name_of(file)?),
+        "start and goal are far apart in the largest free region. A world file sets all of these: \
+         docs/formats/planar-world.md"
+            .to_owned(),
+    ];
+    Ok(Scene::from_world(problem)?.with_notes(notes))
+}
+
+#[cfg(not(feature = "planar"))]
+fn map(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
+    Err(crate::load::left_out("worlds of the plane", "planar"))
+}
+
+/// How many points the longer side of a grid over a map has.
+#[cfg(feature = "planar")]
+const POINTS: usize = 240;
+
+/// Points of a map at equal distances, with their clearances.
+#[cfg(feature = "planar")]
+struct Grid {
+    low: [f64; 2],
+    spacing: f64,
+    counts: [usize; 2],
+    /// Row by row. Negative inside obstacles.
+    clearances: Vec<f64>,
+}
+
+#[cfg(feature = "planar")]
+impl Grid {
+    fn new(world: &mp_geom::planar::PlanarWorld, [low, high]: [[f64; 2]; 2]) -> Self {
+        let size = [high[0] - low[0], high[1] - low[1]];
+        let spacing = size[0].max(size[1]) / POINTS as f64;
+        let counts = size.map(|side| ((side / spacing) as usize).max(1));
+        // In the middle of its cell, so that no point is on the border of the map.
+        let mut grid = Self { low, spacing, counts, clearances: Vec::new() };
+        grid.clearances = (0..counts[0] * counts[1])
+            .map(|i| {
+                let clearance = world.signed_distance(&grid.point(i).into());
+                // Without obstacles there is still the border of the map.
+                clearance.min(0.5 * size[0].min(size[1]))
+            })
+            .collect();
+        grid
+    }
+
+    fn point(&self, i: usize) -> [f64; 2] {
+        let at = |k: usize, n: usize| self.low[k] + (n as f64 + 0.5) * self.spacing;
+        [at(0, i % self.counts[0]), at(1, i / self.counts[0])]
+    }
+
+    /// The neighbours of a point that a disc can reach from it on a straight line. The clearance changes by at most the
+    /// distance, so along the line it is at least half of (the sum of both clearances minus the spacing).
+    fn reachable(&self, i: usize, radius: f64) -> impl Iterator<Item = usize> + '_ {
+        let [columns, rows] = self.counts;
+        let (x, y) = (i % columns, i / columns);
+        let neighbours = [
+            (x > 0).then(|| i - 1),
+            (x + 1 < columns).then(|| i + 1),
+            (y > 0).then(|| i - columns),
+            (y + 1 < rows).then(|| i + columns),
+        ];
+        let clearance = move |i: usize| self.clearances[i] - radius;
+        let free = move |j: &usize| {
+            clearance(i).min(clearance(*j)) > 0.0 && clearance(i) + clearance(*j) > self.spacing
+        };
+        neighbours.into_iter().flatten().filter(free)
+    }
+
+    /// The points that a disc can reach from `first`, in the order of their distance on the grid.
+    fn region(&self, first: usize, radius: f64, seen: &mut [bool]) -> Vec<usize> {
+        let mut found = vec![first];
+        seen[first] = true;
+        let mut at = 0;
+        while at < found.len() {
+            for next in self.reachable(found[at], radius) {
+                if !std::mem::replace(&mut seen[next], true) {
+                    found.push(next);
+                }
+            }
+            at += 1;
+        }
+        found
+    }
+
+    /// Two points of the largest region in which a disc can move, far apart on the grid.
+    fn far_apart(&self, radius: f64) -> Option<([f64; 2], [f64; 2])> {
+        let mut seen = vec![false; self.clearances.len()];
+        let mut largest = Vec::new();
+        for first in 0..self.clearances.len() {
+            if !seen[first] && self.clearances[first] > radius {
+                let region = self.region(first, radius, &mut seen);
+                if region.len() > largest.len() {
+                    largest = region;
+                }
+            }
+        }
+        // The point farthest from any point is at one end of the region, the one farthest from that at the other.
+        let farthest = |from: usize| {
+            let mut seen = vec![false; self.clearances.len()];
+            self.region(from, radius, &mut seen).last().copied()
+        };
+        let start = farthest(*largest.first()?)?;
+        let goal = farthest(start).filter(|goal| *goal != start)?;
+        Some((self.point(start), self.point(goal)))
+    }
+}

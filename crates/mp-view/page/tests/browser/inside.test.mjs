@@ -1,0 +1,95 @@
+// A page with the planner inside: a cancel ends a run at once, whatever it does, and what it has found stays.
+
+import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
+import { dirname, join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { Driver, PROGRAM, browserTest, mp, newPage, withFolder } from "./browser.mjs";
+
+const planners = process.env.MP_PLANNERS ?? join(dirname(PROGRAM), "..", "planners");
+const none = existsSync(join(planners, "rigid.wasm")) ? false : "no planner for pages: “cargo xtask wasm” builds it";
+
+/** A cancel is answered within 100 ms, and some more where the processor draws and other programs run too; milliseconds. */
+const LATEST_CANCEL = 300;
+
+/** Calls `use` with a page that has this scene and its planner inside. */
+const withInside = (scene, use) => withFolder(async (folder) => {
+  process.env.MP_PLANNERS = planners;
+  const file = join(folder, "page.html");
+  mp("render", scene, "--with-planner", "--out", file);
+  const { page, context, faults } = await newPage();
+  await page.goto(String(pathToFileURL(file)));
+  const driver = new Driver(page);
+  await driver.untilReady();
+  await use(driver);
+  assert.deepEqual(faults, []);
+  await context.close();
+});
+
+/** In the page: presses Cancel as soon as the last run is in a state, and says how long it takes until the run has ended. */
+const cancelIn = (state) => new Promise((resolve) => {
+  const [result, iterations] = [5, 7].map((k) => document.querySelector("#runs .scroll tbody tr").cells[k]);
+  const cancel = [...document.querySelectorAll("[aria-label=Run] button")].find((button) => button.textContent === "Cancel");
+  let begin = 0;
+  const look = () => {
+    const words = result.textContent;
+    const going = /^(starting|planning|relaxing|finishing|paused)$/.test(words);
+    if (begin && !going) resolve({ milliseconds: performance.now() - begin, words });
+    else if (!begin && words === state && Number(iterations.textContent.replace(/\D/g, "")) > 0) {
+      begin = performance.now();
+      cancel.click();
+    } else if (!begin && !going) resolve({ milliseconds: NaN, words });
+  };
+  new MutationObserver(look).observe(result.parentElement, { childList: true, characterData: true, subtree: true });
+  look();
+});
+
+/** The path of the last run, and what the page says about it. */
+const kept = (driver) => driver.page.evaluate(async () => {
+  const { viewer } = await window.mpView.planner;
+  const path = viewer.scene.paths[viewer.settings.path];
+  return path && { verified: path.verified, ofRun: path.ofRun, count: path.count, written: path.written.length };
+});
+
+browserTest("a cancel while a path is finished keeps the path", (t) => withInside("apartment", async (driver) => {
+  // To finish a path here takes a second or more: a cancel finds it at work.
+  const times = [];
+  for (const run of [1, 2]) {
+    await driver.press("Plan");
+    await driver.until((wanted) => document.querySelector("#runs .scroll tbody tr")?.cells[2].textContent === String(wanted), run);
+    const { milliseconds, words } = await driver.page.evaluate(cancelIn, "finishing");
+    t.diagnostic(`run ${run}: ${milliseconds.toFixed(0)} ms, ${words}`);
+    assert.match(words, /cancelled/);
+    times.push(milliseconds);
+    const cells = await driver.untilResult(/A verified path stays/, run);
+    assert.match(cells[9], /\d/, "its length is known");
+    const path = await kept(driver);
+    assert.ok(path.verified && path.ofRun && path.count > 10 && path.written > 1, JSON.stringify(path));
+  }
+  assert.ok(Math.min(...times) < LATEST_CANCEL, `${times} ms`);
+  // It can be saved as any other path, and the planner is still there.
+  await driver.press("Save…");
+  const labels = await (await driver.control("combobox", "What")).$$eval("option", (all) => all.map((option) => option.textContent));
+  assert.ok(labels.includes("the path, as text"), labels.join());
+  await driver.page.keyboard.press("Escape");
+}), none);
+
+browserTest("a cancel while planning keeps the best path so far", (t) => withInside("easy", async (driver) => {
+  await driver.choose("Planner", "rrt-star");
+  await driver.unfold("How to search");
+  await driver.fill("spinbutton", "Most seconds", "");
+  const times = [];
+  for (const run of [1, 2, 3]) {
+    await driver.press("Plan");
+    await driver.until((wanted) => {
+      const cells = document.querySelector("#runs .scroll tbody tr")?.cells;
+      return cells?.[2].textContent === String(wanted) && /\d/.test(cells[9].textContent);
+    }, run);
+    times.push((await driver.page.evaluate(cancelIn, "planning")).milliseconds);
+    await driver.untilResult(/verified path/, run);
+    assert.equal((await kept(driver)).verified, true);
+  }
+  t.diagnostic(`${times.map((time) => time.toFixed(0)).join(", ")} ms`);
+  // Other programs of the machine can only make it longer.
+  assert.ok(Math.min(...times) < LATEST_CANCEL, `${times} ms`);
+}), none);
