@@ -146,7 +146,7 @@ mod tests {
         let mut filter = ParticleFilter::about(pose, &mut rng);
         let before = filter.uncertainty();
         assert!((0.010..0.018).contains(&before), "{before}");
-        for _ in 0..5 {
+        for _ in 0..60 {
             let seen = pose.scan(&world, &mut rng);
             filter.update([0.0, 0.0], &seen, &world, &mut rng);
         }
