@@ -3,8 +3,8 @@
 use super::{DefaultNn, Embed, KdTree};
 use crate::space::twice;
 use crate::{
-    Coordinates, Factored, FloatingJoints, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space,
-    angle::wrap_angle, nn::Layout,
+    AsVectors, Coordinates, Factored, FloatingJoints, Joints, Product, Rn, Se2, Se2State, Se3, So3, Space,
+    StateVector, angle::wrap_angle, nn::Layout,
 };
 use nalgebra::{DVector, Isometry3, SVector, UnitQuaternion};
 
@@ -120,5 +120,21 @@ impl<A: Embed, B: Embed> Embed for Product<A, B> {
     }
 }
 impl<A: Embed, B: Embed> DefaultNn for Product<A, B> {
+    type Nn = KdTree;
+}
+
+impl<C: Embed<State: StateVector>> Embed for AsVectors<C> {
+    fn layout(&self) -> Layout {
+        self.0.layout()
+    }
+    fn embed(&self, state: &DVector<f64>, out: &mut [f64]) -> usize {
+        match Self::state(state) {
+            Some(q) => self.0.embed(&q, out),
+            None => self.0.layout().dim(),
+        }
+    }
+}
+
+impl<C: Embed<State: StateVector>> DefaultNn for AsVectors<C> {
     type Nn = KdTree;
 }

@@ -1,8 +1,7 @@
 //! A space whose states are written as vectors of numbers.
 
 use super::{Factored, Space};
-use crate::nn::{Embed, Layout};
-use crate::{DefaultNn, KdTree, Rng, StateVector};
+use crate::{Rng, StateVector, layout::Layout};
 use nalgebra::DVector;
 
 /// Another space with its states written as vectors: the same distances, samples and motions, to the bit. Planners compiled for
@@ -118,25 +117,10 @@ impl<C: Factored<State: StateVector>> Factored for AsVectors<C> {
     }
 }
 
-impl<C: Embed<State: StateVector>> Embed for AsVectors<C> {
-    fn layout(&self) -> Layout {
-        self.0.layout()
-    }
-    fn embed(&self, state: &DVector<f64>, out: &mut [f64]) -> usize {
-        match Self::state(state) {
-            Some(q) => self.0.embed(&q, out),
-            None => self.0.layout().dim(),
-        }
-    }
-}
-
-impl<C: Embed<State: StateVector>> DefaultNn for AsVectors<C> {
-    type Nn = KdTree;
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::nn::Embed;
     use crate::space_time::SpaceTime;
     use crate::{Rn, Se2, Se3};
 
