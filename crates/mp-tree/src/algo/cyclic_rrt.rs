@@ -31,7 +31,7 @@
 //! and those of [RRT](super::rrt). A small tolerance makes few cycles; a large one makes many, and many
 //! paths that differ little. A passage may need nodes closer together than the tolerance: they are
 //! added as soon as the nodes similar to them are joined. Made [by name](crate::build) it finds a path as RRT does, a
-//! little slower; [`Planner::routes`](mp_cspace::Planner::routes) lists routes.
+//! little slower; [`Planner::routes`] lists routes.
 //!
 //! Two routes around a block:
 //! ```
