@@ -1,0 +1,119 @@
+//! Whether motions by inputs are free: for planners, and for the verification of finished paths.
+
+use super::space::DrivenSpace;
+use super::{DrivenScene, ROUND_UP, ROUNDING, SpeedBound};
+use crate::robot::Queries;
+use mp_cspace::{Clearance, MotionCheck, MotionClearance, MotionValidity, Space, Validity};
+use nalgebra::DVector;
+use std::sync::Arc;
+
+/// Parts of a motion shorter than this are not tested by the verifier. What is not shown free by then is not free.
+const SHORTEST: f64 = 1e-12;
+
+/// Whether a robot that moves by inputs is free, and how far its motions move it.
+#[derive(Clone, Debug)]
+pub struct DrivenChecker<K: SpeedBound> {
+    pub(super) robot: Arc<K>,
+    pub(super) space: DrivenSpace<K::Space>,
+    pub(super) checker: K::Checker,
+}
+
+impl<K: SpeedBound> Queries for DrivenChecker<K> {
+    fn queries(&self) -> u64 {
+        self.checker.queries()
+    }
+}
+
+impl<K: SpeedBound> Validity<DVector<f64>> for DrivenChecker<K> {
+    fn is_valid(&mut self, q: &DVector<f64>) -> bool {
+        self.space.parts(q).is_some_and(|parts| self.checker.is_valid(&parts.q))
+    }
+}
+
+impl<K: SpeedBound> Clearance<DVector<f64>> for DrivenChecker<K> {
+    /// None outside of the bounds, which curved motions may leave.
+    fn clearance(&mut self, q: &DVector<f64>, enough: f64) -> f64 {
+        match self.space.parts(q) {
+            Some(parts) if self.space.positions.contains(&parts.q) => {
+                self.checker.clearance(&parts.q, enough)
+            }
+            _ => 0.0,
+        }
+    }
+    fn in_contact(&mut self, q: &DVector<f64>) -> bool {
+        self.space.parts(q).is_none_or(|parts| self.checker.in_contact(&parts.q))
+    }
+}
+
+impl<K: SpeedBound> MotionClearance<DVector<f64>> for DrivenChecker<K> {
+    fn motion_bound(&self, from: &DVector<f64>, to: &DVector<f64>) -> f64 {
+        if from == to {
+            return 0.0;
+        }
+        match [from, to].map(|q| self.space.parts(q)) {
+            [Some(from), Some(to)] if to.duration > 0.0 => {
+                self.robot.speed_bound(&self.space.system.rates(&from, &to)) * to.duration * ROUND_UP
+            }
+            // Straight motions are made nowhere; pictures of paths that are not valid ask for them.
+            [Some(from), Some(to)] => self.checker.motion_bound(&from.q, &to.q),
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// Proves motions by inputs free of collision: replays the input, and asks the verifier of the robot about single moments. Its
+/// answers are compared with how far the robot moves, and the motion is halved until all of it is shown free.
+///
+/// The answer is [`Unproven`](MotionCheck::Unproven) for a state that its input does not lead to, and for motions with a tested
+/// moment of less clearance than the tolerance, a tenth of the robot's.
+///
+/// It shares the equations of motion and the bound on the speed of the robot's points with the planner's check; all that
+/// it knows of obstacles comes from the robot's own verifier, which shares nothing with it.
+#[derive(Clone, Debug)]
+pub struct DrivenVerifier<'c, K: SpeedBound> {
+    pub(super) scene: &'c DrivenScene<K>,
+    pub(super) verifier: K::Verifier<'c>,
+}
+
+impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
+    fn check_motion(&mut self, from: &DVector<f64>, to: &DVector<f64>) -> MotionCheck {
+        let space = &self.scene.space;
+        let [Some(a), Some(b)] = [from, to].map(|q| space.contains(q).then(|| space.parts(q)).flatten())
+        else {
+            return MotionCheck::Unproven { at: 0.0 };
+        };
+        if from == to {
+            return self.verifier.check_motion(&a.q, &a.q);
+        }
+        let gap = space.off_course(&a, &b);
+        if gap > ROUNDING * space.extent() {
+            return MotionCheck::Unproven { at: 1.0 };
+        }
+        let travel = self.scene.robot.speed_bound(&space.system.rates(&a, &b)) * b.duration * ROUND_UP;
+        let tolerance = 0.1 * self.scene.robot.tolerance();
+        let mut least = f64::INFINITY;
+        let mut open = vec![(0.0_f64, 1.0_f64)];
+        while let Some((begin, end)) = open.pop() {
+            let (at, half) = (0.5 * (begin + end), 0.5 * (end - begin));
+            let now = space.system.flow(&space.positions, &a, &b.input, at * b.duration);
+            let near = half * travel;
+            match self.verifier.check_motion(&now.q, &now.q) {
+                _ if !space.positions.contains(&now.q) => return MotionCheck::Unproven { at },
+                MotionCheck::Free { clearance } if clearance >= (near + tolerance) * ROUND_UP => {
+                    least = least.min(clearance - near);
+                }
+                MotionCheck::Free { clearance } if clearance >= tolerance && half >= SHORTEST => {
+                    open.extend([(at, end), (begin, at)]);
+                }
+                MotionCheck::Collision { .. } => return MotionCheck::Collision { at },
+                _ => return MotionCheck::Unproven { at },
+            }
+        }
+        // The last state itself, as written.
+        match self.verifier.check_motion(&b.q, &b.q) {
+            MotionCheck::Free { clearance } => MotionCheck::Free { clearance: least.min(clearance) },
+            MotionCheck::Collision { .. } => MotionCheck::Collision { at: 1.0 },
+            MotionCheck::Unproven { .. } => MotionCheck::Unproven { at: 1.0 },
+        }
+    }
+}

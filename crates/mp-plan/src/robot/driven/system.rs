@@ -1,0 +1,193 @@
+//! How inputs move a robot, and which it has.
+
+use super::ROUNDING;
+use mp_control::{Car, Flow, InputSet, Unicycle};
+use mp_cspace::{Se2State, Space, StateVector};
+use mp_io::Drive;
+use nalgebra::DVector;
+
+/// Steering angles to either side, when their number is not given.
+const STEERING: usize = 2;
+
+/// How the states of a robot are written, and how inputs move them.
+///
+/// A state is a vector: the numbers of the configuration, the velocities of a robot with accelerations, and the input and the
+/// duration (s) that led to it from the state before; zeros for a state that no input led to.
+#[derive(Clone, Debug)]
+pub(super) struct System {
+    pub(super) drive: Drive,
+    pub(super) duration: f64,
+    /// How many numbers a configuration has.
+    pub(super) numbers: usize,
+    /// How many velocities a state has.
+    pub(super) velocities: usize,
+    /// How many numbers an input has.
+    pub(super) inputs: usize,
+}
+
+/// The parts of a state.
+#[derive(Clone, Debug)]
+pub(super) struct Parts<S> {
+    pub(super) q: S,
+    pub(super) velocity: Vec<f64>,
+    pub(super) input: Vec<f64>,
+    pub(super) duration: f64,
+}
+
+impl System {
+    /// The number of numbers of a state.
+    pub(super) fn len(&self) -> usize {
+        self.numbers + self.velocities + self.inputs + 1
+    }
+
+    /// The parts of a vector, if it is a state.
+    pub(super) fn parts<S: StateVector>(&self, state: &DVector<f64>) -> Option<Parts<S>> {
+        let all = state.as_slice();
+        if all.len() != self.len() {
+            return None;
+        }
+        let (q, rest) = all.split_at(self.numbers);
+        let (velocity, rest) = rest.split_at(self.velocities);
+        let (input, duration) = rest.split_at(self.inputs);
+        let q = S::read(q)?;
+        Some(Parts { q, velocity: velocity.to_vec(), input: input.to_vec(), duration: duration[0] })
+    }
+
+    /// The vector of a state.
+    pub(super) fn vector<S: StateVector>(&self, parts: &Parts<S>) -> DVector<f64> {
+        let mut all = Vec::with_capacity(self.len());
+        parts.q.write(&mut all);
+        all.extend(&parts.velocity);
+        all.extend(&parts.input);
+        all.push(parts.duration);
+        DVector::from_vec(all)
+    }
+
+    /// The state that `input` leads to in `time` seconds.
+    pub(super) fn flow<C: Space<State: StateVector>>(
+        &self,
+        positions: &C,
+        from: &Parts<C::State>,
+        input: &[f64],
+        time: f64,
+    ) -> Parts<C::State> {
+        let wheels = |flow: &dyn Fn(&Se2State) -> Se2State| {
+            let (mut numbers, mut moved) = (Vec::new(), Vec::new());
+            from.q.write(&mut numbers);
+            Se2State::read(&numbers).map(|q| flow(&q))?.write(&mut moved);
+            C::State::read(&moved)
+        };
+        let pair = || [input.first().copied().unwrap_or(0.0), input.get(1).copied().unwrap_or(0.0)];
+        let mut velocity = from.velocity.clone();
+        let q = match &self.drive {
+            Drive::Car { wheelbase, .. } => {
+                let car = Car::new(*wheelbase).ok();
+                wheels(&|q| car.map_or(*q, |car| car.integrate(q, &pair(), time)))
+            }
+            Drive::Unicycle { .. } => wheels(&|q| Unicycle.integrate(q, &pair(), time)),
+            Drive::Velocities { .. } => positions.moved(&from.q, input, time),
+            Drive::Accelerations { .. } => {
+                let mean: Vec<f64> = velocity.iter().zip(input).map(|(v, a)| v + 0.5 * time * a).collect();
+                velocity.iter_mut().zip(input).for_each(|(v, a)| *v += time * a);
+                positions.moved(&from.q, &mean, time)
+            }
+        };
+        Parts { q: q.unwrap_or_else(|| from.q.clone()), velocity, input: input.to_vec(), duration: time }
+    }
+
+    /// Upper bounds on the rate of each degree of freedom on the way from `from` by the input of `to`. The rates of a robot on
+    /// wheels are those along its own axes.
+    pub(super) fn rates<S>(&self, from: &Parts<S>, to: &Parts<S>) -> Vec<f64> {
+        let input = &to.input;
+        match &self.drive {
+            Drive::Car { wheelbase, .. } => {
+                vec![input[0].abs(), 0.0, (input[0] * input[1].tan() / wheelbase).abs()]
+            }
+            Drive::Unicycle { .. } => vec![input[0].abs(), 0.0, input[1].abs()],
+            Drive::Velocities { .. } => input.iter().map(|u| u.abs()).collect(),
+            Drive::Accelerations { .. } => {
+                let fastest = |(v, a): (&f64, &f64)| v.abs().max((v + a * to.duration).abs());
+                from.velocity.iter().zip(input).map(fastest).collect()
+            }
+        }
+    }
+
+    /// The greatest velocity of each degree of freedom that is part of a state.
+    pub(super) fn velocity_limits(&self) -> &[f64] {
+        match &self.drive {
+            Drive::Accelerations { speeds, .. } => speeds,
+            _ => &[],
+        }
+    }
+
+    /// The least and the greatest value of each number of an input.
+    pub(super) fn input_limits(&self) -> Vec<[f64; 2]> {
+        let both = |limits: &[f64]| limits.iter().map(|v| [-v, *v]).collect();
+        let backward = |speed: f64, reverse: bool| if reverse { -speed } else { 0.0 };
+        match &self.drive {
+            Drive::Car { speed, steering, reverse, .. } => {
+                vec![[backward(*speed, *reverse), *speed], [-steering, *steering]]
+            }
+            Drive::Unicycle { speed, turning, reverse } => {
+                vec![[backward(*speed, *reverse), *speed], [-turning, *turning]]
+            }
+            Drive::Velocities { speeds } => both(speeds),
+            Drive::Accelerations { accelerations, .. } => both(accelerations),
+        }
+    }
+
+    /// Whether an input is within its limits.
+    pub(super) fn allows(&self, input: &[f64]) -> bool {
+        let within = |(u, [low, high]): (&f64, [f64; 2])| {
+            let slack = ROUNDING * (high - low);
+            (low - slack..=high + slack).contains(u)
+        };
+        input.iter().zip(self.input_limits()).all(within)
+    }
+
+    /// The inputs that planners choose among: `directions` of them, or the system's own choice, each at so many levels, every
+    /// one a quarter of the one before.
+    pub(super) fn choices(&self, directions: usize, levels: u32) -> Vec<Vec<f64>> {
+        let scaled = |inputs: Vec<Vec<f64>>, scale: fn(&mut Vec<f64>, f64)| {
+            let level = |level: u32| {
+                let factor = 0.25_f64.powi(level.min(99) as i32);
+                let mut inputs = inputs.clone();
+                inputs.iter_mut().for_each(|input| scale(input, factor));
+                inputs
+            };
+            (0..levels).flat_map(level).collect::<Vec<_>>()
+        };
+        let whole: fn(&mut Vec<f64>, f64) = |input, factor| input.iter_mut().for_each(|u| *u *= factor);
+        let spread = |limits: &[f64]| {
+            let set = match directions {
+                0 => InputSet::axes_dyn(limits),
+                n => InputSet::spread_dyn(limits, n),
+            };
+            set.map(|set| set.inputs().iter().map(|u| u.as_slice().to_vec()).collect()).unwrap_or_default()
+        };
+        match &self.drive {
+            Drive::Car { speed, steering, reverse, .. } => {
+                let each_side = if directions == 0 { STEERING } else { directions.div_ceil(2) };
+                let angle = |i: usize| steering * (i as f64 / each_side as f64 - 1.0);
+                let angles = (0..=2 * each_side).map(angle);
+                let ways = if *reverse { vec![*speed, -speed] } else { vec![*speed] };
+                let inputs =
+                    angles.flat_map(|angle| ways.iter().map(move |v| vec![*v, angle]).collect::<Vec<_>>());
+                scaled(inputs.collect(), |input, factor| input[0] *= factor)
+            }
+            Drive::Unicycle { speed, turning, reverse } => {
+                let ways = if *reverse { vec![*speed, 0.0, -speed] } else { vec![*speed, 0.0] };
+                let turns = [0.0, *turning, -turning];
+                let all = ways.iter().flat_map(|v| turns.map(|w| vec![*v, w]));
+                scaled(all.filter(|u| u.iter().any(|x| *x != 0.0)).collect(), whole)
+            }
+            Drive::Velocities { speeds } => scaled(spread(speeds), whole),
+            Drive::Accelerations { accelerations, .. } => {
+                let mut inputs = scaled(spread(accelerations), whole);
+                // Nothing changes the velocity.
+                inputs.push(vec![0.0; accelerations.len()]);
+                inputs
+            }
+        }
+    }
+}
