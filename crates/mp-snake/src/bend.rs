@@ -43,8 +43,8 @@ pub trait Bend<C: Space> {
 pub enum Bending {
     /// The active contour of Baizid et al., step 6: it starts on the straight motion and relaxes in the field.
     Snake,
-    /// All of the motion moves to one side at once ([`Snake::bulge`]). Nothing relaxes. It is the fastest, and keeps the
-    /// least clearance.
+    /// All of the motion moves to one side at once ([`Snake::bulge`]). Nothing relaxes. It is the fastest way to
+    /// bend one motion, and keeps the least clearance.
     Bulge,
     /// A [bulge](Snake::bulge) is the initial contour, and relaxes. Where that does not become free, the bulge is taken as it
     /// was laid, if it is free; otherwise a snake starts on the straight motion.
