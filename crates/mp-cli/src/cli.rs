@@ -2,7 +2,9 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{Length, MetricName, Mode, MotionValidator, PlannerInfo, Request, positive_number};
+use mp_plan::{
+    Length, MetricName, Mode, MotionValidator, PlannerInfo, RelaxField, Request, positive_number,
+};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -116,9 +118,12 @@ pub(crate) struct Plan {
     /// Keep the path as the planner found it.
     #[arg(long)]
     pub(crate) no_shorten: bool,
-    /// Instead of shortening the path, remove detours and let a snake relax it away from obstacles.
-    #[arg(long)]
-    pub(crate) relax: bool,
+    /// Instead of shortening the path, remove detours and let a snake relax it in a field: `clearance`, the default (obstacles
+    /// repel); for discs in the plane also `paper` (eq. 3 of Baizid et al.) and `risk` (the landscape of risk of inexact motion
+    /// and sensing; `risk:2` for twice the noise); and in the plane `image:FILE` (dark pixels of a PNG or PGM image over the
+    /// bounds of the robot repel). A picture of a world in the plane shows the field too.
+    #[arg(long, value_name = "FIELD", num_args = 0..=1, default_missing_value = "clearance", value_parser = relax_field)]
+    pub(crate) relax: Option<RelaxField>,
     /// Also write each scene to this folder as one JSON and two OFF files, for other planners.
     #[arg(long, value_name = "DIR")]
     pub(crate) export: Option<PathBuf>,
@@ -185,6 +190,10 @@ pub(crate) struct Drawing {
     /// `--animation step`].
     #[arg(long, value_name = "T", value_parser = fraction)]
     pub(crate) at: Option<f64>,
+    /// Below a world in the plane, show the field that pushes snakes: `clearance`, `paper`, `risk` (of the path), `image:FILE`;
+    /// see `mp plan --relax`.
+    #[arg(long, value_name = "FIELD", value_parser = relax_field)]
+    pub(crate) field: Option<RelaxField>,
     /// In a page (`.html`), put the planner inside too, so that whoever opens it can plan in it, without a network.
     #[arg(long)]
     pub(crate) with_planner: bool,
@@ -286,6 +295,14 @@ fn metric(name: &str) -> MetricName {
 
 fn parsed<T: FromStr<Err = mp_plan::Error>>(text: &str) -> Result<T, String> {
     text.parse().map_err(|e: mp_plan::Error| e.to_string())
+}
+
+/// The field of `--relax`, which may have been left out before the name of a scene.
+fn relax_field(text: &str) -> Result<RelaxField, String> {
+    text.parse().map_err(|e: mp_plan::Error| {
+        let names = e.remedy().unwrap_or_default();
+        format!("{e}; {names}. A scene stands before --relax")
+    })
 }
 
 /// The text of `--camera`.

@@ -82,6 +82,7 @@ impl Picture {
             mode: drawing.mode.unwrap_or_default(),
             view: drawing.camera.unwrap_or_default(),
             at,
+            field: drawing.field.clone(),
         };
         let picture = match (ending.as_str(), FilmKind::of(file)) {
             ("html" | "htm", _) => {
@@ -128,6 +129,7 @@ impl Picture {
             ("--size", drawing.size.is_some(), film || still, "pictures and films"),
             ("--mode", drawing.mode.is_some(), film || still, "pictures and films"),
             ("--camera", drawing.camera.is_some(), film || still, "pictures and films"),
+            ("--field", drawing.field.is_some(), film || still, "pictures and films"),
             ("--animation", drawing.animation.is_some(), film || still, "pictures and films"),
             ("--at", drawing.at.is_some(), still, "pictures (.png, .svg)"),
             ("--turntable", drawing.turntable, film, "films (.gif, .mp4)"),

@@ -10,7 +10,7 @@ use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use mp_plan::{
-    Cancel, Control, Error, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::collections::HashSet;
@@ -113,7 +113,7 @@ fn routes(
     for (i, mut report) in found.into_iter().enumerate() {
         let [out, file] = <[_; 2]>::from(files.of(scene.name(), request.seed))
             .map(|file| file.map(|file| numbered(&file, i + 1)));
-        let drawing = Drawing { threads: Some(args.threads), ..Drawing::default() };
+        let drawing = drawing(scene, request, file.as_deref(), args.threads);
         if let Some(rows) = report.path.clone() {
             let path = PathRows { format: scene.path_format(), columns: scene.columns(), rows };
             if let Some(file) = out {
@@ -183,7 +183,7 @@ fn one(
     let request = Request { seed, ..request.clone() };
     let mut line = Line::new(scene.name(), request.budget.time_s, watched);
     let (out, file) = files.of(scene.name(), seed);
-    let drawing = Drawing { threads: Some(threads), ..Drawing::default() };
+    let drawing = drawing(scene, &request, file.as_deref(), threads);
     let picture =
         file.map(|file| Ok::<_, Error>((Picture::of(scene, &file, &drawing, true)?, file))).transpose()?;
     let shows_search = picture.as_ref().is_some_and(|(picture, _)| picture.shows_search());
@@ -211,6 +211,15 @@ fn one(
         }
     }
     Ok(report)
+}
+
+/// How the picture of a run is drawn: with the field that has relaxed its path, if that can be drawn.
+fn drawing(scene: &Scene, request: &Request, file: Option<&Path>, threads: u16) -> Drawing {
+    let drawn = |file: &Path| FilmKind::of(file).is_some() || scene.picture_kind(file).is_ok();
+    let shows_field =
+        request.finish == Finish::Relax && scene.is_planar_world() && file.is_some_and(drawn);
+    let field = shows_field.then(|| request.field.clone());
+    Drawing { threads: Some(threads), field, ..Drawing::default() }
 }
 
 /// Prints the results: JSON on standard output, or a summary or table, which go to standard error when the path is on

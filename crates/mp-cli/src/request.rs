@@ -39,11 +39,12 @@ pub(crate) fn request(args: &Plan) -> Result<Request, Error> {
         budget: Budget { time_s: Some(args.time), iterations: args.iterations, ..Budget::default() },
         seed: args.seed,
         threads,
-        finish: match (args.relax, args.no_shorten) {
-            (true, _) => Finish::Relax,
-            (false, true) => Finish::AsFound,
-            (false, false) => Finish::Shorten,
+        finish: match (&args.relax, args.no_shorten) {
+            (Some(_), _) => Finish::Relax,
+            (None, true) => Finish::AsFound,
+            (None, false) => Finish::Shorten,
         },
+        field: args.relax.clone().unwrap_or_default(),
         roadmap: args.roadmap.clone(),
         ..Request::default()
     };

@@ -14,6 +14,7 @@
 //! | a closure | any | any |
 
 mod check;
+mod curves;
 mod double_integrator;
 mod error;
 mod flow;
@@ -28,6 +29,7 @@ pub use check::{
     ControlSegment, DiscreteFlowCheck, FlowCheck, LocalFlowCheck, OnPosition, RecordedFlowCheck,
     SuccessorMotion,
 };
+pub use curves::{CurvePart, dubins, reeds_shepp};
 pub use double_integrator::DoubleIntegrator;
 pub use error::InputError;
 pub use flow::{Flow, Input};

@@ -9,7 +9,7 @@ use crate::run::AnyPrepared;
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, Report, Request, RobotKind,
+    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, RelaxField, Report, Request, RobotKind,
     Sweep, Track, Verdict,
 };
 use mp_cspace::{Rng, Space, Validity};
@@ -59,7 +59,14 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn sweep(&self, path: Option<&PathRows>) -> Result<Sweep, Error>;
     fn track(&self, path: &PathRows) -> Result<Track, Error>;
     #[cfg(feature = "planar")]
-    fn field(&self, row: &[f64], range: Option<&str>, cells: usize) -> Result<crate::FieldImage, Error>;
+    fn field(
+        &self,
+        field: &RelaxField,
+        row: &[f64],
+        path: Option<&PathRows>,
+        range: Option<&str>,
+        cells: usize,
+    ) -> Result<crate::FieldImage, Error>;
     fn export(&self, folder: &Path) -> Result<PathBuf, Error>;
     fn rigid_problem(&self) -> Option<&RigidProblem>;
     fn is_planar(&self) -> bool;
@@ -162,8 +169,15 @@ impl<K: RobotKind + 'static> AnyRobot for K {
         track(self, path)
     }
     #[cfg(feature = "planar")]
-    fn field(&self, row: &[f64], range: Option<&str>, cells: usize) -> Result<crate::FieldImage, Error> {
-        crate::field::field(self, row, range, cells)
+    fn field(
+        &self,
+        field: &RelaxField,
+        row: &[f64],
+        path: Option<&PathRows>,
+        range: Option<&str>,
+        cells: usize,
+    ) -> Result<crate::FieldImage, Error> {
+        crate::field::field(self, field, row, path, range, cells)
     }
     fn export(&self, folder: &Path) -> Result<PathBuf, Error> {
         RobotKind::export(self, folder)

@@ -1,18 +1,24 @@
-//! The field that pushes snakes, as an image of a world of the plane.
+//! The fields that push snakes: made by name, and as an image of a world of the plane.
 
+use crate::{Error, RelaxField, RobotKind};
+use mp_cspace::erased::AnyGradient;
+use mp_cspace::{Path, StateVector};
+use mp_snake::{Field, Grid, Repulsion, With};
+use nalgebra::Vector2;
 #[cfg(feature = "planar")]
-use crate::{Error, RobotKind, counted::Counted, path::state};
-#[cfg(feature = "planar")]
-use mp_cspace::{Space, registry::Settings};
-#[cfg(feature = "planar")]
-use mp_snake::{Field, Repulsion};
-#[cfg(feature = "planar")]
-use mp_tree::algo::rrs::RANGE;
-#[cfg(feature = "planar")]
-use std::sync::atomic::AtomicU64;
+use {
+    crate::path::{state, states},
+    crate::{PathRows, counted::Counted},
+    mp_cspace::{Space, Validity, registry::Settings},
+    mp_io::GridMap,
+    mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps},
+    mp_snake::{blurred, outline_energy},
+    mp_tree::algo::rrs::RANGE,
+    std::sync::atomic::AtomicU64,
+};
 
-/// The energy of the repulsion of obstacles, where the robot of a world of the plane may be: what pushes snakes, and with them the
-/// bent edges of the planners `rrs` and `rrs-connect`. [`Scene::field`](crate::Scene::field) makes it.
+/// The energy of a field that pushes snakes, where the robot of a world of the plane may be.
+/// [`Scene::field`](crate::Scene::field) makes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldImage {
     /// The lower left corner of the first cell (m).
@@ -21,35 +27,207 @@ pub struct FieldImage {
     pub cell: f64,
     /// How many cells a row has.
     pub width: usize,
-    /// The energy at the middle of each cell, row after row from the lowest: `½·(1 − c/range)²` for a clearance of `c`, so ½ where the
-    /// robot touches an obstacle and 0 where it is farther away than the range.
+    /// The energy at the middle of each cell, row after row from the lowest. That of
+    /// [`RelaxField::Clearance`] is ½ where the robot touches an obstacle, and 0 where it is farther away than the range.
     pub energy: Vec<f64>,
     /// The clearance (m) below which obstacles push.
     pub range: f64,
 }
 
-/// The image with about so many `cells` along the longer side. Coordinates of `row` other than the place stay.
+/// A field of any kind.
+pub(crate) struct AnyField<'a, S>(Box<dyn Field<S> + 'a>);
+
+impl<S> Field<S> for AnyField<'_, S> {
+    fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
+        self.0.energy(q, gradient)
+    }
+    fn clearance(&self) -> Option<f64> {
+        self.0.clearance()
+    }
+}
+
+/// An image as the energy of states that begin with x and y (m).
+struct OnPlane {
+    image: Grid,
+    numbers: Vec<f64>,
+}
+
+impl<S: StateVector> Field<S> for OnPlane {
+    fn energy(&mut self, q: &S, gradient: &mut [f64]) -> f64 {
+        self.numbers.clear();
+        q.write(&mut self.numbers);
+        let (energy, slope) = self.image.at(&Vector2::new(self.numbers[0], self.numbers[1]));
+        gradient.fill(0.0);
+        gradient.iter_mut().zip(slope.iter()).for_each(|(g, s)| *g = *s);
+        energy
+    }
+}
+
+/// Refuses a field that does not suit the robot, or whose file cannot be read.
+pub(crate) fn check<K: RobotKind>(kind: &K, field: &RelaxField) -> Result<(), Error> {
+    let names: Vec<_> = kind.columns().into_iter().map(|column| column.name).collect();
+    let place = matches!(kind.limits()[..], [Some(_), Some(_), ..]);
+    let (suits, whom) = match field {
+        RelaxField::Clearance => return Ok(()),
+        RelaxField::Image(_) => (names == ["x", "y"] || names == ["x", "y", "yaw"], "robots of the plane"),
+        RelaxField::Paper | RelaxField::Risk(_) => (names == ["x", "y"], "discs in the plane"),
+    };
+    if !(suits && place) {
+        return Err(Error::new(format!("the field `{field}` is for {whom}, not for {}", kind.space_name()))
+            .help("take the field `clearance`, which pushes all robots that can be relaxed"));
+    }
+    #[cfg(feature = "planar")]
+    if let RelaxField::Image(file) = field {
+        read_image(file, bounds(kind)?)?;
+    }
+    Ok(())
+}
+
+/// The field `name` with a range (m). That of risk is the landscape of `path`.
+pub(crate) fn make<'k, K: RobotKind>(
+    kind: &'k K,
+    name: &RelaxField,
+    range: f64,
+    path: Option<&Path<K::State>>,
+    gradient: AnyGradient<'k, K::State>,
+) -> Result<AnyField<'k, K::State>, Error> {
+    let repulsion = Repulsion::new(gradient, range)?;
+    let Some(image) = image(kind, name, range, path)? else { return Ok(AnyField(Box::new(repulsion))) };
+    let image = OnPlane { image, numbers: Vec::new() };
+    Ok(match name {
+        RelaxField::Paper => AnyField(Box::new(image)),
+        _ => AnyField(Box::new(With::new(repulsion, image, 1.0)?)),
+    })
+}
+
+#[cfg(not(feature = "planar"))]
+fn image<K: RobotKind>(
+    _: &K,
+    name: &RelaxField,
+    _: f64,
+    _: Option<&Path<K::State>>,
+) -> Result<Option<Grid>, Error> {
+    match name {
+        RelaxField::Clearance => Ok(None),
+        _ => Err(crate::load::left_out("fields of the plane", "planar")),
+    }
+}
+
+/// Cells of images of the plane in a range, and the most cells along a side.
+#[cfg(feature = "planar")]
+const CELLS: f64 = 7.5;
+#[cfg(feature = "planar")]
+const MOST_CELLS: usize = 2048;
+/// The standard deviation of the blur of images, as a part of the range.
+#[cfg(feature = "planar")]
+const BLUR: f64 = 1.0 / 3.0;
+/// The longest step of a path in the landscape of risk, as a part of the range.
+#[cfg(feature = "planar")]
+const STRIDE: f64 = 5.0 / 3.0;
+
+/// The image of a field that has one.
+#[cfg(feature = "planar")]
+fn image<K: RobotKind>(
+    kind: &K,
+    name: &RelaxField,
+    range: f64,
+    path: Option<&Path<K::State>>,
+) -> Result<Option<Grid>, Error> {
+    if *name == RelaxField::Clearance {
+        return Ok(None);
+    }
+    let bounds = bounds(kind)?;
+    let occupied = || {
+        let sides = bounds.map(|[low, high]| high - low);
+        let cell = (range / CELLS).max(sides[0].max(sides[1]) / MOST_CELLS as f64);
+        let [width, height] = sides.map(|side| ((side / cell).ceil() as usize).max(2));
+        let mut checker = kind.checker().clone();
+        let touches = |p: Vector2<f64>| f64::from(u8::from(!checker.is_valid(&kind.state(p.as_slice()))));
+        Grid::from_fn(bounds.map(|[low, _]| low), cell, (width, height), touches)
+    };
+    Ok(Some(match name {
+        RelaxField::Clearance => return Ok(None),
+        RelaxField::Paper => outline_energy(&occupied()?, BLUR * range, 1.0)?,
+        RelaxField::Image(file) => blurred(&read_image(file, bounds)?, BLUR * range)?,
+        RelaxField::Risk(factor) => {
+            let path = path.ok_or_else(|| {
+                Error::new("the landscape of risk is that of a path, and there is none").help("name a path")
+            })?;
+            let steps = path.resampled(kind.space(), STRIDE * range)?;
+            let places = steps.states.iter().map(|q| Vector2::from_row_slice(&kind.row(q)[..2]));
+            let path = Path::straight(places.collect());
+            let (motion, sensor) =
+                (MotionNoise::default().times(*factor), RangeNoise::default().times(*factor));
+            let risk = RiskMaps::of_path(&path, &occupied()?, motion, sensor)?.risk;
+            let most = risk.values().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+            risk.map(|v| v / most)
+        }
+    }))
+}
+
+/// The bounds of x and y (m).
+#[cfg(feature = "planar")]
+fn bounds<K: RobotKind>(kind: &K) -> Result<[[f64; 2]; 2], Error> {
+    match kind.limits()[..] {
+        [Some(x), Some(y), ..] => Ok([x, y]),
+        _ => Err(not_drawn(kind).help("its robot has no bounds of x and y")),
+    }
+}
+
+/// The energy of an image over `bounds` (m): 0 where it is white, 1 where it is black.
+#[cfg(feature = "planar")]
+fn read_image(file: &std::path::Path, bounds: [[f64; 2]; 2]) -> Result<Grid, Error> {
+    let name = file.display().to_string();
+    let map = GridMap::parse(&name, &mp_io::Files::read(&mp_io::Disk, file, mp_io::MAX_TEXT_BYTES)?)?;
+    let [width, height] = map.size;
+    let [across, up] = bounds.map(|[low, high]| high - low);
+    let cell = across / width as f64;
+    let wrong = |why: String, help: String| Err(Error::new(format!("the image {name} {why}")).help(help));
+    if !(2..=MOST_CELLS).contains(&width) || !(2..=MOST_CELLS).contains(&height) {
+        let why = format!("has {width} × {height} pixels");
+        return wrong(why, format!("scale it: a field has 2 to {MOST_CELLS} each way"));
+    }
+    if (cell * height as f64 - up).abs() > 0.5 * cell.max(0.01 * up) {
+        let brief = crate::brief;
+        let why =
+            format!("has {width} × {height} pixels, but covers {} × {} m", brief(across), brief(up));
+        let height = (up / cell).round();
+        return wrong(why, format!("scale it to {width} × {height} pixels: it covers the bounds of the robot"));
+    }
+    // The first row of an image is its highest.
+    let rows = map.brightness.chunks_exact(width).rev().flatten();
+    let energy = rows.map(|brightness| 1.0 - f64::from(*brightness) / 255.0).collect();
+    Ok(Grid::new(bounds.map(|[low, _]| low), cell, width, energy)?)
+}
+
+#[cfg(feature = "planar")]
+fn not_drawn<K: RobotKind>(kind: &K) -> Error {
+    Error::new(format!("the field of {} is not drawn", kind.name()))
+}
+
+/// The image of the field `name` with about so many `cells` along the longer side. Coordinates of `row` other than the place stay.
 #[cfg(feature = "planar")]
 pub(crate) fn field<K: RobotKind>(
     kind: &K,
+    name: &RelaxField,
     row: &[f64],
+    path: Option<&PathRows>,
     range: Option<&str>,
     cells: usize,
 ) -> Result<FieldImage, Error> {
-    let not_drawn = || Error::new(format!("the field of {} is not drawn", kind.name()));
-    let [Some(x), Some(y), ..] = kind.limits()[..] else {
-        return Err(not_drawn().help("its robot has no bounds of x and y"));
-    };
+    let [x, y] = bounds(kind)?;
+    check(kind, name)?;
     let unused = AtomicU64::new(0);
     let knowledge = kind.obstacles(&|| Counted::new(kind.checker().clone(), &unused));
     let gradient =
-        knowledge.gradient.ok_or_else(|| not_drawn().help("this robot knows no clearance gradient"))?;
+        knowledge.gradient.ok_or_else(|| not_drawn(kind).help("this robot knows no clearance gradient"))?;
     let mut settings = Settings::default();
     if let Some(range) = range {
         settings.set(RANGE.name, range);
     }
     let range = settings.length_of(&RANGE, kind.space())?;
-    let mut repulsion = Repulsion::new(gradient, range)?;
+    let path = path.map(|path| Ok::<_, Error>(Path::straight(states(kind, path)?))).transpose()?;
+    let mut field = make(kind, name, range, path.as_ref(), gradient)?;
     let sides = [x, y].map(|[low, high]| high - low);
     let cell = sides[0].max(sides[1]) / cells.clamp(2, 4096) as f64;
     let [width, height] = sides.map(|side| (side / cell).round().max(1.0) as usize);
@@ -59,21 +237,21 @@ pub(crate) fn field<K: RobotKind>(
         // A row that does not fit is refused by `state`.
         let at = [x[0] + ((i % width) as f64 + 0.5) * cell, y[0] + ((i / width) as f64 + 0.5) * cell];
         place.iter_mut().zip(at).for_each(|(value, at)| *value = at);
-        energy.push(repulsion.energy(&state(kind, &place)?, &mut slope));
+        energy.push(field.energy(&state(kind, &place)?, &mut slope));
     }
     Ok(FieldImage { origin: [x[0], y[0]], cell, width, energy, range })
 }
 
 #[cfg(all(test, feature = "planar"))]
 mod tests {
-    use crate::Scene;
+    use crate::{RelaxField, Scene};
 
     /// The energy is that of the clearance which the scene itself reports.
     #[test]
     fn energies_are_those_of_clearances() {
         for name in ["rrs-low", "rrs-maze"] {
             let scene = Scene::find(name).unwrap();
-            let image = scene.field(&scene.start(), Some("0.15"), 40).unwrap();
+            let image = scene.field(&RelaxField::Clearance, &scene.start(), None, Some("0.15"), 40).unwrap();
             assert_eq!(image.range, 0.15);
             let height = image.energy.len() / image.width;
             assert_eq!((image.width.max(height), image.energy.len() % image.width), (40, 0));
@@ -102,12 +280,12 @@ mod tests {
     #[test]
     fn other_scenes_and_bad_ranges_are_refused() {
         let scene = Scene::find("easy").unwrap();
-        assert!(scene.field(&scene.start(), None, 40).unwrap_err().to_string().contains("is not drawn"));
+        assert!(scene.field(&RelaxField::Clearance, &scene.start(), None, None, 40).unwrap_err().to_string().contains("is not drawn"));
         let scene = Scene::find("rrs-low").unwrap();
         for range in ["0", "-1", "far", "200%"] {
-            assert!(scene.field(&scene.start(), Some(range), 40).is_err(), "{range}");
+            assert!(scene.field(&RelaxField::Clearance, &scene.start(), None, Some(range), 40).is_err(), "{range}");
         }
-        assert!(scene.field(&[], None, 40).is_err());
-        assert!(scene.field(&[1.0], None, 40).is_err());
+        assert!(scene.field(&RelaxField::Clearance, &[], None, None, 40).is_err());
+        assert!(scene.field(&RelaxField::Clearance, &[1.0], None, None, 40).is_err());
     }
 }

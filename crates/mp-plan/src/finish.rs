@@ -5,7 +5,7 @@ use crate::prepared::Possible;
 use crate::{Control, Error, Finish, PathRows, Request, RobotKind, Stage};
 use mp_cspace::erased::AnyCheck;
 use mp_cspace::shorten::{Effort, simplify};
-use mp_cspace::{Cancel, Certified, Demand, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
+use mp_cspace::{Cancel, Certified, Factored, KnownFree, MotionCheck, MotionValidity, Path, Rng};
 use std::sync::atomic::Ordering;
 
 /// The stream of random numbers for shortening. Planning uses another one.
@@ -53,7 +53,11 @@ pub fn shorten<K: RobotKind>(
         kind,
         check: Certified::new(kind.space(), kind.checker().clone(), kind.shortcut_clearance())?,
     });
-    Ok(shorten_by(kind.space(), Cancellable(certified, cancel), path, seed))
+    let (mut check, mut rng) = (Cancellable(certified, cancel), Rng::stream(seed, STREAM));
+    Ok(match kind.shortened(path, &mut check, Effort::default(), &mut rng) {
+        Some(short) => short,
+        None => shorten_by(kind.space(), check, path, rng),
+    })
 }
 
 /// [`shorten`] with a check behind a pointer: compiled for each space instead of each robot.
@@ -61,9 +65,9 @@ fn shorten_by<C: Factored>(
     space: &C,
     mut check: Cancellable<'_, C::State>,
     path: &Path<C::State>,
-    seed: u64,
+    mut rng: Rng,
 ) -> Path<C::State> {
-    simplify(space, &mut check, path, Effort::default(), &mut Rng::stream(seed, STREAM))
+    simplify(space, &mut check, path, Effort::default(), &mut rng)
 }
 
 /// Shortens `found` if the request says so, and verifies what will be written. If the shortened path does not pass, `found`
@@ -75,8 +79,7 @@ pub(crate) fn finish<K: RobotKind>(
     control: &mut Control<'_>,
 ) -> Result<Option<Finished>, Error> {
     control.stage(Stage::Finishing);
-    let by_inputs = kind.demands().contains(&Demand::Inputs);
-    if request.finish == Finish::Shorten && !by_inputs {
+    if request.finish == Finish::Shorten {
         let short = shorten(kind, found, request.seed, &control.cancel)?;
         if let Some(finished) = verified_as_written(kind, &short, true)? {
             return Ok(Some(finished));

@@ -110,7 +110,7 @@ pub use path::{PathFileKind, PathRows};
 pub use picture::{Look, PICTURE_SIZE, PictureKind};
 pub use planners::{meta_planners, planners, roadmap_planners};
 pub use report::{REPORT_VERSION, Report, StoppedBy};
-pub use request::{Budget, Finish, Length, MetricName, MotionValidator, Request};
+pub use request::{Budget, Finish, Length, MetricName, MotionValidator, RelaxField, Request};
 pub use roadmaps::{Roadmap, RoadmapState};
 pub use robot::{
     ArmScene, Body, BodyShape, Checker, Column, Counted, DrivenScene, End, FloatingScene, LinkedScene,

@@ -1,6 +1,6 @@
 //! Pictures of scenes and paths, made with `mp-render`.
 
-use crate::{BodyShape, Error, PathRows, Scene, Sweep};
+use crate::{BodyShape, Error, PathRows, RelaxField, Scene, Sweep};
 use mp_geom::TriMesh;
 use mp_render::palette::{GOAL, INK, MIDDLE, OBSTACLE, PATH, START};
 use mp_render::{Animation, Drawing, Item, Mode, Moment, View};
@@ -31,11 +31,16 @@ pub struct Look {
     /// The moment of the path that a picture shows, as a fraction of its length, 0 to 1; `None` shows all configurations at
     /// once. Films do not use it.
     pub at: Option<f64>,
+    /// The field that pushes snakes, to be shown below a world in the plane.
+    pub field: Option<RelaxField>,
 }
+
+/// Cells along the longer side of the image of a field.
+const FIELD_CELLS: usize = 320;
 
 impl Default for Look {
     fn default() -> Self {
-        Self { size: PICTURE_SIZE, mode: Mode::default(), view: View::default(), at: None }
+        Self { size: PICTURE_SIZE, mode: Mode::default(), view: View::default(), at: None, field: None }
     }
 }
 
@@ -114,7 +119,24 @@ impl Scene {
             ))
             .help("leave out the camera"));
         }
-        Ok(())
+        match look.field {
+            Some(_) if !self.is_planar_world() => {
+                Err(Error::new(format!("the field of {} is not drawn", self.name()))
+                    .help("only that of a world of the plane is"))
+            }
+            Some(RelaxField::Risk(_)) if !path => {
+                Err(Error::new("the landscape of risk is that of a path, and there is none")
+                    .help("name a path"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A field as an image: from white, where it does not push, to red where it pushes as an obstacle that is touched.
+    fn shades(&self, field: &RelaxField, path: Option<&PathRows>) -> Result<Vec<Item>, Error> {
+        let image = self.field(field, &self.start(), path, None, FIELD_CELLS)?;
+        let parts: Vec<f64> = image.energy.iter().map(|energy| 2.0 * energy).collect();
+        Ok(Item::shades(image.origin.into(), image.cell, image.width, &parts))
     }
 
     /// The bodies of a robot in space, in their own frames.
@@ -184,7 +206,11 @@ impl Scene {
             Some(bounds) => (bounds.min.xy(), bounds.max.xy()),
             None => (Point2::origin(), Point2::new(1.0, 1.0)),
         };
-        let (mut items, mut robot, mut walls) = (Vec::new(), Vec::new(), false);
+        let (mut robot, mut walls) = (Vec::new(), false);
+        let mut items = match &look.field {
+            Some(field) => self.shades(field, path)?,
+            None => Vec::new(),
+        };
         for body in self.bodies() {
             match (body.shape, body.pose) {
                 (BodyShape::Area(rings), None) => robot.push(rings),

@@ -33,6 +33,7 @@ pub(crate) struct Prepared<'k, K: RobotKind> {
 impl<'k, K: RobotKind> Prepared<'k, K> {
     pub(crate) fn new(kind: &'k K, request: &'k Request) -> Result<Self, Error> {
         PlannerKind::new(&request.planner)?.meets(kind)?;
+        crate::relax::check(kind, request)?;
         let Measured { space, index } = kind.measured(request.metric)?;
         let (verifier, queries) = (kind.verifier()?, AtomicU64::new(0));
         Ok(Self { kind, request, space, index, verifier, queries })

@@ -2,11 +2,12 @@
 
 use crate::counted::Counted;
 use crate::prepared::Possible;
-use crate::{Control, Error, Finish, Request, RobotKind, Stage};
+use crate::field::{self, AnyField};
+use crate::{Control, Error, Finish, RelaxField, Request, RobotKind, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
 use mp_cspace::{Certified, Demand, Path, Space, verify_path};
-use mp_snake::{Params, Repulsion, relax};
+use mp_snake::{Params, relax};
 use mp_tree::TreeState;
 use std::sync::atomic::AtomicU64;
 
@@ -14,6 +15,32 @@ use std::sync::atomic::AtomicU64;
 const RELAX_RANGE: f64 = 0.03;
 /// How many times as long relaxing may make the path that is left without needless states.
 const MOST_STRETCH: f64 = 1.15;
+
+/// Refuses to relax what cannot be relaxed, before planning.
+pub(crate) fn check<K: RobotKind>(kind: &K, request: &Request) -> Result<(), Error> {
+    if request.finish != Finish::Relax {
+        return Ok(());
+    }
+    if kind.demands().contains(&Demand::Inputs) {
+        return Err(Error::new("a robot that moves by inputs cannot follow a relaxed path")
+            .help("leave relaxing out: shortening chooses other inputs"));
+    }
+    let unused = AtomicU64::new(0);
+    drop(gradient(kind, &unused)?);
+    field::check(kind, &request.field)
+}
+
+/// The clearance gradient of the robot.
+fn gradient<'k, K: RobotKind>(
+    kind: &'k K,
+    unused: &'k AtomicU64,
+) -> Result<AnyGradient<'k, K::State>, Error> {
+    let knowledge = kind.obstacles(&|| Counted::new(kind.checker().clone(), unused));
+    knowledge.gradient.ok_or_else(|| {
+        Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
+            .help("leave relaxing out: shortening needs none")
+    })
+}
 
 /// The path, [relaxed] if the request says so.
 pub(crate) fn relax_if_requested<K: RobotKind>(
@@ -25,27 +52,23 @@ pub(crate) fn relax_if_requested<K: RobotKind>(
     if request.finish != Finish::Relax {
         return Ok(path);
     }
-    if kind.demands().contains(&Demand::Inputs) {
-        return Err(Error::new("a robot that moves by inputs cannot follow a relaxed path")
-            .help("leave relaxing out"));
-    }
     control.stage(Stage::Relaxing);
-    relaxed(kind, path)
+    relaxed(kind, &request.field, path)
 }
 
 /// The path without the states that it does not need, relaxed by a snake; the path itself if the result does not pass the
 /// verifier. In the metric of the space itself the result is no longer than the path.
-fn relaxed<K: RobotKind>(kind: &K, path: Path<K::State>) -> Result<Path<K::State>, Error> {
-    let _span = tracing::info_span!("relax").entered();
+fn relaxed<K: RobotKind>(kind: &K, field: &RelaxField, path: Path<K::State>) -> Result<Path<K::State>, Error> {
+    let _span = tracing::info_span!("relax", %field).entered();
     let unused = AtomicU64::new(0);
-    let knowledge = kind.obstacles(&|| Counted::new(kind.checker().clone(), &unused));
-    let Some(gradient) = knowledge.gradient else {
-        return Err(Error::new("this robot knows no clearance gradient, so its paths cannot be relaxed")
-            .help("leave relaxing out: shortening needs none"));
-    };
+    let gradient = gradient(kind, &unused)?;
     let check = Certified::new(kind.space(), kind.checker().clone(), kind.tolerance())?;
-    let check = Box::new(Possible { kind, check });
-    relaxed_by(&AnySpace::new(kind.space()), check, Box::new(kind.verifier()?), gradient, path)
+    let mut check: AnyCheck<'_, K::State> = Box::new(Possible { kind, check });
+    let space = AnySpace::new(kind.space());
+    let short = reduce(&space, &mut check, &path);
+    let range = RELAX_RANGE * space.extent();
+    let field = field::make(kind, field, range, Some(&short), gradient)?;
+    relaxed_by(&space, check, Box::new(kind.verifier()?), field, range, short, path)
 }
 
 /// [`relaxed`] behind pointers: compiled for each kind of state instead of each kind of robot.
@@ -53,12 +76,11 @@ fn relaxed_by<S: TreeState>(
     space: &AnySpace<'_, S>,
     mut check: AnyCheck<'_, S>,
     mut verifier: AnyCheck<'_, S>,
-    gradient: AnyGradient<'_, S>,
+    mut field: AnyField<'_, S>,
+    range: f64,
+    short: Path<S>,
     path: Path<S>,
 ) -> Result<Path<S>, Error> {
-    let range = RELAX_RANGE * space.extent();
-    let mut field = Repulsion::new(gradient, range)?;
-    let short = reduce(space, &mut check, &path);
     let [found, least] = [&path, &short].map(|path| path.length(space));
     let params = Params { straighten: 0.5, iterations: 200, ..Params::for_range(range)? };
     // Clearance may cost some of the length that was saved.

@@ -41,6 +41,8 @@ pub struct Request {
     pub threads: usize,
     /// What is done to the path that the planner found.
     pub finish: Finish,
+    /// What pushes the path if it is relaxed.
+    pub field: RelaxField,
     /// Whether to stop at the first path, also with an anytime planner.
     pub first_only: bool,
     /// The file of a roadmap: read if it exists, grown, and written at the end. For planners that build roadmaps.
@@ -211,6 +213,75 @@ impl FromStr for MotionValidator {
     }
 }
 
+/// The field that pushes a path that is relaxed. As text, `clearance`, `paper`, `risk`, `risk:FACTOR` or `image:FILE`.
+///
+/// All but [`Clearance`](Self::Clearance) are images of the plane, for robots in worlds of the plane; `Paper` and `Risk` are
+/// for discs.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub enum RelaxField {
+    /// Obstacles repel: `½·(1 − c/range)²` for a clearance of `c` below the range, which is 3% of the extent of the space.
+    #[default]
+    Clearance,
+    /// Eq. 3 of Baizid et al.: the outlines of obstacles repel, in a blurred image.
+    Paper,
+    /// The repulsion of obstacles, and a greyscale image (PNG or PGM) over the bounds of the robot: from 0 where it is white to 1
+    /// where it is black, blurred by a third of the range.
+    Image(PathBuf),
+    /// The repulsion of obstacles, and the landscape of risk of the path: where a robot that moves inexactly may hit an obstacle
+    /// that was measured inexactly, from 0 to 1 where the risk is greatest. All deviations are those of a small robot on wheels
+    /// with a laser, [`MotionNoise`](mp_snake::risk::MotionNoise) and [`RangeNoise`](mp_snake::risk::RangeNoise), times this
+    /// factor.
+    Risk(f64),
+}
+
+impl RelaxField {
+    /// How each is written, and what it is.
+    pub const ALL: [(&'static str, &'static str); 4] = [
+        ("clearance", "obstacles repel (the default)"),
+        ("paper", "eq. 3 of Baizid et al.: outlines of obstacles in a blurred image repel (discs in the plane)"),
+        (
+            "risk",
+            "the landscape of risk of inexact motion and sensing; `risk:2` for twice the noise (discs in the plane)",
+        ),
+        ("image:FILE", "the dark pixels of a PNG or PGM image over the bounds of the robot repel (the plane)"),
+    ];
+}
+
+impl fmt::Display for RelaxField {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Clearance => f.write_str("clearance"),
+            Self::Paper => f.write_str("paper"),
+            Self::Image(file) => write!(f, "image:{}", file.display()),
+            Self::Risk(1.0) => f.write_str("risk"),
+            Self::Risk(factor) => write!(f, "risk:{factor}"),
+        }
+    }
+}
+
+impl FromStr for RelaxField {
+    type Err = Error;
+    fn from_str(s: &str) -> Result<Self, Error> {
+        match s.split_once(':') {
+            None if s == "clearance" => Ok(Self::Clearance),
+            None if s == "paper" => Ok(Self::Paper),
+            None if s == "risk" => Ok(Self::Risk(1.0)),
+            Some(("risk", factor)) => match positive(factor) {
+                Ok(factor) => Ok(Self::Risk(factor)),
+                Err(e) => Err(Error::new(format!("the factor of the noise is `{factor}`: {e}"))
+                    .help("give a number, such as risk:2")),
+            },
+            Some(("image", file)) if !file.is_empty() => Ok(Self::Image(file.into())),
+            _ => {
+                let names: Vec<_> = Self::ALL.iter().map(|(name, _)| *name).collect();
+                Err(Error::new(format!("there is no field `{s}`"))
+                    .help(format!("there are: {}", names.join(", "))))
+            }
+        }
+    }
+}
+
 macro_rules! as_text {
     ($($type:ty),*) => {
         $(impl TryFrom<String> for $type {
@@ -226,7 +297,7 @@ macro_rules! as_text {
         })*
     };
 }
-as_text!(Length, MotionValidator);
+as_text!(Length, MotionValidator, RelaxField);
 
 /// A minute.
 impl Default for Budget {
@@ -247,6 +318,7 @@ impl Default for Request {
             seed: 1,
             threads: 1,
             finish: Finish::Shorten,
+            field: RelaxField::Clearance,
             first_only: false,
             roadmap: None,
         }
@@ -318,6 +390,12 @@ impl Request {
         Self { finish, ..self }
     }
 
+    /// Relaxes the path found in this field.
+    #[must_use]
+    pub fn relax(self, field: RelaxField) -> Self {
+        Self { finish: Finish::Relax, field, ..self }
+    }
+
     /// Checks what does not depend on the scene: whether planner and settings exist, and the budget is a number.
     ///
     /// # Errors
@@ -366,9 +444,21 @@ mod tests {
     }
 
     #[test]
+    fn fields_are_read_back() {
+        for text in ["clearance", "paper", "risk", "risk:2", "image:a b.png"] {
+            assert_eq!(text.parse::<RelaxField>().unwrap().to_string(), text);
+        }
+        for bad in ["", "risks", "risk:", "risk:0", "risk:x", "image:", "image", "paper:2", "clearance:1"] {
+            assert!(bad.parse::<RelaxField>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
     fn requests_are_read_back_and_checked() {
-        let request =
-            Request::new("prm").metric(MetricName::MaxDisplacement).motion("discrete:2%".parse().unwrap());
+        let request = Request::new("prm")
+            .metric(MetricName::MaxDisplacement)
+            .motion("discrete:2%".parse().unwrap())
+            .relax(RelaxField::Risk(2.0));
         let text = serde_json::to_string(&request).unwrap();
         assert_eq!(serde_json::from_str::<Request>(&text).unwrap(), request);
         assert_eq!(serde_json::from_str::<Request>("{}").unwrap(), Request::default());

@@ -236,6 +236,18 @@ pub trait RobotKind: fmt::Debug + Send + Sync {
         "rrt-connect"
     }
 
+    /// The path made shorter, for robots that straight motions do not suit, as those moved by inputs; `None`, the default, where
+    /// shortcuts can be straight. `check` says which motions are free. The same random numbers give the same path.
+    fn shortened(
+        &self,
+        _path: &mp_cspace::Path<Self::State>,
+        _check: &mut dyn MotionValidity<Self::State>,
+        _effort: mp_cspace::shorten::Effort,
+        _rng: &mut mp_cspace::Rng,
+    ) -> Option<mp_cspace::Path<Self::State>> {
+        None
+    }
+
     /// The checker. Clone it to use it.
     fn checker(&self) -> &Self::Checker;
     /// A verifier.

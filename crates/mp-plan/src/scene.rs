@@ -5,8 +5,8 @@ use crate::robot::{PlanarScene, RigidScene, RigidSpace};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
-    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun, Report, Request,
-    RobotKind, Sweep, Track, Verdict,
+    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun, RelaxField, Report,
+    Request, RobotKind, Sweep, Track, Verdict,
 };
 use mp_geom::{Aabb, TriMesh, six_from_pose};
 use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
@@ -451,19 +451,28 @@ impl Scene {
         self.robot.track(path)
     }
 
-    /// The field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.
-    /// `range` is that of the planner `rrs`, by default its default. The longer side has so many `cells`, 4,096 at most.
+    /// A field that pushes snakes, for the places of the robot of a world of the plane; otherwise the robot is as in `row`.
+    /// `path` is the one whose risk [`RelaxField::Risk`] shows. `range` is that of the planner `rrs`, by default its default.
+    /// The longer side has so many `cells`, 4,096 at most.
     ///
     /// # Errors
-    /// When the scene is no world of the plane, the row is not one of its configurations, or the range is no length.
+    /// When the scene is no world of the plane, the field does not suit its robot, the row is not one of its configurations, there
+    /// is no path for the risk, or the range is no length.
     #[cfg_attr(
         not(feature = "planar"),
         expect(unused_variables, reason = "there are no worlds of the plane")
     )]
-    pub fn field(&self, row: &[f64], range: Option<&str>, cells: usize) -> Result<crate::FieldImage, Error> {
+    pub fn field(
+        &self,
+        field: &RelaxField,
+        row: &[f64],
+        path: Option<&PathRows>,
+        range: Option<&str>,
+        cells: usize,
+    ) -> Result<crate::FieldImage, Error> {
         #[cfg(feature = "planar")]
         if self.is_planar_world() {
-            return self.robot.field(row, range, cells);
+            return self.robot.field(field, row, path, range, cells);
         }
         Err(Error::new(format!("the field of {} is not drawn", self.name()))
             .help("only that of a world of the plane is"))

@@ -16,6 +16,10 @@ const MARGINS: [f64; 4] = [24.0, 72.0, 24.0, 24.0];
 /// Pictures with a side shorter than this have smaller margins, pixels.
 const SMALL: f64 = 192.0;
 
+/// The number of shades of a map, and the colour of the strongest.
+const SHADES: usize = 24;
+const HOT: [f64; 3] = [178.0, 24.0, 43.0];
+
 /// An area or lines, drawn over earlier items.
 #[derive(Clone, Debug)]
 pub struct Item {
@@ -38,6 +42,37 @@ impl Item {
     #[must_use]
     pub fn lines(points: Vec<Vec<Point2<f64>>>, colour: u32, width: f64) -> Self {
         Self { points, colour, width: Some(width), opacity: 1.0 }
+    }
+
+    /// A map of numbers, from white for 0 to red for 1, as areas of one shade each. `corner` is the lower left corner of the first
+    /// of its square cells of `cell` metres; `parts` has the numbers, `width` to a row, row after row from the lowest. Where a
+    /// number rounds to 0 there is no item.
+    #[must_use]
+    pub fn shades(corner: Point2<f64>, cell: f64, width: usize, parts: &[f64]) -> Vec<Self> {
+        let shade = |part: &f64| (part.clamp(0.0, 1.0) * SHADES as f64).round() as usize;
+        let at = |column: usize, row: usize| {
+            Point2::new(corner.x + column as f64 * cell, corner.y + row as f64 * cell)
+        };
+        let mut rings = vec![Vec::new(); SHADES + 1];
+        for (row, parts) in parts.chunks_exact(width.max(1)).enumerate() {
+            let mut begin = 0;
+            for run in parts.chunk_by(|a, b| shade(a) == shade(b)) {
+                let (low, high) = (at(begin, row), at(begin + run.len(), row + 1));
+                rings[shade(&run[0])].push(vec![
+                    low,
+                    Point2::new(high.x, low.y),
+                    high,
+                    Point2::new(low.x, high.y),
+                ]);
+                begin += run.len();
+            }
+        }
+        let colour = |shade: usize| {
+            let part = shade as f64 / SHADES as f64;
+            HOT.iter().fold(0, |rgb, c| rgb << 8 | (255.0 + (c - 255.0) * part) as u32)
+        };
+        let shades = rings.into_iter().enumerate().skip(1).filter(|(_, rings)| !rings.is_empty());
+        shades.map(|(shade, rings)| Self::area(rings, colour(shade))).collect()
     }
 
     /// The same item, translucent; at an opacity of 1 it hides everything behind it.

@@ -33,9 +33,11 @@ impl<S> Relaxed<S> {
 /// - its length is at most that of the original times `stretch` (at least 1): with 1 it never gets longer.
 ///
 /// After each step of the snake, the ends of every piece that is not free move back to where they were. So the curve is
-/// always free, and only nodes in tight places stay behind. It ends when a step gains nothing. A path that needs more than
-/// ten thousand nodes is returned unchanged. Use a `check` you trust, as nothing else is checked. Each step costs one
-/// check per piece that moved, and three evaluations of the field per node.
+/// always free, and only nodes in tight places stay behind. A step that gains nothing is tried again at a quarter of the
+/// pace, since a field that changes over short distances needs short steps; the pace grows again while steps succeed. It ends
+/// when a step at a thousandth of the pace gains nothing. A path that needs more than ten thousand nodes is returned
+/// unchanged. Use a `check` you trust, as nothing else is checked. Each step costs one check per piece that moved, and three
+/// evaluations of the field per node.
 ///
 /// # Errors
 /// When a parameter is out of range, or the space knows no velocities.
@@ -63,13 +65,25 @@ pub fn relax<C: Space>(
     }
     let mut energy = first;
     let mut next = curve.clone();
+    let (mut pace, mut successes) = (params.pace, 0);
     for iterations in 1..=params.iterations {
         next.clone_from(&curve);
         snake.deform(&mut next, field, |_| false);
         go_back_where_blocked(check, &curve, &mut next);
         let gained = energy - snake.energy(&next, field).total();
-        if gained.is_nan() || gained <= LEAST_GAIN * energy {
-            break;
+        // A shorter step gains less.
+        if gained.is_nan() || gained <= LEAST_GAIN * energy * (pace / params.pace) {
+            if pace <= LEAST_PACE * params.pace {
+                break;
+            }
+            (pace, successes) = (0.25 * pace, 0);
+            snake.set_pace(pace);
+            continue;
+        }
+        successes += 1;
+        if successes >= SUCCESSES && pace < params.pace {
+            (pace, successes) = (2.0 * pace, 0);
+            snake.set_pace(pace);
         }
         energy -= gained;
         std::mem::swap(&mut curve, &mut next);
@@ -82,8 +96,12 @@ pub fn relax<C: Space>(
     Ok(best)
 }
 
-/// Steps that lower the energy by less than this part of it end the relaxation.
+/// A step that lowers the energy by less than this part of it gains nothing.
 const LEAST_GAIN: f64 = 1e-6;
+/// The shortest pace that is tried, as a part of the one that was given.
+const LEAST_PACE: f64 = 1e-3;
+/// After so many successful steps in a row the pace is doubled, up to the one that was given.
+const SUCCESSES: u32 = 4;
 
 /// Moves the ends of each piece of `next` that is not free back to where they were in `curve`, until all pieces are free,
 /// as those of `curve` are.

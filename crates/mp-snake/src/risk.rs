@@ -24,7 +24,26 @@ pub struct MotionNoise {
     pub way_per_way: f64,
 }
 
+/// That of a small robot on wheels, such as a Khepera, in the experiment of following paths.
+impl Default for MotionNoise {
+    fn default() -> Self {
+        Self { turn: 0.05, turn_per_turn: 0.2, way: 0.01, way_per_way: 0.08 }
+    }
+}
+
 impl MotionNoise {
+    /// This noise with each deviation times `factor`.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        let Self { turn, turn_per_turn, way, way_per_way } = self;
+        Self {
+            turn: factor * turn,
+            turn_per_turn: factor * turn_per_turn,
+            way: factor * way,
+            way_per_way: factor * way_per_way,
+        }
+    }
+
     /// This noise, if its numbers are in range.
     ///
     /// # Errors
@@ -93,7 +112,20 @@ pub struct RangeNoise {
     pub per_metre: f64,
 }
 
+/// That of a laser, in the experiment of following paths.
+impl Default for RangeNoise {
+    fn default() -> Self {
+        Self { constant: 0.02, per_metre: 0.01 }
+    }
+}
+
 impl RangeNoise {
+    /// This noise with each deviation times `factor`.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        Self { constant: factor * self.constant, per_metre: factor * self.per_metre }
+    }
+
     /// The probability that each cell is occupied, of a map that is above one half where obstacles were seen from
     /// `distance` (m) away: the map blurred by the deviation at that distance.
     ///
@@ -119,6 +151,37 @@ pub fn landscape(passing: &Grid, occupied: &Grid) -> Result<Grid, ParameterError
     }
     let product = passing.values().iter().zip(occupied.values()).map(|(a, b)| a * b);
     Ok(passing.with_values(product.collect()))
+}
+
+/// The landscape of risk of a path, and the two maps that it is the product of: Fig. 1 of the paper.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RiskMaps {
+    /// The probability that a step of the path ends in each cell.
+    pub passing: Grid,
+    /// The probability that each cell is occupied.
+    pub occupied: Grid,
+    /// The product of both.
+    pub risk: Grid,
+}
+
+impl RiskMaps {
+    /// Of a robot that makes the steps of `path`, with the noise of its motion, past obstacles that its range sensor has `seen`
+    /// from a metre away: a map that is above one half where the robot collides. Long steps should be
+    /// [resampled](Path::resampled) first.
+    ///
+    /// # Errors
+    /// When a number of the noise is out of range.
+    pub fn of_path(
+        path: &Path<Vector2<f64>>,
+        seen: &Grid,
+        motion: MotionNoise,
+        sensor: RangeNoise,
+    ) -> Result<Self, ParameterError> {
+        let occupied = sensor.occupancy(seen, 1.0)?;
+        let passing = motion.checked()?.envelope(path, &occupied);
+        let risk = landscape(&passing, &occupied)?;
+        Ok(Self { passing, occupied, risk })
+    }
 }
 
 /// The cost of a path in a map of risks: `∫ (1 + weight · risk) ds`, so its length where there is no risk. By the

@@ -194,6 +194,12 @@ impl<'c, C: Space> Snake<'c, C> {
         &self.params
     }
 
+    /// Makes steps of another length (m²).
+    pub(crate) fn set_pace(&mut self, pace: f64) {
+        self.params.pace = pace;
+        self.bands.clear();
+    }
+
     /// The space.
     #[must_use]
     pub fn space(&self) -> &'c C {

@@ -1,7 +1,8 @@
 // The field that pushes snakes, as an image below a world of the plane. The planner makes it: docs/formats/session.md, `field`.
 
 import { palette } from "mp/colors.js";
-import { brief, checkbox, el, labelled, legendOf, showError } from "mp/dom.js";
+import { brief, checkbox, el, labelled, legendOf, select, showError } from "mp/dom.js";
+import { rowsOf } from "mp/saving.js";
 
 /** @import { ImageSet } from "mp/buffers.js" */
 /** @import { Palette } from "mp/colors.js" */
@@ -13,6 +14,9 @@ import { brief, checkbox, el, labelled, legendOf, showError } from "mp/dom.js";
 
 /** Cells along the longer side. */
 const CELLS = 256;
+
+/** The fields by name. @type {[string, string][]} */
+export const FIELDS = [["clearance", "obstacles repel"], ["paper", "outlines repel (eq. 3 of RRS)"], ["risk", "risk along the path"]];
 
 /** Red, green, blue and opacity of each cell: nothing where no obstacle pushes, full where the robot touches one. @param {Field} field
  * @param {[number, number, number]} color */
@@ -35,13 +39,16 @@ export class FieldLayer {
     this.dark = false;
     this.asked = 0;
     this.box = checkbox("Field that pushes snakes", false, () => this.ask());
-    this.box.title = "Where obstacles push the edges of RRS (I)";
+    this.box.title = "What pushes the edges of RRS and paths that are relaxed (I)";
+    this.name = select(FIELDS, "clearance", () => this.ask());
+    this.nameRow = labelled("Which field", this.name);
     this.range = el("input", { type: "text", value: "3%", size: 6, onchange: () => this.ask() });
     this.rangeRow = labelled("Range of the field", this.range);
     this.legend = el("p", { class: "legend", role: "status" });
     const { viewer } = workbench;
     viewer.addLayer(this);
-    viewer.panels?.addShown(this.box, this.rangeRow, this.legend);
+    viewer.panels?.addShown(this.box, this.nameRow, this.rangeRow, this.legend);
+    viewer.onpath.push(() => this.name.value === "risk" && this.ask());
     workbench.onopened.push(() => this.reset());
     workbench.onleft.push(() => this.reset());
     viewer.keys.push((e) => this.key(e));
@@ -59,7 +66,7 @@ export class FieldLayer {
   async ask() {
     const { session, viewer, ends } = this.workbench;
     const wanted = this.wanted && !this.box.hidden;
-    this.rangeRow.hidden = this.legend.hidden = !wanted;
+    this.nameRow.hidden = this.rangeRow.hidden = this.legend.hidden = !wanted;
     this.field = null;
     this.legend.textContent = "";
     viewer.changed();
@@ -67,7 +74,10 @@ export class FieldLayer {
     if (!wanted) return;
     try {
       const range = this.range.value.trim() || null;
-      const reply = /** @type {any} */ (await session.request({ do: "field", row: ends.request().start, range, cells: CELLS }));
+      const field = this.name.value;
+      const shown = field === "risk" ? viewer.scene.paths[viewer.settings.path] : null;
+      const path = shown ? { path: rowsOf(shown, viewer.scene.columns.length) } : {};
+      const reply = /** @type {any} */ (await session.request({ do: "field", field, row: ends.request().start, range, cells: CELLS, ...path }));
       if (asked !== this.asked) return;
       this.field = reply;
       const words = `From no force to an obstacle that is touched. Obstacles push within ${brief(reply.range)} m.`;

@@ -2,6 +2,7 @@
 
 import { brief, button, checkbox, el, labelled, section, select, showError, slider } from "mp/dom.js";
 import { isTyping } from "mp/controls.js";
+import { FIELDS } from "mp/field.js";
 import { Runs, ended } from "mp/runs.js";
 import { readPath } from "mp/scene.js";
 
@@ -20,7 +21,7 @@ const HELP = [
   ["V", "show where edges fail: motions that were not free"],
 ];
 /** @type {[string, string][]} */
-const FINISH = [["shorten", "shorten it"], ["relax", "relax it away from obstacles"], ["as-found", "leave it as found"]];
+const FINISH = [["shorten", "shorten it"], ["relax", "relax it by a snake"], ["as-found", "leave it as found"]];
 
 /** A field for a number that may be left empty. @param {number | null} value @param {Record<string, string | number>} [more] */
 const numberField = (value, more = {}) => el("input", { type: "number", min: 0, value: value ?? "", placeholder: "no limit", ...more });
@@ -81,13 +82,16 @@ export class PlanningPanel {
     this.time = numberField(request.budget.time_s, { step: "any" });
     this.iterations = numberField(request.budget.iterations, { step: 1 });
     this.nodes = numberField(request.budget.nodes, { step: 1 });
-    this.finish = select(FINISH, request.finish, () => {});
+    this.field = select(FIELDS, request.field, () => {});
+    const fieldRow = labelled("In which field", this.field);
+    fieldRow.hidden = request.finish !== "relax";
+    this.finish = select(FINISH, request.finish, (value) => (fieldRow.hidden = value !== "relax"));
     this.first = checkbox("stop at the first path", request.first_only, () => {});
     const search = section("How to search", false, [
       labelled("Metric", this.metric), labelled("Motion check", this.motion), stepRow,
       labelled("Seed", this.seed), this.next,
       labelled("Most seconds", this.time), labelled("Most iterations", this.iterations), labelled("Most nodes", this.nodes),
-      labelled("The path found", this.finish), this.first]);
+      labelled("The path found", this.finish), fieldRow, this.first]);
     this.panel = section("Plan", true, [
       labelled("Planner", this.planner), this.summary, section("Settings of the planner", false, [this.parameters]),
       section("Around the planner", false, this.metas.map(({ box }) => box)), search, ...this.runControls()]);
@@ -149,6 +153,7 @@ export class PlanningPanel {
       budget: { time_s: limit(this.time), iterations: limit(this.iterations), nodes: limit(this.nodes) },
       seed: limit(this.seed) ?? 0,
       finish: value(this.finish),
+      field: value(this.field),
       first_only: isOn(this.first),
     };
   }

@@ -35,7 +35,7 @@ export function deliver(reply, folder) {
 }
 
 /** A path's configurations, each as a list of numbers. @param {Path} path @param {number} columns @returns {number[][]} */
-const rowsOf = (path, columns) => path.written ?? Array.from({ length: path.count }, (_, i) => [...path.rows.subarray(i * columns, (i + 1) * columns)]);
+export const rowsOf = (path, columns) => path.written ?? Array.from({ length: path.count }, (_, i) => [...path.rows.subarray(i * columns, (i + 1) * columns)]);
 
 /** A file name made of a scene's name. @param {string} name */
 const fileName = (name) => name.replace(/[^\p{L}\p{N}._-]+/gu, "-").replace(/^[.-]+|[.-]+$/g, "") || "scene";

@@ -68,6 +68,7 @@ export class Viewer {
     /** @type {Layer[]} */ this.layers = [];
     /** Called with each key that no control has used; they return whether they used it. @type {((e: KeyboardEvent) => boolean)[]} */ this.keys = [];
     /** Called after each drawing. @type {(() => void)[]} */ this.ondraw = [];
+    /** Called when another path is shown. @type {(() => void)[]} */ this.onpath = [];
     /** Called when a body is chosen, in the picture or in the list; −1 when none is. @type {((body: number, role: Role, index: number) => void)[]} */ this.onselect = [];
     /** Called after another scene is shown. @type {((scene: Scene) => void)[]} */ this.onshow = [];
     /** @type {Stats} */ this.stats = { drawCalls: 0, triangles: 0, milliseconds: 0, frames: 0 };
@@ -222,6 +223,7 @@ export class Viewer {
   choosePath(/** @type {number} */ path) {
     this.settings.path = path;
     this.timeline?.showPath();
+    for (const listener of this.onpath) listener();
     this.changed();
   }
   /** Shows a second path beside the chosen one. @param {number} path −1 for none */

@@ -11,7 +11,7 @@ use mp_cspace::shorten::{Effort, simplify};
 use mp_cspace::{Cancel, Path, Rn, Rng, least_clearance};
 use mp_robot::DiscRobot;
 use mp_scenes::source::disc_scenes::DiscScene;
-use mp_snake::risk::{MotionNoise, RangeNoise, landscape};
+use mp_snake::risk::{MotionNoise, RangeNoise, RiskMaps};
 use mp_snake::{Grid, Params, Repulsion, With, relax};
 use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
@@ -143,9 +143,6 @@ pub(super) fn planned_and_followed(scene: &DiscScene, kind: &str, trial: u64) ->
     Ok(follow(&scene.robot().into_error()?, &space, &path, trial))
 }
 
-/// The noise of the wheels of a step, as the landscape of risk has it, and that of the laser.
-const MOTION: MotionNoise = MotionNoise { turn: 0.05, turn_per_turn: 0.2, way: 0.01, way_per_way: 0.08 };
-const LASER: RangeNoise = RangeNoise { constant: 0.02, per_metre: 0.01 };
 /// The size of a cell of the landscape, and the length of the steps of the path in it, metres.
 const CELL: f64 = 0.02;
 const STRIDE: f64 = 0.25;
@@ -159,21 +156,19 @@ const PACE: f64 = 1e-3;
 const STEPS: u32 = 400;
 
 /// The landscape of risk of a path (Fig. 1): the probability of passing each place, times that of hitting an obstacle there.
-pub(super) fn risk_of(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<[Grid; 3]> {
+pub(super) fn risk_of(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<RiskMaps> {
     let cells = prepared.scene.size.map(|s| (s / CELL).round() as usize).into();
     let seen = Grid::from_fn([0.0; 2], CELL, cells, |p| {
         f64::from(u8::from(prepared.robot.signed_clearance(&p) <= 0.0))
     });
-    let occupied = LASER.occupancy(&seen.into_error()?, 1.0).into_error()?;
+    let (wheels, laser) = (MotionNoise::default(), RangeNoise::default());
     let steps = path.resampled(space, STRIDE).into_error()?;
-    let passing = MOTION.checked().into_error()?.envelope(&steps, &occupied);
-    let risk = landscape(&passing, &occupied).into_error()?;
-    Ok([passing, occupied, risk])
+    RiskMaps::of_path(&steps, &seen.into_error()?, wheels, laser).into_error()
 }
 
 /// The path, relaxed by a snake that obstacles and risk push.
 fn relaxed(prepared: &PreparedWorld, space: &Rn<2>, path: &Path<Point>) -> Result<Path<Point>> {
-    let [.., risk] = risk_of(prepared, space, path)?;
+    let risk = risk_of(prepared, space, path)?.risk;
     let most = risk.values().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let repulsion = Repulsion::new(&prepared.map, RANGE).into_error()?;
     let mut field = With::new(repulsion, risk.map(|v| v / most), WEIGHT).into_error()?;

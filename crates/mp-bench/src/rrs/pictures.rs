@@ -9,8 +9,9 @@ use mp_cspace::shorten::reduce;
 use mp_cspace::{Cancel, Iterations, Outcome, Planner, Rn, Rng, least_clearance};
 use mp_render::{Drawing, Item};
 use mp_scenes::source::disc_scenes::{disc_scene, tight};
+use mp_snake::risk::RiskMaps;
 use mp_snake::{Bending, Grid, Params, Repulsion, relax};
-use nalgebra::{Point2, Vector2};
+use nalgebra::Point2;
 use std::cell::Cell;
 
 const WORLD: &str = "high";
@@ -20,9 +21,6 @@ const SIZE: (usize, usize) = (1100, 720);
 const STRAIGHT: u32 = 0x9aa5b1;
 const BENT: u32 = 0x1f77b4;
 const PATH: u32 = 0xc77d0a;
-/// The number of shades of the field, and the colour of the strongest.
-const SHADES: u32 = 24;
-const HOT: [f64; 3] = [178.0, 24.0, 43.0];
 
 /// Draws all pictures. Always true.
 pub(super) fn run(lab: &Lab) -> Result<bool> {
@@ -57,40 +55,11 @@ fn field(prepared: &PreparedWorld) -> Drawing {
     drawing
 }
 
-/// Draws a map below all else, from white where `part` of its value is zero to red where it is 1: one item for each shade,
-/// made of runs of cells.
+/// Draws a map below all else, from white where `part` of its value is zero to red where it is 1.
 fn shade(drawing: &mut Drawing, map: &Grid, part: impl Fn(f64) -> f64) {
-    let (width, height) = map.size();
-    let shade = |i: usize| (part(map.values()[i]).clamp(0.0, 1.0) * f64::from(SHADES)).round() as u32;
-    let corner = |column: usize, row: usize| {
-        Point2::from(map.origin() + Vector2::new(column as f64, row as f64) * map.cell())
-    };
-    let mut rings = vec![Vec::new(); SHADES as usize + 1];
-    for row in 0..height {
-        let mut begin = 0;
-        for column in 1..=width {
-            let value = shade(row * width + begin);
-            if column < width && shade(row * width + column) == value {
-                continue;
-            }
-            let (low, high) = (corner(begin, row), corner(column, row + 1));
-            rings[value as usize].push(vec![
-                low,
-                Point2::new(high.x, low.y),
-                high,
-                Point2::new(low.x, high.y),
-            ]);
-            begin = column;
-        }
-    }
-    let colour = |value: usize| {
-        let part = value as f64 / f64::from(SHADES);
-        HOT.iter().fold(0, |rgb, c| rgb << 8 | (255.0 + (c - 255.0) * part) as u32)
-    };
-    let shades = rings.into_iter().enumerate().skip(1).filter(|(_, r)| !r.is_empty());
-    drawing
-        .items
-        .splice(0..0, shades.map(|(value, rings)| Item::area(rings, colour(value))).collect::<Vec<_>>());
+    let parts: Vec<f64> = map.values().iter().map(|value| part(*value)).collect();
+    let shades = Item::shades(map.origin().into(), map.cell(), map.size().0, &parts);
+    drawing.items.splice(0..0, shades);
 }
 
 /// Fig. 2 d: a whole path, and the same relaxed by a snake, above the field.
@@ -135,7 +104,7 @@ fn risk() -> Result<Vec<(String, Drawing)>> {
         ("risk-occupied", "Where obstacles are", "probability that the robot touches an obstacle here"),
         ("risk", "The landscape of risk", "the product of both: what pushes snakes away"),
     ];
-    let maps = risk_of(&prepared, &space, &path)?;
+    let RiskMaps { passing, occupied, risk } = risk_of(&prepared, &space, &path)?;
     let draw = |((name, title, subtitle), map): ((&str, &str, &str), Grid)| {
         let most = map.values().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let mut drawing = world(&prepared, title, subtitle.into());
@@ -144,7 +113,7 @@ fn risk() -> Result<Vec<(String, Drawing)>> {
         drawing.items.push(Item::lines(vec![line], 0x2b3440, 1.5));
         (name.to_owned(), drawing)
     };
-    Ok(titles.into_iter().zip(maps).map(draw).collect())
+    Ok(titles.into_iter().zip([passing, occupied, risk]).map(draw).collect())
 }
 
 /// The tree when the path was found: straight edges, bent ones, and the path.

@@ -2,13 +2,17 @@
 
 mod check;
 mod space;
+mod steer;
 mod system;
 
 use super::{Body, Column, End, Measured, RobotKind, Touch, no_metric};
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
-use mp_cspace::{AnyFlow, Demand, Embed, InputSystem, Space, StateVector};
+use mp_cspace::shorten::Effort;
+use mp_cspace::{
+    AnyFlow, Demand, Embed, InputSystem, MotionValidity, Path, Rng, Space, StateVector,
+};
 use mp_geom::Aabb;
 use mp_io::{Drive, Driven};
 use nalgebra::{DVector, Isometry3, Point3};
@@ -79,6 +83,7 @@ impl<K: SpeedBound> DrivenScene<K> {
             numbers: numbers.len(),
             velocities,
             inputs: inputs.len(),
+            timed: false,
         };
         let space = DrivenSpace::new(robot.space().clone(), system);
         let mut start = space.at_rest(robot.start().clone());
@@ -187,6 +192,15 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     }
     fn default_planner(&self) -> &'static str {
         "rsrt"
+    }
+    fn shortened(
+        &self,
+        path: &Path<DVector<f64>>,
+        check: &mut dyn MotionValidity<DVector<f64>>,
+        effort: Effort,
+        rng: &mut Rng,
+    ) -> Option<Path<DVector<f64>>> {
+        Some(self.shortened_path(path, check, effort, rng))
     }
 
     fn checker(&self) -> &DrivenChecker<K> {

@@ -2,10 +2,14 @@
 
 use crate::worlds::{Judge, Point, World, square};
 use mp_cspace::testkit::check_local_planner;
-use mp_cspace::{Direction, Extension, KnownFree, LocalPlanner, MotionValidity, Path, Reach, Rng, Space};
+use mp_cspace::{
+    Direction, Extension, FineDiscrete, KnownFree, LocalPlanner, MotionValidity, Path, Reach, Resolution, Rn,
+    Rng, Space,
+};
 use mp_snake::{
     Bending, Bulged, Grid, Params, Repulsion, Snake, SnakeCounters, SnakePlanner, blurred, relax,
 };
+use nalgebra::Vector2;
 use rand::RngExt;
 
 /// Both ways round, steps and all the way, bent in each way, in ten thousand worlds. Snakes bend motions that no bulge
@@ -197,4 +201,25 @@ fn the_local_planner_keeps_the_contract() {
     check_local_planner(&space, &mut local, 0.6, 1);
     let done = local.counters();
     assert!(done.bent() > 0 && done.straight > 0 && done.not_tried > 0 && done.iterations > 0, "{done:?}");
+}
+
+/// A narrow valley, in which steps as long as the range of repulsion overshoot: the pace becomes as short as the field needs.
+#[test]
+fn the_pace_follows_the_field() {
+    let space = Rn::<2>::new([-1.0; 2], [1.0; 2]).unwrap();
+    let path = Path::straight(vec![Vector2::new(-1.0, 0.0), Vector2::new(1.0, 0.0)]);
+    let bed = |x: f64| 0.03 * (0.5 * std::f64::consts::PI * x).cos();
+    for width in [0.05, 0.01, 0.005] {
+        let mut field = |q: &Vector2<f64>, gradient: &mut [f64]| {
+            let off = (q.y - bed(q.x)) / width;
+            gradient.copy_from_slice(&[0.0, off / width]);
+            0.5 * off * off
+        };
+        let params = Params { membrane: 0.0, plate: 0.0, iterations: 200, ..Params::for_range(0.15).unwrap() };
+        let mut check =
+            FineDiscrete::new(&space, |_: &Vector2<f64>| true, Resolution::Length(0.01)).unwrap();
+        let relaxed = relax(&space, &mut check, &mut field, &path, params, 1.2).unwrap();
+        let off = relaxed.path.states.iter().map(|q| (q.y - bed(q.x)).abs()).fold(0.0, f64::max);
+        assert!(relaxed.is_better() && off < 0.3 * width, "{width}: {off} {:?}", relaxed.energy);
+    }
 }

@@ -262,7 +262,7 @@ impl Desk {
         Ok(reply.with("path", path).with("faults", verdict.faults).with("written", written))
     }
 
-    /// The field that pushes snakes.
+    /// A field that pushes snakes.
     fn field(&self, request: &Message) -> Answer {
         let scene = &self.opened()?.scene;
         let row = match request.head.get("row") {
@@ -270,7 +270,11 @@ impl Desk {
             Some(_) => row_of(&request.head, "row")?,
         };
         let range = request.head.get("range").and_then(Value::as_str);
-        let image = scene.field(&row, range, number_of(&request.head, "cells")? as usize)?;
+        let name = request.head.get("field").and_then(Value::as_str).unwrap_or("clearance");
+        let path = request.head.contains_key("path").then(|| rows_of(&request.head, "path")).transpose()?;
+        let path = path.map(|rows| PathRows { format: scene.path_format(), columns: scene.columns(), rows });
+        let cells = number_of(&request.head, "cells")? as usize;
+        let image = scene.field(&name.parse()?, &row, path.as_ref(), range, cells)?;
         let energy: Vec<f32> = image.energy.iter().map(|energy| *energy as f32).collect();
         let mut reply = Message::default();
         let energy = reply.array(&energy);

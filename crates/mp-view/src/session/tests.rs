@@ -306,7 +306,7 @@ fn fields_are_sent() {
     let page = opened("rrs-low");
     let reply = page.ask(json!({"do": "field", "cells": 50, "range": "5%"}));
     let scene = Scene::find("rrs-low").unwrap();
-    let image = scene.field(&scene.start(), Some("5%"), 50).unwrap();
+    let image = scene.field(&mp_plan::RelaxField::Clearance, &scene.start(), None, Some("5%"), 50).unwrap();
     let energy: Vec<f32> = numbers_of(&reply, &reply.head["energy"]);
     assert!(energy.iter().zip(&image.energy).all(|(a, b)| *a == *b as f32));
     assert_eq!((energy.len(), &reply.head["width"]), (image.energy.len(), &json!(image.width)));

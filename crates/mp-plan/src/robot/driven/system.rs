@@ -23,6 +23,8 @@ pub(super) struct System {
     pub(super) velocities: usize,
     /// How many numbers an input has.
     pub(super) inputs: usize,
+    /// Whether the last number of a configuration is the time.
+    pub(super) timed: bool,
 }
 
 /// The parts of a state.
