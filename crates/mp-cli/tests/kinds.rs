@@ -152,6 +152,8 @@ fn planners_that_cannot_do_it_say_why_and_which_can() {
     for (scene, planner, why, other) in [
         ("crossing", "rrt-connect", "backward", "rrt-star"),
         ("crossing", "prm", "both directions", "rrt"),
+        ("crossing", "rsrt", "moves robots by inputs", "rrt-star"),
+        ("crossing", "or-rrt-inputs", "moves robots by inputs", "velocities"),
         ("parking", "rrt", "moves by inputs", "rsrt"),
         ("parking", "or-rrt-star", "moves by inputs", "rc-rrt"),
         ("parking", "visibility-prm", "both directions", "rrt-inputs"),

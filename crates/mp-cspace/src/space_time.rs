@@ -115,6 +115,16 @@ impl<C: Space> Space for SpaceTime<C> {
     fn contains(&self, q: &Self::State) -> bool {
         self.positions.contains(&q.0) && (0.0..=self.horizon).contains(&q.1)
     }
+    /// The last number of a velocity is that of time: 1 for motions as they happen.
+    fn moved(&self, from: &Self::State, velocity: &[f64], time: f64) -> Option<Self::State> {
+        let (clock, velocity) = velocity.split_last()?;
+        Some((self.positions.moved(&from.0, velocity, time)?, from.1 + clock * time))
+    }
+    fn velocity_into(&self, from: &Self::State, to: &Self::State, out: &mut [f64]) -> bool {
+        let Some((clock, velocity)) = out.split_last_mut() else { return false };
+        *clock = to.1 - from.1;
+        self.positions.velocity_into(&from.0, &to.0, velocity)
+    }
 }
 
 /// Factors: those of the positions, then time, in seconds.

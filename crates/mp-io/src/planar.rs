@@ -238,7 +238,7 @@ impl PlanarFile {
                 if names.len() == 2 { "x and y: a disc does not turn" } else { "x, y and the angle" };
             Err(source.error(&q.span(), message).expected(expected))
         };
-        let motion = motion.read(&source, state)?;
+        let motion = motion.read(&source, driven.is_some() && !moving.is_empty(), state)?;
         let goals = motion.goals.iter().enumerate().map(|(i, goal)| {
             let parts = goal.parts("the goal", &state_names, names.len(), motion.tolerance);
             let place = motion.places.goal(i);
@@ -249,7 +249,7 @@ impl PlanarFile {
         let obstacles = obstacle.into_iter().enumerate().map(|(i, o)| entry(&source, i, o));
         let moving = moving.into_iter().enumerate().map(|(i, m)| moving_entry(&source, i, m));
         let moving: Vec<PlanarMoving> = moving.collect::<Result<_, _>>()?;
-        check_timing(&source, moving.len(), driven.is_some(), motion.timing.is_some(), &motion.places)?;
+        check_timing(&source, moving.len(), motion.timing.is_some(), &motion.places)?;
         Ok(Self {
             walls,
             bounds,
@@ -426,15 +426,10 @@ fn check_reachable(
 fn check_timing(
     source: &TomlText<'_>,
     moving: usize,
-    driven: bool,
     timed: bool,
     places: &MotionPlaces,
 ) -> Result<(), Error> {
     match (moving, timed, &places.speed) {
-        (1.., _, _) if driven => {
-            let message = "obstacles move, and the robot moves by inputs: this is not planned here";
-            Err(source.error(&places.start, message).expected("`[[moving]]`, or a kind of robot, not both"))
-        }
         (1.., false, _) => {
             let message = "obstacles move, and the robot has no speed";
             Err(source.error(&places.start, message).expected("`speed = METRES_PER_SECOND` in [motion]"))

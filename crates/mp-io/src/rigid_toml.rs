@@ -1,5 +1,6 @@
 //! Rigid bodies among meshes in TOML: obstacles that move, and goals that leave something free.
 
+use crate::drive::{DriveTable, Driven};
 use crate::error::Error;
 use crate::files::{Files, MAX_TEXT_BYTES, decode, stem};
 use crate::problem::{Body, PlacedBody, RigidProblem, SpaceKind};
@@ -8,6 +9,7 @@ use crate::toml_problem::{GoalPart, MotionTable, Timing, TomlText, timed_rows};
 use mp_geom::{Aabb, TriMesh, pose_from_six};
 use nalgebra::Point3;
 use serde::Deserialize;
+use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
@@ -16,6 +18,8 @@ const GUIDE: &str = "the format is described in docs/formats/rigid-problem.md";
 
 /// The names of the numbers of a configuration, in space and in the plane.
 const NAMES: [&str; 6] = ["x", "y", "z", "alpha", "beta", "gamma"];
+/// The degrees of freedom of a robot that moves by inputs.
+const DEGREES: [&str; 6] = ["x", "y", "z", "turn_x", "turn_y", "turn_z"];
 /// The numbers that are not zero in the plane.
 const IN_THE_PLANE: [usize; 3] = [0, 1, 3];
 
@@ -39,7 +43,11 @@ pub struct RigidTask {
     pub moving: Vec<RigidMoving>,
     /// When the robot moves, if there are obstacles that move.
     pub timing: Option<Timing>,
-    /// What each goal asks of each of the six numbers, at least one goal.
+    /// How the robot moves by inputs, if it does: its degrees of freedom are x, y, z, and turns about the axes of the world.
+    pub driven: Option<Driven>,
+    /// Its velocity at the start, one number for each degree of freedom; empty when it is at rest.
+    pub velocity: Vec<f64>,
+    /// What each goal asks of each of the six numbers, and then of the velocities if they are part of the state; at least one goal.
     pub goals: Vec<Vec<GoalPart>>,
 }
 
@@ -64,6 +72,10 @@ struct RobotTable {
     cylinder: Option<Spanned<[f64; 2]>>,
     bounds: Option<Spanned<[[f64; 3]; 2]>>,
     planar: Option<bool>,
+    kind: Option<Spanned<String>>,
+    duration: Option<Spanned<f64>>,
+    speeds: Option<Spanned<Vec<f64>>>,
+    accelerations: Option<Spanned<Vec<f64>>>,
 }
 
 #[derive(Deserialize)]
@@ -101,6 +113,14 @@ impl RigidTask {
         let robot = robot.into_inner();
         let planar = robot.planar.unwrap_or(false);
         let mut figures = Figures::new(files, path);
+        let table = DriveTable {
+            kind: robot.kind,
+            duration: robot.duration,
+            speeds: robot.speeds,
+            accelerations: robot.accelerations,
+            ..DriveTable::default()
+        };
+        let driven = driven(&source, &robot_span, table, planar)?;
         let table = ObstacleTable {
             name: Some("robot".to_owned()),
             mesh: robot.mesh,
@@ -109,7 +129,7 @@ impl RigidTask {
             cylinder: robot.cylinder,
             pose: None,
         };
-        let body = entry(&source, 0, robot_span, table)?;
+        let body = entry(&source, 0, robot_span.clone(), table)?;
         let (from, mesh) = figures.mesh(&source, &body)?;
         let robot_body = Body { name: body.name, file: from, mesh };
 
@@ -138,21 +158,27 @@ impl RigidTask {
         let own: Vec<usize> = if planar { IN_THE_PLANE.to_vec() } else { (0..6).collect() };
         let names: Vec<String> = own.iter().map(|&i| NAMES[i].to_owned()).collect();
         let numbers = names.join(", ");
+        let mut state_names = names.clone();
+        if let Some(driven) = &driven {
+            let degrees = driven.state_names(&DEGREES.map(str::to_owned));
+            state_names.extend_from_slice(&degrees[DEGREES.len()..]);
+        }
         let check = |what: &str, q: &Spanned<Vec<f64>>| {
             source.check(what, q.get_ref(), &q.span())?;
-            if q.get_ref().len() == own.len() {
+            if [own.len(), state_names.len()].contains(&q.get_ref().len()) {
                 return Ok(());
             }
             let message = format!("{what} has {} numbers", q.get_ref().len());
             Err(source.error(&q.span(), message).expected(format!("{}: {numbers}", own.len())))
         };
-        let motion = motion.read(&source, check)?;
-        if let Some(place) = &motion.places.tolerance {
+        let by_inputs = driven.is_some();
+        let motion = motion.read(&source, by_inputs && !movers.is_empty(), check)?;
+        if let Some(place) = motion.places.tolerance.as_ref().filter(|_| !by_inputs) {
             let message = "only robots that move by inputs need a tolerance";
             return Err(source.error(place, message).expected("intervals in the goal: { x = [1.0, 1.2] }"));
         }
         match (movers.is_empty(), &motion.places.speed) {
-            (false, None) => {
+            (false, None) if !by_inputs => {
                 let message = "obstacles move, and the robot has no speed";
                 let expected = "`speed = METRES_PER_SECOND` in [motion]";
                 return Err(source.error(&motion.places.start, message).expected(expected));
@@ -173,9 +199,16 @@ impl RigidTask {
         let mut goals = Vec::new();
         for (i, goal) in motion.goals.iter().enumerate() {
             let place = motion.places.goal(i);
-            let parts = goal.parts("the goal", &names, names.len(), 0.0);
-            let parts =
+            let parts = goal.parts("the goal", &state_names, names.len(), motion.tolerance);
+            let mut parts =
                 parts.map_err(|[message, expected]| source.error(place, message).expected(expected))?;
+            if by_inputs && parts.iter().any(|part| matches!(part, GoalPart::Exactly(_))) {
+                let message = "a robot that moves by inputs cannot reach these numbers exactly";
+                return Err(source
+                    .error(place, message)
+                    .expected("`tolerance = 0.1` in [motion], or intervals: { x = [1.0, 1.2] }"));
+            }
+            let velocities = parts.split_off(names.len());
             let mut all = vec![GoalPart::Exactly(0.0); 6];
             own.iter().zip(parts).for_each(|(&i, part)| all[i] = part);
             let pitch = std::f64::consts::FRAC_PI_2;
@@ -184,10 +217,11 @@ impl RigidTask {
                 GoalPart::Between([low, high]) => low < -pitch || high > pitch,
                 GoalPart::Free => false,
             };
-            if steep && goal.values().is_none() {
+            if steep && (by_inputs || goal.values().is_none()) {
                 let message = "beta of a goal that leaves something free is beyond a quarter turn";
                 return Err(source.error(place, message).expected("beta from -π/2 to π/2"));
             }
+            all.extend(velocities);
             goals.push(all);
         }
         let bounds = match &robot.bounds {
@@ -211,7 +245,8 @@ impl RigidTask {
             GoalPart::Between([low, high]) => 0.5 * (low + high),
             GoalPart::Free => start,
         };
-        let start = six(&motion.start);
+        let start = six(&motion.start[..own.len()]);
+        let velocity = motion.start[own.len()..].to_vec();
         let goal: [f64; 6] = std::array::from_fn(|i| example(&goals[0][i], start[i]));
         let problem = RigidProblem {
             name: stem(path),
@@ -222,8 +257,29 @@ impl RigidTask {
             goal: pose_from_six(goal),
             bounds,
         };
-        Ok(Self { problem, moving: movers, timing: motion.timing, goals })
+        Ok(Self { problem, moving: movers, timing: motion.timing, driven, velocity, goals })
     }
+}
+
+/// How the robot moves by inputs, if it does.
+fn driven(
+    source: &TomlText<'_>,
+    robot: &Range<usize>,
+    table: DriveTable,
+    planar: bool,
+) -> Result<Option<Driven>, Error> {
+    if let Some(kind) = table.kind.as_ref().filter(|_| planar) {
+        let message = "a mesh in the plane does not move by inputs here";
+        return Err(source
+            .error(&kind.span(), message)
+            .expected("a world of the plane with a polygon, or a mesh in space: no `planar`"));
+    }
+    let driven = table.read(source, robot, &["velocities", "accelerations"])?;
+    if let Some(driven) = &driven {
+        let wrong = driven.check(&DEGREES.map(str::to_owned));
+        wrong.map_err(|[message, expected]| source.error(robot, message).expected(expected))?;
+    }
+    Ok(driven)
 }
 
 /// Whether the table `robot` of a text has a shape.
@@ -269,7 +325,7 @@ mod tests {
             task.goals[0][..3],
             [GoalPart::Exactly(2.0), GoalPart::Between([-1.0, 1.0]), GoalPart::Free]
         );
-        assert_eq!(task.timing.unwrap().speed, 1.0);
+        assert_eq!(task.timing.unwrap().speed, Some(1.0));
         let flat =
             GOOD.replace("bounds", "planar = true\nbounds").replace("[-2, 0, 0, 0, 0, 0]", "[-2, 0, 0.5]");
         let task = load(&flat).unwrap();

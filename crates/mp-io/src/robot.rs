@@ -188,7 +188,7 @@ impl RobotFile {
             limits.push((joint, [low, high]));
         }
         let state = |what: &str, q: &Spanned<Vec<f64>>| source.check(what, q.get_ref(), &q.span());
-        let motion = motion.read(&source, state)?;
+        let motion = motion.read(&source, false, state)?;
         if let (None, Some(place)) = (&driven, &motion.places.tolerance) {
             let message = "only robots that move by inputs need a tolerance";
             let expected = "intervals in the goal: { joint = [1.0, 1.2] }, or no tolerance";

@@ -195,8 +195,8 @@ pub(crate) struct Motion {
 /// When a robot moves among obstacles that move: seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// The greatest speed of the robot, in the metric of its space per second.
-    pub speed: f64,
+    /// The greatest speed of the robot, in the metric of its space per second; `None` for a robot that moves by inputs.
+    pub speed: Option<f64>,
     /// The time of the start.
     pub start: f64,
     /// The time of the arrival; any time when it is not given.
@@ -222,10 +222,12 @@ impl MotionPlaces {
 }
 
 impl MotionTable {
-    /// The start and the goals; `check` checks the numbers of the start, and takes its name in errors.
+    /// The start and the goals; `check` checks the numbers of the start, and takes its name in errors. `by_inputs` says that the
+    /// robot moves by inputs among obstacles that move: then it has times, and no speed.
     pub(crate) fn read(
         self,
         text: &TomlText<'_>,
+        by_inputs: bool,
         check: impl Fn(&str, &Spanned<Vec<f64>>) -> Result<(), Error>,
     ) -> Result<Motion, Error> {
         check("the start", &self.start)?;
@@ -283,7 +285,7 @@ impl MotionTable {
                 *given.get_ref()
             }
         };
-        let timing = timing(text, self.speed, self.start_time, self.goal_time, self.horizon)?;
+        let timing = timing(text, by_inputs, self.speed, self.start_time, self.goal_time, self.horizon)?;
         Ok(Motion { start: self.start.into_inner(), goals, tolerance, timing, places })
     }
 }
@@ -303,15 +305,20 @@ fn interval(
     Err(text.error(span, message).expected("the lower end first"))
 }
 
-/// When the robot moves; `None` when no speed is given.
+/// When the robot moves; `None` when no speed is given to a robot that does not move by inputs.
 fn timing(
     text: &TomlText<'_>,
+    by_inputs: bool,
     speed: Option<Spanned<f64>>,
     start: Option<Spanned<f64>>,
     goal: Option<Spanned<PartText>>,
     horizon: Option<Spanned<f64>>,
 ) -> Result<Option<Timing>, Error> {
-    let Some(speed) = speed else {
+    if by_inputs && let Some(speed) = &speed {
+        let message = "the robot moves by inputs, and has a speed in [motion] too";
+        return Err(text.error(&speed.span(), message).expected("no speed here: inputs say how fast it is"));
+    }
+    if speed.is_none() && !by_inputs {
         let stray = [
             ("start_time", start.as_ref().map(Spanned::span)),
             ("goal_time", goal.as_ref().map(Spanned::span)),
@@ -324,8 +331,10 @@ fn timing(
                 Err(text.error(&span, message).expected("`speed = METRES_PER_SECOND` beside it"))
             }
         };
-    };
-    text.positive("the speed", &[*speed.get_ref()], &speed.span())?;
+    }
+    if let Some(speed) = &speed {
+        text.positive("the speed", &[*speed.get_ref()], &speed.span())?;
+    }
     let seconds = |what: &str, value: f64, span: &Range<usize>| {
         text.check(what, &[value], span)?;
         match value >= 0.0 {
@@ -363,7 +372,8 @@ fn timing(
             Some(range)
         }
     };
-    Ok(Some(Timing { speed: *speed.get_ref(), start: begin, goal: arrival, horizon: end }))
+    let speed = speed.map(Spanned::into_inner);
+    Ok(Some(Timing { speed, start: begin, goal: arrival, horizon: end }))
 }
 
 /// The timed poses of something that moves, at increasing times: each row has the time (s) and `numbers` more numbers, of which

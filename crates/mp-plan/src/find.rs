@@ -1,13 +1,15 @@
 //! Finding scenes: by file, or by the name of a shipped scene.
 
 use crate::{Error, Scene};
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 /// Endings of scene files, in the order in which they are tried.
 const ENDINGS: [&str; 5] = ["env", "txt", "cfg", "toml", "mp.json"];
 
 impl Scene {
-    /// The scene that `given` names: a file, a file without its ending, or a shipped scene. A file comes first.
+    /// The scene that `given` names: a file, a file without its ending, or a shipped scene. A file comes first. Without its ending
+    /// the file of a path (`.txt`) is not meant: it often has the name of the scene.
     ///
     /// # Errors
     /// When there is no such scene (the error suggests the most similar name), or as [`load`](Self::load).
@@ -73,7 +75,11 @@ fn locate(given: &Path) -> Result<Location, Error> {
     let shipped = Scene::shipped();
     let beside = scenes_in(given.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new(".")));
     let names = shipped.iter().copied().chain(beside.iter().map(String::as_str));
+    let text = given.with_extension("txt");
     let help = match similar(&stem, names) {
+        _ if given.extension().is_none() && is_path(&text) => {
+            format!("{} is a path: name the scene that it leads through", text.display())
+        }
         Some(name) => format!("did you mean `{name}`?"),
         None => format!("name a scene file, or one of the shipped scenes: {}", shipped.join(", ")),
     };
@@ -91,8 +97,23 @@ fn file_of(given: &Path) -> Option<PathBuf> {
         name.push(ending);
         PathBuf::from(name)
     };
-    ENDINGS.iter().map(with).find(|path| path.is_file())
+    ENDINGS.iter().map(with).find(|path| path.is_file() && !is_path(path))
 }
+
+/// Whether a text file holds a path: its first line has only numbers, and that of a scene has not.
+fn is_path(file: &Path) -> bool {
+    let named = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("txt"));
+    let read = || std::fs::File::open(file).ok();
+    named
+        && read().is_some_and(|file| {
+            let mut lines = BufReader::new(file.take(HEAD)).lines().map_while(Result::ok);
+            let first = lines.find(|line| !line.trim().is_empty()).unwrap_or_default();
+            !first.is_empty() && first.split_whitespace().all(|word| word.parse::<f64>().is_ok())
+        })
+}
+
+/// Bytes of a file that are read to find its first line.
+const HEAD: u64 = 4096;
 
 /// The names of the scenes in `folder`, sorted.
 fn scenes_in(folder: &Path) -> Vec<String> {

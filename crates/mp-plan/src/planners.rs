@@ -1,6 +1,7 @@
 //! Planners by name: of trees, with meta-planners or without, and of roadmaps.
 
 use crate::{Error, RobotKind, roadmaps};
+use mp_cspace::Demand;
 use mp_cspace::registry::{PlannerInfo, Settings};
 use std::fmt;
 
@@ -70,13 +71,23 @@ impl PlannerKind {
             Self::Roadmap(info) => info,
         };
         let demands = kind.demands();
-        let Some(reason) = demands.iter().find_map(|demand| info.reason_against(*demand)) else {
-            return Ok(());
+        let by_inputs = demands.contains(&Demand::Inputs);
+        let able = |info: &&PlannerInfo| {
+            demands.iter().all(|demand| info.can(*demand)) && (by_inputs || !info.can(Demand::Inputs))
         };
-        let able = |info: &&PlannerInfo| demands.iter().all(|demand| info.can(*demand));
-        let names: Vec<_> = planners().filter(able).map(|info| info.name).collect();
+        let names = || planners().filter(able).map(|info| info.name).collect::<Vec<_>>().join(", ");
+        let Some(reason) = demands.iter().find_map(|demand| info.reason_against(*demand)) else {
+            if demands.is_empty() || able(&info) {
+                return Ok(());
+            }
+            let why = "it moves robots by inputs, and the file says nothing of those of this robot";
+            return Err(Error::new(format!("{self} cannot plan for {}: {why}", kind.name())).help(format!(
+                "say how the robot moves, such as `kind = \"velocities\"`, or take one of: {}",
+                names()
+            )));
+        };
         Err(Error::new(format!("{self} cannot plan for {}: {reason}", kind.name()))
-            .help(format!("take one of: {}", names.join(", "))))
+            .help(format!("take one of: {}", names())))
     }
 
     pub(crate) fn is_roadmap(&self) -> bool {

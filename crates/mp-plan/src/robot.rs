@@ -9,6 +9,7 @@ mod tuples;
 mod vectors;
 
 pub use arm::{ArmScene, FloatingScene, LinkedScene, LinkedSpace};
+pub(crate) use driven::greatest_speed;
 pub use driven::{DrivenScene, SpeedBound};
 pub use moving::{MovingScene, WithMoving};
 pub use planar::{PlanarBody, PlanarScene};

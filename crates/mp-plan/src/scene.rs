@@ -1,7 +1,7 @@
 //! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
-use crate::robot::{PlanarScene, RigidScene, RigidSpace};
+use crate::robot::{DrivenScene, PlanarScene, RigidScene, RigidSpace, greatest_speed};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
     Request, RobotKind, Sweep, Track, Verdict,
 };
 use mp_geom::{Aabb, TriMesh, six_from_pose};
-use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
+use mp_io::{DocumentShape, Driven, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
@@ -95,7 +95,7 @@ impl Scene {
     ///
     /// # Errors
     /// When the bounds of the position are empty, or a mesh, a pose or a time is not valid.
-    pub fn from_task(task: RigidTask) -> Result<Self, Error> {
+    pub fn from_task(mut task: RigidTask) -> Result<Self, Error> {
         fn made<M: RigidSpace>(task: RigidTask) -> Result<Scene, Error> {
             let scene = RigidScene::<M>::new(task.problem)?.with_goals(task.goals);
             Ok(match &task.timing {
@@ -103,10 +103,21 @@ impl Scene {
                 None => Scene::new(scene),
             })
         }
+        fn driven(mut task: RigidTask, driven: &Driven) -> Result<Scene, Error> {
+            let places = task.goals.iter().map(|goal| goal[..6].to_vec()).collect();
+            let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(places);
+            let Some(timing) = &mut task.timing else {
+                return Ok(Scene::new(DrivenScene::new(scene, driven, &task.velocity, task.goals)?));
+            };
+            timing.speed = Some(greatest_speed(RobotKind::space(&scene), driven));
+            let scene = scene.among_moving(&task.moving, timing)?;
+            Ok(Scene::new(scene.driven(driven, &task.velocity, task.goals)?))
+        }
         let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
-        match task.problem.space {
-            SpaceKind::Se3 => made::<Spatial>(task),
-            SpaceKind::Se2 => made::<Planar>(task),
+        match (task.problem.space, task.driven.take()) {
+            (SpaceKind::Se3, Some(inputs)) => driven(task, &inputs),
+            (SpaceKind::Se3, None) => made::<Spatial>(task),
+            (SpaceKind::Se2, _) => made::<Planar>(task),
         }
     }
 
@@ -121,6 +132,7 @@ impl Scene {
             PlanarShape::Disc(_) => {
                 let scene = PlanarScene::<DiscRobot>::new(problem)?;
                 match driven {
+                    Some(driven) if moves => Self::new(scene.driven_among_moving(&driven)?),
                     Some(driven) => Self::new(scene.driven(&driven)?),
                     None if moves => Self::new(scene.among_moving()?),
                     None => Self::new(scene),
@@ -129,6 +141,7 @@ impl Scene {
             PlanarShape::Polygon(_) => {
                 let scene = PlanarScene::<PolygonRobot>::new(problem)?;
                 match driven {
+                    Some(driven) if moves => Self::new(scene.driven_among_moving(&driven)?),
                     Some(driven) => Self::new(scene.driven(&driven)?),
                     None if moves => Self::new(scene.among_moving()?),
                     None => Self::new(scene),

@@ -24,3 +24,21 @@ fn files_come_first_with_or_without_ending() {
     }
     assert!(Scene::find(dir.path()).unwrap_err().message().contains("is a folder"));
 }
+
+/// A path in a file of the name of a scene does not hide the scene.
+#[test]
+fn paths_do_not_hide_scenes() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(dir.path().join(name), text).unwrap();
+    let path = "\n 2 7\n-1 0.3 0.2 -0.4 0.3 0 0.35\n0.9 0.1 0 0.6 0 0 0.36\n";
+    write("own.txt", path);
+    let e = Scene::find(dir.path().join("own")).unwrap_err();
+    assert!(e.remedy().is_some_and(|help| help.contains("own.txt is a path")), "{e:?}");
+    write("own.toml", "[robot]\nbox = [1, 1, 1]\n");
+    let e = Scene::find(dir.path().join("own")).unwrap_err();
+    assert!(e.file().is_some_and(|file| file.file().ends_with("own.toml")), "{e:?}");
+    // A scene that ends in .txt is found, and a faulty one too.
+    write("wall.txt", "Rob\n");
+    let e = Scene::find(dir.path().join("wall")).unwrap_err();
+    assert!(e.file().is_some_and(|file| file.file().ends_with("wall.txt")), "{e:?}");
+}

@@ -17,6 +17,9 @@ use nalgebra::{DVector, Isometry3};
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
+/// Where the angle β of a base that floats is among the numbers of a configuration.
+const BETA: usize = 4;
+
 /// The joint values of an arm; the pose of the base comes first if it floats.
 type Configuration = DVector<f64>;
 
@@ -203,13 +206,18 @@ impl<C: LinkedSpace> LinkedScene<C> {
             {
                 return Err(fault(RobotPart::Goal(i), wrong));
             }
-            if floats && goal.values().is_none() {
-                let message = "the goal of a robot whose base floats leaves numbers open".to_owned();
-                let help = "list all of them: x, y, z, α, β, γ of the base, then the joints".to_owned();
-                return Err(fault(RobotPart::Goal(i), [message, help]));
-            }
             let goal = goal.parts("the goal", &state_names, names.len(), file.tolerance);
-            parts.push(goal.map_err(|wrong| fault(RobotPart::Goal(i), wrong))?);
+            let goal = goal.map_err(|wrong| fault(RobotPart::Goal(i), wrong))?;
+            let steep = match goal.get(BETA) {
+                Some(GoalPart::Between([low, high])) => *low < -FRAC_PI_2 || *high > FRAC_PI_2,
+                Some(GoalPart::Exactly(v)) => file.goals[i].values().is_none() && v.abs() > FRAC_PI_2,
+                _ => false,
+            };
+            if floats && steep {
+                let message = "beta of a goal that leaves something free is beyond a quarter turn".to_owned();
+                return Err(fault(RobotPart::Goal(i), [message, "give beta from -π/2 to π/2".to_owned()]));
+            }
+            parts.push(goal);
         }
         if let Some(driven) = driven {
             driven.check(&names).map_err(|wrong| fault(RobotPart::Robot, wrong))?;

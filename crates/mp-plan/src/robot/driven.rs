@@ -28,9 +28,28 @@ const ROUND_UP: f64 = 1.0 + 1e-9;
 
 /// A kind of robot that can be moved by inputs.
 pub trait SpeedBound: RobotKind<Space: Embed + 'static, State: StateVector, Checker: Debug> + Clone {
-    /// An upper bound (m/s) on the speed of any point of the robot while no degree of freedom moves faster than its rate (m/s,
-    /// rad/s).
+    /// Whether the last number of a configuration is the time (s).
+    const TIMED: bool = false;
+
+    /// An upper bound (m/s) on the speed at which any point of the robot and an obstacle come nearer while no degree of freedom
+    /// moves faster than its rate (m/s, rad/s).
     fn speed_bound(&self, rates: &[f64]) -> f64;
+
+    /// Name and unit of each degree of freedom: by default those of the numbers of a configuration, without the time.
+    fn degrees_of_freedom(&self) -> Vec<Column> {
+        let mut columns = self.columns();
+        columns.truncate(columns.len() - usize::from(Self::TIMED));
+        columns
+    }
+}
+
+/// The greatest speed of a robot moved by inputs, in the metric of its space per second.
+pub(crate) fn greatest_speed<C: Space>(space: &C, driven: &Driven) -> f64 {
+    let middle = space.unit_cube_to_state(&vec![0.5; space.dim()]);
+    let moment = 1e-3;
+    let moved = space.moved(&middle, &System::greatest_rates(&driven.drive), moment);
+    // Distances of short motions are exact but for rounding.
+    moved.map_or(f64::INFINITY, |moved| space.distance(&middle, &moved) / moment * (1.0 + 1e-6))
 }
 
 /// A robot of another kind that moves by inputs, each held for a time.
@@ -61,15 +80,17 @@ impl<K: SpeedBound> DrivenScene<K> {
         let own = robot.columns();
         let mut numbers = Vec::new();
         robot.start().write(&mut numbers);
-        let names: Vec<(String, String)> = own.iter().map(|c| (c.name.clone(), c.unit.clone())).collect();
+        let degrees = robot.degrees_of_freedom();
+        let names: Vec<(String, String)> = degrees.iter().map(|c| (c.name.clone(), c.unit.clone())).collect();
         let inputs = driven.input_names(&names);
         let velocities = match driven.drive {
-            Drive::Accelerations { .. } => own.len(),
+            Drive::Accelerations { .. } => degrees.len(),
             _ => 0,
         };
-        let mut columns = own.clone();
+        let mut columns = own;
         columns.extend(
-            own.iter()
+            degrees
+                .iter()
                 .take(velocities)
                 .map(|c| Column::new(format!("v_{}", c.name), format!("{}/s", c.unit))),
         );
@@ -83,7 +104,7 @@ impl<K: SpeedBound> DrivenScene<K> {
             numbers: numbers.len(),
             velocities,
             inputs: inputs.len(),
-            timed: false,
+            timed: K::TIMED,
         };
         let space = DrivenSpace::new(robot.space().clone(), system);
         let mut start = space.at_rest(robot.start().clone());
@@ -249,7 +270,7 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
     }
     fn details(&self) -> Vec<(String, String)> {
         let mut details = self.robot.details();
-        details.retain(|(name, _)| name != "goal is");
+        details.retain(|(name, _)| !["goal is", "speed"].contains(&name.as_str()));
         let system = &self.space.system;
         let brief = crate::brief;
         let list = |values: &[f64]| values.iter().map(|v| brief(*v)).collect::<Vec<_>>().join(" ");
@@ -324,6 +345,9 @@ impl<K: SpeedBound> RobotKind for DrivenScene<K> {
 
     fn bodies(&self) -> Vec<Body> {
         self.robot.bodies()
+    }
+    fn moving_obstacles(&self) -> usize {
+        self.robot.moving_obstacles()
     }
     fn poses(&self, q: &DVector<f64>) -> Vec<Isometry3<f64>> {
         self.robot.poses(&self.parts(q).q)

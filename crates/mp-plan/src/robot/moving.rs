@@ -1,13 +1,13 @@
 //! Robots among obstacles that move: time is a dimension of planning.
 
 use super::vectors::OnVectors;
-use super::{Body, Checker, Column, End, Measured, Mismatch, RobotKind, Touch, no_metric};
+use super::{Body, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKind, SpeedBound, Touch, no_metric};
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{AsVectors, Clearance, Demand, Embed, MotionValidity, Space, StateVector};
 use mp_geom::Aabb;
-use mp_io::Timing;
+use mp_io::{Driven, Timing};
 use nalgebra::{DVector, Isometry3, Point3};
 use std::fmt::Debug;
 
@@ -32,6 +32,8 @@ pub trait WithMoving: RobotKind<Space: Embed + 'static, State: StateVector> + Cl
         space: &'c SpaceTime<Self::Space>,
         among: &Self::Among,
     ) -> Result<Self::AmongVerifier<'c>, Error>;
+    /// The speed (m/s) that no point of a moving obstacle ever exceeds.
+    fn obstacle_speed(among: &Self::Among) -> f64;
     /// The poses of the moving obstacles at a time.
     fn obstacle_poses(among: &Self::Among, time: f64) -> Vec<Isometry3<f64>>;
     /// The indices of the moving obstacles that the robot touches.
@@ -56,18 +58,24 @@ type Moment<K> = (<K as RobotKind>::State, f64);
 
 impl<K: WithMoving> MovingScene<K> {
     /// The robot of `still` among its obstacles, and also among `obstacles`, each with the name and shape of a body, which move
-    /// as `among` knows. Its goals are those of `still`, at a time as `timing` says.
+    /// as `among` knows, the last of them until the time `last` (s). Its goals are those of `still`, at a time as `timing` says.
     ///
     /// # Errors
-    /// When the times or the speed are not valid.
+    /// When the times or the speed are not valid, or there is no speed.
     pub fn new(
         still: K,
         among: K::Among,
         obstacles: Vec<Body>,
         timing: &Timing,
-        horizon: f64,
+        last: f64,
     ) -> Result<Self, Error> {
-        let space = AsVectors(SpaceTime::new(still.space().clone(), horizon, timing.speed)?);
+        let Some(speed) = timing.speed else {
+            return Err(Error::new("obstacles move, and the robot has no speed").help("say how fast it is"));
+        };
+        // Time to wait until nothing moves, and then to go around everything.
+        let horizon =
+            timing.horizon.unwrap_or(last.max(timing.start) + 2.0 * still.space().extent() / speed);
+        let space = AsVectors(SpaceTime::new(still.space().clone(), horizon, speed)?);
         let start = vector::<K>((still.start().clone(), timing.start));
         let exactly = |q: &K::State| still.row(q).into_iter().map(GoalPart::Exactly).collect();
         let parts =
@@ -103,6 +111,37 @@ fn vector<K: WithMoving>(moment: Moment<K>) -> DVector<f64> {
 fn with_time(mut goals: Vec<Vec<GoalPart>>, time: GoalPart) -> Vec<Vec<GoalPart>> {
     goals.iter_mut().for_each(|goal| goal.push(time));
     goals
+}
+
+impl<K: WithMoving<Checker: Debug> + SpeedBound> MovingScene<K> {
+    /// The same robot among the same obstacles, moved by inputs. It starts with `velocity`, or at rest when that is empty. `goals`
+    /// say what is asked of each number of the configuration without the time, then of the velocities.
+    ///
+    /// # Errors
+    /// When the robot cannot move so.
+    pub fn driven(
+        self,
+        driven: &Driven,
+        velocity: &[f64],
+        mut goals: Vec<Vec<GoalPart>>,
+    ) -> Result<DrivenScene<Self>, Error> {
+        let own = self.still.columns().len();
+        for (goal, timed) in goals.iter_mut().zip(&self.goal_parts) {
+            goal.insert(own.min(goal.len()), timed.last().copied().unwrap_or(GoalPart::Free));
+        }
+        DrivenScene::new(self, driven, velocity, goals)
+    }
+}
+
+impl<K: WithMoving<Checker: Debug> + SpeedBound> SpeedBound for MovingScene<K> {
+    const TIMED: bool = true;
+
+    fn speed_bound(&self, rates: &[f64]) -> f64 {
+        self.still.speed_bound(rates) + K::obstacle_speed(self.among.inner())
+    }
+    fn degrees_of_freedom(&self) -> Vec<Column> {
+        self.still.degrees_of_freedom()
+    }
 }
 
 impl<K: WithMoving> RobotKind for MovingScene<K> {

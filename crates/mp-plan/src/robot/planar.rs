@@ -2,7 +2,7 @@
 
 use super::{
     Body, BodyShape, Checker, Column, Counted, DrivenScene, End, Measured, MovingScene, Queries, RobotKind,
-    SpeedBound, Touch, WithMoving, hints_and_gradient, no_metric,
+    SpeedBound, Touch, WithMoving, greatest_speed, hints_and_gradient, no_metric,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::roadmaps::RoadmapState;
@@ -107,6 +107,9 @@ impl<B: PlanarBody> WithMoving for PlanarScene<B> {
         among: &AmongMovingAreas<B>,
     ) -> Result<Self::AmongVerifier<'c>, Error> {
         Ok(B::moving_verifier(space, among))
+    }
+    fn obstacle_speed(among: &AmongMovingAreas<B>) -> f64 {
+        among.greatest_speed()
     }
     fn obstacle_poses(among: &AmongMovingAreas<B>, time: f64) -> Vec<Isometry3<f64>> {
         among.poses(time).collect()
@@ -284,9 +287,12 @@ impl<B: PlanarBody> PlanarScene<B> {
     /// # Errors
     /// When the problem does not say how fast the robot is, or a shape or a time is not valid.
     pub fn among_moving(self) -> Result<MovingScene<Self>, Error> {
-        let Some(timing) = self.problem.file.timing.clone() else {
+        let Some(mut timing) = self.problem.file.timing.clone() else {
             return Err(Error::new("obstacles move, and the robot has no speed").help("say how fast it is"));
         };
+        if let Some(driven) = &self.problem.file.driven {
+            timing.speed = Some(greatest_speed(&self.space, driven));
+        }
         let moving = self.problem.file.moving.clone();
         let pose = |[x, y, angle]: [f64; 3]| {
             let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
@@ -299,16 +305,14 @@ impl<B: PlanarBody> PlanarScene<B> {
             Ok((m.polygon.clone(), trajectory))
         });
         let areas: Vec<_> = areas.collect::<Result<_, Error>>()?;
-        let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(timing.start, f64::max);
-        // Time to wait until nothing moves, and then to go around everything.
-        let horizon = timing.horizon.unwrap_or(last + 2.0 * self.space.extent() / timing.speed);
+        let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(0.0, f64::max);
         let among = AmongMovingAreas::new(self.robot.clone(), areas)?;
         let body = |m: &mp_io::PlanarMoving| Body {
             name: m.name.clone(),
             shape: BodyShape::Area(m.polygon.rings().to_vec()),
             pose: None,
         };
-        MovingScene::new(self, among, moving.iter().map(body).collect(), &timing, horizon)
+        MovingScene::new(self, among, moving.iter().map(body).collect(), &timing, last)
     }
 
     /// The problem that it was made from.
@@ -328,9 +332,23 @@ impl<B: PlanarBody> PlanarScene<B> {
     /// # Errors
     /// When the robot cannot move so.
     pub fn driven(self, driven: &Driven) -> Result<DrivenScene<Self>, Error> {
-        let velocity = self.problem.file.start[B::COLUMNS.len()..].to_vec();
-        let goals = self.problem.file.goals.clone();
+        let (velocity, goals) = self.driven_ends();
         DrivenScene::new(self, driven, &velocity, goals)
+    }
+
+    /// The same robot, moved by inputs, also among the obstacles of the problem that move.
+    ///
+    /// # Errors
+    /// When the robot cannot move so, or a shape or a time is not valid.
+    pub fn driven_among_moving(self, driven: &Driven) -> Result<DrivenScene<MovingScene<Self>>, Error> {
+        let (velocity, goals) = self.driven_ends();
+        self.among_moving()?.driven(driven, &velocity, goals)
+    }
+
+    /// The velocity at the start, and the goals with their velocities.
+    fn driven_ends(&self) -> (Vec<f64>, Vec<Vec<GoalPart>>) {
+        let file = &self.problem.file;
+        (file.start[B::COLUMNS.len()..].to_vec(), file.goals.clone())
     }
 
     /// The rings around the robot at `q`, in the world, metres.

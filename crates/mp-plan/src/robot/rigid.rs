@@ -2,7 +2,7 @@
 
 use super::{
     Body, BodyShape, Column, Counted, End, Measured, Mismatch, MovingScene, PathFormat, Queries, RobotKind,
-    Touch, WithMoving, hints_and_gradient, tuples,
+    SpeedBound, Touch, WithMoving, hints_and_gradient, tuples,
 };
 use crate::goals::{GoalPart, examples, rows};
 use crate::numbers::{fingerprint, plain};
@@ -38,6 +38,11 @@ pub trait RigidSpace: Placement<State: TreeState + RoadmapState + CoordinateStat
     /// The metric of the swept volume.
     type Swept: Metric<Self::Space> + Clone + Send + 'static;
 
+    /// Along how many axes it shifts.
+    const AXES: usize;
+    /// Name and unit of each degree of freedom: the shifts along axes, then the turns about the axes of the world.
+    const DEGREES: &'static [(&'static str, &'static str)];
+
     /// The space of configurations with the origin within `bounds`.
     ///
     /// # Errors
@@ -64,6 +69,9 @@ impl RigidSpace for Spatial {
     type Space = Se3;
     type Displacement = MaxDisplacement<Point3<f64>>;
     type Swept = SweptVolume;
+    const AXES: usize = 3;
+    const DEGREES: &'static [(&'static str, &'static str)] =
+        &[("x", "m"), ("y", "m"), ("z", "m"), ("turn_x", "rad"), ("turn_y", "rad"), ("turn_z", "rad")];
 
     fn space(bounds: &Aabb) -> Result<Se3, Error> {
         Ok(Se3::new(bounds.min.coords, bounds.max.coords)?)
@@ -83,6 +91,8 @@ impl RigidSpace for Planar {
     type Space = Se2;
     type Displacement = MaxDisplacement<Point2<f64>>;
     type Swept = SweptVolume;
+    const AXES: usize = 2;
+    const DEGREES: &'static [(&'static str, &'static str)] = &[("x", "m"), ("y", "m"), ("alpha", "rad")];
 
     fn space(bounds: &Aabb) -> Result<Se2, Error> {
         Ok(Se2::new(bounds.min.coords.xy(), bounds.max.coords.xy())?)
@@ -168,16 +178,14 @@ impl<M: RigidSpace> RigidScene<M> {
             Ok((m.name.clone(), m.mesh.clone(), trajectory))
         });
         let meshes: Vec<_> = meshes.collect::<Result<_, Error>>()?;
-        let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(timing.start, f64::max);
-        // Time to wait until nothing moves, and then to go around everything.
-        let horizon = timing.horizon.unwrap_or(last + 2.0 * self.space.extent() / timing.speed);
+        let last = moving.iter().filter_map(|m| m.path.last()).map(|row| row[0]).fold(0.0, f64::max);
         let among = AmongMoving::new(self.robot.clone(), meshes)?;
         let body = |m: &RigidMoving| Body {
             name: m.name.clone(),
             shape: BodyShape::Mesh(m.mesh.clone()),
             pose: None,
         };
-        MovingScene::new(self, among, moving.iter().map(body).collect(), timing, horizon)
+        MovingScene::new(self, among, moving.iter().map(body).collect(), timing, last)
     }
 
     /// The problem that it was made from.
@@ -216,11 +224,25 @@ impl<M: RigidSpace> WithMoving for RigidScene<M> {
     ) -> Result<Self::AmongVerifier<'c>, Error> {
         Ok(MovingVerifier::new(space, among)?)
     }
+    fn obstacle_speed(among: &AmongMoving<M>) -> f64 {
+        among.greatest_speed()
+    }
     fn obstacle_poses(among: &AmongMoving<M>, time: f64) -> Vec<Isometry3<f64>> {
         among.poses(time).collect()
     }
     fn touched(among: &mut AmongMoving<M>, q: &(M::State, f64)) -> Vec<usize> {
         among.touching(q)
+    }
+}
+
+impl<M: RigidSpace> SpeedBound for RigidScene<M> {
+    fn speed_bound(&self, rates: &[f64]) -> f64 {
+        let (shift, turn) = rates.split_at(M::AXES.min(rates.len()));
+        let norm = |rates: &[f64]| rates.iter().map(|r| r * r).sum::<f64>().sqrt();
+        norm(shift) + self.robot.radius() * norm(turn)
+    }
+    fn degrees_of_freedom(&self) -> Vec<Column> {
+        M::DEGREES.iter().map(|(name, unit)| Column::new(*name, *unit)).collect()
     }
 }
 

@@ -88,6 +88,15 @@ impl<P: Placement> AmongMoving<P> {
         self.moving.iter().map(move |obstacle| obstacle.trajectory.pose(time))
     }
 
+    /// The speed (m/s) that no point of a moving obstacle ever exceeds.
+    #[must_use]
+    pub fn greatest_speed(&self) -> f64 {
+        let speed = |obstacle: &MovingObstacle| {
+            obstacle.trajectory.speed(obstacle.radius, f64::NEG_INFINITY, f64::INFINITY)
+        };
+        self.moving.iter().map(speed).fold(0.0, f64::max)
+    }
+
     /// The indices of the moving obstacles that the robot touches.
     pub fn touching(&mut self, (q, time): &(P::State, f64)) -> Vec<usize> {
         let pose = P::pose(q);

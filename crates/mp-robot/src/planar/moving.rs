@@ -161,6 +161,14 @@ impl<R: PlanarRobot> AmongMovingAreas<R> {
         self.moving.iter().map(move |area| area.trajectory.pose(time))
     }
 
+    /// The speed (m/s) that no point of a moving area ever exceeds.
+    #[must_use]
+    pub fn greatest_speed(&self) -> f64 {
+        let speed =
+            |area: &MovingArea| area.trajectory.speed(area.radius, f64::NEG_INFINITY, f64::INFINITY);
+        self.moving.iter().map(speed).fold(0.0, f64::max)
+    }
+
     /// The indices of the moving areas that the robot touches.
     pub fn touching(&mut self, (q, time): &(R::Configuration, f64)) -> Vec<usize> {
         let touches =

@@ -5,7 +5,7 @@ use super::{DrivenScene, ROUNDING, SpeedBound};
 use mp_control::{dubins, reeds_shepp};
 use mp_cspace::angle::{angle_difference, wrap_angle};
 use mp_cspace::shorten::Effort;
-use mp_cspace::{MotionValidity, Path, Rng, Se2State, Space, StateVector};
+use mp_cspace::{MotionValidity, Path, Rng, Space, StateVector};
 use nalgebra::DVector;
 use rand::RngExt;
 
@@ -35,15 +35,14 @@ impl System {
     ) -> Option<Vec<Held>> {
         let held = match &self.drive {
             mp_io::Drive::Car { speed, wheelbase, steering, reverse } => {
-                let [a, b] = [from, to].map(|parts| self.pose(&parts.q));
+                let ((a, _), (b, _)) = (self.pose(&from.q)?, self.pose(&to.q)?);
                 let curve = if *reverse { reeds_shepp } else { dubins };
-                let parts = curve(&a?, &b?, wheelbase / steering.tan()).into_iter();
+                let parts = curve(&a, &b, wheelbase / steering.tan()).into_iter();
                 let input = |turn: f64, way: f64| vec![speed.copysign(way), steering * turn];
                 parts.map(|part| (input(part.turn, part.length), part.length.abs() / speed)).collect()
             }
             mp_io::Drive::Unicycle { speed, turning, reverse } => {
-                let [a, b] = [from, to].map(|parts| self.pose(&parts.q));
-                let (a, b) = (a?, b?);
+                let ((a, _), (b, _)) = (self.pose(&from.q)?, self.pose(&to.q)?);
                 let way = b.translation - a.translation;
                 let ahead = if way.norm() > 0.0 { way.y.atan2(way.x) } else { a.angle };
                 let turn = |angle: f64| (vec![0.0, turning.copysign(angle)], angle.abs() / turning);
@@ -131,7 +130,8 @@ impl System {
         Some(held)
     }
 
-    /// The velocity that leads from one position to another in a second, one number for each degree of freedom.
+    /// The velocity that leads from one position to another in a second, one number for each degree of freedom. The times of both
+    /// do not count.
     fn way<C: Space<State: StateVector>>(
         &self,
         positions: &C,
@@ -139,14 +139,11 @@ impl System {
         to: &Parts<C::State>,
     ) -> Option<Vec<f64>> {
         let mut way = vec![0.0; positions.dim()];
-        positions.velocity_into(&from.q, &to.q, &mut way).then_some(way)
-    }
-
-    /// The pose of a robot on wheels.
-    fn pose<S: StateVector>(&self, q: &S) -> Option<Se2State> {
-        let mut numbers = Vec::new();
-        q.write(&mut numbers);
-        Se2State::read(&numbers)
+        let known = positions.velocity_into(&from.q, &to.q, &mut way);
+        if self.timed {
+            way.pop();
+        }
+        known.then_some(way)
     }
 }
 
@@ -225,7 +222,11 @@ impl<K: SpeedBound> DrivenScene<K> {
                     new.push(now.clone());
                 }
             }
-            if self.space.apart(&now, &to) > ROUNDING * self.space.extent() {
+            let rounding = ROUNDING * positions.extent();
+            let is_at = |now: &Parts<K::State>, to: &Parts<K::State>| {
+                system.way(positions, now, to).is_some_and(|off| off.iter().all(|x| x.abs() <= rounding))
+            };
+            if !is_at(&now, &to) {
                 continue;
             }
             if right < 1.0 {
@@ -237,8 +238,10 @@ impl<K: SpeedBound> DrivenScene<K> {
                 now = after(&now, &state.input, state.duration);
                 new.push(now.clone());
             }
-            // Where time counts, what comes later has changed too.
-            let until = if system.timed { new.len() } else { changed };
+            // Where time counts, what comes later has changed too, and where an input in two parts does not lead to the same state as
+            // in one: rotations in space at accelerations.
+            let all = system.timed || !is_at(&new[changed - 1], &states[last + 1]);
+            let until = if all { new.len() } else { changed };
             let vectors: Vec<_> = new[first..until].iter().map(|state| system.vector(state)).collect();
             let free = vectors.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free());
             if free && self.is_at_goal(&now) {

@@ -5,6 +5,7 @@ use mp_control::{Car, Flow, InputSet, Unicycle};
 use mp_cspace::{Se2State, Space, StateVector};
 use mp_io::Drive;
 use nalgebra::DVector;
+use std::borrow::Cow;
 
 /// Steering angles to either side, when their number is not given.
 const STEERING: usize = 2;
@@ -74,9 +75,10 @@ impl System {
         time: f64,
     ) -> Parts<C::State> {
         let wheels = |flow: &dyn Fn(&Se2State) -> Se2State| {
-            let (mut numbers, mut moved) = (Vec::new(), Vec::new());
-            from.q.write(&mut numbers);
-            Se2State::read(&numbers).map(|q| flow(&q))?.write(&mut moved);
+            let (pose, now) = self.pose(&from.q)?;
+            let mut moved = Vec::new();
+            flow(&pose).write(&mut moved);
+            moved.extend(now.map(|now| now + time));
             C::State::read(&moved)
         };
         let pair = || [input.first().copied().unwrap_or(0.0), input.get(1).copied().unwrap_or(0.0)];
@@ -87,14 +89,41 @@ impl System {
                 wheels(&|q| car.map_or(*q, |car| car.integrate(q, &pair(), time)))
             }
             Drive::Unicycle { .. } => wheels(&|q| Unicycle.integrate(q, &pair(), time)),
-            Drive::Velocities { .. } => positions.moved(&from.q, input, time),
+            Drive::Velocities { .. } => positions.moved(&from.q, &self.as_time_goes(input), time),
             Drive::Accelerations { .. } => {
                 let mean: Vec<f64> = velocity.iter().zip(input).map(|(v, a)| v + 0.5 * time * a).collect();
                 velocity.iter_mut().zip(input).for_each(|(v, a)| *v += time * a);
-                positions.moved(&from.q, &mean, time)
+                positions.moved(&from.q, &self.as_time_goes(&mean), time)
             }
         };
         Parts { q: q.unwrap_or_else(|| from.q.clone()), velocity, input: input.to_vec(), duration: time }
+    }
+
+    /// The pose of a robot on wheels, and the time, if that is a part of its configuration.
+    pub(super) fn pose<S: StateVector>(&self, q: &S) -> Option<(Se2State, Option<f64>)> {
+        let mut numbers = Vec::with_capacity(self.numbers);
+        q.write(&mut numbers);
+        let now = if self.timed { numbers.pop() } else { None };
+        Some((Se2State::read(&numbers)?, now))
+    }
+
+    /// A velocity of the configuration: with that of time, if time is a part of the configuration.
+    fn as_time_goes<'v>(&self, velocity: &'v [f64]) -> Cow<'v, [f64]> {
+        match self.timed {
+            true => velocity.iter().copied().chain([1.0]).collect(),
+            false => velocity.into(),
+        }
+    }
+
+    /// The greatest rate of each degree of freedom, as of [`rates`](Self::rates).
+    pub(super) fn greatest_rates(drive: &Drive) -> Vec<f64> {
+        match drive {
+            Drive::Car { speed, wheelbase, steering, .. } => {
+                vec![*speed, 0.0, speed * steering.tan() / wheelbase]
+            }
+            Drive::Unicycle { speed, turning, .. } => vec![*speed, 0.0, *turning],
+            Drive::Velocities { speeds } | Drive::Accelerations { speeds, .. } => speeds.clone(),
+        }
     }
 
     /// Upper bounds on the rate of each degree of freedom on the way from `from` by the input of `to`. The rates of a robot on
