@@ -176,6 +176,15 @@ const CAR: &str = "[world]\nwalls = [[0, 0], [9, 9]]\n[robot]\npolygon = [[0, 0]
 const PUCK: &str = "[world]\nwalls = [[0, 0], [9, 9]]\n[robot]\ndisc = 0.1\nkind = \"accelerations\"\nspeeds = [1, 1]\n\
     accelerations = [1, 1]\nduration = 0.5\n[motion]\nstart = [2, 2, 0.5, 0]\ngoal = [6, 6]\ntolerance = 0.4\n";
 
+/// A disc moved by velocities goes by a bar that moves.
+const AMONG: &str = "[world]\nwalls = [[0, 0], [4, 3]]\n[robot]\ndisc = 0.1\nkind = \"velocities\"\nspeeds = [1, 1]\n\
+    duration = 0.4\n\n[motion]\nstart = [0.5, 0.5]\ngoal = { x = [3.4, 3.7] }\nhorizon = 20\n\n[[moving]]\nname = \"bar\"\n\
+    rectangle = [[-0.1, -1.4], [0.1, 1.4]]\npath = [[0, 2, 1.5], [4, 2, 1.5], [6, 2, 4.5]]\n";
+/// A box moved by velocities goes around a post.
+const BODY: &str = "[robot]\nkind = \"velocities\"\nbox = [0.5, 0.2, 0.2]\nbounds = [[-2, -2, -1], [2, 2, 1]]\n\
+    speeds = [1, 1, 1, 2, 2, 2]\nduration = 0.4\n[motion]\nstart = [-1.5, 0, 0, 0, 0, 0]\ngoal = [1.5, 0, 0, 0, 0, 0]\n\
+    tolerance = 0.3\n[[obstacle]]\nname = \"post\"\nbox = [0.3, 0.8, 4]\n";
+
 #[test]
 fn faults_of_files_have_their_line() {
     let dir = Dir::empty();
@@ -206,8 +215,8 @@ fn faults_of_files_have_their_line() {
             MOVING,
             "disc = 0.1\n",
             "disc = 0.1\nkind = \"velocities\"\nspeeds = [1, 1]\nduration = 1\n",
-            10,
-            "exactly",
+            11,
+            "inputs say how fast it is",
         ),
         (CAR, "speed = 1\n", "", 3, "needs `speed`"),
         (CAR, "\"car\"", "\"cart\"", 5, "no kind of robot `cart`"),
@@ -230,6 +239,17 @@ fn faults_of_files_have_their_line() {
         (PUCK, "tolerance = 0.4", "tolerance = 0", 12, "the tolerance is 0"),
         (PUCK, "[2, 2, 0.5, 0]", "[2, 2, 0.5]", 10, "the start has 3"),
         (PUCK, "[6, 6]", "[6, 6, 6]", 11, "the goal has 3"),
+        (AMONG, "horizon = 20\n", "speed = 1\n", 12, "no speed here"),
+        (AMONG, "horizon = 20\n", "horizon = 0\n", 12, "a time after the start"),
+        (AMONG, "horizon = 20\n", "goal_time = [5, 4]\n", 12, "from 5 to 4"),
+        (AMONG, "x = [3.4, 3.7]", "x = 3.5", 11, "cannot reach these numbers exactly"),
+        (BODY, "box =", "planar = true\nbox =", 2, "does not move by inputs here"),
+        (BODY, "\"velocities\"", "\"car\"", 2, "no kind of robot `car` here"),
+        (BODY, "speeds = [1, 1, 1, 2, 2, 2]", "speeds = [1, 1, 1]", 1, "`speeds` has 3 of 6 limits"),
+        (BODY, "duration = 0.4\n", "", 1, "needs `duration`"),
+        (BODY, "tolerance = 0.3\n", "", 9, "cannot reach these numbers exactly"),
+        (BODY, "goal = [1.5, 0, 0, 0, 0, 0]", "goal = { v_x = 0 }", 9, "`v_x`, which the robot does not have"),
+        (BODY, "start = [-1.5, 0, 0, 0, 0, 0]", "start = [-1.5, 0, 0]", 8, "the start has 3"),
     ] {
         assert!(good.contains(from), "{from}");
         dir.write("bad.toml", good.replacen(from, to, 1));
@@ -240,7 +260,7 @@ fn faults_of_files_have_their_line() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    for good in [MOVING, CAR, PUCK] {
+    for good in [MOVING, CAR, PUCK, AMONG, BODY] {
         dir.write("good.toml", good);
         let run = mp(&dir, &["plan", "good.toml", "--out", "good.txt"]);
         assert_eq!(run.code, 0, "{run:?}");
@@ -258,6 +278,78 @@ fn times_of_start_and_goal_are_kept() {
     let times = [rows[0][2], rows[rows.len() - 1][2]];
     assert!(times[0] == 1.5 && (9.0..=10.0).contains(&times[1]), "{times:?}");
     assert_eq!(rows[rows.len() - 1][0], 3.5);
+}
+
+/// How long a path takes: the sum of its last column.
+fn seconds(rows: &[Vec<f64>]) -> f64 {
+    rows.iter().map(|row| row[row.len() - 1]).sum()
+}
+
+/// Shortened paths are verified, take less time, and are the same for the same seed.
+#[test]
+fn paths_by_inputs_are_shortened() {
+    let dir = Dir::empty();
+    dir.write("body.toml", BODY);
+    dir.write("among.toml", AMONG);
+    for (scene, least) in [
+        ("unicycle", 0.9),
+        ("velocities", 0.9),
+        ("accelerations", 0.9),
+        ("parking", 0.9),
+        ("body.toml", 0.9),
+        ("among.toml", 0.99),
+    ] {
+        let mut parts = Vec::new();
+        for seed in ["1", "2", "3"] {
+            let plan = |more: &[&str], out: &str| {
+                let run = mp(&dir, &[&["plan", scene, "--seed", seed, "--out", out, "--json"], more].concat());
+                assert_eq!(run.code, 0, "{run:?}");
+                (run.json()["shortened"].as_bool().unwrap(), rows(&dir, out))
+            };
+            let (shortened, short) = plan(&[], "short.txt");
+            assert_eq!(mp(&dir, &["check", scene, "short.txt"]).code, 0);
+            let (as_found, long) = plan(&["--no-shorten"], "long.txt");
+            assert!(shortened && !as_found, "{scene} {seed}");
+            assert!(seconds(&short) <= seconds(&long), "{scene} {seed}");
+            assert_eq!(plan(&[], "again.txt").1, short);
+            parts.push(seconds(&short) / seconds(&long));
+        }
+        let mean = parts.iter().sum::<f64>() / parts.len() as f64;
+        assert!(mean < least, "{scene}: {parts:?}");
+    }
+}
+
+/// The robot waits until the bar has gone; at another time the same way is refused.
+#[test]
+fn inputs_among_what_moves_are_timed() {
+    let dir = Dir::empty();
+    dir.write("among.toml", AMONG);
+    assert_eq!(mp(&dir, &["plan", "among.toml", "--out", "good.txt"]).code, 0);
+    let good = rows(&dir, "good.txt");
+    // x, y, time, input, duration: the times are the sums of the durations.
+    let mut now = 0.0;
+    for row in &good {
+        now += row[5];
+        assert!((row[2] - now).abs() < 1e-9, "{row:?}");
+    }
+    let beyond = good.iter().find(|row| row[0] > 1.9).unwrap();
+    assert!(beyond[2] > 4.0, "{beyond:?}");
+    // Straight through while the bar is there.
+    let mut through = vec![vec![0.5, 0.5, 0.0, 0.0, 0.0, 0.0]];
+    (1..=8).for_each(|i| {
+        through.push(vec![0.5 + 0.4 * f64::from(i), 0.5, 0.4 * f64::from(i), 1.0, 0.0, 0.4]);
+    });
+    write(&dir, "through.txt", &through);
+    let check = mp(&dir, &["check", "among.toml", "through.txt"]);
+    assert!(check.code == 1 && check.stdout.contains("hits bar"), "{check:?}");
+    // Times that do not go with the durations.
+    let mut late = good.clone();
+    late.iter_mut().skip(1).for_each(|row| row[2] += 1.0);
+    write(&dir, "late.txt", &late);
+    let check = mp(&dir, &["check", "among.toml", "late.txt"]);
+    assert!(check.code == 1 && check.stdout.contains("configuration 2 is not where"), "{check:?}");
+    let info = mp(&dir, &["info", "among.toml"]);
+    assert!(info.stdout.contains("bar") && info.stdout.contains("velocities up to"), "{info:?}");
 }
 
 const URDF: &str = r#"<robot name="two">
@@ -311,5 +403,75 @@ fn arms_have_free_joints_and_inputs_too() {
             run.code == 2 && run.stderr.contains(&place) && run.stderr.contains(words),
             "{words}: {run:?}"
         );
+    }
+}
+
+/// A robot whose base floats, with goals that leave numbers free, and sets of them.
+#[test]
+fn floating_bases_have_free_goals() {
+    let dir = Dir::empty();
+    dir.write("two.urdf", URDF);
+    let text = |goal: &str| {
+        format!(
+            "[robot]\nurdf = \"two.urdf\"\nbase = \"floating\"\nbounds = [[-3, -3, -1], [3, 3, 1]]\n[motion]\n\
+             start = [-2, 0, 0, 0, 0, 0, 0, 0]\n{goal}\n[[obstacle]]\nname = \"wall\"\nbox = [0.2, 2, 1]\n"
+        )
+    };
+    for (goal, ends) in [
+        ("goal = { x = 2, elbow = [1, 1.2] }", [2.0, 1.0, 1.2]),
+        ("goals = [{ x = 2, beta = 0.5, elbow = 0.3 }]", [2.0, 0.3, 0.3]),
+        ("goals = [[2, 0, 0, 0, 0, 0, 0, 0.4], { x = 2, elbow = 0.4 }]", [2.0, 0.4, 0.4]),
+    ] {
+        dir.write("floating.toml", text(goal));
+        let run = mp(&dir, &["plan", "floating.toml", "--out", "path.txt", "--picture", "path.png"]);
+        assert_eq!(run.code, 0, "{goal}: {run:?}");
+        assert_eq!(mp(&dir, &["check", "floating.toml", "path.txt"]).code, 0);
+        let last = rows(&dir, "path.txt").pop().unwrap();
+        let [x, low, high] = ends;
+        assert!((last[0] - x).abs() < 1e-6 && (low - 1e-6..=high + 1e-6).contains(&last[7]), "{goal}: {last:?}");
+    }
+    for (goal, words) in [
+        ("goal = { x = 2, beta = 2 }", "beta from -π/2 to π/2"),
+        ("goal = { x = 2, wrist = 1 }", "`wrist`, which the robot does not have"),
+        ("goal = [2, 0, 0]", "the goal has 3"),
+    ] {
+        dir.write("bad.toml", text(goal));
+        let run = mp(&dir, &["plan", "bad.toml"]);
+        let place = "bad.toml:7:";
+        assert!(run.code == 2 && run.stderr.contains(place) && run.stderr.contains(words), "{run:?}");
+    }
+}
+
+/// Formats with one goal say where there can be more.
+#[test]
+fn formats_with_one_goal_say_so() {
+    let dir = Dir::new();
+    let env = dir.read("window.env");
+    for (from, to) in [("2 1.3 1.8 0.7 0 0\n", "2 1.3 1.8 0.7 0 0\n2 1 1 0 0 0\n"), ("2 1.3 1.8 0.7 0 0\n", "2 1.3 * 0 0 0\n")] {
+        assert!(env.contains(from));
+        dir.write("goals.env", env.replacen(from, to, 1));
+        let run = mp(&dir, &["plan", "goals.env"]);
+        let [place, words] = ["goals.env:", "a rigid problem (.toml) may have several goals"];
+        assert!(run.code == 2 && run.stderr.contains(place) && run.stderr.contains(words), "{run:?}");
+    }
+    dir.write("goal.cfg", "[problem]\nrobot=robot.off\nstart.x=0\nstart.y=0\nstart.theta=0\ngoal.x=1\ngoal.y=1\n");
+    let run = mp(&dir, &["plan", "goal.cfg"]);
+    assert!(run.code == 2 && run.stderr.contains("are in rigid problems (.toml)"), "{run:?}");
+    dir.write("goals.mp.json", r#"{"version": 1, "name": "x", "space": "SE3", "goals": [[0, 0, 0, 0, 0, 0]]}"#);
+    let run = mp(&dir, &["plan", "goals.mp.json"]);
+    assert!(run.code == 2 && run.stderr.contains("rigid problems (.toml) have sets of goals"), "{run:?}");
+}
+
+/// A path called as a shipped scene does not hide it.
+#[test]
+fn a_path_does_not_hide_a_shipped_scene() {
+    let dir = Dir::empty();
+    for scene in ["velocities", "docks"] {
+        let path = format!("{scene}.txt");
+        for _ in 0..2 {
+            let run = mp(&dir, &["plan", scene, "--out", &path]);
+            assert_eq!(run.code, 0, "{run:?}");
+        }
+        assert_eq!(mp(&dir, &["check", scene, &path]).code, 0);
     }
 }

@@ -120,7 +120,13 @@ impl SceneDocument {
     /// [`Error`] when it is not a document of this version, with line and column, or a number, colour or name is not valid.
     pub fn parse(file: &str, bytes: &[u8]) -> Result<Self, Error> {
         let text = decode(file, bytes)?;
-        let document: Self = crate::json::parse(file, text, "a scene of an editor (.mp.json)", GUIDE)?;
+        let document: Self = crate::json::parse(file, text, "a scene of an editor (.mp.json)", GUIDE)
+            .map_err(|e| match e.message().contains("`goals`") {
+                true => e.help(
+                    "an editor has one goal; rigid problems (.toml) have sets of goals: docs/formats/rigid-problem.md",
+                ),
+                false => e,
+            })?;
         document.check(file)?;
         Ok(document)
     }

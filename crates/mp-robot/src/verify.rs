@@ -87,6 +87,29 @@ impl<'c, C: Space<State = P::State>, P: Placement> Verifier<'c, C, P> {
         self.sweep.compared()
     }
 
+    /// What holds at a single configuration: free with its clearance, which is exact where it is below `enough` (m), or else at
+    /// least that. Less than the tolerance is [`Unproven`](MotionCheck::Unproven).
+    #[must_use]
+    pub fn check_state(&self, q: &P::State, enough: f64) -> MotionCheck {
+        let pose = P::pose(q);
+        if self.solids.iter().any(|solid| solid.contains(&pose.translation.vector.into())) {
+            return MotionCheck::Collision { at: 0.0 };
+        }
+        let clearance = self.world.as_ref().map_or(f64::INFINITY, |world| {
+            self.robot.clearance(&pose, world, &Isometry3::identity(), enough)
+        });
+        self.judged(clearance)
+    }
+
+    /// What a clearance (m) means.
+    pub(crate) fn judged(&self, clearance: f64) -> MotionCheck {
+        match clearance {
+            c if c <= 0.0 => MotionCheck::Collision { at: 0.0 },
+            c if c >= self.tolerance => MotionCheck::Free { clearance: c },
+            _ => MotionCheck::Unproven { at: 0.0 },
+        }
+    }
+
     /// Whether the robot surely touches an obstacle at a pose.
     fn touches(&self, pose: &Isometry3<f64>) -> bool {
         let Some(world) = &self.world else { return false };

@@ -97,6 +97,10 @@ impl Environment {
     }
 }
 
+/// What to do where a file asks for more than one goal, or for a part of one.
+const ONE_GOAL: &str = "this format has one goal, of six numbers; a rigid problem (.toml) may have several goals, and leave \
+                        numbers free: docs/formats/rigid-problem.md";
+
 pub(crate) fn parse<'a>(text: &Text<'a>) -> Result<(Environment, Places<'a>), Error> {
     let mut lines = text.lines();
     let mut next = |what: &str| lines.next().ok_or_else(|| text.error_at_end(what));
@@ -112,11 +116,16 @@ pub(crate) fn parse<'a>(text: &Text<'a>) -> Result<(Environment, Places<'a>), Er
     mesh_name(text, robot)?;
     let start = next("the initial configuration, six numbers: x y z α β γ")?;
     let goal = next("the goal configuration, six numbers: x y z α β γ")?;
+    // What is wrong with a number says what to do; anything else may be a goal of another kind.
+    let of_goal = |e: Error| match e.remedy().is_some_and(|help| help.ends_with(GUIDE)) {
+        true => e.help(ONE_GOAL),
+        false => e,
+    };
     let mut places = Places { robot, start, goal, meshes: Vec::new(), poses: Vec::new(), bounds: None };
     let mut env = Environment {
         robot: robot.text.to_owned(),
         start: six(text, start, "the initial configuration", SIX)?,
-        goal: six(text, goal, "the goal configuration", SIX)?,
+        goal: six(text, goal, "the goal configuration", SIX).map_err(of_goal)?,
         obstacles: Vec::new(),
         space: None,
         bounds: None,
@@ -130,7 +139,7 @@ pub(crate) fn parse<'a>(text: &Text<'a>) -> Result<(Environment, Places<'a>), Er
         let Some(number) = obstacle_number(line.text) else {
             let mut e = text.error(line, format!("`{}` is out of place", clipped(line.text)));
             if line.words().all(|w| w.text.parse::<f64>().is_ok()) {
-                e = e.help("a robot has two six-tuples (initial, goal), an obstacle one");
+                e = e.help(format!("a robot has two six-tuples (initial, goal), an obstacle one; {ONE_GOAL}"));
             }
             return Err(e.expected("`Obstacle #k` or `End`"));
         };

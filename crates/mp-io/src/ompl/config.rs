@@ -197,12 +197,13 @@ impl<'t, 'a> Section<'t, 'a> {
 
     /// Adds which keys belong together: a missing key may be due to a mixture of the two kinds of problems.
     fn explain_missing_key(&self, e: Error, space: SpaceKind) -> Error {
-        match space {
-            SpaceKind::Se2 => e,
-            SpaceKind::Se3 => e.help(
-                "in space, start and goal each need x, y, z, theta, axis.x, axis.y, axis.z; in the plane x, y, theta",
-            ),
-        }
+        let all = match space {
+            SpaceKind::Se2 => "start and goal each need x, y, theta",
+            SpaceKind::Se3 => {
+                "in space, start and goal each need x, y, z, theta, axis.x, axis.y, axis.z; in the plane x, y, theta"
+            }
+        };
+        e.help(format!("{all}. Goals that leave numbers free are in rigid problems (.toml)"))
     }
 
     /// The volume; `None` when it is not complete.

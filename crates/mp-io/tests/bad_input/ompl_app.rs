@@ -59,7 +59,7 @@ fn ompl_app_problems() {
             "start.y=0",
             "start.y=0\nstart.z=0",
             "s.cfg:1:1: [problem] has no `start.axis.x`; expected start.axis.x = …",
-            "in space, start and goal each need x, y, z, theta, axis.x, axis.y, axis.z; in the plane x, y, theta",
+            "in space, start and goal each need x, y, z, theta, axis.x, axis.y, axis.z; in the plane x, y, theta. Goals that leave numbers free are in rigid problems (.toml)",
         ),
         cfg(
             "start.x=0",

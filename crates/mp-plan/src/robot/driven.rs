@@ -11,7 +11,7 @@ use crate::{Error, MetricName};
 use check::{DrivenChecker, DrivenVerifier};
 use mp_cspace::shorten::Effort;
 use mp_cspace::{
-    AnyFlow, Demand, Embed, InputSystem, MotionValidity, Path, Rng, Space, StateVector,
+    AnyFlow, Demand, Embed, InputSystem, MotionCheck, MotionValidity, Path, Rng, Space, StateVector,
 };
 use mp_geom::Aabb;
 use mp_io::{Drive, Driven};
@@ -34,6 +34,16 @@ pub trait SpeedBound: RobotKind<Space: Embed + 'static, State: StateVector, Chec
     /// An upper bound (m/s) on the speed at which any point of the robot and an obstacle come nearer while no degree of freedom
     /// moves faster than its rate (m/s, rad/s).
     fn speed_bound(&self, rates: &[f64]) -> f64;
+
+    /// What the verifier says of a single configuration: free with its clearance (m), which need not be known farther than
+    /// `enough`. By default it is asked about the motion from the configuration to itself; to be overridden where the clearance of
+    /// that is only a lower bound.
+    fn check_state<'c>(verifier: &mut Self::Verifier<'c>, q: &Self::State, _enough: f64) -> MotionCheck
+    where
+        Self: 'c,
+    {
+        verifier.check_motion(q, q)
+    }
 
     /// Name and unit of each degree of freedom: by default those of the numbers of a configuration, without the time.
     fn degrees_of_freedom(&self) -> Vec<Column> {

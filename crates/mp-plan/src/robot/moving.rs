@@ -5,7 +5,7 @@ use super::{Body, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKi
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;
-use mp_cspace::{AsVectors, Clearance, Demand, Embed, MotionValidity, Space, StateVector};
+use mp_cspace::{AsVectors, Clearance, Demand, Embed, MotionCheck, MotionValidity, Space, StateVector};
 use mp_geom::Aabb;
 use mp_io::{Driven, Timing};
 use nalgebra::{DVector, Isometry3, Point3};
@@ -32,6 +32,17 @@ pub trait WithMoving: RobotKind<Space: Embed + 'static, State: StateVector> + Cl
         space: &'c SpaceTime<Self::Space>,
         among: &Self::Among,
     ) -> Result<Self::AmongVerifier<'c>, Error>;
+    /// What the verifier says of a single moment, as [`SpeedBound::check_state`].
+    fn check_moment<'c>(
+        verifier: &mut Self::AmongVerifier<'c>,
+        q: &(Self::State, f64),
+        _enough: f64,
+    ) -> MotionCheck
+    where
+        Self: 'c,
+    {
+        verifier.check_motion(q, q)
+    }
     /// The speed (m/s) that no point of a moving obstacle ever exceeds.
     fn obstacle_speed(among: &Self::Among) -> f64;
     /// The poses of the moving obstacles at a time.
@@ -138,6 +149,15 @@ impl<K: WithMoving<Checker: Debug> + SpeedBound> SpeedBound for MovingScene<K> {
 
     fn speed_bound(&self, rates: &[f64]) -> f64 {
         self.still.speed_bound(rates) + K::obstacle_speed(self.among.inner())
+    }
+    fn check_state<'c>(verifier: &mut Self::Verifier<'c>, q: &DVector<f64>, enough: f64) -> MotionCheck
+    where
+        Self: 'c,
+    {
+        match StateVector::read(q.as_slice()) {
+            Some(moment) => K::check_moment(verifier.inner_mut(), &moment, enough),
+            None => MotionCheck::Unproven { at: 0.0 },
+        }
     }
     fn degrees_of_freedom(&self) -> Vec<Column> {
         self.still.degrees_of_freedom()

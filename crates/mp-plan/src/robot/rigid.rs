@@ -12,7 +12,7 @@ use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, ObstacleKnowledge,
+    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, MotionCheck, ObstacleKnowledge,
     Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric, WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
@@ -224,6 +224,16 @@ impl<M: RigidSpace> WithMoving for RigidScene<M> {
     ) -> Result<Self::AmongVerifier<'c>, Error> {
         Ok(MovingVerifier::new(space, among)?)
     }
+    fn check_moment<'c>(
+        verifier: &mut MovingVerifier<'c, M::Space, M>,
+        q: &(M::State, f64),
+        enough: f64,
+    ) -> MotionCheck
+    where
+        Self: 'c,
+    {
+        verifier.check_state(q, enough)
+    }
     fn obstacle_speed(among: &AmongMoving<M>) -> f64 {
         among.greatest_speed()
     }
@@ -240,6 +250,12 @@ impl<M: RigidSpace> SpeedBound for RigidScene<M> {
         let (shift, turn) = rates.split_at(M::AXES.min(rates.len()));
         let norm = |rates: &[f64]| rates.iter().map(|r| r * r).sum::<f64>().sqrt();
         norm(shift) + self.robot.radius() * norm(turn)
+    }
+    fn check_state<'c>(verifier: &mut Verifier<'c, M::Space, M>, q: &M::State, enough: f64) -> MotionCheck
+    where
+        Self: 'c,
+    {
+        verifier.check_state(q, enough)
     }
     fn degrees_of_freedom(&self) -> Vec<Column> {
         M::DEGREES.iter().map(|(name, unit)| Column::new(*name, *unit)).collect()

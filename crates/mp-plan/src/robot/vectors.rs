@@ -30,6 +30,11 @@ impl<A, S> OnVectors<A, S> {
     pub(crate) fn inner(&self) -> &A {
         &self.check
     }
+
+    /// The check of states, mutable.
+    pub(crate) fn inner_mut(&mut self) -> &mut A {
+        &mut self.check
+    }
 }
 
 impl<A: Validity<S>, S: StateVector> Validity<DVector<f64>> for OnVectors<A, S> {

@@ -53,6 +53,22 @@ impl<'c, C: Space<State = P::State>, P: Placement> MovingVerifier<'c, C, P> {
         self.tolerance
     }
 
+    /// What holds at a single moment: free with its clearance, which is exact where it is below `enough` (m), or else at least that.
+    /// Less than the tolerance is [`Unproven`](MotionCheck::Unproven).
+    #[must_use]
+    pub fn check_state(&self, q: &(P::State, f64), enough: f64) -> MotionCheck {
+        if !self.space.contains(q) {
+            return MotionCheck::Unproven { at: 0.0 };
+        }
+        let standing = self.standing.check_state(&q.0, enough);
+        let MotionCheck::Free { clearance } = standing else { return standing };
+        let pose: Isometry3<f64> = P::pose(&q.0);
+        let from = |obstacle: &MovingObstacle| {
+            self.robot.clearance(&pose, &obstacle.reference, &obstacle.trajectory.pose(q.1), enough)
+        };
+        self.standing.judged(self.moving.iter().map(from).fold(clearance, f64::min))
+    }
+
     /// The clearance kept from one moving obstacle over the motion, or the check that failed. `rate` is how far a point of
     /// the robot moves over the motion.
     fn against(

@@ -83,7 +83,7 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
             return MotionCheck::Unproven { at: 0.0 };
         };
         if from == to {
-            return self.verifier.check_motion(&a.q, &a.q);
+            return K::check_state(&mut self.verifier, &a.q, f64::INFINITY);
         }
         let gap = space.off_course(&a, &b);
         if gap > ROUNDING * space.extent() {
@@ -97,9 +97,10 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
             let (at, half) = (0.5 * (begin + end), 0.5 * (end - begin));
             let now = space.system.flow(&space.positions, &a, &b.input, at * b.duration);
             let near = half * travel;
-            match self.verifier.check_motion(&now.q, &now.q) {
+            let needed = (near + tolerance) * ROUND_UP;
+            match K::check_state(&mut self.verifier, &now.q, 2.0 * needed) {
                 _ if !space.positions.contains(&now.q) => return MotionCheck::Unproven { at },
-                MotionCheck::Free { clearance } if clearance >= (near + tolerance) * ROUND_UP => {
+                MotionCheck::Free { clearance } if clearance >= needed => {
                     least = least.min(clearance - near);
                 }
                 MotionCheck::Free { clearance } if clearance >= tolerance && half >= SHORTEST => {
@@ -110,7 +111,7 @@ impl<K: SpeedBound> MotionValidity<DVector<f64>> for DrivenVerifier<'_, K> {
             }
         }
         // The last state itself, as written.
-        match self.verifier.check_motion(&b.q, &b.q) {
+        match K::check_state(&mut self.verifier, &b.q, least) {
             MotionCheck::Free { clearance } => MotionCheck::Free { clearance: least.min(clearance) },
             MotionCheck::Collision { .. } => MotionCheck::Collision { at: 1.0 },
             MotionCheck::Unproven { .. } => MotionCheck::Unproven { at: 1.0 },

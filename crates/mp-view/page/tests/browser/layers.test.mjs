@@ -174,6 +174,25 @@ browserTest("worlds of the plane show the field that pushes snakes", () => withP
   const drawn = await driver.page.evaluate(changesAt, points, off);
   // A robot of some radius touches before its centre is at the obstacle, so most such places are beside it.
   assert.ok(points.length > 10 && drawn.filter(Boolean).length > 0.8 * drawn.length, `${drawn.filter(Boolean).length} of ${drawn.length}`);
+  // Other fields; that of risk is of a path, and there is one after a run that relaxes its path in it.
+  const energies = () => driver.page.evaluate(async () => Array.from((await window.mpView.planner).viewer.layers.find((layer) => "field" in layer).field.energy));
+  const clearance = await energies();
+  const chosen = (name) => driver.until(async (field) => {
+    const layer = (await window.mpView.planner).viewer.layers.find((each) => "field" in each);
+    return layer.field && layer.name.value === field;
+  }, name);
+  await driver.choose("Which field", "paper");
+  await chosen("paper");
+  const paper = await energies();
+  assert.ok(paper.length === clearance.length && paper.some((e, i) => e !== clearance[i]));
+  await driver.choose("The path found", "relax");
+  await driver.choose("In which field", "risk");
+  await driver.press("Plan");
+  await driver.untilResult(/verified path/, 1);
+  await driver.choose("Which field", "risk");
+  await chosen("risk");
+  const risk = await energies();
+  assert.ok(risk.some((e, i) => e > clearance[i] + 0.01) && risk.some((e, i) => e !== paper[i]));
   await driver.fill("textbox", "Range of the field", "much");
   await driver.untilAlert(/range/);
 }, { expected: /400/ }));
