@@ -58,7 +58,7 @@ fn bad_fields_are_explained() {
     for (arguments, words) in [
         (vec!["plan", "--relax", "rrs-follow"], ["no field `rrs-follow`", "A scene stands before --relax"]),
         (vec!["plan", "rrs-follow", "--relax", "risk:0"], ["factor of the noise is `0`", "above zero"]),
-        (vec!["plan", "rrs-follow", "--relax", "image:gone.png"], ["gone.png", "No such file"]),
+        (vec!["plan", "rrs-follow", "--relax", "image:gone.png"], ["gone.png", "no such file"]),
         (vec!["plan", "rrs-follow", "--relax", "image:no.png"], ["no.png", "neither a PNG nor a PGM"]),
         (vec!["plan", "rrs-follow", "--relax", "image:square.pgm"], ["2 × 2 pixels", "2 × 1 pixels"]),
         (vec!["plan", "cubicles", "--relax", "paper"], ["for discs in the plane, not for SE3", "`clearance`"]),

@@ -91,6 +91,7 @@ pub const FILES: &[File] = files! {
     "scenes/cubicles.env"
     "scenes/docks.toml"
     "scenes/easy.env"
+    "scenes/flyer.toml"
     "scenes/gempa-1.env"
     "scenes/gempa-2.env"
     "scenes/gempa-3.env"
@@ -106,5 +107,6 @@ pub const FILES: &[File] = files! {
     "scenes/twisty.env"
     "scenes/unicycle.toml"
     "scenes/velocities.toml"
+    "scenes/warehouse.toml"
     "scenes/wrench.toml"
 };

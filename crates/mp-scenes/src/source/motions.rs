@@ -226,6 +226,82 @@ box = [0.04, 0.95, 0.12]
 path = [[0, 0, 0, 0, 0, 0, 0], [4, 0, 0, 0, 0, 0, 2], [8, 0, 0, 0, 0, 0, 4], [12, 0, 0, 0, 0, 0, 6]]
 ";
 
+/// A robot on wheels among carts: obstacles that move, and inputs.
+const WAREHOUSE: &str = "\
+# A robot with two driven wheels crosses an aisle in which two carts drive.
+
+[world]
+walls = [[0, 0], [8, 6]]
+
+[robot]
+kind = \"unicycle\"
+disc = 0.25
+speed = 0.8
+turning = 1.5
+reverse = false
+duration = 0.6
+
+[motion]
+start = [0.8, 0.6, 1.57]
+goal = { x = [6.8, 7.4], y = [5, 5.6] }   # any direction, at any time
+horizon = 30                              # seconds
+
+[[obstacle]]
+name = \"lower shelf\"
+rectangle = [[1.8, 1.2], [8, 1.8]]
+
+[[obstacle]]
+name = \"upper shelf\"
+rectangle = [[0, 4], [5.8, 4.6]]
+
+[[moving]]
+name = \"cart\"
+rectangle = [[-0.6, -0.8], [0.6, 0.8]]
+path = [[0, 7.2, 2.9], [6, 0.8, 2.9], [9, 0.8, 2.9], [15, 7.2, 2.9], [30, 7.2, 2.9]]   # time, x, y
+
+[[moving]]
+name = \"sweeper\"
+circle = [0, 0, 0.4]
+path = [[0, 6.8, 2.2], [10, 6.8, 5.4], [20, 6.8, 2.2], [30, 6.8, 5.4]]
+";
+
+/// A box that accelerates in space.
+const FLYER: &str = "\
+# A box moved by accelerations flies through a window, turns, and is slow at the goal.
+
+[robot]
+kind = \"accelerations\"
+box = [0.7, 0.3, 0.2]
+bounds = [[-2, -1.5, -1.2], [2, 1.5, 1.2]]
+speeds = [0.6, 0.6, 0.6, 0.8, 0.8, 0.8]          # along x, y, z (m/s), and turning about them (rad/s)
+accelerations = [0.5, 0.5, 0.5, 1, 1, 1]         # m/s², rad/s²
+duration = 0.5                                   # seconds that an input is held
+
+[motion]
+start = [-1.4, -0.6, 0.5, 1.57, 0, 0]            # x y z, then the angles about Z, Y and X
+goal = { x = [1.1, 1.6], y = [0.2, 0.8], z = [-0.6, 0], v_x = [-0.3, 0.3], v_y = [-0.3, 0.3], v_z = [-0.3, 0.3] }
+
+[[obstacle]]
+name = \"left\"
+box = [0.1, 1.1, 2.4]
+pose = [0, 0.95, 0, 0, 0, 0]
+
+[[obstacle]]
+name = \"right\"
+box = [0.1, 1.1, 2.4]
+pose = [0, -0.95, 0, 0, 0, 0]
+
+[[obstacle]]
+name = \"lintel\"
+box = [0.1, 0.8, 0.7]
+pose = [0, 0, 0.85, 0, 0, 0]
+
+[[obstacle]]
+name = \"sill\"
+box = [0.1, 0.8, 0.9]
+pose = [0, 0, -0.75, 0, 0, 0]
+";
+
 /// Adds the scenes.
 pub(super) fn add(files: &mut Files) {
     for (name, text) in [
@@ -233,9 +309,11 @@ pub(super) fn add(files: &mut Files) {
         ("blade", BLADE),
         ("crossing", CROSSING),
         ("docks", DOCKS),
+        ("flyer", FLYER),
         ("parking", PARKING),
         ("unicycle", UNICYCLE),
         ("velocities", VELOCITIES),
+        ("warehouse", WAREHOUSE),
     ] {
         files.insert(format!("scenes/{name}.toml"), text.as_bytes().to_vec());
     }

@@ -21,7 +21,7 @@ const LEAST_GAIN: f64 = 1e-6;
 const TIMES: i32 = 24;
 const HALVINGS: u32 = 12;
 /// Corrections of a motion whose rotations do not add up.
-const CORRECTIONS: u32 = 8;
+const CORRECTIONS: u32 = 20;
 
 impl System {
     /// Inputs that lead from one state to another in less than `most` seconds, obstacles aside: the shortest curve of a car, a turn,
@@ -100,11 +100,10 @@ impl System {
                 if !possible {
                     return None;
                 }
-                let between = self.flow(positions, from, &first, half);
-                let reached = self.flow(positions, &between, &second, half);
-                let off = self.way(positions, &reached, to)?;
+                let held = vec![(first, half), (second, half)];
+                let off = self.way(positions, self.run(positions, from, &held).last()?, to)?;
                 if off.iter().all(|x| x.abs() <= 0.01 * ROUNDING * positions.extent()) {
-                    return Some(vec![(first, half), (second, half)]);
+                    return Some(held);
                 }
                 way.iter_mut().zip(off).for_each(|(way, off)| *way += off);
             }
@@ -128,6 +127,24 @@ impl System {
             }
         }
         Some(held)
+    }
+
+    /// The states that inputs lead to, each held for no longer than the system says, in equal parts.
+    fn run<C: Space<State: StateVector>>(
+        &self,
+        positions: &C,
+        from: &Parts<C::State>,
+        held: &[Held],
+    ) -> Vec<Parts<C::State>> {
+        let (mut now, mut states) = (from.clone(), Vec::new());
+        for (input, time) in held {
+            let parts = (time / self.duration).ceil().max(1.0);
+            for _ in 0..parts as usize {
+                now = self.flow(positions, &now, input, time / parts);
+                states.push(now.clone());
+            }
+        }
+        states
     }
 
     /// The velocity that leads from one position to another in a second, one number for each degree of freedom. The times of both
@@ -210,18 +227,12 @@ impl<K: SpeedBound> DrivenScene<K> {
                 continue;
             }
             let Some(held) = system.steer(positions, &from, &to, most) else { continue };
-            let mut now = from;
             let mut new = states[..=first].to_vec();
             if left > 0.0 {
-                new.push(now.clone());
+                new.push(from.clone());
             }
-            for (input, time) in held {
-                let parts = (time / system.duration).ceil().max(1.0);
-                for _ in 0..parts as usize {
-                    now = after(&now, &input, time / parts);
-                    new.push(now.clone());
-                }
-            }
+            new.extend(system.run(positions, &from, &held));
+            let mut now = new[new.len() - 1].clone();
             let rounding = ROUNDING * positions.extent();
             let is_at = |now: &Parts<K::State>, to: &Parts<K::State>| {
                 system.way(positions, now, to).is_some_and(|off| off.iter().all(|x| x.abs() <= rounding))
