@@ -1,20 +1,35 @@
 //! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
-use crate::robot::{DrivenScene, PlanarScene, RigidScene, RigidSpace, greatest_speed};
+use crate::robot::{DrivenScene, PlanarScene, RigidScene, greatest_speed};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
     Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun, RelaxField, Report,
     Request, RobotKind, Sweep, Track, Verdict,
 };
+use mp_cspace::registry::PlannerInfo;
 use mp_geom::{Aabb, TriMesh, six_from_pose};
-use mp_io::{DocumentShape, Driven, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
+use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
 use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// A scene of a robot of the kind that a feature of this crate names; an error in a program made without that feature. Planners
+/// are compiled for each kind, and only for those that the program can make scenes of.
+macro_rules! of_kind {
+    ($feature:literal, $what:literal, $robot:expr) => {
+        if cfg!(feature = $feature) {
+            $crate::Scene::new($robot).of_feature($feature)
+        } else {
+            return Err($crate::load::left_out($what, $feature));
+        }
+    };
+}
+#[cfg(feature = "urdf")]
+pub(crate) use of_kind;
 
 /// A scene to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share the data.
 ///
@@ -38,6 +53,7 @@ pub struct Scene {
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
     notes: Arc<[String]>,
+    feature: Option<&'static str>,
 }
 
 /// A scene as an editor keeps it: its document, and the meshes that are not written into the document.
@@ -65,6 +81,7 @@ impl Scene {
             shipped: false,
             document: None,
             notes: Arc::default(),
+            feature: None,
         }
     }
 
@@ -82,11 +99,15 @@ impl Scene {
         Ok(match problem.space {
             SpaceKind::Se3 => {
                 let before = before.and_then(|before| before.downcast_ref());
-                Self::new(RigidScene::<Spatial>::after(before, problem)?)
+                of_kind!("space", "rigid bodies in space", RigidScene::<Spatial>::after(before, problem)?)
             }
             SpaceKind::Se2 => {
                 let before = before.and_then(|before| before.downcast_ref());
-                Self::new(RigidScene::<Planar>::after(before, problem)?)
+                of_kind!(
+                    "plane",
+                    "bodies that turn in the plane",
+                    RigidScene::<Planar>::after(before, problem)?
+                )
             }
         })
     }
@@ -95,30 +116,29 @@ impl Scene {
     ///
     /// # Errors
     /// When the bounds of the position are empty, or a mesh, a pose or a time is not valid.
-    pub fn from_task(mut task: RigidTask) -> Result<Self, Error> {
-        fn made<M: RigidSpace>(task: RigidTask) -> Result<Scene, Error> {
-            let scene = RigidScene::<M>::new(task.problem)?.with_goals(task.goals);
-            Ok(match &task.timing {
-                Some(timing) => Scene::new(scene.among_moving(&task.moving, timing)?),
-                None => Scene::new(scene),
-            })
-        }
-        fn driven(mut task: RigidTask, driven: &Driven) -> Result<Scene, Error> {
-            let places = task.goals.iter().map(|goal| goal[..6].to_vec()).collect();
-            let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(places);
-            let Some(timing) = &mut task.timing else {
-                return Ok(Scene::new(DrivenScene::new(scene, driven, &task.velocity, task.goals)?));
-            };
-            timing.speed = Some(greatest_speed(RobotKind::space(&scene), driven));
-            let scene = scene.among_moving(&task.moving, timing)?;
-            Ok(Scene::new(scene.driven(driven, &task.velocity, task.goals)?))
-        }
+    pub fn from_task(task: RigidTask) -> Result<Self, Error> {
         let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
-        match (task.problem.space, task.driven.take()) {
-            (SpaceKind::Se3, Some(inputs)) => driven(task, &inputs),
-            (SpaceKind::Se3, None) => made::<Spatial>(task),
-            (SpaceKind::Se2, _) => made::<Planar>(task),
-        }
+        Ok(match (task.problem.space, &task.driven) {
+            (SpaceKind::Se3, Some(_)) => driven_body(task)?,
+            (SpaceKind::Se3, None) => {
+                let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(task.goals);
+                match &task.timing {
+                    Some(timing) => {
+                        of_kind!("moving", "obstacles that move", scene.among_moving(&task.moving, timing)?)
+                    }
+                    None => of_kind!("space", "rigid bodies in space", scene),
+                }
+            }
+            (SpaceKind::Se2, _) => {
+                let scene = RigidScene::<Planar>::new(task.problem)?.with_goals(task.goals);
+                match &task.timing {
+                    Some(timing) => {
+                        of_kind!("moving", "obstacles that move", scene.among_moving(&task.moving, timing)?)
+                    }
+                    None => of_kind!("plane", "bodies that turn in the plane", scene),
+                }
+            }
+        })
     }
 
     /// A scene of a robot in the plane among polygons.
@@ -132,19 +152,27 @@ impl Scene {
             PlanarShape::Disc(_) => {
                 let scene = PlanarScene::<DiscRobot>::new(problem)?;
                 match driven {
-                    Some(driven) if moves => Self::new(scene.driven_among_moving(&driven)?),
-                    Some(driven) => Self::new(scene.driven(&driven)?),
-                    None if moves => Self::new(scene.among_moving()?),
-                    None => Self::new(scene),
+                    Some(driven) if moves => of_kind!(
+                        "driven-moving",
+                        "robots moved by inputs among obstacles that move",
+                        scene.driven_among_moving(&driven)?
+                    ),
+                    Some(driven) => of_kind!("driven", "robots moved by inputs", scene.driven(&driven)?),
+                    None if moves => of_kind!("moving", "obstacles that move", scene.among_moving()?),
+                    None => of_kind!("discs", "discs", scene),
                 }
             }
             PlanarShape::Polygon(_) => {
                 let scene = PlanarScene::<PolygonRobot>::new(problem)?;
                 match driven {
-                    Some(driven) if moves => Self::new(scene.driven_among_moving(&driven)?),
-                    Some(driven) => Self::new(scene.driven(&driven)?),
-                    None if moves => Self::new(scene.among_moving()?),
-                    None => Self::new(scene),
+                    Some(driven) if moves => of_kind!(
+                        "driven-moving",
+                        "robots moved by inputs among obstacles that move",
+                        scene.driven_among_moving(&driven)?
+                    ),
+                    Some(driven) => of_kind!("driven", "robots moved by inputs", scene.driven(&driven)?),
+                    None if moves => of_kind!("moving", "obstacles that move", scene.among_moving()?),
+                    None => of_kind!("plane", "bodies that turn in the plane", scene),
                 }
             }
         })
@@ -207,6 +235,10 @@ impl Scene {
         Some(edited)
     }
 
+    pub(crate) fn of_feature(self, feature: &'static str) -> Self {
+        Self { feature: Some(feature), ..self }
+    }
+
     /// Sets the file that reports name as the source of the scene.
     #[must_use]
     pub fn with_file(self, file: impl Into<PathBuf>) -> Self {
@@ -222,6 +254,13 @@ impl Scene {
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// The feature of this crate that plans for the robot of the scene: `space`, `arms`, …; `None` for a
+    /// [`RobotKind`] of one's own.
+    #[must_use]
+    pub fn feature(&self) -> Option<&'static str> {
+        self.feature
     }
 
     /// The name of the scene.
@@ -300,6 +339,14 @@ impl Scene {
     #[must_use]
     pub fn default_planner(&self) -> &'static str {
         self.robot.default_planner()
+    }
+
+    /// The names of the planners that cannot plan for the robot, each with the reason.
+    #[must_use]
+    pub fn planners_that_cannot(&self) -> Vec<(&'static str, &'static str)> {
+        let demands = self.robot.demands();
+        let against = |info: &PlannerInfo| demands.iter().find_map(|demand| info.reason_against(*demand));
+        crate::planners().filter_map(|info| Some((info.name, against(info)?))).collect()
     }
 
     /// How many of the bodies without a pose, the last of them, are obstacles that move.
@@ -516,4 +563,24 @@ impl Scene {
     pub fn picture_bounds(&self) -> Option<Aabb> {
         self.robot.picture_bounds()
     }
+}
+
+/// The scene of a rigid body in space that moves by inputs.
+fn driven_body(mut task: RigidTask) -> Result<Scene, Error> {
+    let Some(driven) = task.driven.take() else {
+        return Err(Error::new("the robot does not move by inputs"));
+    };
+    let places = task.goals.iter().map(|goal| goal[..6].to_vec()).collect();
+    let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(places);
+    let Some(timing) = &mut task.timing else {
+        let scene = DrivenScene::new(scene, &driven, &task.velocity, task.goals)?;
+        return Ok(of_kind!("driven", "robots moved by inputs", scene));
+    };
+    timing.speed = Some(greatest_speed(RobotKind::space(&scene), &driven));
+    let scene = scene.among_moving(&task.moving, timing)?;
+    Ok(of_kind!(
+        "driven-moving",
+        "robots moved by inputs among obstacles that move",
+        scene.driven(&driven, &task.velocity, task.goals)?
+    ))
 }
