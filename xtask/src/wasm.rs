@@ -8,7 +8,8 @@ use std::process::{Command, ExitCode, Stdio};
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// The modules, each for the scenes of one kind of robot: the features of mp-wasm.
-const MODULES: [&str; 8] = ["arms", "discs", "driven", "driven-moving", "floating", "moving", "plane", "space"];
+const MODULES: [&str; 8] =
+    ["arms", "discs", "driven", "driven-moving", "floating", "moving", "plane", "space"];
 
 /// The environment variable in which `mp` gets the folder of the modules.
 const VARIABLE: &str = "MP_PLANNERS";

@@ -2,9 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use mp_plan::{
-    Length, MetricName, Mode, MotionValidator, PlannerInfo, RelaxField, Request, positive_number,
-};
+use mp_plan::{Length, MetricName, Mode, MotionValidator, PlannerInfo, RelaxField, Request, positive_number};
 use std::ffi::OsStr;
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -10,7 +10,8 @@ use crate::progress::Line;
 use crate::request::{request, request_for};
 use crate::text::{caption, summary, table};
 use mp_plan::{
-    Cancel, Control, Error, FilmKind, Finish, PathFileKind, PathRows, Report, Request, Runs, Scene, in_parallel, make_folder,
+    Cancel, Control, Error, FilmKind, Finish, PathFileKind, PathRows, Report, Request, Runs, Scene,
+    in_parallel, make_folder,
 };
 use mp_view::GrownTrees;
 use std::collections::HashSet;
@@ -216,8 +217,7 @@ fn one(
 /// How the picture of a run is drawn: with the field that has relaxed its path, if that can be drawn.
 fn drawing(scene: &Scene, request: &Request, file: Option<&Path>, threads: u16) -> Drawing {
     let drawn = |file: &Path| FilmKind::of(file).is_some() || scene.picture_kind(file).is_ok();
-    let shows_field =
-        request.finish == Finish::Relax && scene.is_planar_world() && file.is_some_and(drawn);
+    let shows_field = request.finish == Finish::Relax && scene.is_planar_world() && file.is_some_and(drawn);
     let field = shows_field.then(|| request.field.clone());
     Drawing { threads: Some(threads), field, ..Drawing::default() }
 }

@@ -251,7 +251,13 @@ fn faults_of_files_have_their_line() {
         (BODY, "speeds = [1, 1, 1, 2, 2, 2]", "speeds = [1, 1, 1]", 1, "`speeds` has 3 of 6 limits"),
         (BODY, "duration = 0.4\n", "", 1, "needs `duration`"),
         (BODY, "tolerance = 0.3\n", "", 9, "cannot reach these numbers exactly"),
-        (BODY, "goal = [1.5, 0, 0, 0, 0, 0]", "goal = { v_x = 0 }", 9, "`v_x`, which the robot does not have"),
+        (
+            BODY,
+            "goal = [1.5, 0, 0, 0, 0, 0]",
+            "goal = { v_x = 0 }",
+            9,
+            "`v_x`, which the robot does not have",
+        ),
         (BODY, "start = [-1.5, 0, 0, 0, 0, 0]", "start = [-1.5, 0, 0]", 8, "the start has 3"),
     ] {
         assert!(good.contains(from), "{from}");
@@ -305,7 +311,8 @@ fn paths_by_inputs_are_shortened() {
         let mut parts = Vec::new();
         for seed in ["1", "2", "3"] {
             let plan = |more: &[&str], out: &str| {
-                let run = mp(&dir, &[&["plan", scene, "--seed", seed, "--out", out, "--json"], more].concat());
+                let run =
+                    mp(&dir, &[&["plan", scene, "--seed", seed, "--out", out, "--json"], more].concat());
                 assert_eq!(run.code, 0, "{run:?}");
                 (run.json()["shortened"].as_bool().unwrap(), rows(&dir, out))
             };
@@ -431,7 +438,10 @@ fn floating_bases_have_free_goals() {
         assert_eq!(mp(&dir, &["check", "floating.toml", "path.txt"]).code, 0);
         let last = rows(&dir, "path.txt").pop().unwrap();
         let [x, low, high] = ends;
-        assert!((last[0] - x).abs() < 1e-6 && (low - 1e-6..=high + 1e-6).contains(&last[7]), "{goal}: {last:?}");
+        assert!(
+            (last[0] - x).abs() < 1e-6 && (low - 1e-6..=high + 1e-6).contains(&last[7]),
+            "{goal}: {last:?}"
+        );
     }
     for (goal, words) in [
         ("goal = { x = 2, beta = 2 }", "beta from -π/2 to π/2"),
@@ -450,17 +460,26 @@ fn floating_bases_have_free_goals() {
 fn formats_with_one_goal_say_so() {
     let dir = Dir::new();
     let env = dir.read("window.env");
-    for (from, to) in [("2 1.3 1.8 0.7 0 0\n", "2 1.3 1.8 0.7 0 0\n2 1 1 0 0 0\n"), ("2 1.3 1.8 0.7 0 0\n", "2 1.3 * 0 0 0\n")] {
+    for (from, to) in [
+        ("2 1.3 1.8 0.7 0 0\n", "2 1.3 1.8 0.7 0 0\n2 1 1 0 0 0\n"),
+        ("2 1.3 1.8 0.7 0 0\n", "2 1.3 * 0 0 0\n"),
+    ] {
         assert!(env.contains(from));
         dir.write("goals.env", env.replacen(from, to, 1));
         let run = mp(&dir, &["plan", "goals.env"]);
         let [place, words] = ["goals.env:", "a rigid problem (.toml) may have several goals"];
         assert!(run.code == 2 && run.stderr.contains(place) && run.stderr.contains(words), "{run:?}");
     }
-    dir.write("goal.cfg", "[problem]\nrobot=robot.off\nstart.x=0\nstart.y=0\nstart.theta=0\ngoal.x=1\ngoal.y=1\n");
+    dir.write(
+        "goal.cfg",
+        "[problem]\nrobot=robot.off\nstart.x=0\nstart.y=0\nstart.theta=0\ngoal.x=1\ngoal.y=1\n",
+    );
     let run = mp(&dir, &["plan", "goal.cfg"]);
     assert!(run.code == 2 && run.stderr.contains("are in rigid problems (.toml)"), "{run:?}");
-    dir.write("goals.mp.json", r#"{"version": 1, "name": "x", "space": "SE3", "goals": [[0, 0, 0, 0, 0, 0]]}"#);
+    dir.write(
+        "goals.mp.json",
+        r#"{"version": 1, "name": "x", "space": "SE3", "goals": [[0, 0, 0, 0, 0, 0]]}"#,
+    );
     let run = mp(&dir, &["plan", "goals.mp.json"]);
     assert!(run.code == 2 && run.stderr.contains("rigid problems (.toml) have sets of goals"), "{run:?}");
 }

@@ -26,10 +26,8 @@ fn each_field_is_planned_checked_and_drawn() {
         assert_eq!(mp(&dir, &["check", "rrs-follow", "path.txt"]).code, 0);
         let picture = dir.read("path.svg");
         assert!(!pictures.contains(&picture), "{field}");
-        let drawn = mp(
-            &dir,
-            &["render", "rrs-follow", "path.txt", "--field", field, "--picture", "again.svg"],
-        );
+        let drawn =
+            mp(&dir, &["render", "rrs-follow", "path.txt", "--field", field, "--picture", "again.svg"]);
         assert_eq!(drawn.code, 0, "{drawn:?}");
         // The strongest shade of a field, as in the picture of the run.
         assert!(picture.contains("#b2182b") && dir.read("again.svg").contains("#b2182b"), "{field}");
@@ -61,7 +59,10 @@ fn bad_fields_are_explained() {
         (vec!["plan", "rrs-follow", "--relax", "image:gone.png"], ["gone.png", "no such file"]),
         (vec!["plan", "rrs-follow", "--relax", "image:no.png"], ["no.png", "neither a PNG nor a PGM"]),
         (vec!["plan", "rrs-follow", "--relax", "image:square.pgm"], ["2 × 2 pixels", "2 × 1 pixels"]),
-        (vec!["plan", "cubicles", "--relax", "paper"], ["for discs in the plane, not for SE3", "`clearance`"]),
+        (
+            vec!["plan", "cubicles", "--relax", "paper"],
+            ["for discs in the plane, not for SE3", "`clearance`"],
+        ),
         (vec!["plan", "docks", "--relax", "risk"], ["for discs in the plane, not for SE2", "`clearance`"]),
         (vec!["plan", "crossing", "--relax"], ["no clearance gradient", "leave relaxing out"]),
         (vec!["plan", "rrs-follow", "--request", "field.json"], ["no field `wind`", "is not a request"]),

@@ -9,8 +9,8 @@ use crate::run::AnyPrepared;
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, RelaxField, Report, Request, RobotKind,
-    Sweep, Track, Verdict,
+    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, RelaxField, Report, Request,
+    RobotKind, Sweep, Track, Verdict,
 };
 use mp_cspace::{Demand, Rng, Space, Validity};
 use mp_geom::Aabb;

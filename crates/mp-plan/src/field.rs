@@ -121,7 +121,7 @@ const MOST_CELLS: usize = 2048;
 /// The standard deviation of the blur of images, as a part of the range.
 #[cfg(feature = "planar")]
 const BLUR: f64 = 1.0 / 3.0;
-/// The longest step of a path in the landscape of risk, as a part of the range.
+/// The steps of a path in the landscape of risk, as a part of the range.
 #[cfg(feature = "planar")]
 const STRIDE: f64 = 5.0 / 3.0;
 
@@ -153,8 +153,12 @@ fn image<K: RobotKind>(
             let path = path.ok_or_else(|| {
                 Error::new("the landscape of risk is that of a path, and there is none").help("name a path")
             })?;
-            let steps = path.resampled(kind.space(), STRIDE * range)?;
-            let places = steps.states.iter().map(|q| Vector2::from_row_slice(&kind.row(q)[..2]));
+            // Steps of one length, however many states the path has.
+            let length = path.length(kind.space());
+            let steps = (length / (STRIDE * range)).ceil().clamp(1.0, 1e5);
+            let at = |i: u32| path.at(kind.space(), length * f64::from(i) / steps);
+            let places =
+                (0..=steps as u32).filter_map(at).map(|q| Vector2::from_row_slice(&kind.row(&q)[..2]));
             let path = Path::straight(places.collect());
             let (motion, sensor) =
                 (MotionNoise::default().times(*factor), RangeNoise::default().times(*factor));
@@ -189,10 +193,12 @@ fn read_image(file: &std::path::Path, bounds: [[f64; 2]; 2]) -> Result<Grid, Err
     }
     if (cell * height as f64 - up).abs() > 0.5 * cell.max(0.01 * up) {
         let brief = crate::brief;
-        let why =
-            format!("has {width} × {height} pixels, but covers {} × {} m", brief(across), brief(up));
+        let why = format!("has {width} × {height} pixels, but covers {} × {} m", brief(across), brief(up));
         let height = (up / cell).round();
-        return wrong(why, format!("scale it to {width} × {height} pixels: it covers the bounds of the robot"));
+        return wrong(
+            why,
+            format!("scale it to {width} × {height} pixels: it covers the bounds of the robot"),
+        );
     }
     // The first row of an image is its highest.
     let rows = map.brightness.chunks_exact(width).rev().flatten();
@@ -280,10 +286,19 @@ mod tests {
     #[test]
     fn other_scenes_and_bad_ranges_are_refused() {
         let scene = Scene::find("easy").unwrap();
-        assert!(scene.field(&RelaxField::Clearance, &scene.start(), None, None, 40).unwrap_err().to_string().contains("is not drawn"));
+        assert!(
+            scene
+                .field(&RelaxField::Clearance, &scene.start(), None, None, 40)
+                .unwrap_err()
+                .to_string()
+                .contains("is not drawn")
+        );
         let scene = Scene::find("rrs-low").unwrap();
         for range in ["0", "-1", "far", "200%"] {
-            assert!(scene.field(&RelaxField::Clearance, &scene.start(), None, Some(range), 40).is_err(), "{range}");
+            assert!(
+                scene.field(&RelaxField::Clearance, &scene.start(), None, Some(range), 40).is_err(),
+                "{range}"
+            );
         }
         assert!(scene.field(&RelaxField::Clearance, &[], None, None, 40).is_err());
         assert!(scene.field(&RelaxField::Clearance, &[1.0], None, None, 40).is_err());

@@ -1,8 +1,8 @@
 //! Relaxing a path by a snake.
 
 use crate::counted::Counted;
-use crate::prepared::Possible;
 use crate::field::{self, AnyField};
+use crate::prepared::Possible;
 use crate::{Control, Error, Finish, RelaxField, Request, RobotKind, Stage};
 use mp_cspace::erased::{AnyCheck, AnyGradient, AnySpace};
 use mp_cspace::shorten::reduce;
@@ -58,7 +58,11 @@ pub(crate) fn relax_if_requested<K: RobotKind>(
 
 /// The path without the states that it does not need, relaxed by a snake; the path itself if the result does not pass the
 /// verifier. In the metric of the space itself the result is no longer than the path.
-fn relaxed<K: RobotKind>(kind: &K, field: &RelaxField, path: Path<K::State>) -> Result<Path<K::State>, Error> {
+fn relaxed<K: RobotKind>(
+    kind: &K,
+    field: &RelaxField,
+    path: Path<K::State>,
+) -> Result<Path<K::State>, Error> {
     let _span = tracing::info_span!("relax", %field).entered();
     let unused = AtomicU64::new(0);
     let gradient = gradient(kind, &unused)?;

@@ -239,12 +239,18 @@ impl RelaxField {
     /// How each is written, and what it is.
     pub const ALL: [(&'static str, &'static str); 4] = [
         ("clearance", "obstacles repel (the default)"),
-        ("paper", "eq. 3 of Baizid et al.: outlines of obstacles in a blurred image repel (discs in the plane)"),
+        (
+            "paper",
+            "eq. 3 of Baizid et al.: outlines of obstacles in a blurred image repel (discs in the plane)",
+        ),
         (
             "risk",
             "the landscape of risk of inexact motion and sensing; `risk:2` for twice the noise (discs in the plane)",
         ),
-        ("image:FILE", "the dark pixels of a PNG or PGM image over the bounds of the robot repel (the plane)"),
+        (
+            "image:FILE",
+            "the dark pixels of a PNG or PGM image over the bounds of the robot repel (the plane)",
+        ),
     ];
 }
 

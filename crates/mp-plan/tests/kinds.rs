@@ -85,7 +85,9 @@ fn a_puck_is_where_its_accelerations_lead() {
 
 #[test]
 fn paths_touch_nothing_at_any_moment() {
-    for name in ["crossing", "blade", "parking", "unicycle", "velocities", "accelerations", "warehouse", "flyer"] {
+    for name in
+        ["crossing", "blade", "parking", "unicycle", "velocities", "accelerations", "warehouse", "flyer"]
+    {
         let scene = Scene::find(name).unwrap();
         let report = scene.plan(&Request::new(scene.default_planner()).seed(9)).unwrap();
         let rows = report.path.unwrap_or_else(|| panic!("{name}: {:?}", report.why));

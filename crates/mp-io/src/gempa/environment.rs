@@ -139,7 +139,8 @@ pub(crate) fn parse<'a>(text: &Text<'a>) -> Result<(Environment, Places<'a>), Er
         let Some(number) = obstacle_number(line.text) else {
             let mut e = text.error(line, format!("`{}` is out of place", clipped(line.text)));
             if line.words().all(|w| w.text.parse::<f64>().is_ok()) {
-                e = e.help(format!("a robot has two six-tuples (initial, goal), an obstacle one; {ONE_GOAL}"));
+                e = e
+                    .help(format!("a robot has two six-tuples (initial, goal), an obstacle one; {ONE_GOAL}"));
             }
             return Err(e.expected("`Obstacle #k` or `End`"));
         };

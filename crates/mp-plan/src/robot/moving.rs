@@ -1,7 +1,9 @@
 //! Robots among obstacles that move: time is a dimension of planning.
 
 use super::vectors::OnVectors;
-use super::{Body, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKind, SpeedBound, Touch, no_metric};
+use super::{
+    Body, Checker, Column, DrivenScene, End, Measured, Mismatch, RobotKind, SpeedBound, Touch, no_metric,
+};
 use crate::goals::{GoalPart, examples};
 use crate::{Error, MetricName};
 use mp_cspace::space_time::SpaceTime;
@@ -84,8 +86,7 @@ impl<K: WithMoving> MovingScene<K> {
             return Err(Error::new("obstacles move, and the robot has no speed").help("say how fast it is"));
         };
         // Time to wait until nothing moves, and then to go around everything.
-        let horizon =
-            timing.horizon.unwrap_or(last.max(timing.start) + 2.0 * still.space().extent() / speed);
+        let horizon = timing.horizon.unwrap_or(last.max(timing.start) + 2.0 * still.space().extent() / speed);
         let space = AsVectors(SpaceTime::new(still.space().clone(), horizon, speed)?);
         let start = vector::<K>((still.start().clone(), timing.start));
         let exactly = |q: &K::State| still.row(q).into_iter().map(GoalPart::Exactly).collect();

@@ -12,8 +12,9 @@ use mp_collide::Query;
 use mp_cspace::erased::{AnyGeometry, AnyIndex, AnySpace, CompiledIndex, CoordinateState};
 use mp_cspace::space_time::SpaceTime;
 use mp_cspace::{
-    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, MotionCheck, ObstacleKnowledge,
-    Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric, WithMetric,
+    DefaultNn, Embed, Euclidean, Factored, Linear, Manhattan, MaxDisplacement, Metric, MotionCheck,
+    ObstacleKnowledge, Path, ScaledEuclidean, Se2, Se3, Space, StateVector, SweptVolume, TrueMetric,
+    WithMetric,
 };
 use mp_geom::{Aabb, TriMesh, pose_from_six, six_from_pose};
 use mp_io::{RigidMoving, RigidProblem, SpaceKind, Timing};

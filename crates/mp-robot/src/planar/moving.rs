@@ -164,8 +164,7 @@ impl<R: PlanarRobot> AmongMovingAreas<R> {
     /// The speed (m/s) that no point of a moving area ever exceeds.
     #[must_use]
     pub fn greatest_speed(&self) -> f64 {
-        let speed =
-            |area: &MovingArea| area.trajectory.speed(area.radius, f64::NEG_INFINITY, f64::INFINITY);
+        let speed = |area: &MovingArea| area.trajectory.speed(area.radius, f64::NEG_INFINITY, f64::INFINITY);
         self.moving.iter().map(speed).fold(0.0, f64::max)
     }
 

@@ -215,9 +215,9 @@ fn the_pace_follows_the_field() {
             gradient.copy_from_slice(&[0.0, off / width]);
             0.5 * off * off
         };
-        let params = Params { membrane: 0.0, plate: 0.0, iterations: 200, ..Params::for_range(0.15).unwrap() };
-        let mut check =
-            FineDiscrete::new(&space, |_: &Vector2<f64>| true, Resolution::Length(0.01)).unwrap();
+        let params =
+            Params { membrane: 0.0, plate: 0.0, iterations: 200, ..Params::for_range(0.15).unwrap() };
+        let mut check = FineDiscrete::new(&space, |_: &Vector2<f64>| true, Resolution::Length(0.01)).unwrap();
         let relaxed = relax(&space, &mut check, &mut field, &path, params, 1.2).unwrap();
         let off = relaxed.path.states.iter().map(|q| (q.y - bed(q.x)).abs()).fold(0.0, f64::max);
         assert!(relaxed.is_better() && off < 0.3 * width, "{width}: {off} {:?}", relaxed.energy);

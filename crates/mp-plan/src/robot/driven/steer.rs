@@ -182,7 +182,8 @@ impl<K: SpeedBound> DrivenScene<K> {
     ) -> Path<DVector<f64>> {
         let (system, positions) = (&self.space.system, &self.space.positions);
         let mut states: Vec<_> = path.states.iter().map(|q| self.parts(q)).collect();
-        let after = |from: &Parts<K::State>, input: &[f64], time: f64| system.flow(positions, from, input, time);
+        let after =
+            |from: &Parts<K::State>, input: &[f64], time: f64| system.flow(positions, from, input, time);
         let mut failures = 0;
         for attempt in 0..effort.attempts {
             if failures >= effort.patience || states.len() < 3 {
