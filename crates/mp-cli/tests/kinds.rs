@@ -245,6 +245,7 @@ fn faults_of_files_have_their_line() {
         (AMONG, "horizon = 20\n", "speed = 1\n", 12, "no speed here"),
         (AMONG, "horizon = 20\n", "horizon = 0\n", 12, "a time after the start"),
         (AMONG, "horizon = 20\n", "goal_time = [5, 4]\n", 12, "from 5 to 4"),
+        (AMONG, "horizon = 20\n", "goal_time = 9\n", 12, "cannot arrive at an exact time"),
         (AMONG, "x = [3.4, 3.7]", "x = 3.5", 11, "cannot reach these numbers exactly"),
         (BODY, "box =", "planar = true\nbox =", 2, "does not move by inputs here"),
         (BODY, "\"velocities\"", "\"car\"", 2, "no kind of robot `car` here"),
@@ -309,7 +310,7 @@ fn paths_by_inputs_are_shortened() {
         ("among.toml", 0.99),
     ] {
         let mut parts = Vec::new();
-        for seed in ["1", "2", "3"] {
+        for seed in ["1", "2"] {
             let plan = |more: &[&str], out: &str| {
                 let run =
                     mp(&dir, &[&["plan", scene, "--seed", seed, "--out", out, "--json"], more].concat());

@@ -362,6 +362,10 @@ fn timing(
                 PartText::Between(range) => interval(text, "the time of the goal", range, &span)?,
             };
             seconds("the time of the goal", range[0], &span)?;
+            if by_inputs && range[0] == range[1] {
+                let message = "a robot that moves by inputs cannot arrive at an exact time";
+                return Err(text.error(&span, message).expected("an interval: `goal_time = [4.5, 5.5]`"));
+            }
             if range[1] < begin || end.is_some_and(|end| range[0] > end) {
                 let message = format!(
                     "the goal is at {} to {} s, which is not between start and horizon",

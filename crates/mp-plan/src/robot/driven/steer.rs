@@ -171,8 +171,8 @@ fn time(held: &[Held]) -> f64 {
 
 impl<K: SpeedBound> DrivenScene<K> {
     /// Replaces stretches of the path, between two random places of it, by steering from one to the other, where that takes less
-    /// time and is free, again and again. Behind such a stretch the inputs stay as they are; what they lead to is computed anew, as
-    /// it differs by rounding. The path still ends at a goal, and takes no more time.
+    /// time, is no longer and is free, again and again. Behind such a stretch the inputs stay as they are; what they lead to is computed anew, as
+    /// it differs by rounding. The path still ends at a goal.
     pub(super) fn shortened_path(
         &self,
         path: &Path<DVector<f64>>,
@@ -184,6 +184,9 @@ impl<K: SpeedBound> DrivenScene<K> {
         let mut states: Vec<_> = path.states.iter().map(|q| self.parts(q)).collect();
         let after =
             |from: &Parts<K::State>, input: &[f64], time: f64| system.flow(positions, from, input, time);
+        let length = |states: &[Parts<K::State>]| -> f64 {
+            states.windows(2).map(|w| self.space.apart(&w[0], &w[1])).sum()
+        };
         let mut failures = 0;
         for attempt in 0..effort.attempts {
             if failures >= effort.patience || states.len() < 3 {
@@ -256,7 +259,7 @@ impl<K: SpeedBound> DrivenScene<K> {
             let until = if all { new.len() } else { changed };
             let vectors: Vec<_> = new[first..until].iter().map(|state| system.vector(state)).collect();
             let free = vectors.windows(2).all(|w| check.check_motion(&w[0], &w[1]).is_free());
-            if free && self.is_at_goal(&now) {
+            if free && length(&new) <= length(&states) && self.is_at_goal(&now) {
                 states = new;
                 failures = 0;
             }
