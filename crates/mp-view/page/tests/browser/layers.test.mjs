@@ -185,6 +185,7 @@ browserTest("worlds of the plane show the field that pushes snakes", () => withP
   await chosen("paper");
   const paper = await energies();
   assert.ok(paper.length === clearance.length && paper.some((e, i) => e !== clearance[i]));
+  await driver.unfold("How to search");
   await driver.choose("The path found", "relax");
   await driver.choose("In which field", "risk");
   await driver.press("Plan");
