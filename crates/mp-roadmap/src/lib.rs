@@ -30,7 +30,7 @@
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | which configurations are tried as nodes | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
+//! | which configurations are tried as nodes | [`NodeGenerator`] | [`Free`], [`Learn`], [`AroundRemoved`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
 //! | which of them become nodes, with which edges | [`Connector`] | [`NearestConnector`], [`Star`], [`Visibility`], [`StagedConnector`] |
 //! | how a path is searched for | [`Query`] | [`AStar`] |
 //! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
