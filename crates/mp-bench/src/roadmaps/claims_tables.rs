@@ -248,21 +248,29 @@ impl<'a> Results<'a> {
 
     /// OBPRM under motion checks of both kinds.
     fn contact(&self) -> Table {
-        let mut table = Table::new(["generation", "checks", "solved", "solved, points", "queries, ratio"]);
-        table
-            .head
-            .extend(["first path fails the verification", "paths that fail it", "mean s"].map(str::to_owned));
+        let mut table = Table::new([
+            "generation",
+            "checks",
+            "a path is found",
+            "solved: it is verified",
+            "solved, points",
+            "queries, ratio",
+            "first path fails the verification",
+            "paths that fail it",
+            "mean s",
+        ]);
         for cell in self.plan.experiment.cells() {
             let runs = self.runs(&[cell], None);
-            let mut row =
-                vec![cell.generation.to_owned(), cell.checks.to_owned(), share(solved(&runs), runs.len())];
+            // A run that found a path solved the problem, or its path was rejected.
+            let found = runs.iter().filter(|run| run.rejected > 0 || run.solved).count();
+            let mut row = vec![cell.generation.to_owned(), cell.checks.to_owned()];
+            row.extend([found, solved(&runs)].map(|k| share(k, runs.len())));
             match cell.checks == CERTIFIED {
                 true => row.extend(["–".into(), "1".into()]),
                 false => row.extend(self.changed(&[[Cell { checks: CERTIFIED, ..cell }, cell]], None)),
             }
             // The first path that a run finds fails when the verifier rejects any at all.
             let failed = runs.iter().filter(|run| run.rejected > 0).count();
-            let found = runs.iter().filter(|run| run.rejected > 0 || run.solved).count();
             let paths: u64 = runs.iter().map(|run| run.rejected).sum();
             row.push(share(failed, found));
             row.push(format!("{paths} of {}", paths + solved(&runs) as u64));
@@ -329,6 +337,7 @@ fn sizes(runs: &[&Run]) -> [String; 2] {
 
 #[cfg(test)]
 mod tests {
+    use super::super::claims::{CHECKS, STAGED};
     use super::*;
 
     fn plan(experiment: Experiment) -> Plan {
@@ -407,10 +416,10 @@ mod tests {
         let results = Results { log: &log, plan: &of };
         let table = results.contact();
         assert_eq!(table.rows.len(), 5 * CHECKS.len());
-        assert_eq!(table.rows[0][2..4], ["8 of 16 (28–72%)", "–"]);
-        assert!(table.rows[1][3].starts_with("+50.0 (+"), "{}", table.rows[1][3]);
-        assert_eq!(table.rows[1][5..7], ["4 of 16 (10–49%)", "8 of 24"]);
-        assert_eq!(table.rows[0][5..7], ["0 of 8 (0–32%)", "0 of 8"]);
+        assert_eq!(table.rows[0][2..5], ["8 of 16 (28–72%)", "8 of 16 (28–72%)", "–"]);
+        assert!(table.rows[1][4].starts_with("+50.0 (+"), "{}", table.rows[1][4]);
+        assert_eq!(table.rows[1][6..8], ["4 of 16 (10–49%)", "8 of 24"]);
+        assert_eq!(table.rows[0][6..8], ["0 of 8 (0–32%)", "0 of 8"]);
         assert_eq!(results.by_scene().head, ["generation", "checks", "a", "b"]);
         assert_eq!(results.intervals().matches('%').count(), 6);
     }
