@@ -122,8 +122,8 @@ impl<'a> Results<'a> {
         member: for<'c> fn(&'c mut Cell) -> &'c mut &'static str,
         among: impl Fn(&Cell) -> bool,
     ) -> Table {
-        let mut table =
-            Table::new([name, "solved", "nodes", "components", "solved, points", "queries, ratio"]);
+        let mut table = Table::new([name, "solved", "nodes", "components", "mean s"]);
+        table.head.extend(["solved, points", "queries, ratio"].map(str::to_owned));
         let mut levels = levels.peekable();
         let base = levels.peek().copied().unwrap_or_default();
         for level in levels {
@@ -136,6 +136,7 @@ impl<'a> Results<'a> {
             });
             let mut row = vec![level.to_owned(), share(solved(&runs), runs.len())];
             row.extend(sizes(&runs));
+            row.push(mean_seconds(&runs));
             match level == base {
                 true => row.extend(["–".into(), "1".into()]),
                 false => row.extend(self.changed(&pairs, None)),
@@ -274,7 +275,7 @@ impl<'a> Results<'a> {
             let paths: u64 = runs.iter().map(|run| run.rejected).sum();
             row.push(share(failed, found));
             row.push(format!("{paths} of {}", paths + solved(&runs) as u64));
-            row.push(mean(runs.iter().map(|run| run.seconds)).map_or("–".into(), short));
+            row.push(mean_seconds(&runs));
             table.rows.push(row);
         }
         table
@@ -324,6 +325,11 @@ impl<'a> Results<'a> {
 /// measured in it.
 fn without_lengths(cell: &Cell) -> bool {
     !["gaussian", "bridge", "obprm free", "obprm shells"].contains(&cell.generation)
+}
+
+/// The mean processor time of runs, solved or not.
+fn mean_seconds(runs: &[&Run]) -> String {
+    mean(runs.iter().map(|run| run.seconds)).map_or("–".into(), short)
 }
 
 /// The geometric means of nodes and of components.
@@ -376,7 +382,7 @@ mod tests {
             row[1..].join(" | ")
         };
         // 16 runs of each cell; 24 cells, of which three (one for each metric) solve half of them.
-        assert_eq!(row(0, NEAREST), "360 of 384 (91–96%) | 100 | 4.00 | – | 1");
+        assert_eq!(row(0, NEAREST), "360 of 384 (91–96%) | 100 | 4.00 | 0.5000 | – | 1");
         let staged = row(0, STAGED);
         // Runs that are cut short before and after count as equal: 15 of 16 pairs in log 2.
         assert!(staged.contains("| +0.0 (+0.0 – +0.0) | 1.9"), "{staged}");
