@@ -30,16 +30,15 @@ const BUDGET: u64 = 100_000;
 const QUICK_BUDGET: u64 = 10_000;
 const SEEDS: u32 = 20;
 
-/// The same of the experiments on claims.
+/// The budget of a run of the experiments on claims.
 const CLAIMS_BUDGET: u64 = 50_000;
-const QUICK_CLAIMS_BUDGET: u64 = 2_000;
 
 /// The options of the suite `roadmaps` alone.
 #[derive(Clone, Debug, Default, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `roadmaps`")]
 pub(crate) struct Options {
-    /// The budget of collision queries of a run [default: 100000, of experiments 50000; 10000 and 2000 with --quick].
+    /// The budget of collision queries of a run [default: 100000, of experiments 50000; 10000 with --quick].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     queries: Option<u64>,
     /// An experiment on the paper's claims to run, and nothing else [default: all, and everything else].
@@ -100,7 +99,7 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
 
 /// Runs experiments on the paper's claims. False when one was interrupted.
 fn run_claims(lab: &Lab, common: &Common, options: &Options, wanted: &[Experiment]) -> Result<bool> {
-    let budget = options.queries.unwrap_or(if common.quick { QUICK_CLAIMS_BUDGET } else { CLAIMS_BUDGET });
+    let budget = options.queries.unwrap_or(if common.quick { QUICK_BUDGET } else { CLAIMS_BUDGET });
     let mut log = lab.log(&lab.name("roadmaps-claims"), budget as f64)?;
     for &experiment in wanted {
         let seeds = common.runs_or(1, experiment.seeds()).into();
