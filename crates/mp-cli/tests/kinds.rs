@@ -188,6 +188,12 @@ const BODY: &str = "[robot]\nkind = \"velocities\"\nbox = [0.5, 0.2, 0.2]\nbound
     speeds = [1, 1, 1, 2, 2, 2]\nduration = 0.4\n[motion]\nstart = [-1.5, 0, 0, 0, 0, 0]\ngoal = [1.5, 0, 0, 0, 0, 0]\n\
     tolerance = 0.3\n[[obstacle]]\nname = \"post\"\nbox = [0.3, 0.8, 4]\n";
 
+/// A box moved by velocities waits for a door.
+const DOOR: &str = "[robot]\nkind = \"velocities\"\nbox = [0.5, 0.2, 0.2]\nbounds = [[-2, -1, -0.5], [2, 1, 0.5]]\n\
+    speeds = [1, 1, 1, 2, 2, 2]\nduration = 0.4\n[motion]\nstart = [-1.5, 0, 0, 0, 0, 0]\ngoal = [1.5, 0, 0, 0, 0, 0]\n\
+    tolerance = 0.3\nhorizon = 15\n[[moving]]\nname = \"door\"\nbox = [0.1, 2.4, 1.4]\n\
+    path = [[0, 0, 0, 0], [3, 0, 0, 0], [5, 0, 0, 2]]\n";
+
 #[test]
 fn faults_of_files_have_their_line() {
     let dir = Dir::empty();
@@ -270,7 +276,7 @@ fn faults_of_files_have_their_line() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    for good in [MOVING, CAR, PUCK, AMONG, BODY] {
+    for good in [MOVING, CAR, PUCK, AMONG, BODY, DOOR] {
         dir.write("good.toml", good);
         let run = mp(&dir, &["plan", "good.toml", "--out", "good.txt"]);
         assert_eq!(run.code, 0, "{run:?}");

@@ -182,7 +182,7 @@ impl<'t, 'a> Section<'t, 'a> {
 
     fn state(&self, which: &str, space: SpaceKind) -> Result<OmplState, Error> {
         let number = |key: &str| {
-            self.number(&format!("{which}.{key}")).map_err(|e| self.explain_missing_key(e, space))
+            self.number(&format!("{which}.{key}")).map_err(|e| self.explain_missing_key(e, which, space))
         };
         let (x, y, theta) = (number("x")?, number("y")?, number("theta")?);
         Ok(match space {
@@ -195,15 +195,22 @@ impl<'t, 'a> Section<'t, 'a> {
         })
     }
 
-    /// Adds which keys belong together: a missing key may be due to a mixture of the two kinds of problems.
-    fn explain_missing_key(&self, e: Error, space: SpaceKind) -> Error {
+    /// Adds which keys belong together: a missing key may be due to a mixture of the two kinds of problems, or a goal that leaves
+    /// numbers free may be meant.
+    fn explain_missing_key(&self, e: Error, which: &str, space: SpaceKind) -> Error {
         let all = match space {
-            SpaceKind::Se2 => "start and goal each need x, y, theta",
+            SpaceKind::Se2 => "the goal needs x, y, theta",
             SpaceKind::Se3 => {
                 "in space, start and goal each need x, y, z, theta, axis.x, axis.y, axis.z; in the plane x, y, theta"
             }
         };
-        e.help(format!("{all}. Goals that leave numbers free are in rigid problems (.toml)"))
+        match (which, space) {
+            ("goal", _) => {
+                e.help(format!("{all}. Goals that leave numbers free are in rigid problems (.toml)"))
+            }
+            (_, SpaceKind::Se2) => e,
+            (_, SpaceKind::Se3) => e.help(all),
+        }
     }
 
     /// The volume; `None` when it is not complete.

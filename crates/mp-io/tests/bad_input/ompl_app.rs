@@ -56,10 +56,16 @@ fn ompl_app_problems() {
             "remove one of them",
         ),
         cfg(
+            "goal.theta=0\n",
+            "",
+            "s.cfg:1:1: [problem] has no `goal.theta`; expected goal.theta = …",
+            "the goal needs x, y, theta. Goals that leave numbers free are in rigid problems (.toml)",
+        ),
+        cfg(
             "start.y=0",
             "start.y=0\nstart.z=0",
             "s.cfg:1:1: [problem] has no `start.axis.x`; expected start.axis.x = …",
-            "in space, start and goal each need x, y, z, theta, axis.x, axis.y, axis.z; in the plane x, y, theta. Goals that leave numbers free are in rigid problems (.toml)",
+            "in space, start and goal each need x, y, z, theta, axis.x, axis.y, axis.z; in the plane x, y, theta",
         ),
         cfg(
             "start.x=0",

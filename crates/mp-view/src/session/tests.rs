@@ -325,6 +325,15 @@ fn fields_are_sent() {
     assert_eq!((energy.len(), &reply.head["width"]), (image.energy.len(), &json!(image.width)));
     assert_eq!(reply.head["range"], json!(image.range));
     assert!(page.refused(json!({"do": "field", "cells": 50, "range": "much"})).contains("much"));
+    // Other fields, that of risk along a path.
+    let mut risk = json!({"do": "field", "cells": 50, "range": "5%", "field": "risk"});
+    assert!(page.refused(risk.clone()).contains("that of a path"));
+    risk["path"] = json!([scene.start(), scene.goals()[0]]);
+    let reply = page.ask(risk);
+    let risk: Vec<f32> = numbers_of(&reply, &reply.head["energy"]);
+    assert!(risk.iter().zip(&energy).all(|(with, without)| with >= without));
+    assert!(risk.iter().zip(&energy).any(|(with, without)| *with > without + 0.1));
+    assert!(page.refused(json!({"do": "field", "cells": 50, "field": "wind"})).contains("no field `wind`"));
     assert!(opened("easy").refused(json!({"do": "field", "cells": 50})).contains("not drawn"));
 }
 
