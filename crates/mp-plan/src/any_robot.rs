@@ -9,8 +9,8 @@ use crate::run::AnyPrepared;
 use crate::scene_roadmap::AnySceneRoadmap;
 use crate::sweep::{sweep, track};
 use crate::{
-    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, RelaxField, Report, Request,
-    RobotKind, Sweep, Track, Verdict,
+    Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, Report, Request, RobotKind,
+    Sweep, Track, Verdict,
 };
 use mp_cspace::{Demand, Rng, Space, Validity};
 use mp_geom::Aabb;
@@ -62,7 +62,7 @@ pub(crate) trait AnyRobot: Send + Sync {
     #[cfg(feature = "planar")]
     fn field(
         &self,
-        field: &RelaxField,
+        field: &crate::RelaxField,
         row: &[f64],
         path: Option<&PathRows>,
         range: Option<&str>,
@@ -175,7 +175,7 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     #[cfg(feature = "planar")]
     fn field(
         &self,
-        field: &RelaxField,
+        field: &crate::RelaxField,
         row: &[f64],
         path: Option<&PathRows>,
         range: Option<&str>,
