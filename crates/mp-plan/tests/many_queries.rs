@@ -134,3 +134,18 @@ fn it_outlives_the_scene() {
     let solved = std::thread::spawn(move || roadmap.query(&ends[0], &ends[1]).unwrap().solved);
     assert!(solved.join().unwrap());
 }
+
+/// The start of the alpha puzzle is in a narrow place, which samples alone do not leave with so few motions.
+#[test]
+fn trees_from_the_ends_solve_the_alpha_puzzle() {
+    let scene = Scene::find("alpha-1.5").unwrap();
+    let solved = |ends: &str| {
+        let request = |seed| {
+            let mut request = Request::new("prm").seed(seed).set("ends", ends);
+            request.budget = Budget { queries: Some(150_000), ..Budget::default() };
+            request
+        };
+        (1..=4).filter(|&seed| scene.plan(&request(seed)).unwrap().verified).count()
+    };
+    assert_eq!([solved("0"), solved("0.5")], [0, 4]);
+}

@@ -1,7 +1,8 @@
 //! What planners made by name are made from.
 
 use crate::{
-    Connector, EdgeChecker, HasRoadmap, NodeGenerator, PATIENCE, Query, RoadmapPlanner, RoadmapPlannerParts,
+    Connector, EdgeChecker, EndGrowth, HasRoadmap, NodeGenerator, PATIENCE, Query, RoadmapPlanner,
+    RoadmapPlannerParts,
 };
 use mp_cspace::erased::{AnyGeometry, AnySpace, AnyStraight};
 use mp_cspace::{
@@ -144,6 +145,7 @@ impl<'c, 's, T: Types<'c>> BuildArgs<'c, 's, T> {
         K: Connector<T::Space, T::Local> + Send + Sync + 'c,
         Q: Query<T::Space, T::Local> + Send + 'c,
     {
-        Ok(self.parallel.build(self.index, parts))
+        let ends = EndGrowth::read(self.space, self.settings)?;
+        Ok(self.parallel.build(self.index, RoadmapPlannerParts { ends, ..parts }))
     }
 }

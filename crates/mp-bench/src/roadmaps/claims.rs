@@ -23,20 +23,23 @@ pub(super) enum Experiment {
     Geometry,
     /// OBPRM with discrete motion checks beside certified ones.
     Contact,
+    /// Trees that grow from start and goal beside the samples.
+    Ends,
 }
 
 /// All experiments.
-pub(super) const EXPERIMENTS: [Experiment; 3] =
-    [Experiment::Factorial, Experiment::Geometry, Experiment::Contact];
+pub(super) const EXPERIMENTS: [Experiment; 4] =
+    [Experiment::Factorial, Experiment::Geometry, Experiment::Contact, Experiment::Ends];
 
-/// Scenes in which, at the budget, PRM solves some runs and not others, and one in which it solves all.
-const SCENES: [&str; 7] = ["rod 0.0892", "bar 0.3364", "gempa-1", "gempa-2", "gempa-3", "twisty", "bugtrap"];
+/// Scenes in which, at the budget, PRM solves some runs and not others, one in which it solves all, and one in which it solves none.
+const SCENES: [&str; 8] =
+    ["rod 0.0892", "bar 0.3364", "gempa-1", "gempa-2", "gempa-3", "twisty", "bugtrap", "alpha-1.5"];
 
 /// A way to make nodes: its name, the planner and its settings.
 type Generation = (&'static str, &'static str, &'static [(&'static str, &'static str)]);
 
 /// The ways to make nodes. Those of PRM are uniform, without its expansion.
-const GENERATIONS: [Generation; 16] = [
+const GENERATIONS: [Generation; 22] = [
     (UNIFORM, "prm", &[("expand", "0")]),
     ("gaussian", "gaussian-prm", &[]),
     ("bridge", "bridge-prm", &[]),
@@ -53,10 +56,29 @@ const GENERATIONS: [Generation; 16] = [
     ("no salvage", "obstacle-geometry-prm", &[("salvage", "no")]),
     ("no near nodes, no salvage", "obstacle-geometry-prm", &[("near", "no"), ("salvage", "no")]),
     (SALVAGED, "obstacle-geometry-prm", &[("far", "0"), ("near", "no")]),
+    ("prm", "prm", &[]),
+    ("prm, trees", "prm", &[TREES]),
+    ("uniform, trees", "prm", &[("expand", "0"), TREES]),
+    ("gaussian, trees", "gaussian-prm", &[TREES]),
+    ("obprm free, trees", "obprm", &[("nodes", "free"), TREES]),
+    ("obstacle geometry, trees", "obstacle-geometry-prm", &[TREES]),
 ];
 
-/// Those of the factorial experiment: the first so many.
+/// Half of the attempts grow trees from start and goal.
+const TREES: (&str, &str) = ("ends", "0.5");
+
+/// The ways to make nodes, each without and with trees.
+pub(super) const WITH_TREES: [[&str; 2]; 5] = [
+    [UNIFORM, "uniform, trees"],
+    ["prm", "prm, trees"],
+    ["gaussian", "gaussian, trees"],
+    ["obprm free", "obprm free, trees"],
+    [GEOMETRY, "obstacle geometry, trees"],
+];
+
+/// Those of the factorial experiment: the first so many. Then so many variants of obstacle-geometry PRM.
 const FACTORS: usize = 8;
+const PARTS: usize = 8;
 
 pub(super) const UNIFORM: &str = "uniform";
 pub(super) const GEOMETRY: &str = "obstacle geometry";
@@ -118,12 +140,17 @@ impl Experiment {
             Self::Factorial => "roadmaps-factorial",
             Self::Geometry => "roadmaps-geometry",
             Self::Contact => "roadmaps-contact",
+            Self::Ends => "roadmaps-ends",
         }
     }
 
-    /// The scenes. In the last two, swept volumes take longer than all the rest.
+    /// The scenes. In `twisty` and `bugtrap`, swept volumes take longer than all the rest.
     pub(super) fn scenes(self) -> &'static [&'static str] {
-        if self == Self::Factorial { &SCENES[..SCENES.len() - 2] } else { &SCENES }
+        match self {
+            Self::Factorial => &SCENES[..5],
+            Self::Geometry | Self::Contact => &SCENES[..7],
+            Self::Ends => &SCENES,
+        }
     }
 
     /// Seeds of each cell.
@@ -143,7 +170,7 @@ impl Experiment {
                 cells.filter(Cell::exists).collect()
             }
             Self::Geometry => {
-                let parts = GENERATIONS[FACTORS - 1..].iter().map(|g| Cell::of(g.0, FAR));
+                let parts = GENERATIONS[FACTORS - 1..FACTORS + PARTS].iter().map(|g| Cell::of(g.0, FAR));
                 // Samples that are salvaged are compared with those of PRM, which nothing is far from.
                 let parts = parts.filter(|cell| cell.generation != SALVAGED);
                 let more =
@@ -154,6 +181,7 @@ impl Experiment {
                 let nodes = generations().filter(|g| *g == UNIFORM || g.starts_with("obprm"));
                 nodes.flat_map(|g| CHECKS.map(|checks| Cell { checks, ..Cell::of(g, STAGED) })).collect()
             }
+            Self::Ends => WITH_TREES.as_flattened().iter().map(|g| Cell::of(g, NEAREST)).collect(),
         }
     }
 }
@@ -301,6 +329,7 @@ mod tests {
         assert_eq!(Experiment::Factorial.cells().len(), 8 * 4 * 3 - 3 * 3);
         assert_eq!(Experiment::Geometry.cells().len(), 11);
         assert_eq!(Experiment::Contact.cells().len(), 15);
+        assert_eq!(Experiment::Ends.cells().len(), 10);
     }
 
     /// The plan says what of a log is its own, and runs depend on nothing but their case.

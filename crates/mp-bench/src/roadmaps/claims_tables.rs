@@ -2,7 +2,7 @@
 
 use super::claims::{
     CERTIFIED, Case, Cell, Experiment, FAR, GEOMETRY, METRICS, NEAREST, Plan, Run, SALVAGED, UNIFORM,
-    connections, generations,
+    WITH_TREES, connections, generations,
 };
 use crate::experiment::{Log, Table, bootstrap, geometric_mean, mean, short, wilson};
 
@@ -152,6 +152,7 @@ impl<'a> Results<'a> {
             Experiment::Factorial => self.factorial(),
             Experiment::Geometry => vec![("Each part left out".into(), self.geometry())],
             Experiment::Contact => vec![("Discrete and certified checks".into(), self.contact())],
+            Experiment::Ends => vec![("Trees from the ends".into(), self.ends())],
         }
     }
 
@@ -276,6 +277,23 @@ impl<'a> Results<'a> {
             row.push(share(failed, found));
             row.push(format!("{paths} of {}", paths + solved(&runs) as u64));
             row.push(mean_seconds(&runs));
+            table.rows.push(row);
+        }
+        table
+    }
+
+    /// What trees from start and goal bring with each way to make nodes.
+    fn ends(&self) -> Table {
+        let mut table =
+            Table::new(["generation", "solved", "with trees", "solved, points", "queries, ratio"]);
+        table.head.extend(["mean s", "with trees: mean s"].map(str::to_owned));
+        for names in WITH_TREES {
+            let pair = names.map(|name| Cell::of(name, NEAREST));
+            let [without, with] = pair.map(|cell| self.runs(&[cell], None));
+            let mut row = vec![names[0].to_owned()];
+            row.extend([&without, &with].map(|runs| share(solved(runs), runs.len())));
+            row.extend(self.changed(&[pair], None));
+            row.extend([&without, &with].map(|runs| mean_seconds(runs)));
             table.rows.push(row);
         }
         table

@@ -25,6 +25,7 @@
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
 //! | `turns`: fractions of a motion at which rotate-at-s is tried where the straight motion fails | 0, 1, 2, 3 | 0 |
 //! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
+//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! The last two, by name only, connect in stages ([`StagedConnector`](crate::StagedConnector)).
 //!
@@ -55,6 +56,7 @@ use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
 use crate::engine::staged::{STRAIGHT, TURNS_RANGE, turns};
+use crate::engine::{ENDS, ENDS_STEP};
 use crate::{Mixing, PairRule, Pairs, PairsPlanner};
 use mp_cspace::{Gaussian, Rng, Space, Step, registry::PlannerInfo};
 
@@ -66,7 +68,17 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "gaussian-prm",
     summary: "a roadmap of samples near obstacles",
     citation: "Boor, Overmars and van der Stappen 1999",
-    parameters: &[sigma("5%"), uniform("0.1"), NEIGHBOURS, RADIUS, CYCLES, turns(TURNS_RANGE, "0"), STRAIGHT],
+    parameters: &[
+        sigma("5%"),
+        uniform("0.1"),
+        NEIGHBOURS,
+        RADIUS,
+        CYCLES,
+        turns(TURNS_RANGE, "0"),
+        STRAIGHT,
+        ENDS,
+        ENDS_STEP,
+    ],
     aliases: &[],
     cannot: crate::engine::settings::UNDIRECTED,
 };

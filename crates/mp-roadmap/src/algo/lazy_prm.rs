@@ -32,6 +32,7 @@
 //! | `first`: nodes before the first search | 1, 2, … 10⁹ | 500 |
 //! | `more`: nodes added when there is no path | 1, 2, … 10⁹ | 100 |
 //! | `neighbours`, `radius` | as of [PRM](super::prm) | 15, 100% |
+//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! A point goes around a disc in the unit square, with few motions checked:
 //! ```
@@ -56,6 +57,7 @@
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::{NEIGHBOURS, RADIUS, UNDIRECTED, reachable};
+use crate::engine::{ENDS, ENDS_STEP};
 use crate::{
     AStar, Candidate, EdgeChecker, EdgeId, LinkState, MilestoneKind, NearestConnector, NodeGenerator, Pace,
     Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
@@ -84,7 +86,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "lazy-prm",
     summary: "a roadmap that is checked only along possible paths; when checks are expensive",
     citation: "Bohlin and Kavraki 2000",
-    parameters: &[FIRST, MORE, NEIGHBOURS, RADIUS],
+    parameters: &[FIRST, MORE, NEIGHBOURS, RADIUS, ENDS, ENDS_STEP],
     aliases: &[],
     cannot: UNDIRECTED,
 };

@@ -49,6 +49,7 @@
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
 //! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
+//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! A disc goes between two boxes:
 //! ```
@@ -78,6 +79,7 @@ use crate::engine::constructors;
 use crate::engine::pairs::{drew_uniform, part, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::engine::staged::{CONNECT, PER_OBSTACLE, STRAIGHT, TURNS_RANGE, turns};
+use crate::engine::{ENDS, ENDS_STEP};
 use crate::{
     AStar, Candidate, ConnectionStages, EdgeChecker, MilestoneKind, NodeGenerator, Reachable, Roadmap,
     RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
@@ -215,6 +217,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
         NEIGHBOURS,
         RADIUS,
         CYCLES,
+        ENDS,
+        ENDS_STEP,
     ],
     aliases: &["ob-prm"],
     cannot: crate::engine::settings::UNDIRECTED,

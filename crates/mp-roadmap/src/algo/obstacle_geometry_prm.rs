@@ -51,6 +51,7 @@
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
 //! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
+//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! A rod goes around a block:
 //! ```
@@ -79,6 +80,7 @@ use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, reachable, yes};
 use crate::engine::staged::{CONNECT, PER_OBSTACLE, STRAIGHT, TURNS_OR_FAR, turns};
+use crate::engine::{ENDS, ENDS_STEP};
 use crate::{
     AStar, Candidate, ConnectionStages, EdgeChecker, MilestoneKind, NodeGenerator, Reachable, Roadmap,
     RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
@@ -190,6 +192,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
         NEIGHBOURS,
         RADIUS,
         CYCLES,
+        ENDS,
+        ENDS_STEP,
     ],
     aliases: &["geometry-prm"],
     cannot: crate::engine::settings::UNDIRECTED,

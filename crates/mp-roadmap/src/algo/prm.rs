@@ -38,6 +38,7 @@
 //! | `walk`: longest motion of such a walk, in the metric of the space or with % of its extent | positive | 10% |
 //! | `turns`: fractions of a motion at which rotate-at-s is tried where the straight motion fails | 0, 1, 2, 3 | 0 |
 //! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
+//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! The last two, by name only, connect in stages ([`StagedConnector`]).
 //! The paper chooses K and MAXDIST for each problem. As in the paper, construction adds twice as many nodes as expansion.
@@ -67,6 +68,7 @@ use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
 use crate::engine::staged::{STRAIGHT, TURNS_RANGE, turns};
+use crate::engine::{ENDS, ENDS_STEP};
 use crate::{
     AStar, Candidate, ConnectionStages, EdgeChecker, Free, MilestoneKind, NearestConnector, NodeGenerator,
     ParentMotion, Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts, StagedConnector,
@@ -152,6 +154,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
         WALK,
         turns(TURNS_RANGE, "0"),
         STRAIGHT,
+        ENDS,
+        ENDS_STEP,
     ],
     aliases: &["basic-prm"],
     cannot: crate::engine::settings::UNDIRECTED,

@@ -21,6 +21,7 @@
 //! | parameter | range | default |
 //! |---|---|---|
 //! | `factor`: neighbours, as a multiple of what is needed | \[1, 100\] | 1.1 |
+//! | `ends`, `ends-step`: trees that grow from start and goal, beside (see [`EndGrowth`](crate::EndGrowth)): their part of the attempts, and their longest step | \[0, 1); as `radius` | 0, 3% |
 //!
 //! A point goes around a disc, on ever shorter paths:
 //! ```
@@ -46,6 +47,7 @@
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::UNDIRECTED;
+use crate::engine::{ENDS, ENDS_STEP};
 use crate::{
     AStar, Candidate, Connector, Free, Growing, NearestConnector, Prefetching, Reachable, RoadmapPlanner,
     RoadmapPlannerParts,
@@ -67,7 +69,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "prm-star",
     summary: "a roadmap with ever shorter paths; for short paths for many queries",
     citation: "Karaman and Frazzoli 2011",
-    parameters: &[FACTOR],
+    parameters: &[FACTOR, ENDS, ENDS_STEP],
     aliases: &["prm*"],
     cannot: UNDIRECTED,
 };

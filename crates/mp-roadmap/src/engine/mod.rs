@@ -4,6 +4,7 @@
 mod builder;
 mod connect;
 mod constructors;
+mod end_trees;
 mod export;
 mod file;
 mod forest;
@@ -22,6 +23,7 @@ pub(crate) use constructors::constructors;
 
 pub use builder::Builder;
 pub use connect::{Connector, Growing, NearestConnector, Reachable};
+pub use end_trees::{ENDS, ENDS_STEP, EndGrowth};
 pub use file::{RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Candidate, Free, NodeGenerator, ParentMotion};
 pub use mp_cspace::EdgeChecker;

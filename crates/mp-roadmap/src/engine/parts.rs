@@ -1,6 +1,6 @@
 //! What makes one variant of the family differ from another.
 
-use super::AStar;
+use super::{AStar, EndGrowth};
 
 /// One variant of the family: what fills each slot, and when paths are looked for.
 #[derive(Clone, Copy, Debug)]
@@ -15,20 +15,23 @@ pub struct RoadmapPlannerParts<G, K, Q> {
     pub pace: Pace,
     /// Whether the planner is anytime: it may be stepped on after a path, and returns only shorter ones then.
     pub improves: bool,
+    /// How trees grow from start and goal.
+    pub ends: EndGrowth,
 }
 
 impl<G, K> RoadmapPlannerParts<G, K, AStar> {
     /// The parts of a planner that searches by A* after every attempt and ends with its first path.
     pub fn new(generator: G, connector: K) -> Self {
-        Self { generator, connector, query: AStar::new(), pace: Pace::default(), improves: false }
+        let (query, pace, ends) = (AStar::new(), Pace::default(), EndGrowth::default());
+        Self { generator, connector, query, pace, improves: false, ends }
     }
 }
 
 impl<G, K, Q> RoadmapPlannerParts<G, K, Q> {
     /// The same parts with another connector.
     pub fn connected_by<T>(self, connector: T) -> RoadmapPlannerParts<G, T, Q> {
-        let Self { generator, query, pace, improves, .. } = self;
-        RoadmapPlannerParts { generator, connector, query, pace, improves }
+        let Self { generator, query, pace, improves, ends, .. } = self;
+        RoadmapPlannerParts { generator, connector, query, pace, improves, ends }
     }
 }
 

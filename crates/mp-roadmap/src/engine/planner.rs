@@ -1,8 +1,9 @@
 //! The loop that plans one path: the roadmap grows until start and goal are connected.
 
+use super::end_trees::EndTrees;
 use super::{
-    Builder, Candidate, Connector, EdgeChecker, GraphPath, MilestoneKind, NodeGenerator, Pace, Query,
-    Roadmap, RoadmapPlannerParts,
+    Builder, Candidate, Connector, EdgeChecker, EndGrowth, GraphPath, MilestoneKind, NodeGenerator, Pace,
+    Query, Roadmap, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
@@ -29,6 +30,7 @@ pub struct RoadmapPlanner<'c, C: Space, L: LocalPlanner<C::State>, G, K, Q, N> {
     goals: Goals<'c, C::State>,
     /// The node of the start, and those of goals.
     ends: Option<(NodeId, Vec<NodeId>)>,
+    trees: EndTrees,
     iterations: u64,
     /// The length of the path returned last, and the number of nodes at the last search.
     best: f64,
@@ -55,6 +57,7 @@ where
             start,
             goals,
             ends: None,
+            trees: EndTrees::new(parts.ends),
             iterations: 0,
             best: f64::INFINITY,
             looked: 0,
@@ -73,6 +76,12 @@ where
         N: Sync,
     {
         Self { builder: self.builder.on(workers, checkers), ..self }
+    }
+
+    /// Also lets trees grow from start and goal. To be called before the first step.
+    #[must_use]
+    pub fn growing_ends(self, growth: EndGrowth) -> Self {
+        Self { trees: EndTrees::new(growth), ..self }
     }
 
     /// The roadmap; without start and goal before the first step.
@@ -107,6 +116,7 @@ where
                 self.builder.adopt(Candidate::new(goal.clone(), MilestoneKind::End), observer)
             });
         }
+        self.trees.plant(start, &goals);
         self.ends = Some((start, goals));
     }
 
@@ -117,10 +127,11 @@ where
             return;
         }
         let id = self.builder.adopt(Candidate::new(goal, MilestoneKind::End), observer);
-        self.add_goals([id]);
+        self.add_goals(&[id]);
     }
 
-    fn add_goals(&mut self, ids: impl IntoIterator<Item = NodeId>) {
+    fn add_goals(&mut self, ids: &[NodeId]) {
+        self.trees.add_goals(ids);
         if let Some((_, goals)) = &mut self.ends {
             goals.extend(ids);
         }
@@ -270,11 +281,14 @@ where
                 return Some(path);
             }
         }
-        let new = self.builder.step(rng, observer);
+        let new = match self.trees.is_next() {
+            true => self.trees.grow(&mut self.builder, rng, observer),
+            false => self.builder.step(rng, observer),
+        };
         if self.goals.has_region() {
             let arrived: Vec<_> =
                 new.filter(|&id| self.goals.reached(self.builder.map().state(id))).collect();
-            self.add_goals(arrived);
+            self.add_goals(&arrived);
         }
         if self.goals.has_sampler() && self.iterations % GOAL_EVERY == 1 {
             self.draw_goal(rng, observer);

@@ -190,6 +190,35 @@ fn guards_do_not_see_each_other_and_connections_join_components() {
 }
 
 #[test]
+fn trees_grow_from_the_ends() {
+    let (space, boxes) = (square(), slit(0.2, 0.8, 0.0));
+    let growth = EndGrowth::new(&space, 0.25, Step::Fraction(0.03)).unwrap();
+    let learning = Learning { expand: 0.0, ..Learning::default() };
+    let reach = Reachable { neighbours: 8, radius: 0.4, cycles: false };
+    let mut planner =
+        Prm::new(problem(&space, &boxes, ENDS, false), reach, learning).unwrap().growing_ends(growth);
+    let outcome = planner.solve(&mut Rng::seed(1), &mut Iterations(1_000), &mut ());
+    assert!(matches!(outcome, Outcome::Stopped(StopReason::Iterations)), "{outcome:?}");
+    let map = planner.map_mut();
+    let grown: Vec<NodeId> =
+        (0..map.len() as NodeId).filter(|&id| map.tag(id).kind == MilestoneKind::Expanded).collect();
+    // A quarter of the attempts; a step may be blocked.
+    assert!((100..=250).contains(&grown.len()), "{}", grown.len());
+    let [start, goal] = [0, 1];
+    assert!(!map.connected(start, goal));
+    for end in [start, goal] {
+        assert!(grown.iter().filter(|&&id| map.connected(end, id)).count() > 50);
+    }
+    assert!(grown.iter().all(|&id| map.connected(start, id) || map.connected(goal, id)));
+    let step = 0.03 * space.extent() * (1.0 + 1e-9);
+    let near = |id: NodeId| map.links(id).any(|(_, _, link)| link.length <= step);
+    assert!(grown.iter().all(|&id| near(id)));
+    for wrong in [1.0, -0.1, f64::NAN] {
+        assert!(EndGrowth::new(&space, wrong, Step::Fraction(0.03)).is_err());
+    }
+}
+
+#[test]
 fn lazily_few_motions_are_checked_and_none_of_the_path_is_unchecked() {
     let (space, boxes) = (square(), slit(0.2, 0.8, 0.1));
     let reach = Reachable { neighbours: 10, radius: 0.3, cycles: true };
