@@ -1,7 +1,6 @@
 //! The error of this crate: what is wrong, where, what was expected and what to do about it.
 
 use std::fmt::{self, Display};
-use std::path::Path;
 
 /// What kind of thing went wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -65,16 +64,6 @@ impl Error {
             excerpt: None,
             cited_at: None,
         }))
-    }
-
-    /// An error of the operating system about `path`; `doing` completes "cannot …".
-    pub(crate) fn io(path: &Path, doing: &str, error: &std::io::Error) -> Self {
-        let why = match error.kind() {
-            std::io::ErrorKind::NotFound => "no such file".to_owned(),
-            std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-            _ => error.to_string(),
-        };
-        Self::new(ErrorKind::Io, path.display(), format!("cannot {doing}: {why}"))
     }
 
     /// An error at bytes `start..start + len` of `text`, the content of `file`.
@@ -219,6 +208,16 @@ impl Display for Error {
 }
 
 impl std::error::Error for Error {}
+
+impl From<mp_store::Error> for Error {
+    fn from(e: mp_store::Error) -> Self {
+        let kind = match e.kind() {
+            mp_store::ErrorKind::TooLarge => ErrorKind::TooLarge,
+            _ => ErrorKind::Io,
+        };
+        Self::new(kind, e.path().display(), e.message()).help(e.remedy())
+    }
+}
 
 impl Excerpt {
     fn cut(text: &str, line_start: usize, wrong: std::ops::Range<usize>, line: usize) -> Self {

@@ -93,6 +93,12 @@ impl From<mp_io::Error> for Error {
     }
 }
 
+impl From<mp_store::Error> for Error {
+    fn from(file: mp_store::Error) -> Self {
+        mp_io::Error::from(file).into()
+    }
+}
+
 macro_rules! plain {
     ($($error:ty),*) => {
         $(impl From<$error> for Error {

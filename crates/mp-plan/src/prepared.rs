@@ -3,7 +3,7 @@
 use crate::counted::{Counted, QueryBudget};
 use crate::goals;
 use crate::planners::PlannerKind;
-use crate::roadmaps::{PlannerParts, RoadmapFile, RoadmapPlanner};
+use crate::roadmaps::{GrowingFile, PlannerParts, RoadmapPlanner};
 use crate::watch::{Events, WatchAdapter};
 use crate::{Control, Error, Length, Measured, MotionValidator, Request, RobotKind};
 use mp_cspace::erased::{AnyCheck, AnyIndex, AnySpace};
@@ -76,7 +76,7 @@ impl<'k, K: RobotKind> Prepared<'k, K> {
         &self,
         info: &PlannerInfo,
         workers: Workers,
-        file: Option<&RoadmapFile<'_>>,
+        file: Option<&GrowingFile<'_>>,
     ) -> Result<RoadmapPlanner<'_, K::State>, Error> {
         let parts = PlannerParts {
             problem: &|| self.problem(),

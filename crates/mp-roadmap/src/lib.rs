@@ -55,10 +55,11 @@ pub use algo::types::*;
 pub use by_name::{AnyEdgeChecker, AnyParallelProblem, AnyPlanner, ParallelProblem};
 pub use engine::{
     AStar, Builder, CYCLES, Candidate, Connector, EdgeChecker, EdgeId, Entry, Free, GraphPath, Growing,
-    HasRoadmap, IndexedRoadmap, Link, LinkState, Listed, MilestoneKind, Mixing, NEIGHBOURS, NearestConnector,
-    NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, PairsPlanner, ParentMotion, Prefetching,
-    Query, RADIUS, Reachable, Roadmap, RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts,
-    RoadmapQueries, StagedConnector, Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
+    HasRoadmap, IndexedRoadmap, Link, LinkState, Listed, MAX_ROADMAP_BYTES, MilestoneKind, Mixing,
+    NEIGHBOURS, NearestConnector, NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, PairsPlanner,
+    ParentMotion, Prefetching, Query, RADIUS, Reachable, Roadmap, RoadmapError, RoadmapFileError,
+    RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries, StagedConnector, Tag, Turns, UNDIRECTED, Unanswered,
+    fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Path, registry::Settings};

@@ -22,7 +22,7 @@ pub(crate) use constructors::constructors;
 
 pub use builder::Builder;
 pub use connect::{Connector, Growing, NearestConnector, Reachable};
-pub use file::{RoadmapError, RoadmapFileError, fingerprint};
+pub use file::{MAX_ROADMAP_BYTES, RoadmapError, RoadmapFileError, fingerprint};
 pub use generate::{Candidate, Free, NodeGenerator, ParentMotion};
 pub use mp_cspace::EdgeChecker;
 pub use pairs::{Mixing, PairRule, Pairs, PairsPlanner};
