@@ -10,12 +10,15 @@ use mp_cspace::{Clock, Progress, SparseClock, Stop, StopReason};
 #[cfg(feature = "roadmaps")]
 use mp_cspace::{NodeId, Observer, Rng};
 #[cfg(feature = "roadmaps")]
-use mp_roadmap::{LinkState, RoadmapError};
+use mp_roadmap::{LinkState, ParallelProblem, QueryMeter, RoadmapError};
 use mp_store::Lock;
 #[cfg(feature = "roadmaps")]
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::atomic::AtomicU64;
 use std::time::Duration;
+#[cfg(feature = "roadmaps")]
+use std::{cell::Cell, sync::atomic::Ordering};
 
 /// A planner that builds a roadmap.
 pub(crate) struct RoadmapPlanner<'p, S> {
@@ -128,6 +131,7 @@ impl<'r> GrowingFile<'r> {
 
 /// Lets `build` work until it stops by itself; when a checkpoint is due, it is stopped, the roadmap is written, and `build`
 /// is called again.
+#[cfg(feature = "roadmaps")]
 pub(crate) fn with_checkpoints<'p, S: RoadmapState + mp_cspace::StateVector + 'static, T>(
     planner: &mut RoadmapPlanner<'p, S>,
     file: &mut Option<GrowingFile<'_>>,
@@ -168,6 +172,8 @@ pub(crate) struct PlannerParts<'m, 'p, S: RoadmapState> {
     pub(crate) settings: Settings,
     pub(crate) workers: Workers,
     pub(crate) threads: usize,
+    /// The common count of the queries of all checkers.
+    pub(crate) queries: &'p AtomicU64,
 }
 
 /// The planner called `name`, if there is one.
@@ -184,8 +190,19 @@ impl<'p, S: RoadmapState + mp_cspace::StateVector + 'static> RoadmapPlanner<'p, 
         parts: PlannerParts<'_, 'p, S>,
         file: Option<&GrowingFile<'_>>,
     ) -> Result<Self, Error> {
-        let PlannerParts { problem, index, settings, workers, threads } = parts;
-        let problem = mp_roadmap::ParallelProblem::new(workers, threads, problem)?;
+        let PlannerParts { problem, index, settings, workers, threads, queries } = parts;
+        let meter = QueryMeter { of_thread: crate::counted::queries_of_thread, common: queries };
+        // Each problem checks its start and goals. That counts once, however many threads there are.
+        let first = Cell::new(true);
+        let problem = || {
+            let before = queries.load(Ordering::Relaxed);
+            let made = problem();
+            if !first.replace(false) {
+                queries.store(before, Ordering::Relaxed);
+            }
+            made
+        };
+        let problem = ParallelProblem::new(workers, threads, problem)?.metered(meter);
         let mut planner = S::roadmap_planner(info.name, problem, index, &settings)?;
         if let Some(map) = file.map(|file| file.file.read()).transpose()?.flatten() {
             planner.resume(map)?;

@@ -57,7 +57,7 @@ pub use engine::{
     AStar, Builder, CYCLES, Candidate, Connector, EdgeChecker, EdgeId, Entry, Free, GraphPath, Growing,
     HasRoadmap, IndexedRoadmap, Link, LinkState, Listed, MAX_ROADMAP_BYTES, MilestoneKind, Mixing,
     NEIGHBOURS, NearestConnector, NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, PairsPlanner,
-    ParentMotion, Prefetching, Query, RADIUS, Reachable, Roadmap, RoadmapError, RoadmapFileError,
+    ParentMotion, Prefetching, Query, QueryMeter, RADIUS, Reachable, Roadmap, RoadmapError, RoadmapFileError,
     RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries, StagedConnector, Tag, Turns, UNDIRECTED, Unanswered,
     fingerprint, length, reachable, yes,
 };

@@ -28,7 +28,7 @@ pub use mp_cspace::EdgeChecker;
 pub use pairs::{Mixing, PairRule, Pairs, PairsPlanner};
 pub use parts::{Pace, RoadmapPlannerParts};
 pub use planner::{HasRoadmap, PATIENCE, RoadmapPlanner};
-pub use prefetch::Prefetching;
+pub use prefetch::{Prefetching, QueryMeter};
 pub use queries::{IndexedRoadmap, Listed, RoadmapQueries, Unanswered};
 pub use roadmap::{EdgeId, GraphPath, Link, LinkState, MilestoneKind, Roadmap, Tag};
 pub use search::{AStar, Entry, Query};

@@ -2,7 +2,7 @@
 
 use super::{
     Builder, Candidate, Connector, EdgeChecker, GraphPath, MilestoneKind, NodeGenerator, Pace, Query,
-    Roadmap, RoadmapPlannerParts,
+    QueryMeter, Roadmap, RoadmapPlannerParts,
 };
 use mp_cspace::{
     BuildError, Direction, Event, Goals, LocalPlanner, NearestNeighbors, NodeId, Observer, Path, Planner,
@@ -73,6 +73,12 @@ where
         N: Sync,
     {
         Self { builder: self.builder.on(workers, checkers), ..self }
+    }
+
+    /// Counts queries by `meter`: see [`Builder::metered`].
+    #[must_use]
+    pub fn metered(self, meter: QueryMeter<'c>) -> Self {
+        Self { builder: self.builder.metered(meter), ..self }
     }
 
     /// The roadmap; without start and goal before the first step.
