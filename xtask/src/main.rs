@@ -16,7 +16,7 @@ Builds and starts the programs of the workspace:
 
   cargo xtask plan | view | check | info | render | scenes | completions | man …   the program `mp`: see `cargo xtask plan --help`
   cargo xtask bench SUITE …     measurements, the program `mp-bench`: see `cargo xtask bench --help`
-  cargo xtask wasm              builds the planner inside pages, for `render … --with-planner`
+  cargo xtask wasm [KIND…]      builds the planners inside pages, for `render … --with-planner`
   cargo xtask assets [--check]  generates the shipped scenes, or checks that they are up to date
   cargo xtask ci [--no-tests]   formatting, lints, tests, documentation and tidiness
 
@@ -30,7 +30,7 @@ fn main() -> ExitCode {
             start("mp-motion-cli", "mp", &arguments)
         }
         "bench" => start("mp-bench", "mp-bench", &arguments[1..]),
-        "wasm" => wasm::run(),
+        "wasm" => wasm::run(&arguments[1..]),
         "assets" => start("mp-bench", "mp-bench", &arguments),
         "ci" => match arguments[1..].iter().map(|a| a.to_string_lossy()).collect::<Vec<_>>().as_slice() {
             [] => ci::run(true),
@@ -69,12 +69,19 @@ fn cargo() -> Command {
     Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
 }
 
-/// Builds a program of the workspace, optimised, and starts it in the current folder.
-fn start(package: &str, program: &str, arguments: &[OsString]) -> ExitCode {
+/// A program of the workspace, which is built first, optimised. It runs in the current folder.
+fn program(package: &str, program: &str) -> Command {
     let manifest = root().join("Cargo.toml");
     let mut command = cargo();
     command.args(["run", "--release", "--package", package, "--bin", program, "--manifest-path"]);
-    command.arg(manifest).arg("--").args(arguments);
+    command.arg(manifest).arg("--");
+    command
+}
+
+/// Builds a program of the workspace, optimised, and starts it.
+fn start(package: &str, name: &str, arguments: &[OsString]) -> ExitCode {
+    let mut command = program(package, name);
+    command.args(arguments);
     match wasm::environment(arguments) {
         Ok(variable) => command.envs(variable),
         Err(message) => return bad(&message),

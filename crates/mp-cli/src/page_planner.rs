@@ -24,7 +24,10 @@ impl PagePlanner {
     /// # Errors
     /// When there is no such module, or the files of the scene cannot be read any more.
     pub(crate) fn of(scene: &Scene) -> Result<Self, Error> {
-        let name = format!("{}.wasm", mp_view::planner_module(scene));
+        let Some(kind) = scene.feature() else {
+            return Err(Error::new(format!("no page can plan for the robot of {}", scene.name())));
+        };
+        let name = format!("{kind}.wasm");
         let beside =
             std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join("planners")));
         let folders: Vec<PathBuf> =
@@ -33,7 +36,7 @@ impl PagePlanner {
         let Some(place) = places.iter().find(|place| place.is_file()) else {
             let sought = places.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ");
             return Err(Error::new(format!("there is no planner for pages: {sought} was sought")).help(format!(
-                "in the repository `cargo xtask wasm` builds it, and `cargo xtask render … --with-planner` takes it; \
+                "in the repository `cargo xtask wasm {kind}` builds it, and `cargo xtask render … --with-planner` takes it; \
                  or set {VARIABLE} to the folder that holds {name}"
             )));
         };

@@ -5,6 +5,8 @@
 
 #[cfg(any(feature = "planar", feature = "urdf"))]
 use crate::load::OneText;
+#[cfg(feature = "urdf")]
+use crate::scene::of_kind;
 use crate::{Error, Scene};
 use mp_io::Files;
 use std::path::{Path, PathBuf};
@@ -66,8 +68,8 @@ fn robot(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     // Read first, so that an error about it names the file itself.
     files.read(file, mp_io::MAX_TEXT_BYTES)?;
     let problem = mp_io::RobotProblem::load_from(&OneText { file: &place, text: &text, files }, &place)?;
-    crate::ArmScene::from_robot_alone(files, problem)
-        .map(|(scene, notes)| Scene::new(scene).with_notes(notes))
+    let (scene, notes) = crate::ArmScene::from_robot_alone(files, problem)?;
+    Ok(of_kind!("arms", "arms", scene).with_notes(notes))
 }
 
 #[cfg(not(feature = "urdf"))]

@@ -12,7 +12,7 @@ use crate::{
     Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, Report, Request, RobotKind,
     Sweep, Track, Verdict,
 };
-use mp_cspace::{Rng, Space, Validity};
+use mp_cspace::{Demand, Rng, Space, Validity};
 use mp_geom::Aabb;
 use mp_io::RigidProblem;
 use nalgebra::{Isometry3, Point3};
@@ -30,6 +30,7 @@ pub(crate) trait AnyRobot: Send + Sync {
     fn free_share(&self, samples: u32) -> f64;
     fn path_format(&self) -> PathFormat;
     fn default_planner(&self) -> &'static str;
+    fn demands(&self) -> &'static [Demand];
     fn moving_obstacles(&self) -> usize;
     fn start(&self) -> Vec<f64>;
     fn goals(&self) -> Vec<Vec<f64>>;
@@ -94,6 +95,9 @@ impl<K: RobotKind + 'static> AnyRobot for K {
     }
     fn default_planner(&self) -> &'static str {
         RobotKind::default_planner(self)
+    }
+    fn demands(&self) -> &'static [Demand] {
+        RobotKind::demands(self)
     }
     fn moving_obstacles(&self) -> usize {
         RobotKind::moving_obstacles(self)

@@ -1,6 +1,8 @@
 //! Reading scenes from files of any kind.
 
 use crate::inputs::Recording;
+#[cfg(feature = "urdf")]
+use crate::scene::of_kind;
 use crate::{Error, Scene, alone};
 use mp_io::{Disk, Files, PlanarProblem, RigidProblem, RigidTask, RobotProblem, SceneDocument};
 use std::path::Path;
@@ -86,12 +88,13 @@ fn planar(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
 fn arm(files: &dyn Files, file: &Path) -> Result<Scene, Error> {
     let problem = mp_io::RobotProblem::load_from(files, file)?;
     if problem.file.floating.is_some() {
-        return Ok(Scene::new(crate::FloatingScene::from_problem_in(files, problem)?));
+        let scene = crate::FloatingScene::from_problem_in(files, problem)?;
+        return Ok(of_kind!("floating", "bodies with joints that fly freely", scene));
     }
     let scene = crate::ArmScene::from_problem_in(files, problem)?;
     Ok(match scene.driven()? {
-        Some(driven) => Scene::new(driven),
-        None => Scene::new(scene),
+        Some(driven) => of_kind!("driven", "robots moved by inputs", driven),
+        None => of_kind!("arms", "arms", scene),
     })
 }
 
@@ -106,7 +109,6 @@ fn arm(_: &dyn Files, _: &Path) -> Result<Scene, Error> {
 }
 
 /// An error for scenes that are left out of this program.
-#[cfg(not(all(feature = "planar", feature = "urdf")))]
 pub(crate) fn left_out(what: &str, feature: &str) -> Error {
     Error::new(format!("this program is made without {what}"))
         .help(format!("take a program made with the feature `{feature}` of mp-plan"))

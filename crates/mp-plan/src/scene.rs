@@ -1,13 +1,14 @@
 //! A scene of any kind, and what can be done with it.
 
 use crate::any_robot::AnyRobot;
-use crate::robot::{PlanarScene, RigidScene, RigidSpace};
+use crate::robot::{PlanarScene, RigidScene};
 #[cfg(feature = "roadmaps")]
 use crate::scene_roadmap::SceneRoadmap;
 use crate::{
     Body, Column, Control, Error, Explanation, Length, PathFormat, PathRows, PreparedRun, Report, Request,
     RobotKind, Sweep, Track, Verdict,
 };
+use mp_cspace::registry::PlannerInfo;
 use mp_geom::{Aabb, TriMesh, six_from_pose};
 use mp_io::{DocumentShape, PlanarProblem, PlanarShape, RigidProblem, RigidTask, SceneDocument, SpaceKind};
 use mp_robot::{DiscRobot, Planar, PolygonRobot, Spatial};
@@ -15,6 +16,20 @@ use nalgebra::{Isometry3, Point3};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// A scene of a robot of the kind that a feature of this crate names; an error in a program made without that feature. Planners
+/// are compiled for each kind, and only for those that the program can make scenes of.
+macro_rules! of_kind {
+    ($feature:literal, $what:literal, $robot:expr) => {
+        if cfg!(feature = $feature) {
+            $crate::Scene::new($robot).of_feature($feature)
+        } else {
+            return Err($crate::load::left_out($what, $feature));
+        }
+    };
+}
+#[cfg(feature = "urdf")]
+pub(crate) use of_kind;
 
 /// A scene to plan in: a robot of any kind among its obstacles, with a start and goals. Clones share the data.
 ///
@@ -37,6 +52,7 @@ pub struct Scene {
     /// What it was made from, if that is a document of an editor.
     document: Option<Arc<EditedScene>>,
     notes: Arc<[String]>,
+    feature: Option<&'static str>,
 }
 
 /// A scene as an editor keeps it: its document, and the meshes that are not written into the document.
@@ -64,6 +80,7 @@ impl Scene {
             shipped: false,
             document: None,
             notes: Arc::default(),
+            feature: None,
         }
     }
 
@@ -81,11 +98,15 @@ impl Scene {
         Ok(match problem.space {
             SpaceKind::Se3 => {
                 let before = before.and_then(|before| before.downcast_ref());
-                Self::new(RigidScene::<Spatial>::after(before, problem)?)
+                of_kind!("space", "rigid bodies in space", RigidScene::<Spatial>::after(before, problem)?)
             }
             SpaceKind::Se2 => {
                 let before = before.and_then(|before| before.downcast_ref());
-                Self::new(RigidScene::<Planar>::after(before, problem)?)
+                of_kind!(
+                    "plane",
+                    "bodies that turn in the plane",
+                    RigidScene::<Planar>::after(before, problem)?
+                )
             }
         })
     }
@@ -95,18 +116,27 @@ impl Scene {
     /// # Errors
     /// When the bounds of the position are empty, or a mesh, a pose or a time is not valid.
     pub fn from_task(task: RigidTask) -> Result<Self, Error> {
-        fn made<M: RigidSpace>(task: RigidTask) -> Result<Scene, Error> {
-            let scene = RigidScene::<M>::new(task.problem)?.with_goals(task.goals);
-            Ok(match &task.timing {
-                Some(timing) => Scene::new(scene.among_moving(&task.moving, timing)?),
-                None => Scene::new(scene),
-            })
-        }
         let _span = tracing::info_span!("build", scene = %task.problem.name).entered();
-        match task.problem.space {
-            SpaceKind::Se3 => made::<Spatial>(task),
-            SpaceKind::Se2 => made::<Planar>(task),
-        }
+        Ok(match task.problem.space {
+            SpaceKind::Se3 => {
+                let scene = RigidScene::<Spatial>::new(task.problem)?.with_goals(task.goals);
+                match &task.timing {
+                    Some(timing) => {
+                        of_kind!("moving", "obstacles that move", scene.among_moving(&task.moving, timing)?)
+                    }
+                    None => of_kind!("space", "rigid bodies in space", scene),
+                }
+            }
+            SpaceKind::Se2 => {
+                let scene = RigidScene::<Planar>::new(task.problem)?.with_goals(task.goals);
+                match &task.timing {
+                    Some(timing) => {
+                        of_kind!("moving", "obstacles that move", scene.among_moving(&task.moving, timing)?)
+                    }
+                    None => of_kind!("plane", "bodies that turn in the plane", scene),
+                }
+            }
+        })
     }
 
     /// A scene of a robot in the plane among polygons.
@@ -120,17 +150,17 @@ impl Scene {
             PlanarShape::Disc(_) => {
                 let scene = PlanarScene::<DiscRobot>::new(problem)?;
                 match driven {
-                    Some(driven) => Self::new(scene.driven(&driven)?),
-                    None if moves => Self::new(scene.among_moving()?),
-                    None => Self::new(scene),
+                    Some(driven) => of_kind!("driven", "robots moved by inputs", scene.driven(&driven)?),
+                    None if moves => of_kind!("moving", "obstacles that move", scene.among_moving()?),
+                    None => of_kind!("discs", "discs", scene),
                 }
             }
             PlanarShape::Polygon(_) => {
                 let scene = PlanarScene::<PolygonRobot>::new(problem)?;
                 match driven {
-                    Some(driven) => Self::new(scene.driven(&driven)?),
-                    None if moves => Self::new(scene.among_moving()?),
-                    None => Self::new(scene),
+                    Some(driven) => of_kind!("driven", "robots moved by inputs", scene.driven(&driven)?),
+                    None if moves => of_kind!("moving", "obstacles that move", scene.among_moving()?),
+                    None => of_kind!("plane", "bodies that turn in the plane", scene),
                 }
             }
         })
@@ -193,6 +223,10 @@ impl Scene {
         Some(edited)
     }
 
+    pub(crate) fn of_feature(self, feature: &'static str) -> Self {
+        Self { feature: Some(feature), ..self }
+    }
+
     /// Sets the file that reports name as the source of the scene.
     #[must_use]
     pub fn with_file(self, file: impl Into<PathBuf>) -> Self {
@@ -208,6 +242,13 @@ impl Scene {
     #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
+    }
+
+    /// The feature of this crate that plans for the robot of the scene: `space`, `arms`, …; `None` for a
+    /// [`RobotKind`] of one's own.
+    #[must_use]
+    pub fn feature(&self) -> Option<&'static str> {
+        self.feature
     }
 
     /// The name of the scene.
@@ -286,6 +327,14 @@ impl Scene {
     #[must_use]
     pub fn default_planner(&self) -> &'static str {
         self.robot.default_planner()
+    }
+
+    /// The names of the planners that cannot plan for the robot, each with the reason.
+    #[must_use]
+    pub fn planners_that_cannot(&self) -> Vec<(&'static str, &'static str)> {
+        let demands = self.robot.demands();
+        let against = |info: &PlannerInfo| demands.iter().find_map(|demand| info.reason_against(*demand));
+        crate::planners().filter_map(|info| Some((info.name, against(info)?))).collect()
     }
 
     /// How many of the bodies without a pose, the last of them, are obstacles that move.

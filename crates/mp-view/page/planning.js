@@ -51,7 +51,10 @@ export class PlanningPanel {
     this.showPlanner();
     this.showState();
     workbench.onevent.push((event) => this.event(event));
-    workbench.onopened.push(() => this.opened());
+    workbench.onopened.push((reply) => {
+      this.suit(reply);
+      this.opened();
+    });
     workbench.onleft.push(() => this.opened());
     workbench.onlost.push(() => this.lost());
     this.viewer.keys.push((e) => this.key(e));
@@ -63,7 +66,7 @@ export class PlanningPanel {
     const group = (/** @type {string} */ family, /** @type {string} */ label) =>
       el("optgroup", { label }, ...planners.filter((/** @type {PlannerInfo} */ p) => p.family === family).map((/** @type {PlannerInfo} */ p) => el("option", { value: p.name }, p.name)));
     this.planner = el("select", { onchange: () => this.showPlanner() }, group("tree", "Trees"), group("roadmap", "Roadmaps"));
-    this.planner.value = request.planner;
+    this.planner.value = this.suggested = request.planner;
     // In a name, a meta-planner that runs only some planners stands next to them.
     const inOrder = [...metas].sort((a, b) => Number(a.around !== null) - Number(b.around !== null));
     this.metas = inOrder.map((/** @type {MetaInfo} */ meta) => ({ meta, box: checkbox(`${meta.prefix} ${meta.summary}`, false, () => this.showPlanner()) }));
@@ -115,6 +118,19 @@ export class PlanningPanel {
   show(/** @type {() => void} */ change) {
     change();
     this.viewer.changed();
+  }
+  /** Planners that cannot plan for the robot cannot be chosen, and say why. If such a planner was chosen, or the default one for the last
+   * robot, the default one for this robot is. @param {Message} reply of “open” */
+  suit({ planner, cannot }) {
+    if (!this.planner || !planner) return;
+    const reasons = new Map(/** @type {[string, string][]} */ (cannot));
+    for (const option of this.planner.options) {
+      option.disabled = reasons.has(option.value);
+      option.title = reasons.get(option.value) ?? "";
+    }
+    if (this.planner.value === this.suggested || reasons.has(this.planner.value)) this.planner.value = planner;
+    this.suggested = planner;
+    this.showPlanner();
   }
   /** Shows the summary and the parameters of the planner that is chosen. */
   showPlanner() {

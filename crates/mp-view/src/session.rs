@@ -4,7 +4,6 @@ mod desk;
 mod files;
 mod mesh;
 mod messages;
-mod module;
 mod run;
 #[cfg(all(test, not(target_family = "wasm")))]
 mod tests;
@@ -14,7 +13,6 @@ mod worker;
 
 pub use desk::Opening;
 pub use mesh::{is_mesh, scene_of_mesh};
-pub use module::planner_module;
 #[cfg(not(target_family = "wasm"))]
 pub use threads::Session;
 pub use worker::Worker;

@@ -212,6 +212,8 @@ impl Desk {
         members.insert("document".to_owned(), json(&open.document));
         let notes: Vec<String> = open.scene.notes().iter().cloned().chain(open.scene.lint()).collect();
         members.insert("notes".to_owned(), notes.into());
+        members.insert("planner".to_owned(), open.scene.default_planner().into());
+        members.insert("cannot".to_owned(), json(&open.scene.planners_that_cannot()));
         Ok(members)
     }
 

@@ -98,6 +98,19 @@ fn says_what_there_is() {
 }
 
 #[test]
+fn names_planners_for_the_robot() {
+    let page = Page::new(Opening::default());
+    let car = page.ask(json!({"do": "open", "scene": "parking"})).head;
+    assert_eq!(car["planner"], "rsrt");
+    let cannot = car["cannot"].as_array().unwrap();
+    let why = cannot.iter().find(|pair| pair[0] == "rrt-connect").map(|pair| pair[1].as_str().unwrap());
+    assert!(why.is_some_and(|why| why.len() > 10), "{why:?}");
+    assert!(cannot.iter().all(|pair| pair[0] != "rsrt"));
+    let rigid = page.ask(json!({"do": "open", "scene": "easy"})).head;
+    assert_eq!((&rigid["planner"], &rigid["cannot"]), (&json!("rrt-connect"), &json!([])));
+}
+
+#[test]
 fn explains_configurations() {
     let page = Page::new(Opening::default());
     assert!(page.refused(json!({"do": "check", "row": [0.0]})).contains("no scene is open"));

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { after, test } from "node:test";
 import { fileURLToPath } from "node:url";
 import puppeteer from "puppeteer-core";
@@ -46,6 +46,15 @@ export async function withFolder(use) {
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }
+}
+
+/** The planners for pages that the program finds. */
+const PLANNERS = process.env.MP_PLANNERS ?? join(dirname(PROGRAM), "..", "planners");
+process.env.MP_PLANNERS = PLANNERS;
+/** Why pages cannot plan for robots of these kinds, or false. @param {...string} kinds */
+export function withoutPlanner(...kinds) {
+  const built = kinds.every((kind) => existsSync(join(PLANNERS, `${kind}.wasm`)));
+  return built ? false : `no planner for pages: “cargo xtask wasm ${kinds.join(" ")}” builds it`;
 }
 
 /** Runs the program to its end, and fails when it fails. @param {...string} args */

@@ -1,10 +1,10 @@
 // An exported page inside another page: in a notebook, a wiki, a report.
 
 import assert from "node:assert/strict";
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { readFileSync, writeFileSync } from "node:fs";
+import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { PROGRAM, browserTest, coverage, mp, newPage, withFolder } from "./browser.mjs";
+import { browserTest, coverage, mp, newPage, withFolder, withoutPlanner } from "./browser.mjs";
 
 /** The page in the frame, when it has drawn its scene. */
 async function framed(page) {
@@ -40,10 +40,7 @@ for (const [kind, host] of Object.entries(HOSTS)) {
   }));
 }
 
-const planners = process.env.MP_PLANNERS ?? join(dirname(PROGRAM), "..", "planners");
-const none = existsSync(join(planners, "rigid.wasm")) ? false : "no planner for pages: “cargo xtask wasm” builds it";
 browserTest("a page with a planner inside plans in a frame", () => withFolder(async (folder) => {
-  process.env.MP_PLANNERS = planners;
   mp("render", "easy", "--with-planner", "--out", join(folder, "easy.html"));
   writeFileSync(join(folder, "report.html"), HOSTS.src());
   const { page, context, faults } = await newPage();
@@ -54,4 +51,4 @@ browserTest("a page with a planner inside plans in a frame", () => withFolder(as
   await checked(frame);
   assert.deepEqual(faults, []);
   await context.close();
-}), none);
+}), withoutPlanner("plane"));

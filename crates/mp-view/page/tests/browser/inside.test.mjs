@@ -1,22 +1,22 @@
-// A page with the planner inside: a cancel ends a run at once, whatever it does, and what it has found stays.
+// A page with the planner inside: it plans as the program does. A cancel ends a run at once, whatever it does, and what it has found stays.
 
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { statSync } from "node:fs";
+import { join } from "node:path";
 import { pathToFileURL } from "node:url";
-import { Driver, PROGRAM, browserTest, mp, newPage, withFolder } from "./browser.mjs";
-
-const planners = process.env.MP_PLANNERS ?? join(dirname(PROGRAM), "..", "planners");
-const none = existsSync(join(planners, "rigid.wasm")) ? false : "no planner for pages: “cargo xtask wasm” builds it";
+import { Driver, browserTest, mp, newPage, withFolder, withoutPlanner } from "./browser.mjs";
 
 /** A cancel is answered within 100 ms, and some more where the processor draws and other programs run too; milliseconds. */
 const LATEST_CANCEL = 300;
 
+/** A page with a planner inside is small enough to send. */
+const MOST_BYTES = 2_000_000;
+
 /** Calls `use` with a page that has this scene and its planner inside. */
 const withInside = (scene, use) => withFolder(async (folder) => {
-  process.env.MP_PLANNERS = planners;
   const file = join(folder, "page.html");
   mp("render", scene, "--with-planner", "--out", file);
+  assert.ok(statSync(file).size < MOST_BYTES, `${statSync(file).size} bytes`);
   const { page, context, faults } = await newPage();
   await page.goto(String(pathToFileURL(file)));
   const driver = new Driver(page);
@@ -72,7 +72,7 @@ browserTest("a cancel while a path is finished keeps the path", (t) => withInsid
   const labels = await (await driver.control("combobox", "What")).$$eval("option", (all) => all.map((option) => option.textContent));
   assert.ok(labels.includes("the path, as text"), labels.join());
   await driver.page.keyboard.press("Escape");
-}), none);
+}), withoutPlanner("space"));
 
 browserTest("a cancel while planning keeps the best path so far", (t) => withInside("easy", async (driver) => {
   await driver.choose("Planner", "rrt-star");
@@ -92,4 +92,22 @@ browserTest("a cancel while planning keeps the best path so far", (t) => withIns
   t.diagnostic(`${times.map((time) => time.toFixed(0)).join(", ")} ms`);
   // Other programs of the machine can only make it longer.
   assert.ok(Math.min(...times) < LATEST_CANCEL, `${times} ms`);
-}), none);
+}), withoutPlanner("plane"));
+
+/** A scene of each kind of robot. */
+const KINDS = { arms: "arm", discs: "rrs-high", driven: "parking", floating: "wrench", moving: "crossing", plane: "easy", space: "cubicles" };
+/** Sine and cosine of the C library differ in the last digits from those in a page. */
+const LAST_DIGITS = 1e-9;
+for (const [kind, scene] of Object.entries(KINDS)) {
+  browserTest(`a page plans in ${scene} as the program does`, () => withInside(scene, async (driver) => {
+    const { path } = JSON.parse(mp("plan", scene, "--json"));
+    await driver.press("Plan");
+    await driver.untilResult(/verified path/, 1);
+    const written = await driver.page.evaluate(async () => {
+      const { viewer } = await window.mpView.planner;
+      return viewer.scene.paths[viewer.settings.path].written;
+    });
+    assert.equal(written.length, path.length);
+    path.forEach((row, i) => row.forEach((value, k) => assert.ok(Math.abs(value - written[i][k]) < LAST_DIGITS, `${row}: ${written[i]}`)));
+  }), withoutPlanner(kind));
+}

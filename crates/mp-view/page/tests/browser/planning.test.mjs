@@ -156,3 +156,16 @@ browserTest("a scene of the gallery is opened by one click", () => withPage("eas
   await driver.press("Plan");
   await driver.untilResult(/verified path/);
 }));
+
+browserTest("planners that cannot plan for the robot cannot be chosen", () => withPage("crossing", async (driver) => {
+  const planners = () => driver.page.evaluate(() => {
+    const list = [...document.querySelectorAll("select")].find((all) => [...all.options].some((option) => option.value === "rrt-connect"));
+    const { disabled, title } = [...list.options].find((option) => option.value === "rrt-connect");
+    return { chosen: list.value, disabled, title };
+  });
+  const { chosen, disabled, title } = await planners();
+  assert.equal(chosen, "rrt");
+  assert.ok(disabled && title.length > 10, title);
+  await driver.press("Plan");
+  assert.equal((await driver.untilResult(/verified path/))[3], "rrt");
+}));
