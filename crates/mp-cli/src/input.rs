@@ -50,12 +50,12 @@ pub(crate) fn path(scene: &Scene, given: &Path) -> Result<PathRows, Error> {
     PathRows::parse("standard input", text.as_bytes(), kind, scene.path_format())
 }
 
-/// The path that an argument names, and whether it is free. If it is not, this is said to the person watching.
-pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, bool), Error> {
+/// The path that an argument names, and what is wrong with it. If anything is, this is said to the person watching.
+pub(crate) fn judged_path(scene: &Scene, given: &Path) -> Result<(PathRows, Vec<String>), Error> {
     let path = path(scene, given)?;
     let verdict = scene.check(&path)?;
     if !verdict.free {
         note(&format!("warning: this path would not pass `mp check`: {}", verdict.faults.join("; ")));
     }
-    Ok((path, verdict.free))
+    Ok((path, verdict.faults))
 }

@@ -19,10 +19,12 @@ pub(crate) fn run(args: &Render) -> Result<bool, Error> {
     claims.output("--picture", &args.picture)?;
     let judged = args.path.as_ref().map(|file| judged_path(&scene, file)).transpose()?;
     let mut caption = String::new();
-    if let Some((path, free)) = &judged {
+    if let Some((path, faults)) = &judged {
         caption = mp_plan::count(path.rows.len(), "configuration");
-        if !free {
-            caption += ", not verified";
+        if let Some(fault) = faults.first() {
+            // The place is in the warning.
+            let what = fault.split(" between ").next().unwrap_or(fault);
+            caption += &format!("; NOT A VALID PATH: {}", mp_io::shortened(what, 80));
         }
     }
     let path = judged.as_ref().map(|(path, _)| path);

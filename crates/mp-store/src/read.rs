@@ -51,7 +51,7 @@ pub fn read_stream(name: &Path, stream: impl Read, limit: u64) -> Result<Vec<u8>
 }
 
 fn too_large(path: &Path, has: &str, limit: u64) -> Error {
-    let message = format!("{has}, more than the {limit} that are accepted here");
+    let message = format!("{has}, more than the {limit} this reader accepts");
     Error::new(ErrorKind::TooLarge, path, message, "simplify it, or split it into several files")
 }
 

@@ -106,7 +106,10 @@ fn target(path: &Path) -> Result<(PathBuf, Option<Metadata>), Error> {
             Err(e) => Err(failed(e)),
             Ok(_) => Ok((target, Some(old))),
         },
-        Err(e) if e.kind() == io::ErrorKind::NotFound => Ok((target, None)),
+        // What is wrong with the folder is said when a file is made in it.
+        Err(e) if matches!(e.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => {
+            Ok((target, None))
+        }
         Err(e) => Err(failed(e)),
     }
 }
@@ -126,6 +129,7 @@ pub(crate) fn followed(path: &Path) -> io::Result<PathBuf> {
 fn write_failed(path: &Path, folder: &Path, error: &io::Error) -> Error {
     let remedy = match error.kind() {
         io::ErrorKind::NotFound => format!("create the folder {}", folder.display()),
+        io::ErrorKind::NotADirectory => "name a file in a folder".to_owned(),
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
             format!("make the folder {} writable, or write elsewhere", folder.display())
         }
@@ -195,7 +199,8 @@ mod tests {
         let file = dir.path().join("file");
         write(&file, b"").unwrap();
         assert!(writable(dir.path()).is_err());
-        assert!(writable(&file.join("below")).is_err());
+        assert!(writable(&file.join("below")).unwrap_err().message().ends_with("file is not a folder"));
+        assert_eq!(write(&file.join("below"), b"").unwrap_err().remedy(), "name a file in a folder");
         assert!(writable(&file).is_ok());
         assert!(writable(&dir.path().join("new/folder/file")).is_ok());
         assert!(writable(Path::new("relative")).is_ok());

@@ -24,7 +24,8 @@ const FILE_CALLS: [&str; 7] = [
 ];
 
 /// Sources with such calls: a temporary folder of its own, the shipped scenes, and the scheduler's count of processor time.
-const OWN_FILES: [&str; 3] = ["mp-plan/src/mp4.rs", "mp-scenes/src/source.rs", "mp-bench/src/scaling/growth.rs"];
+const OWN_FILES: [&str; 3] =
+    ["mp-plan/src/mp4.rs", "mp-scenes/src/source.rs", "mp-bench/src/scaling/growth.rs"];
 
 /// All errors found in the workspace at `root`, a line each.
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
@@ -173,9 +174,16 @@ fn file_calls(path: &Path, text: &str) -> Vec<String> {
     }
     let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let lines = code.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//"));
-    let found = lines.filter_map(|(i, line)| Some((i, FILE_CALLS.iter().find(|call| line.contains(**call))?)));
+    let found =
+        lines.filter_map(|(i, line)| Some((i, FILE_CALLS.iter().find(|call| line.contains(**call))?)));
     found
-        .map(|(i, call)| format!("{}, line {}: files are read and written by mp-store, not by {call}…)", path.display(), i + 1))
+        .map(|(i, call)| {
+            format!(
+                "{}, line {}: files are read and written by mp-store, not by {call}…)",
+                path.display(),
+                i + 1
+            )
+        })
         .collect()
 }
 
@@ -223,7 +231,12 @@ mod tests {
         let found = |path: &str| file_calls(Path::new(path), text);
         assert_eq!(found("crates/mp-x/src/a.rs").len(), 1);
         assert!(found("crates/mp-x/src/a.rs")[0].contains("a.rs, line 3: "));
-        for path in ["crates/mp-store/src/a.rs", "crates/mp-x/tests/a.rs", "crates/mp-x/src/b/tests.rs", "xtask/src/a.rs"] {
+        for path in [
+            "crates/mp-store/src/a.rs",
+            "crates/mp-x/tests/a.rs",
+            "crates/mp-x/src/b/tests.rs",
+            "xtask/src/a.rs",
+        ] {
             assert!(found(path).is_empty(), "{path}");
         }
     }
