@@ -94,6 +94,10 @@ impl Claims {
                 other.path.display()
             ))
             .help("name another file")),
+            Some(other) if other.what == option => {
+                Err(Error::new(format!("{option} {} would be written twice", path.display()))
+                    .help("give each run a file of its own"))
+            }
             Some(other) => Err(Error::new(format!(
                 "{option} {} and {} {} are the same file",
                 path.display(),

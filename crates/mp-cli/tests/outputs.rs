@@ -3,6 +3,7 @@
 mod common;
 
 use common::{Dir, finish, mp, start, start_unread};
+use std::io::Write;
 use std::process::Child;
 use std::time::{Duration, Instant};
 
@@ -206,7 +207,7 @@ fn kill_runs(times: usize) {
     let left: Vec<String> = dir.entries(".").into_iter().filter(|name| name.starts_with('.')).collect();
     assert!(left.is_empty(), "{left:?}");
     assert!(killed > 0, "{killed} killed, {ended} ended before");
-    eprintln!("{killed} runs killed, {ended} ended before: nothing lost or torn");
+    let _ = writeln!(std::io::stderr(), "{killed} runs killed, {ended} ended before: nothing lost or torn");
 }
 
 #[test]

@@ -262,7 +262,7 @@ impl Reader<'_> {
         let mut numbers = Vec::with_capacity((count as usize).min(left));
         for _ in 0..count {
             let (at, number) = (self.at, f64::from_le_bytes(self.take()?));
-            if !(number.abs() <= MAX_NUMBER) {
+            if number.is_nan() || number.abs() > MAX_NUMBER {
                 return Err(RoadmapError::Invalid { at, expected: "a finite number of at most 1e75" });
             }
             numbers.push(number);
