@@ -1,8 +1,10 @@
 //! Planners that build roadmaps, in corridors of decreasing width and on shipped scenes, each until it has a
 //! verified path or its budget of collision queries is used up; many queries to one roadmap, against RRT-Connect;
-//! building time against the number of nodes; how many nodes cover the free space; and pictures of all roadmaps. With
-//! `--scene`, only the runs on these scenes.
+//! building time against the number of nodes; how many nodes cover the free space; pictures of all roadmaps; and what the
+//! paper of key elements says of making and connecting nodes ([`claims`]). With `--scene`, only the runs on these scenes.
 
+mod claims;
+mod claims_tables;
 mod coverage;
 mod growth;
 mod picture;
@@ -17,6 +19,7 @@ use crate::experiment::{Lab, Log, Table, sections};
 use crate::options::Common;
 use crate::output::{note, print};
 use crate::scenes::Rigid;
+use claims::{EXPERIMENTS, Experiment};
 use clap::Args;
 use runs::{Case, Plan, Run};
 use scenes::CORRIDORS;
@@ -27,19 +30,31 @@ const BUDGET: u64 = 100_000;
 const QUICK_BUDGET: u64 = 10_000;
 const SEEDS: u32 = 20;
 
+/// The budget of a run of the experiments on claims.
+const CLAIMS_BUDGET: u64 = 50_000;
+
 /// The options of the suite `roadmaps` alone.
-#[derive(Clone, Copy, Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 #[group(skip)]
 #[command(next_help_heading = "Of the suite `roadmaps`")]
 pub(crate) struct Options {
-    /// The budget of collision queries of a run [default: 100000; 10000 with --quick].
+    /// The budget of collision queries of a run [default: 100000, of experiments 50000; 10000 with --quick].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     queries: Option<u64>,
+    /// An experiment on the paper's claims to run, and nothing else [default: all, and everything else].
+    #[arg(long = "experiment", value_name = "EXPERIMENT")]
+    experiments: Vec<Experiment>,
 }
 
 /// Runs the suite. True when it was measured completely.
 pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
     let lab = Lab::new(common)?;
+    if !options.experiments.is_empty() {
+        return run_claims(&lab, common, options, &options.experiments);
+    }
+    if common.scenes.is_empty() && !run_claims(&lab, common, options, &EXPERIMENTS)? {
+        return Ok(false);
+    }
     let plan = Plan {
         budget: options.queries.unwrap_or(if common.quick { QUICK_BUDGET } else { BUDGET }),
         seeds: common.runs_or(3, SEEDS),
@@ -79,6 +94,26 @@ pub(crate) fn run(common: &Common, options: &Options) -> Result<bool> {
         lab.write(&format!("{name}-{}.svg", corridors.name), &results.chart(corridors)?)?;
     }
     picture::draw(&lab)?;
+    Ok(true)
+}
+
+/// Runs experiments on the paper's claims. False when one was interrupted.
+fn run_claims(lab: &Lab, common: &Common, options: &Options, wanted: &[Experiment]) -> Result<bool> {
+    let budget = options.queries.unwrap_or(if common.quick { QUICK_BUDGET } else { CLAIMS_BUDGET });
+    let mut log = lab.log(&lab.name("roadmaps-claims"), budget as f64)?;
+    for &experiment in wanted {
+        let seeds = common.runs_or(1, experiment.seeds()).into();
+        let own = if common.quick { &experiment.scenes()[..2] } else { experiment.scenes() };
+        let plan = claims::Plan { experiment, budget, seeds, scenes: common.scenes_or(own) };
+        if !claims::measure(&plan, lab, &mut log)? {
+            return Ok(false);
+        }
+        let results = claims_tables::Results { log: &log, plan: &plan };
+        let name = lab.name(experiment.name());
+        let scenes = format!("{}\n\n{}\n", results.intervals(), results.by_scene().markdown());
+        lab.write(&format!("{name}-by-scene.md"), &scenes)?;
+        lab.publish_runs(&name, &sections(3, &results.parts()), &log, |case| plan.has(case), Vec::new())?;
+    }
     Ok(true)
 }
 

@@ -30,7 +30,7 @@
 //!
 //! | slot | trait | here |
 //! |---|---|---|
-//! | which configurations are tried as nodes | [`NodeGenerator`] | [`Free`], [`Learn`], [`Unchecked`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
+//! | which configurations are tried as nodes | [`NodeGenerator`] | [`Free`], [`Learn`], [`AroundRemoved`], [`Pairs`] of [`NearObstacles`] or [`BetweenObstacles`], [`OnObstacles`], [`AroundObstacles`] |
 //! | which of them become nodes, with which edges | [`Connector`] | [`NearestConnector`], [`Star`], [`Visibility`], [`StagedConnector`] |
 //! | how a path is searched for | [`Query`] | [`AStar`] |
 //! | how one state is connected to another | [`LocalPlanner`](mp_cspace::LocalPlanner) | given by you; its edges are [`Reversible`](mp_cspace::Reversible) |
@@ -54,12 +54,12 @@ mod registry;
 pub use algo::types::*;
 pub use by_name::{AnyEdgeChecker, AnyParallelProblem, AnyPlanner, ParallelProblem};
 pub use engine::{
-    AStar, Builder, CYCLES, Candidate, Connector, EdgeChecker, EdgeId, Entry, Free, GraphPath, Growing,
-    HasRoadmap, IndexedRoadmap, Link, LinkState, Listed, MAX_ROADMAP_BYTES, MilestoneKind, Mixing,
-    NEIGHBOURS, NearestConnector, NeighborSet, NodeGenerator, PATIENCE, Pace, PairRule, Pairs, PairsPlanner,
-    ParentMotion, Prefetching, Query, QueryMeter, RADIUS, Reachable, Roadmap, RoadmapError, RoadmapFileError,
-    RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries, StagedConnector, Tag, Turns, UNDIRECTED, Unanswered,
-    fingerprint, length, reachable, yes,
+    AStar, Builder, CYCLES, Candidate, ConnectionStages, Connector, EdgeChecker, EdgeId, Entry, Free,
+    GraphPath, Growing, HasRoadmap, IndexedRoadmap, Link, LinkState, Listed, MAX_ROADMAP_BYTES,
+    MilestoneKind, Mixing, NEIGHBOURS, NearestConnector, NeighborSet, NodeGenerator, PATIENCE, Pace,
+    PairRule, Pairs, PairsPlanner, ParentMotion, Prefetching, Query, QueryMeter, RADIUS, Reachable, Roadmap,
+    RoadmapError, RoadmapFileError, RoadmapPlanner, RoadmapPlannerParts, RoadmapQueries, StagedConnector,
+    Tag, Turns, UNDIRECTED, Unanswered, fingerprint, length, reachable, yes,
 };
 pub use mp_cspace::erased::AnyIndex;
 pub use mp_cspace::{BuildError, Path, registry::Settings};

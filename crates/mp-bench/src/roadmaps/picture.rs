@@ -181,7 +181,8 @@ fn around<M: RigidSpace>(scene: &RigidScene<M>, lab: &Lab) -> Result<()> {
         let axis: Vector3<f64> = M::pose(q).rotation * robot.robot().axis;
         axis.dot(&block.axis).abs() > 0.9
     };
-    let geometry = |far| AroundObstacles::new(robot.clone(), ByGeometry { far, bands: 20 }).into_error();
+    let geometry =
+        |far| AroundObstacles::new(robot.clone(), ByGeometry { far, ..ByGeometry::default() }).into_error();
     let far = candidates(scene, geometry(1_000)?, 0..60)?;
     let near = candidates(scene, geometry(0)?, 0..60)?;
     let near: Vec<_> = near.into_iter().filter(|c| c.kind == MilestoneKind::Near).collect();

@@ -114,7 +114,13 @@ fn run(rigid: &Rigid, case: &Case, budget: u64, cancel: &Cancel) -> Result<Optio
 }
 
 /// Reads the clock when planning begins, so that preparations are not measured.
-struct Began(f64);
+pub(super) struct Began(pub(super) f64);
+
+impl Began {
+    pub(super) fn now() -> Self {
+        Self(nanoseconds())
+    }
+}
 
 impl Watch for Began {
     fn stage(&mut self, stage: Stage) {
@@ -125,7 +131,7 @@ impl Watch for Began {
 }
 
 fn one<M: RigidSpace>(scene: &RigidScene<M>, request: &Request, cancel: &Cancel) -> Result<Option<Run>> {
-    let mut began = Began(nanoseconds());
+    let mut began = Began::now();
     let mut control = Control { keep_roadmap: true, ..Control::new(cancel.clone(), &mut began) };
     let done = search(scene, request, &mut control)?;
     let seconds = seconds_since(began.0);

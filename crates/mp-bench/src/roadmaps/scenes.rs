@@ -44,6 +44,12 @@ impl Corridors {
         format!("{} {slack}", self.name)
     }
 
+    /// The corridor called `name`.
+    pub(super) fn find(&self, name: &str) -> Option<Result<Rigid>> {
+        let slack = self.slacks.iter().find(|&&slack| self.scene(slack) == name)?;
+        Some((self.make)(name, *slack).and_then(Rigid::new))
+    }
+
     /// All corridors, the widest first.
     pub(super) fn ready(&self) -> Result<Vec<(String, Rigid)>> {
         let one = |&slack: &f64| {

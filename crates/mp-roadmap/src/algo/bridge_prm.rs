@@ -23,6 +23,10 @@
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
 //! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
+//! | `turns`: fractions of a motion at which rotate-at-s is tried where the straight motion fails | 0, 1, 2, 3 | 0 |
+//! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
+//!
+//! The last two, by name only, connect in stages ([`StagedConnector`](crate::StagedConnector)).
 //!
 //! The authors mix in uniform samples too, by weights that depend on the scene.
 //!
@@ -50,6 +54,7 @@
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
+use crate::engine::staged::{STRAIGHT, TURNS_RANGE, turns};
 use crate::{Mixing, PairRule, Pairs, PairsPlanner};
 use mp_cspace::{Bridge, Rng, Space, Step, registry::PlannerInfo};
 
@@ -61,7 +66,15 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "bridge-prm",
     summary: "a roadmap of samples between obstacles, for narrow passages, and of uniform ones",
     citation: "Hsu, Jiang, Reif and Sun 2003",
-    parameters: &[sigma("10%"), uniform("0.5"), NEIGHBOURS, RADIUS, CYCLES],
+    parameters: &[
+        sigma("10%"),
+        uniform("0.5"),
+        NEIGHBOURS,
+        RADIUS,
+        CYCLES,
+        turns(TURNS_RANGE, "0"),
+        STRAIGHT,
+    ],
     aliases: &[],
     cannot: crate::engine::settings::UNDIRECTED,
 };

@@ -23,6 +23,10 @@
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
 //! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
+//! | `turns`: fractions of a motion at which rotate-at-s is tried where the straight motion fails | 0, 1, 2, 3 | 0 |
+//! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
+//!
+//! The last two, by name only, connect in stages ([`StagedConnector`](crate::StagedConnector)).
 //!
 //! The authors add no uniform samples; set `uniform` to 0 for that.
 //!
@@ -50,6 +54,7 @@
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::pairs::{sigma, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS};
+use crate::engine::staged::{STRAIGHT, TURNS_RANGE, turns};
 use crate::{Mixing, PairRule, Pairs, PairsPlanner};
 use mp_cspace::{Gaussian, Rng, Space, Step, registry::PlannerInfo};
 
@@ -61,7 +66,7 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "gaussian-prm",
     summary: "a roadmap of samples near obstacles",
     citation: "Boor, Overmars and van der Stappen 1999",
-    parameters: &[sigma("5%"), uniform("0.1"), NEIGHBOURS, RADIUS, CYCLES],
+    parameters: &[sigma("5%"), uniform("0.1"), NEIGHBOURS, RADIUS, CYCLES, turns(TURNS_RANGE, "0"), STRAIGHT],
     aliases: &[],
     cannot: crate::engine::settings::UNDIRECTED,
 };

@@ -48,7 +48,7 @@ macro_rules! planners {
 planners! {
     prm: Learn, Learning, Prm;
     prm_star: PrmStar, Star;
-    lazy_prm: LazyPrm, Unchecked;
+    lazy_prm: AroundRemoved, LazyPrm;
     visibility_prm: Visibility, VisibilityPrm;
     gaussian_prm: GaussianPrm, NearObstacles;
     bridge_prm: BetweenObstacles, BridgePrm;

@@ -30,10 +30,9 @@
 //! ([`ObstacleGeometry`]); where its centre is outside of the space, or does not collide, points of its surface are used.
 //!
 //! **When to use it.** For narrow passages between obstacles of moderate size. It needs [`ObstacleGeometry`], which rigid
-//! bodies among meshes have. With certified motions use `free`: nodes in contact have almost no clearance, so motions
-//! between them are expensive to check, and mostly fail. A rod of 0.8 m by 0.1 m before a corridor 0.175 m wide, 20 seeds
-//! of 100,000 collision queries, certified: `free` 20 solved, `shells` 3, `contact` and `prototype` none, PRM 14; 0.1375 m
-//! wide: `free` 10, PRM 1.
+//! bodies among meshes have. Of the four ways to make nodes `free` is the best: with 50,000 collision queries and certified
+//! motions it solved 98 of 140 runs in seven scenes, `shells` 87, `prototype` 72, `contact` 71, uniform samples 72. With
+//! discrete motion checks, nearly all paths by way of nodes in contact fail the verification (docs/results/roadmaps.md).
 //!
 //! | parameter | range | default |
 //! |---|---|---|
@@ -46,6 +45,7 @@
 //! | `connect`: to which nodes | nearest, obstacles | nearest |
 //! | `per-obstacle`: most of each obstacle, k | 1, 2, … 10⁶ | 3 |
 //! | `turns`: fractions tried in the second stage | 0, 1, 2, 3 | 1 |
+//! | `straight`: whether there is a first stage; `no` leaves rotate-at-s alone | yes, no | yes |
 //! | `neighbours`: most neighbours tried per node | 1, 2, … 10⁶ | 15 |
 //! | `radius`: longest distance of neighbours, in the metric of the space or with % of its extent | positive | 100% |
 //! | `cycles`: also connects nodes of one component: shorter paths, for more motions | yes, no | no |
@@ -77,8 +77,9 @@ use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::pairs::{drew_uniform, part, uniform};
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
+use crate::engine::staged::{CONNECT, PER_OBSTACLE, STRAIGHT, TURNS_RANGE, turns};
 use crate::{
-    AStar, Candidate, EdgeChecker, MilestoneKind, NeighborSet, NodeGenerator, Reachable, Roadmap,
+    AStar, Candidate, ConnectionStages, EdgeChecker, MilestoneKind, NodeGenerator, Reachable, Roadmap,
     RoadmapPlanner, RoadmapPlannerParts, StagedConnector, Turns,
 };
 use mp_cspace::{
@@ -109,7 +110,7 @@ pub enum Strategy {
 }
 
 /// The parameters of OBPRM.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OnSurfaces {
     /// How nodes are generated.
     pub strategy: Strategy,
@@ -123,10 +124,8 @@ pub struct OnSurfaces {
     pub shells: usize,
     /// Part of the attempts that are uniform samples.
     pub uniform: f64,
-    /// To which nodes a new one is connected.
-    pub among: NeighborSet,
-    /// At how many fractions of the motion a turn in place is tried: at most 3.
-    pub turns: usize,
+    /// How nodes are connected.
+    pub stages: ConnectionStages,
 }
 
 impl Default for OnSurfaces {
@@ -138,14 +137,10 @@ impl Default for OnSurfaces {
             gap: Step::Fraction(0.01),
             shells: 3,
             uniform: 0.1,
-            among: NeighborSet::Nearest,
-            turns: 1,
+            stages: ConnectionStages { turns: Turns::first(1), ..ConnectionStages::default() },
         }
     }
 }
-
-/// Where the second stage turns.
-const AT: [f64; 3] = [0.5, 0.0, 1.0];
 
 const fn parameter(
     name: &'static str,
@@ -168,20 +163,6 @@ const GAP: Parameter = parameter(
     "greatest distance of `free` nodes from contact, and distance between `shells`",
 );
 const SHELLS: Parameter = parameter("shells", "a whole number, 1 to 100", "3", "shells behind contact");
-const CONNECT: Parameter = parameter(
-    "connect",
-    "nearest or obstacles",
-    "nearest",
-    "to the nearest nodes, or to the nearest of each obstacle",
-);
-const PER_OBSTACLE: Parameter =
-    parameter("per-obstacle", "a whole number, 1 to 10⁶", "3", "most nodes of each obstacle (k)");
-const TURNS: Parameter = parameter(
-    "turns",
-    "a whole number, 0 to 3",
-    "1",
-    "fractions of a motion (1/2, 0, 1) at which rotate-at-s is tried where the straight motion fails",
-);
 
 impl OnSurfaces {
     /// The values that are set, the others by default.
@@ -203,12 +184,6 @@ impl OnSurfaces {
             "surface" => Some(PointOf::Surface),
             _ => None,
         };
-        let each = NeighborSet::EachObstacle(settings.count_of(&PER_OBSTACLE)? as usize);
-        let among = |word: &str| match word {
-            "nearest" => Some(NeighborSet::Nearest),
-            "obstacles" => Some(each),
-            _ => None,
-        };
         Ok(Self {
             strategy: settings.choice(NODES.name, NODES.range, strategy)?.unwrap_or(default.strategy),
             points: settings.choice(POINTS.name, POINTS.range, points)?.unwrap_or(default.points),
@@ -216,8 +191,7 @@ impl OnSurfaces {
             gap: settings.step(GAP.name)?.unwrap_or(default.gap),
             shells: settings.count_of(&SHELLS)? as usize,
             uniform: settings.number("uniform")?.unwrap_or(default.uniform),
-            among: settings.choice(CONNECT.name, CONNECT.range, among)?.unwrap_or(default.among),
-            turns: settings.count_of(&TURNS)? as usize,
+            stages: default.stages.read(settings)?,
         })
     }
 }
@@ -236,7 +210,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
         uniform("0.1"),
         CONNECT,
         PER_OBSTACLE,
-        TURNS,
+        turns(TURNS_RANGE, "1"),
+        STRAIGHT,
         NEIGHBOURS,
         RADIUS,
         CYCLES,
@@ -404,8 +379,6 @@ pub fn parts<C: Space, H>(
     reach: Reachable,
     with: OnSurfaces,
 ) -> Result<RoadmapPlannerParts<OnObstacles<H>, StagedConnector, AStar>, BuildError> {
-    BuildError::count_within(TURNS.name, with.turns as u64, 0, AT.len() as u64)?;
-    let turns = Turns::At(AT[..with.turns].to_vec());
-    let generator = OnObstacles::new(space, hints, with)?;
-    Ok(RoadmapPlannerParts::new(generator, StagedConnector::new(reach, with.among, turns)?))
+    let connector = StagedConnector::new(reach, with.stages.clone())?;
+    Ok(RoadmapPlannerParts::new(OnObstacles::new(space, hints, with)?, connector))
 }

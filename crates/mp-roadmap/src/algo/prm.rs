@@ -36,7 +36,10 @@
 //! | `expand`: nodes of an expansion step, as a part of those of a construction step | \[0, 10\] | 0.5 |
 //! | `bounces`: motions of a random-bounce walk | 1, 2, … 100 | 3 |
 //! | `walk`: longest motion of such a walk, in the metric of the space or with % of its extent | positive | 10% |
+//! | `turns`: fractions of a motion at which rotate-at-s is tried where the straight motion fails | 0, 1, 2, 3 | 0 |
+//! | `straight`: tries straight motions first; `no` leaves rotate-at-s alone | yes, no | yes |
 //!
+//! The last two, by name only, connect in stages ([`StagedConnector`]).
 //! The paper chooses K and MAXDIST for each problem. As in the paper, construction adds twice as many nodes as expansion.
 //!
 //! A point goes around a disc in the unit square:
@@ -63,9 +66,10 @@
 use crate::by_name::{BuildArgs, BuildResult, Types};
 use crate::engine::constructors;
 use crate::engine::settings::{CYCLES, NEIGHBOURS, RADIUS, length, reachable};
+use crate::engine::staged::{STRAIGHT, TURNS_RANGE, turns};
 use crate::{
-    AStar, Candidate, EdgeChecker, Free, MilestoneKind, NearestConnector, NodeGenerator, ParentMotion,
-    Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts,
+    AStar, Candidate, ConnectionStages, EdgeChecker, Free, MilestoneKind, NearestConnector, NodeGenerator,
+    ParentMotion, Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts, StagedConnector,
 };
 use mp_cspace::{
     BuildError, Direction, Extension, LocalPlanner, NodeId, Reach, Reversible, Rng, Space, Step, Uniform,
@@ -138,7 +142,17 @@ pub const INFO: PlannerInfo = PlannerInfo {
     name: "prm",
     summary: "a roadmap of uniform samples, expanded where connecting is difficult; to answer many queries",
     citation: "Kavraki, Švestka, Latombe and Overmars 1996",
-    parameters: &[NEIGHBOURS, RADIUS, CYCLES, LEARN, EXPAND, BOUNCES, WALK],
+    parameters: &[
+        NEIGHBOURS,
+        RADIUS,
+        CYCLES,
+        LEARN,
+        EXPAND,
+        BOUNCES,
+        WALK,
+        turns(TURNS_RANGE, "0"),
+        STRAIGHT,
+    ],
     aliases: &["basic-prm"],
     cannot: crate::engine::settings::UNDIRECTED,
 };
@@ -147,7 +161,8 @@ pub const INFO: PlannerInfo = PlannerInfo {
 pub(crate) fn make<'c, T: Types<'c>>(args: BuildArgs<'c, '_, T>) -> BuildResult<'c, T> {
     let reach = reachable(args.space, args.settings)?;
     let parts = parts(args.space, reach, Learning::read(args.settings)?)?;
-    args.build(parts)
+    let connector = StagedConnector::new(reach, ConnectionStages::default().read(args.settings)?)?;
+    args.build(parts.connected_by(connector))
 }
 
 /// The two steps of the learning phase in turn: the generator of PRM.

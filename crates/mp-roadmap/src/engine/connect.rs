@@ -97,6 +97,16 @@ where
         self.observer.on(Event::Linked { from, to });
     }
 
+    /// Tries to connect each of `near`, in order, to a node, unless the two are in one component by then. With `cycles` also
+    /// then, unless there is an edge already.
+    pub(crate) fn link_near(&mut self, near: &[Hit], to: NodeId, cycles: bool) {
+        for hit in near {
+            if !self.map.connected(hit.id, to) || (cycles && !self.map.has_link(hit.id, to)) {
+                self.try_link(hit.id, to);
+            }
+        }
+    }
+
     /// Tries to connect a node to another; counts as an attempt of both. Returns whether there is an edge now.
     pub fn try_link(&mut self, from: NodeId, to: NodeId) -> bool {
         let q = self.map.state(to).clone();
@@ -205,15 +215,8 @@ where
     }
 
     fn prefetch<N: NearestNeighbors<C>>(&self, prefetching: &mut Prefetching<'_, '_, C, L, N>) {
-        if self.lazy {
-            return;
-        }
-        let mut joined = Vec::new();
-        for hit in prefetching.near(self.within.neighbours, self.within.radius) {
-            let component = prefetching.component(hit.id);
-            if (self.within.cycles || !joined.contains(&component)) && prefetching.reach(hit.id) {
-                joined.push(component);
-            }
+        if !self.lazy {
+            prefetching.reach_nearest(&self.within);
         }
     }
 
@@ -225,15 +228,13 @@ where
         let Reachable { neighbours, radius, cycles } = self.within;
         growing.near(&candidate.state, neighbours, radius, &mut self.near);
         let id = growing.add(candidate);
+        if !self.lazy {
+            growing.link_near(&self.near, id, cycles);
+            return id;
+        }
         for hit in &self.near {
-            if self.lazy {
-                if !growing.map().has_link(hit.id, id) {
-                    growing.guess(hit.id, id, hit.distance);
-                }
-                continue;
-            }
-            if !growing.map().connected(hit.id, id) || (cycles && !growing.map().has_link(hit.id, id)) {
-                growing.try_link(hit.id, id);
+            if !growing.map().has_link(hit.id, id) {
+                growing.guess(hit.id, id, hit.distance);
             }
         }
         id

@@ -16,7 +16,7 @@ mod queries;
 mod roadmap;
 mod search;
 pub(crate) mod settings;
-mod staged;
+pub(crate) mod staged;
 
 pub(crate) use constructors::constructors;
 
@@ -33,4 +33,4 @@ pub use queries::{IndexedRoadmap, Listed, RoadmapQueries, Unanswered};
 pub use roadmap::{EdgeId, GraphPath, Link, LinkState, MilestoneKind, Roadmap, Tag};
 pub use search::{AStar, Entry, Query};
 pub use settings::{CYCLES, NEIGHBOURS, RADIUS, UNDIRECTED, length, reachable, yes};
-pub use staged::{NeighborSet, StagedConnector, Turns};
+pub use staged::{ConnectionStages, NeighborSet, StagedConnector, Turns};

@@ -3,8 +3,8 @@
 use super::constructors;
 use super::settings::{length, reachable};
 use super::{
-    AStar, Candidate, EdgeChecker, MilestoneKind, NearestConnector, NodeGenerator, Reachable, Roadmap,
-    RoadmapPlanner, RoadmapPlannerParts,
+    AStar, Candidate, ConnectionStages, EdgeChecker, MilestoneKind, NearestConnector, NodeGenerator,
+    Reachable, Roadmap, RoadmapPlanner, RoadmapPlannerParts, StagedConnector,
 };
 use mp_cspace::{
     BuildError, LocalPlanner, Reversible, Rng, Space, Step,
@@ -109,8 +109,10 @@ impl<R: PairRule> Pairs<R> {
         space: &C,
         settings: &Settings,
         mixing: Mixing,
-    ) -> Result<RoadmapPlannerParts<Self, NearestConnector, AStar>, BuildError> {
-        Self::parts(space, reachable(space, settings)?, mixing.read(settings)?)
+    ) -> Result<RoadmapPlannerParts<Self, StagedConnector, AStar>, BuildError> {
+        let reach = reachable(space, settings)?;
+        let connector = StagedConnector::new(reach, ConnectionStages::default().read(settings)?)?;
+        Ok(Self::parts(space, reach, mixing.read(settings)?)?.connected_by(connector))
     }
 }
 

@@ -24,6 +24,14 @@ impl<G, K> RoadmapPlannerParts<G, K, AStar> {
     }
 }
 
+impl<G, K, Q> RoadmapPlannerParts<G, K, Q> {
+    /// The same parts with another connector.
+    pub fn connected_by<T>(self, connector: T) -> RoadmapPlannerParts<G, T, Q> {
+        let Self { generator, query, pace, improves, .. } = self;
+        RoadmapPlannerParts { generator, connector, query, pace, improves }
+    }
+}
+
 /// When a planner looks for a path, once start and goal are in the same component. It always looks for one in the first
 /// step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

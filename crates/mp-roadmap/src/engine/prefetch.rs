@@ -4,7 +4,7 @@
 //! the motions that the next attempts will probably need, given the roadmap as it is, and keep them. The attempts are
 //! then made one after the other as usual, and use the motions that were prefetched.
 
-use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Roadmap};
+use super::{Builder, Candidate, Connector, EdgeChecker, NodeGenerator, Reachable, Roadmap};
 use mp_cspace::{
     Direction, Hit, LocalPlanner, Motion, NearestNeighbors, NodeId, Reversible, Rng, Space, Workers,
 };
@@ -101,6 +101,17 @@ where
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.map.len()
+    }
+
+    /// Prefetches the motions from the nearest nodes, one for each component that can be joined; with cycles all of them.
+    pub(crate) fn reach_nearest(&mut self, within: &Reachable) {
+        let mut joined = Vec::new();
+        for hit in self.near(within.neighbours, within.radius) {
+            let component = self.component(hit.id);
+            if (within.cycles || !joined.contains(&component)) && self.reach(hit.id) {
+                joined.push(component);
+            }
+        }
     }
 
     /// Prefetches the motion from a node to the candidate. Returns whether there is one.

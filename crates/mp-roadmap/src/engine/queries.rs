@@ -2,6 +2,7 @@
 
 use super::forest::Forest;
 use super::planner::verify;
+use super::search::check;
 use super::{AStar, Builder, EdgeChecker, EdgeId, GraphPath, LinkState, Query, Roadmap};
 use mp_cspace::shortest::{shortest_paths, shortest_via};
 use mp_cspace::{
@@ -214,7 +215,7 @@ where
             let [a, b] = self.map.ends(edge);
             for nodes in [vec![a, b], vec![b, a]] {
                 let path = GraphPath { nodes, edges: vec![edge], length: self.map.edge(edge).length };
-                if !self.star.check(&mut self.map, checker, &path) || !verify(&mut self.map, checker, &path) {
+                if !check(&mut self.map, checker, &path) || !verify(&mut self.map, checker, &path) {
                     break;
                 }
             }
@@ -423,7 +424,7 @@ where
             return star.search(map, self.checker, &[(from, 0.0)], &[(to, 0.0)]);
         }
         let path = forest.path(map, from, to)?;
-        star.check(map, self.checker, &path).then_some(path)
+        check(map, self.checker, &path).then_some(path)
     }
 
     /// The shortest paths between two nodes, all of whose edges are verified; `None` when an edge had to be blocked.
@@ -451,11 +452,11 @@ where
 
     /// The path through these nodes, if all of its edges are verified; `None` when one had to be blocked.
     fn checked(&mut self, length: f64, nodes: Vec<u32>) -> Option<GraphPath> {
-        let IndexedRoadmap { map, star, .. } = &mut *self.roadmap;
+        let map = &mut self.roadmap.map;
         let edges =
             nodes.windows(2).map(|pair| shortest_edge(map, pair[0], pair[1])).collect::<Option<_>>()?;
         let path = GraphPath { nodes, edges, length };
-        let free = star.check(map, self.checker, &path) && verify(map, self.checker, &path);
+        let free = check(map, self.checker, &path) && verify(map, self.checker, &path);
         free.then_some(path)
     }
 

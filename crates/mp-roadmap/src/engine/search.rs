@@ -56,7 +56,7 @@ const UNSEEN: Mark = Mark { search: 0, length: f64::INFINITY, rest: 0.0, via: No
 /// paths*), with the distance to the ends as heuristic. Memory is reused from search to search, so that the cost of a
 /// search depends only on the nodes it visits.
 ///
-/// Use one `AStar` per roadmap, as it caches which nodes are free. Paths are shortest where no edge is shorter than the
+/// Paths are shortest where no edge is shorter than the
 /// distance between its ends. Under a distance that violates the triangle inequality, nodes are visited again when a
 /// shorter path to them is found.
 #[derive(Clone, Debug, Default)]
@@ -64,8 +64,6 @@ pub struct AStar {
     marks: Vec<Mark>,
     open: BinaryHeap<Open>,
     search: u32,
-    /// Which nodes with unchecked edges were found free.
-    free: Vec<bool>,
 }
 
 /// With more ends than this the heuristic costs more than it saves.
@@ -155,7 +153,7 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
-    /// Checks the unchecked edges of the path found, and searches again when one is blocked.
+    /// Checks the unchecked edges of the path found, and searches again when some are blocked.
     fn search(
         &mut self,
         map: &mut Roadmap<C::State, L::Edge>,
@@ -165,7 +163,7 @@ where
     ) -> Option<GraphPath> {
         loop {
             let path = self.shortest(map, checker.space(), from, to)?;
-            if self.check(map, checker, &path) {
+            if check(map, checker, &path) {
                 return Some(path);
             }
         }
@@ -177,55 +175,8 @@ fn inward(n: usize) -> impl Iterator<Item = usize> {
     (0..n).map(move |i| if i % 2 == 0 { i / 2 } else { n - 1 - i / 2 })
 }
 
-impl AStar {
-    /// Checks the unchecked nodes and edges of a path. Blocks the first that fails. Returns whether none did.
-    pub(crate) fn check<C, L>(
-        &mut self,
-        map: &mut Roadmap<C::State, L::Edge>,
-        checker: &mut EdgeChecker<'_, C, L>,
-        path: &GraphPath,
-    ) -> bool
-    where
-        C: Space,
-        L: LocalPlanner<C::State, Edge: Reversible>,
-    {
-        self.nodes_pass(map, checker, path) && edges_pass(map, checker, path)
-    }
-
-    /// Checks the nodes of a path with unchecked edges. Blocks all edges of the first that is not admitted. Returns whether
-    /// there was none.
-    fn nodes_pass<C, L>(
-        &mut self,
-        map: &mut Roadmap<C::State, L::Edge>,
-        checker: &mut EdgeChecker<'_, C, L>,
-        path: &GraphPath,
-    ) -> bool
-    where
-        C: Space,
-        L: LocalPlanner<C::State, Edge: Reversible>,
-    {
-        let unchecked = |edge: &EdgeId| map.edge(*edge).state == LinkState::Unchecked;
-        if !path.edges.iter().any(unchecked) {
-            return true;
-        }
-        self.free.resize(self.free.len().max(map.len()), false);
-        for node in inward(path.nodes.len()).map(|i| path.nodes[i]) {
-            if self.free[node as usize] {
-                continue;
-            }
-            if !checker.admits(map.state(node)) {
-                let edges: Vec<EdgeId> = map.links(node).map(|(edge, ..)| edge).collect();
-                edges.into_iter().for_each(|edge| map.block(edge));
-                return false;
-            }
-            self.free[node as usize] = true;
-        }
-        true
-    }
-}
-
-/// Checks the unchecked edges of a path, whose nodes are free. Blocks the first that fails. Returns whether none did.
-fn edges_pass<C, L>(
+/// Checks the unchecked edges of a path. Blocks those that fail. Returns whether none did.
+pub(crate) fn check<C, L>(
     map: &mut Roadmap<C::State, L::Edge>,
     checker: &mut EdgeChecker<'_, C, L>,
     path: &GraphPath,
@@ -234,6 +185,7 @@ where
     C: Space,
     L: LocalPlanner<C::State, Edge: Reversible>,
 {
+    let mut all = true;
     for edge in inward(path.edges.len()).map(|i| path.edges[i]) {
         if map.edge(edge).state != LinkState::Unchecked {
             continue;
@@ -247,9 +199,9 @@ where
             Some(motion) => map.set_motion(edge, motion.edge, motion.cost),
             None => {
                 map.block(edge);
-                return false;
+                all = false;
             }
         }
     }
-    true
+    all
 }

@@ -2,7 +2,7 @@
 
 use mp_cspace::erased::{AnyCheck, AnyGeometry, AnySpace};
 use mp_cspace::obstacles::ObstacleGeometry;
-use mp_cspace::registry::Settings;
+use mp_cspace::registry::{PlannerInfo, Settings};
 use mp_cspace::*;
 use mp_geom::primitives::cuboid;
 use mp_geom::{TriMesh, pose_from_six};
@@ -62,7 +62,7 @@ fn made<'c>(name: &str, settings: &str, space: &'c Se2, robot: &PlanarFlyer) -> 
 }
 
 /// Every strategy, and planners that need no geometry as well.
-const ALL: [(&str, &str); 11] = [
+const ALL: [(&str, &str); 17] = [
     ("obprm", "nodes=prototype"),
     ("obprm", "nodes=contact points=centers"),
     ("obprm", "nodes=free points=vertices turns=0 gap=5%"),
@@ -74,6 +74,12 @@ const ALL: [(&str, &str); 11] = [
     ("geometry-prm", "far=0 bands=40"),
     ("gaussian-prm", ""),
     ("bridge-prm", "uniform=0.8"),
+    ("prm", "turns=1"),
+    ("gaussian-prm", "straight=no turns=3"),
+    ("obprm", "straight=no"),
+    ("geometry-prm", "straightness=no volume=no salvage=no"),
+    ("geometry-prm", "bands=0 turns=1 connect=obstacles"),
+    ("geometry-prm", "far=0 near=no"),
 ];
 
 #[test]
@@ -203,7 +209,8 @@ fn nodes_of_obprm_are_on_surfaces() {
 #[test]
 fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
     let (space, robot) = (plane(), corridor(0.25));
-    let generator = || AroundObstacles::new(robot.clone(), ByGeometry { far: 400, bands: 20 }).unwrap();
+    let generator =
+        || AroundObstacles::new(robot.clone(), ByGeometry { far: 400, ..ByGeometry::default() }).unwrap();
 
     // No state is tested in the first approximation.
     let tests = Cell::new(0);
@@ -241,7 +248,8 @@ fn far_is_told_by_spheres_and_near_lies_parallel_and_across() {
     let check = Certified::new(&space, rod.clone(), rod.tolerance()).unwrap();
     let mut checker =
         EdgeChecker::new(&space, Straight::new(&space, check), Verifier::new(&space, &rod).unwrap(), 10);
-    let mut generator = AroundObstacles::new(rod.clone(), ByGeometry { far: 0, bands: 20 }).unwrap();
+    let mut generator =
+        AroundObstacles::new(rod.clone(), ByGeometry { far: 0, ..ByGeometry::default() }).unwrap();
     let (map, mut pairs) = (Roadmap::new(), 0);
     for attempt in (0..200).step_by(2) {
         out_of(&mut generator, attempt, &map, &mut checker, &mut pairs);
@@ -264,6 +272,83 @@ fn out_of(
     if let [parallel, across] = axes[..] {
         assert!(parallel.z.abs() > 1.0 - 1e-9 && across.z.abs() < 1e-9);
         *pairs += 1;
+    }
+}
+
+/// Each part of obstacle-geometry PRM can be left out, and only that is gone.
+#[test]
+fn parts_can_be_left_out() {
+    let pillar = block("pillar", [0.7, 0.6, 2.4], [0.0; 3]);
+    let rod = FreeFlyer::new(&cuboid(0.8, 0.1, 0.1).unwrap(), [pillar]).unwrap();
+    let space = Se3::new([-2.0; 3], [2.0; 3]).unwrap();
+    let verifier = Verifier::new(&space, &rod).unwrap();
+    let check = Certified::new(&space, rod.clone(), rod.tolerance()).unwrap();
+    let mut checker = EdgeChecker::new(&space, Straight::new(&space, check), verifier, 10);
+    let mut of = |with: ByGeometry| {
+        let mut generator = AroundObstacles::new(rod.clone(), with).unwrap();
+        let (map, mut all, mut out) = (Roadmap::new(), Vec::new(), Vec::new());
+        for attempt in 0..400 {
+            generator.generate(attempt, &map, &mut checker, &mut Rng::stream(3, attempt), &mut out);
+            all.append(&mut out);
+        }
+        let count = |kind| all.iter().filter(|c: &&Candidate<Isometry3<f64>, ()>| c.kind == kind).count();
+        let kinds = [MilestoneKind::Near, MilestoneKind::Salvaged, MilestoneKind::Plain].map(count);
+        let near = all.iter().filter(|c| matches!(c.kind, MilestoneKind::Near | MilestoneKind::Salvaged));
+        let (mut parallel, mut nearest) = (0, f64::INFINITY);
+        for c in near {
+            parallel += usize::from((c.state.rotation * Vector3::x()).z.abs() > 1.0 - 1e-9);
+            nearest = nearest.min(c.state.translation.vector.norm());
+        }
+        (kinds, parallel, nearest)
+    };
+    let all = ByGeometry { far: 0, ..ByGeometry::default() };
+    let ([near, salvaged, plain], parallel, nearest) = of(all.clone());
+    assert!(
+        near > 300 && salvaged > 5 && plain > 20 && parallel > 150,
+        "{near} {salvaged} {plain} {parallel}"
+    );
+
+    let (kinds, parallel, _) = of(ByGeometry { straightness: false, ..all.clone() });
+    assert!(kinds[0] > 300 && parallel == 0, "{kinds:?} {parallel}");
+    // The band begins at the centre of the obstacle: the rod fits into it, and obstacles are surfaces.
+    let (_, _, closest) = of(ByGeometry { volume: false, ..all.clone() });
+    assert!(closest < nearest, "{closest} {nearest}");
+    let (kinds, ..) = of(ByGeometry { salvage: false, ..all.clone() });
+    assert!(kinds[0] == near && kinds[1] == 0 && kinds[2] == plain, "{kinds:?}");
+    let (kinds, ..) = of(ByGeometry { near: false, ..all.clone() });
+    assert!(kinds[0] == 0 && kinds[1] > salvaged && kinds[2] > plain, "{kinds:?}");
+    let (kinds, ..) = of(ByGeometry { bands: 0, ..all });
+    assert!(kinds[0] > 50 && kinds[0] < near, "{kinds:?}");
+}
+
+/// Without turns, what is connected in stages is connected as PRM does it, to the bit, also with cycles.
+#[test]
+fn one_stage_is_the_connector_of_prm() {
+    let (space, robot) = (plane(), corridor(0.3));
+    for cycles in [false, true] {
+        let reach = Reachable { neighbours: 15, radius: f64::INFINITY, cycles };
+        let mut one = Prm::new(problem(&space, &robot), reach, Learning::default()).unwrap();
+        let mut other = made("prm", if cycles { "cycles=yes" } else { "" }, &space, &robot);
+        let grown = |planner: &mut dyn HasRoadmap<Se2State, ()>| {
+            planner.build(&mut Rng::seed(3), &mut Nodes(700), &mut ());
+            (planner.map().states().to_vec(), planner.map().edges(), planner.progress())
+        };
+        assert!(grown(&mut one) == grown(&mut *other), "cycles: {cycles}");
+    }
+}
+
+/// Rotate-at-s alone makes edges that either turn or move.
+#[test]
+fn without_straight_motions_edges_turn_or_move() {
+    let (space, robot) = (plane(), corridor(0.4));
+    let mut planner = made("prm", "straight=no turns=1 expand=0", &space, &robot);
+    planner.build(&mut Rng::seed(3), &mut Nodes(200), &mut ());
+    let map = planner.map();
+    let edges: Vec<_> = map.all_edges().map(|(edge, ..)| map.ends(edge).map(|id| *map.state(id))).collect();
+    assert!(edges.len() > 50, "{}", edges.len());
+    for [a, b] in edges {
+        let (moved, turned) = ((a.translation - b.translation).norm(), (a.angle - b.angle).abs());
+        assert!(moved < 1e-9 || turned < 1e-9, "{moved} {turned}");
     }
 }
 
@@ -290,12 +375,14 @@ fn what_cannot_be_made_says_why() {
         "connect=all",
         "per-obstacle=x",
         "turns=4",
+        "turns=far",
+        "straight=maybe",
         "neighbours=0",
         "bands=3",
     ] {
         assert!(refused("obprm", setting).is_some(), "{setting}");
     }
-    for setting in ["bands=0", "far=-1", "far=9999999999", "sigma=1"] {
+    for setting in ["bands=-1", "far=-1", "far=9999999999", "sigma=1", "turns=near", "salvage=often"] {
         assert!(refused("obstacle-geometry-prm", setting).is_some(), "{setting}");
     }
     for (name, setting) in
@@ -303,16 +390,19 @@ fn what_cannot_be_made_says_why() {
     {
         assert!(refused(name, setting).is_some(), "{name} {setting}");
     }
-    let each = NeighborSet::EachObstacle(0);
+    let unconnected = refused("prm", "straight=no").unwrap();
+    assert!(unconnected.to_string().contains("cannot be connected"), "{unconnected}");
     let within = Reachable { neighbours: 5, radius: 1.0, cycles: false };
-    assert!(StagedConnector::new(within, each, Turns::WhereFar).is_err());
-    assert!(StagedConnector::new(within, NeighborSet::Nearest, Turns::At(vec![0.5, 1.5])).is_err());
+    let none = ConnectionStages { among: NeighborSet::EachObstacle(0), ..ConnectionStages::default() };
+    assert!(StagedConnector::new(within, none).is_err());
+    let beyond = ConnectionStages { turns: Turns::At(vec![0.5, 1.5]), ..ConnectionStages::default() };
+    assert!(StagedConnector::new(within, beyond).is_err());
     // Tables and defaults agree.
-    for (info, read) in [(obprm::INFO, true), (obstacle_geometry_prm::INFO, false)] {
-        let all = info.parameters.iter().map(|p| format!("{}={}", p.name, p.default));
-        let settings = Settings::parse(all).unwrap();
-        assert!(!read || OnSurfaces::read(&settings).unwrap() == OnSurfaces::default());
-    }
+    let defaults = |info: PlannerInfo| {
+        Settings::parse(info.parameters.iter().map(|p| format!("{}={}", p.name, p.default))).unwrap()
+    };
+    assert_eq!(OnSurfaces::read(&defaults(obprm::INFO)).unwrap(), OnSurfaces::default());
+    assert_eq!(ByGeometry::read(&defaults(obstacle_geometry_prm::INFO)).unwrap(), ByGeometry::default());
 }
 
 /// Erased problems are planned as generic ones, to the bit: every planner, alone and by a team.
